@@ -1,0 +1,144 @@
+//! What can go wrong, with the numbers that say where, how far off, and what to try.
+
+use std::path::PathBuf;
+
+/// The crate's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Every failure of the library. [`Error::is_input`] separates bad input (exit status 2) from numerical failure (1).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter outside its domain.
+    #[error("{name} is {value}, but must be {must}")]
+    Parameter {
+        /// The parameter as the user names it.
+        name: String,
+        /// The value given.
+        value: String,
+        /// What is allowed.
+        must: &'static str,
+    },
+    /// An input that can't be read as what it should be: a scene file, a start, a combination of options.
+    #[error("{0}")]
+    Input(String),
+    /// A file that can't be read or written.
+    #[error("cannot {action} {}: {reason}", path.display())]
+    File {
+        /// `read`, `write`, `create`.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The operating system's words.
+        reason: String,
+    },
+    /// A SUNDIALS function returned a negative code.
+    #[error("{function} returned {name} ({code}){}{}", at(time), said(message))]
+    Sundials {
+        /// The C function.
+        function: &'static str,
+        /// The flag's own name, such as `CV_ERR_FAILURE`.
+        name: String,
+        /// The flag.
+        code: i32,
+        /// Time that the integration had reached; `None` where there is none.
+        time: Option<f64>,
+        /// The message that SUNDIALS would have printed.
+        message: String,
+    },
+    /// An integrator returned successfully at another time than the one asked for (SUNDIALS issue 82).
+    #[error(
+        "asked for the state at t = {asked}, but the integrator returned t = {returned}; try a larger tolerance"
+    )]
+    WrongTime {
+        /// The time asked for.
+        asked: f64,
+        /// The time returned.
+        returned: f64,
+    },
+    /// The step fell below the spacing of the floating-point numbers around t.
+    #[error(
+        "the step fell to {h:e} at t = {t}, below what can be added to t; try a larger tolerance"
+    )]
+    StepTooSmall {
+        /// Time reached.
+        t: f64,
+        /// Last step tried.
+        h: f64,
+    },
+    /// The solution leaves every bound in finite time: there is nothing to compute beyond t.
+    #[error(
+        "the solution blows up in finite time: at t = {t} it changes at the rate {rate:e} and accelerates; there is no solution beyond"
+    )]
+    BlowUp {
+        /// Time of the singularity, to rounding.
+        t: f64,
+        /// Largest component of |dy/dt| there.
+        rate: f64,
+    },
+    /// The bound on work was used up.
+    #[error(
+        "{limit} steps were used up at t = {t}, before t = {end}; raise --max-steps, loosen the tolerance or shorten the run"
+    )]
+    TooManySteps {
+        /// Time reached.
+        t: f64,
+        /// Time asked for.
+        end: f64,
+        /// The bound.
+        limit: usize,
+    },
+    /// A right-hand side was not finite where it had to be.
+    #[error("{what} is not finite at t = {t}")]
+    NonFinite {
+        /// What was evaluated.
+        what: &'static str,
+        /// Where.
+        t: f64,
+    },
+    /// An iteration stopped before its tolerance.
+    #[error(
+        "{what} did not converge: residual {residual:e} after {iterations} iterations, {tolerance:e} was asked for"
+    )]
+    NotConverged {
+        /// What was solved.
+        what: &'static str,
+        /// Iterations made.
+        iterations: usize,
+        /// Residual reached.
+        residual: f64,
+        /// Residual asked for.
+        tolerance: f64,
+    },
+}
+
+impl Error {
+    /// A parameter outside its domain: `Error::parameter("K", -1.0, "positive and finite")`.
+    pub fn parameter(name: impl Into<String>, value: impl ToString, must: &'static str) -> Self {
+        Error::Parameter {
+            name: name.into(),
+            value: value.to_string(),
+            must,
+        }
+    }
+
+    /// Whether the input is to blame (exit status 2) and not the computation (exit status 1).
+    pub fn is_input(&self) -> bool {
+        matches!(
+            self,
+            Error::Parameter { .. } | Error::Input(_) | Error::File { .. }
+        )
+    }
+}
+
+fn at(time: &Option<f64>) -> String {
+    time.map_or(String::new(), |t| format!(" at t = {t}"))
+}
+
+fn said(message: &str) -> String {
+    if message.is_empty() {
+        String::new()
+    } else {
+        format!(": {message}")
+    }
+}

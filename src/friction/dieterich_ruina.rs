@@ -1,0 +1,48 @@
+//! The Dieterich-Ruina law with the ageing evolution, equations (4) and (8). Velocity weakening throughout for beta > 1.
+
+use super::Law;
+use crate::number::Real;
+
+/// tau = a_v/a + ln v + beta ln psi, dpsi/dt = 1 - v psi, with psi in L/V*.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct DieterichRuina {
+    /// b/a
+    pub beta: f64,
+    /// 2 exp(-a_v/a)
+    pub gamma0: f64,
+}
+
+impl Law for DieterichRuina {
+    // exp(-a_v/a) = gamma0 / 2
+    #[inline]
+    fn activation<T: Real>(&self, tau: T) -> T {
+        tau.exp() * (0.5 * self.gamma0)
+    }
+
+    // v = exp(-a_v/a) psi^(-beta) exp(tau)  (8)
+    #[inline]
+    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
+        activation * (w * -self.beta).exp()
+    }
+
+    // tau = a_v/a + ln v + beta ln psi  (4)
+    fn stress<T: Real>(&self, v: T, w: T) -> T {
+        v.ln() + w * self.beta - T::constant(0.5 * self.gamma0).ln()
+    }
+
+    // dpsi/dt = 1 - v psi  (4)
+    #[inline]
+    fn evolution<T: Real>(&self, v: T, w: T) -> T {
+        (-w).exp() - v
+    }
+
+    // psi_ss = 1 / V
+    fn steady_log_state<T: Real>(&self, v: T) -> T {
+        -v.ln()
+    }
+
+    // tau_ss = a_v/a + (1 - beta) ln V is monotonic
+    fn steady_extrema(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}

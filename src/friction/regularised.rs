@@ -1,0 +1,45 @@
+//! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
+
+use super::Law;
+use crate::number::Real;
+
+/// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct RegularisedAgeing {
+    /// b/a
+    pub beta: f64,
+    /// 2 exp(-a_v/a)
+    pub gamma0: f64,
+}
+
+impl Law for RegularisedAgeing {
+    #[inline]
+    fn activation<T: Real>(&self, tau: T) -> T {
+        tau.sinh() * self.gamma0
+    }
+
+    #[inline]
+    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
+        activation * (w * -self.beta).exp()
+    }
+
+    // tau = asinh{(v/2) exp[(a_v + b ln psi)/a]}  (5)
+    fn stress<T: Real>(&self, v: T, w: T) -> T {
+        (v * (w * self.beta).exp() / self.gamma0).asinh()
+    }
+
+    // dpsi/dt = 1 - |v| psi
+    #[inline]
+    fn evolution<T: Real>(&self, v: T, w: T) -> T {
+        (-w).exp() - v.abs()
+    }
+
+    fn steady_log_state<T: Real>(&self, v: T) -> T {
+        -v.ln()
+    }
+
+    // tau_ss = asinh(V^(1-beta) / gamma0) is monotonic
+    fn steady_extrema(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}

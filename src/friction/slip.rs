@@ -1,0 +1,54 @@
+//! The slip law: the direct effect of (4) with the evolution of Ruina (1983), in which a resting interface does not heal.
+//!
+//! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
+
+use super::{DieterichRuina, Law};
+use crate::number::Real;
+
+/// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Slip {
+    /// b/a
+    pub beta: f64,
+    /// 2 exp(-a_v/a)
+    pub gamma0: f64,
+}
+
+impl Slip {
+    fn direct_effect(&self) -> DieterichRuina {
+        DieterichRuina {
+            beta: self.beta,
+            gamma0: self.gamma0,
+        }
+    }
+}
+
+impl Law for Slip {
+    #[inline]
+    fn activation<T: Real>(&self, tau: T) -> T {
+        self.direct_effect().activation(tau)
+    }
+
+    #[inline]
+    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
+        self.direct_effect().slip_rate(activation, w)
+    }
+
+    fn stress<T: Real>(&self, v: T, w: T) -> T {
+        self.direct_effect().stress(v, w)
+    }
+
+    // dpsi/dt = -v psi ln(v psi)
+    #[inline]
+    fn evolution<T: Real>(&self, v: T, w: T) -> T {
+        -(v * (v.ln() + w))
+    }
+
+    fn steady_log_state<T: Real>(&self, v: T) -> T {
+        -v.ln()
+    }
+
+    fn steady_extrema(&self) -> Vec<f64> {
+        Vec::new()
+    }
+}

@@ -1,0 +1,144 @@
+//! Flows: from a vector field and a state at one time to the state, and its tangent, at another.
+//!
+//! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
+//! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
+
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State, VectorField};
+
+/// Local error tolerances: component i may err by `atol + rtol * |y_i|` in a step.
+///
+/// In the chart (tau, ln psi_1, ln psi_2) an absolute error of ln psi is a relative error of psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance.
+    pub atol: f64,
+}
+
+impl Tolerances {
+    /// Both tolerances, checked: positive and finite, rtol below one.
+    pub fn new(rtol: f64, atol: f64) -> Result<Self> {
+        if !(rtol > 0.0 && rtol < 1.0) {
+            return Err(Error::parameter(
+                "rtol",
+                rtol,
+                "greater than 0 and less than 1",
+            ));
+        }
+        if !(atol > 0.0 && atol.is_finite()) {
+            return Err(Error::parameter("atol", atol, "positive and finite"));
+        }
+        Ok(Tolerances { rtol, atol })
+    }
+
+    /// The same number for both: sensible where all components are of order one to ten, as here.
+    pub fn equal(tolerance: f64) -> Result<Self> {
+        Self::new(tolerance, tolerance)
+    }
+}
+
+/// What an integration cost. A result, never a log line.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Steps refused by the error test, or because a trial value was not finite.
+    pub rejected: usize,
+    /// Evaluations of f.
+    pub rhs: usize,
+    /// Evaluations of the Jacobian.
+    pub jacobians: usize,
+    /// Matrix factorisations.
+    pub factorisations: usize,
+    /// Nonlinear (Newton) iterations; zero for Rosenbrock methods.
+    pub nonlinear: usize,
+}
+
+/// One accepted step, as an observer sees it.
+pub struct Step<'a, const N: usize> {
+    /// Time and state at the beginning.
+    pub t0: f64,
+    /// State at `t0`.
+    pub y0: &'a State<N>,
+    /// Time at the end.
+    pub t1: f64,
+    /// State at `t1`.
+    pub y1: &'a State<N>,
+    /// The continuous solution on `t0..=t1`; evaluated only when called.
+    pub dense: &'a dyn Fn(f64) -> State<N>,
+}
+
+/// Whether to go on after a step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Control {
+    /// Go on.
+    Continue,
+    /// Stop here: the flow returns the state at the end of this step.
+    Stop,
+}
+
+/// Sees every accepted step; an error from it ends the flow.
+pub type Observer<'a, const N: usize> = &'a mut dyn FnMut(&Step<'_, N>) -> Result<Control>;
+
+/// A method that integrates dy/dt = f(y).
+pub trait Integrator<const N: usize> {
+    /// The name by which the command line knows the method.
+    fn name(&self) -> &'static str;
+
+    /// The state at `t.1` from `y0` at `t.0`; backwards in time if `t.1 < t.0`.
+    ///
+    /// # Errors
+    /// [`Error::StepTooSmall`], [`Error::BlowUp`], [`Error::TooManySteps`], [`Error::NonFinite`] (at the start), those of
+    /// SUNDIALS, and those of the observer. Never returns a state that is not finite.
+    fn flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        observer: Option<Observer<'_, N>>,
+    ) -> Result<State<N>>;
+
+    /// The state at `t.1` and the tangent flow dy(t.1)/dy(t.0), with the tangent inside the error test.
+    fn tangent_flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(State<N>, Jacobian<N>)>;
+
+    /// The work of the last call, finished or failed.
+    fn work(&self) -> Work;
+}
+
+/// The bound on steps where the caller names none.
+pub const MAX_STEPS: usize = 10_000_000;
+
+/// Names the reason for a step that has become too small to change t: a finite-time singularity if the field is so large
+/// there that the state changes visibly within the rounding of t and the speed still grows, else a tolerance that can't be met.
+pub(crate) fn step_underflow<const N: usize>(
+    field: &dyn VectorField<N>,
+    t: f64,
+    h: f64,
+    y: &State<N>,
+) -> Error {
+    /// Relative change of the state within the spacing of the numbers around t from which on t is the singularity to rounding.
+    const VISIBLE: f64 = 1e-4;
+    let f = field.f(y);
+    let rate = f.amax();
+    if !rate.is_finite() {
+        return Error::NonFinite {
+            what: "the right-hand side",
+            t,
+        };
+    }
+    let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
+    // d|f|^2/dt = 2 f . J f
+    let accelerates = f.dot(&(field.jacobian(y) * f)) * h.signum() > 0.0;
+    if rate * spacing > VISIBLE && accelerates {
+        Error::BlowUp { t, rate }
+    } else {
+        Error::StepTooSmall { t, h }
+    }
+}

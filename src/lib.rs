@@ -1,0 +1,27 @@
+//! Sliding modes of interacting frictional interfaces.
+//!
+//! Parallel frictional interfaces divide an elastic slab that is sheared at the velocity V_H; each obeys a rate-and-state
+//! friction law. Putelat, Willis and Dawes (2008) found equilibria, stick-slip cycles, tori and resonances in the three
+//! stiff differential equations (19) that follow. This crate integrates them and solves for their equilibria.
+//!
+//! | Type | Role |
+//! |---|---|
+//! | [`friction::Law`] | how an interface resists: two formulas, and what follows from them |
+//! | [`field::VectorField`] | what a dynamical system is |
+//! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
+//! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
+//!
+//! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
+//! L/V*. K = k L / (a sigma), R = t** V*/L, beta = b/a, gamma0 = 2 exp(-a_v/a). Numbers in parentheses are the equations of
+//!
+//! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
+//! Journal of the Mechanics and Physics of Solids.
+
+pub mod error;
+pub mod field;
+pub mod friction;
+pub mod integrate;
+pub mod model;
+pub mod number;
+
+pub use error::{Error, Result};

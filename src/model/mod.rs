@@ -1,0 +1,71 @@
+//! The paper's systems: one interface (11), two interfaces (19), and the symmetric subspace of the latter.
+//!
+//! State (tau, ln psi_1, ln psi_2); everything dimensionless. [`scales`] alone knows metres and pascals.
+
+mod response;
+pub mod scales;
+mod single_interface;
+mod symmetric;
+mod two_interfaces;
+
+pub use single_interface::SingleInterface;
+pub use symmetric::Symmetric;
+pub use two_interfaces::TwoInterfaces;
+
+use crate::error::Result;
+use crate::field::{Jacobian, State, VectorField};
+use crate::friction::{AnyLaw, positive, with_law};
+
+/// The two control parameters of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameter {
+    /// V_H, the driving velocity in V*.
+    Driving,
+    /// K = k L / (a sigma), the stiffness.
+    Stiffness,
+}
+
+/// A system that depends on V_H and K.
+pub trait Driven<const N: usize>: VectorField<N> {
+    /// df/dp.
+    fn parameter_derivative(&self, y: &State<N>, p: Parameter) -> State<N>;
+    /// dJ/dp.
+    fn parameter_jacobian(&self, y: &State<N>, p: Parameter) -> Jacobian<N>;
+    /// The slip rates of the interfaces, in V*.
+    fn slip_rates(&self, y: &State<N>) -> Vec<f64>;
+}
+
+/// V_H and K, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loading {
+    /// V_H in V*.
+    pub driving: f64,
+    /// K in a sigma / L.
+    pub stiffness: f64,
+}
+
+impl Loading {
+    /// # Errors
+    /// [`crate::Error::Parameter`] unless both are positive and finite.
+    pub fn new(driving: f64, stiffness: f64) -> Result<Self> {
+        Ok(Loading {
+            driving: positive("driving", driving)?,
+            stiffness: positive("stiffness", stiffness)?,
+        })
+    }
+}
+
+/// Two interfaces (19) with a law chosen at run time, compiled for that law.
+pub fn two_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
+    with_law!(law, law => Box::new(TwoInterfaces { law, loading }))
+}
+
+/// The symmetric subspace of (19) with a law chosen at run time.
+pub fn symmetric(law: AnyLaw, loading: Loading) -> Box<dyn Driven<2>> {
+    with_law!(law, law => Box::new(Symmetric::new(law, loading)))
+}
+
+/// One interface (11) with a law chosen at run time.
+pub fn single_interface(law: AnyLaw, loading: Loading) -> Box<dyn Driven<2>> {
+    with_law!(law, law => Box::new(SingleInterface { law, loading }))
+}

@@ -1,0 +1,78 @@
+//! One interface, equation (11).
+
+use super::response::{Response, bilinear, curvature_variables, slope_variables};
+use super::{Driven, Loading, Parameter};
+use crate::field::{Jacobian, State, VectorField};
+use crate::friction::Law;
+
+/// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SingleInterface<L> {
+    /// The law of the interface.
+    pub law: L,
+    /// V_H and K.
+    pub loading: Loading,
+}
+
+impl<L: Law> SingleInterface<L> {
+    #[inline]
+    fn slopes(&self, y: &State<2>) -> Response<super::response::Slope> {
+        let [tau, w] = slope_variables(y[0], y[1]);
+        Response::new(&self.law, self.law.activation(tau), w)
+    }
+}
+
+impl<L: Law> VectorField<2> for SingleInterface<L> {
+    fn f(&self, y: &State<2>) -> State<2> {
+        let one = Response::new(&self.law, self.law.activation(y[0]), y[1]);
+        State::<2>::new(
+            self.loading.stiffness * (self.loading.driving - one.v),
+            one.g,
+        )
+    }
+
+    fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
+        let k = self.loading.stiffness;
+        let one = self.slopes(y);
+        #[rustfmt::skip]
+        let j = Jacobian::<2>::new(
+            -k * one.v.gradient[0], -k * one.v.gradient[1],
+            one.g.gradient[0],      one.g.gradient[1],
+        );
+        j
+    }
+
+    fn second_derivative(&self, y: &State<2>, a: &State<2>, b: &State<2>) -> State<2> {
+        let [tau, w] = curvature_variables(y[0], y[1]);
+        let one = Response::new(&self.law, self.law.activation(tau), w);
+        let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
+        State::<2>::new(
+            -self.loading.stiffness * bilinear(&one.v, a, b),
+            bilinear(&one.g, a, b),
+        )
+    }
+}
+
+impl<L: Law> Driven<2> for SingleInterface<L> {
+    fn parameter_derivative(&self, y: &State<2>, p: Parameter) -> State<2> {
+        let rate = match p {
+            Parameter::Driving => self.loading.stiffness,
+            Parameter::Stiffness => self.loading.driving - self.slip_rates(y)[0],
+        };
+        State::<2>::new(rate, 0.0)
+    }
+
+    fn parameter_jacobian(&self, y: &State<2>, p: Parameter) -> Jacobian<2> {
+        let mut j = Jacobian::<2>::zeros();
+        if p == Parameter::Stiffness {
+            let one = self.slopes(y);
+            j[(0, 0)] = -one.v.gradient[0];
+            j[(0, 1)] = -one.v.gradient[1];
+        }
+        j
+    }
+
+    fn slip_rates(&self, y: &State<2>) -> Vec<f64> {
+        vec![self.law.slip_rate(self.law.activation(y[0]), y[1])]
+    }
+}

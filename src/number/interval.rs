@@ -1,0 +1,227 @@
+//! Intervals with outward rounding: the true value of a formula lies inside, whatever the rounding of its operations.
+//!
+//! Used to certify: a zero is enclosed where the sign at both ends is certain, an equilibrium is stable where the
+//! Routh-Hurwitz conditions hold for the whole interval, and undecided where they don't. Endpoints that are not finite
+//! simply certify nothing.
+
+use super::Real;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// How many units in the last place a function of the C mathematical library may be off, with a margin: glibc documents
+/// at most 2 for the functions used here.
+const LIBRARY_ULPS: usize = 4;
+
+/// A closed interval.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interval {
+    lo: f64,
+    hi: f64,
+}
+
+impl Interval {
+    /// The interval from `lo` to `hi`.
+    pub fn new(lo: f64, hi: f64) -> Self {
+        Interval { lo, hi }
+    }
+
+    /// Everything within `radius` of `middle`.
+    pub fn around(middle: f64, radius: f64) -> Self {
+        Interval {
+            lo: (middle - radius).next_down(),
+            hi: (middle + radius).next_up(),
+        }
+    }
+
+    /// Lower end.
+    pub fn lo(self) -> f64 {
+        self.lo
+    }
+
+    /// Upper end.
+    pub fn hi(self) -> f64 {
+        self.hi
+    }
+
+    /// The sign, where it is certain.
+    pub fn sign(self) -> Option<f64> {
+        if self.lo > 0.0 {
+            Some(1.0)
+        } else if self.hi < 0.0 {
+            Some(-1.0)
+        } else {
+            None
+        }
+    }
+
+    /// The largest distance of a point of the interval from x.
+    pub fn distance_from(self, x: f64) -> f64 {
+        (self.hi - x).max(x - self.lo).next_up()
+    }
+
+    fn widened(lo: f64, hi: f64, ulps: usize) -> Self {
+        let (mut lo, mut hi) = (lo, hi);
+        for _ in 0..ulps {
+            lo = lo.next_down();
+            hi = hi.next_up();
+        }
+        Interval { lo, hi }
+    }
+
+    /// A non-decreasing function of the mathematical library.
+    fn monotone(self, g: impl Fn(f64) -> f64) -> Self {
+        Self::widened(g(self.lo), g(self.hi), LIBRARY_ULPS)
+    }
+
+    fn hull(candidates: [f64; 4]) -> Self {
+        if candidates.iter().any(|x| x.is_nan()) {
+            return Interval {
+                lo: f64::NEG_INFINITY,
+                hi: f64::INFINITY,
+            };
+        }
+        let lo = candidates.into_iter().fold(f64::INFINITY, f64::min);
+        let hi = candidates.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        Self::widened(lo, hi, 1)
+    }
+}
+
+impl Neg for Interval {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Interval {
+            lo: -self.hi,
+            hi: -self.lo,
+        }
+    }
+}
+
+impl Add for Interval {
+    type Output = Self;
+    fn add(self, o: Self) -> Self {
+        Self::widened(self.lo + o.lo, self.hi + o.hi, 1)
+    }
+}
+
+impl Sub for Interval {
+    type Output = Self;
+    fn sub(self, o: Self) -> Self {
+        self + -o
+    }
+}
+
+impl Mul for Interval {
+    type Output = Self;
+    fn mul(self, o: Self) -> Self {
+        Self::hull([
+            self.lo * o.lo,
+            self.lo * o.hi,
+            self.hi * o.lo,
+            self.hi * o.hi,
+        ])
+    }
+}
+
+impl Div for Interval {
+    type Output = Self;
+    fn div(self, o: Self) -> Self {
+        if o.lo <= 0.0 && o.hi >= 0.0 {
+            return Interval {
+                lo: f64::NEG_INFINITY,
+                hi: f64::INFINITY,
+            };
+        }
+        Self::hull([
+            self.lo / o.lo,
+            self.lo / o.hi,
+            self.hi / o.lo,
+            self.hi / o.hi,
+        ])
+    }
+}
+
+impl Add<f64> for Interval {
+    type Output = Self;
+    fn add(self, x: f64) -> Self {
+        self + Self::constant(x)
+    }
+}
+
+impl Sub<f64> for Interval {
+    type Output = Self;
+    fn sub(self, x: f64) -> Self {
+        self - Self::constant(x)
+    }
+}
+
+impl Mul<f64> for Interval {
+    type Output = Self;
+    fn mul(self, x: f64) -> Self {
+        self * Self::constant(x)
+    }
+}
+
+impl Div<f64> for Interval {
+    type Output = Self;
+    fn div(self, x: f64) -> Self {
+        self / Self::constant(x)
+    }
+}
+
+impl Real for Interval {
+    fn constant(x: f64) -> Self {
+        Interval { lo: x, hi: x }
+    }
+    fn leading(self) -> f64 {
+        0.5 * self.lo + 0.5 * self.hi
+    }
+    fn exp(self) -> Self {
+        self.monotone(f64::exp)
+    }
+    fn exp_m1(self) -> Self {
+        self.monotone(f64::exp_m1)
+    }
+    fn ln(self) -> Self {
+        self.monotone(f64::ln)
+    }
+    fn ln_1p(self) -> Self {
+        self.monotone(f64::ln_1p)
+    }
+    fn powf(self, p: f64) -> Self {
+        let rising = self.monotone(|x| x.powf(p.abs()));
+        if p < 0.0 {
+            Self::constant(1.0) / rising
+        } else {
+            rising
+        }
+    }
+    fn sqrt(self) -> Self {
+        Self::widened(self.lo.sqrt(), self.hi.sqrt(), 1)
+    }
+    fn sinh(self) -> Self {
+        self.monotone(f64::sinh)
+    }
+    fn cosh(self) -> Self {
+        let outer = self.lo.abs().max(self.hi.abs()).cosh();
+        let inner = if self.lo <= 0.0 && self.hi >= 0.0 {
+            1.0
+        } else {
+            self.lo.abs().min(self.hi.abs()).cosh()
+        };
+        Self::widened(inner, outer, LIBRARY_ULPS)
+    }
+    fn asinh(self) -> Self {
+        self.monotone(<f64 as Real>::asinh)
+    }
+    fn abs(self) -> Self {
+        if self.lo >= 0.0 {
+            self
+        } else if self.hi <= 0.0 {
+            -self
+        } else {
+            Interval {
+                lo: 0.0,
+                hi: (-self.lo).max(self.hi),
+            }
+        }
+    }
+}

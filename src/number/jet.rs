@@ -1,0 +1,201 @@
+//! A value with its gradient in N variables: exact first derivatives. Nested (`Jet<Jet<f64, N>, N>`) it gives second
+//! derivatives, and so on.
+
+use super::Real;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A value and its N partial derivatives.
+///
+/// ```
+/// use twinslip::number::{Jet, Real};
+/// let [x, y] = Jet::variables([2.0, 3.0]);
+/// let z = x * y.ln();
+/// assert_eq!(z.gradient, [3.0_f64.ln(), 2.0 / 3.0]);
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Jet<T, const N: usize> {
+    /// The value.
+    pub value: T,
+    /// The partial derivatives.
+    pub gradient: [T; N],
+}
+
+impl<T: Real, const N: usize> Jet<T, N> {
+    /// The N independent variables at a point.
+    pub fn variables(at: [T; N]) -> [Self; N] {
+        std::array::from_fn(|i| Self::variable(at[i], i))
+    }
+
+    /// The i-th independent variable.
+    #[inline]
+    pub fn variable(value: T, i: usize) -> Self {
+        let mut gradient = [T::constant(0.0); N];
+        gradient[i] = T::constant(1.0);
+        Jet { value, gradient }
+    }
+
+    /// g(self), from g and dg/dx at the value (chain rule).
+    #[inline]
+    fn chain(self, g: T, slope: T) -> Self {
+        let mut gradient = self.gradient;
+        for d in &mut gradient {
+            *d = slope * *d;
+        }
+        Jet { value: g, gradient }
+    }
+
+    #[inline]
+    fn zip(self, other: Self, value: T, rule: impl Fn(T, T) -> T) -> Self {
+        let mut gradient = self.gradient;
+        for (d, e) in gradient.iter_mut().zip(other.gradient) {
+            *d = rule(*d, e);
+        }
+        Jet { value, gradient }
+    }
+}
+
+impl<T: Real, const N: usize> Neg for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn neg(self) -> Self {
+        self.chain(-self.value, T::constant(-1.0))
+    }
+}
+
+impl<T: Real, const N: usize> Add for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn add(self, o: Self) -> Self {
+        self.zip(o, self.value + o.value, |d, e| d + e)
+    }
+}
+
+impl<T: Real, const N: usize> Sub for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, o: Self) -> Self {
+        self.zip(o, self.value - o.value, |d, e| d - e)
+    }
+}
+
+impl<T: Real, const N: usize> Mul for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, o: Self) -> Self {
+        self.zip(o, self.value * o.value, |d, e| d * o.value + self.value * e)
+    }
+}
+
+impl<T: Real, const N: usize> Div for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, o: Self) -> Self {
+        let quotient = self.value / o.value;
+        self.zip(o, quotient, |d, e| (d - quotient * e) / o.value)
+    }
+}
+
+impl<T: Real, const N: usize> Add<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn add(self, x: f64) -> Self {
+        Jet {
+            value: self.value + x,
+            ..self
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Sub<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn sub(self, x: f64) -> Self {
+        Jet {
+            value: self.value - x,
+            ..self
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn mul(self, x: f64) -> Self {
+        self.chain(self.value * x, T::constant(x))
+    }
+}
+
+impl<T: Real, const N: usize> Div<f64> for Jet<T, N> {
+    type Output = Self;
+    #[inline]
+    fn div(self, x: f64) -> Self {
+        let mut gradient = self.gradient;
+        for d in &mut gradient {
+            *d = *d / x;
+        }
+        Jet {
+            value: self.value / x,
+            gradient,
+        }
+    }
+}
+
+impl<T: Real, const N: usize> Real for Jet<T, N> {
+    #[inline]
+    fn constant(x: f64) -> Self {
+        Jet {
+            value: T::constant(x),
+            gradient: [T::constant(0.0); N],
+        }
+    }
+    #[inline]
+    fn leading(self) -> f64 {
+        self.value.leading()
+    }
+    #[inline]
+    fn exp(self) -> Self {
+        let e = self.value.exp();
+        self.chain(e, e)
+    }
+    #[inline]
+    fn exp_m1(self) -> Self {
+        self.chain(self.value.exp_m1(), self.value.exp())
+    }
+    #[inline]
+    fn ln(self) -> Self {
+        self.chain(self.value.ln(), T::constant(1.0) / self.value)
+    }
+    #[inline]
+    fn ln_1p(self) -> Self {
+        self.chain(self.value.ln_1p(), T::constant(1.0) / (self.value + 1.0))
+    }
+    #[inline]
+    fn powf(self, p: f64) -> Self {
+        let power = self.value.powf(p);
+        self.chain(power, power / self.value * p)
+    }
+    #[inline]
+    fn sqrt(self) -> Self {
+        let root = self.value.sqrt();
+        self.chain(root, T::constant(0.5) / root)
+    }
+    #[inline]
+    fn sinh(self) -> Self {
+        self.chain(self.value.sinh(), self.value.cosh())
+    }
+    #[inline]
+    fn cosh(self) -> Self {
+        self.chain(self.value.cosh(), self.value.sinh())
+    }
+    #[inline]
+    fn asinh(self) -> Self {
+        self.chain(
+            self.value.asinh(),
+            T::constant(1.0) / (self.value * self.value + 1.0).sqrt(),
+        )
+    }
+    #[inline]
+    fn abs(self) -> Self {
+        if self.leading() < 0.0 { -self } else { self }
+    }
+}

@@ -1,0 +1,117 @@
+//! What a formula is written in.
+//!
+//! The friction laws are written once, generic over [`Real`]. In `f64` they give values; in [`Jet`] exact derivatives; in
+//! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding.
+
+mod difference;
+mod interval;
+mod jet;
+mod root;
+
+pub use difference::Difference;
+pub use interval::Interval;
+pub use jet::Jet;
+pub use root::bracketed_root;
+
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A number in which a formula can be evaluated.
+///
+/// Mixed operations with `f64` take the `f64` as exact. Functions outside their domain give values that are not finite.
+pub trait Real:
+    Copy
+    + Debug
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<f64, Output = Self>
+{
+    /// An exact constant.
+    fn constant(x: f64) -> Self;
+    /// An ordinary number that stands for this one in comparisons: its value, or its middle.
+    fn leading(self) -> f64;
+    /// e^x
+    fn exp(self) -> Self;
+    /// e^x - 1, accurate near 0
+    fn exp_m1(self) -> Self;
+    /// natural logarithm
+    fn ln(self) -> Self;
+    /// ln(1 + x), accurate near 0
+    fn ln_1p(self) -> Self;
+    /// x^p for x > 0
+    fn powf(self, p: f64) -> Self;
+    /// square root
+    fn sqrt(self) -> Self;
+    /// hyperbolic sine
+    fn sinh(self) -> Self;
+    /// hyperbolic cosine
+    fn cosh(self) -> Self;
+    /// inverse of the hyperbolic sine
+    fn asinh(self) -> Self;
+    /// absolute value
+    fn abs(self) -> Self;
+}
+
+impl Real for f64 {
+    #[inline]
+    fn constant(x: f64) -> f64 {
+        x
+    }
+    #[inline]
+    fn leading(self) -> f64 {
+        self
+    }
+    #[inline]
+    fn exp(self) -> f64 {
+        self.exp()
+    }
+    #[inline]
+    fn exp_m1(self) -> f64 {
+        self.exp_m1()
+    }
+    #[inline]
+    fn ln(self) -> f64 {
+        self.ln()
+    }
+    #[inline]
+    fn ln_1p(self) -> f64 {
+        self.ln_1p()
+    }
+    #[inline]
+    fn powf(self, p: f64) -> f64 {
+        self.powf(p)
+    }
+    #[inline]
+    fn sqrt(self) -> f64 {
+        self.sqrt()
+    }
+    #[inline]
+    fn sinh(self) -> f64 {
+        self.sinh()
+    }
+    #[inline]
+    fn cosh(self) -> f64 {
+        self.cosh()
+    }
+    // The standard library's asinh loses digits for large negative arguments and overflows near the largest numbers.
+    #[inline]
+    fn asinh(self) -> f64 {
+        let x = f64::abs(self);
+        let value = if x > 1e150 {
+            f64::ln(x) + std::f64::consts::LN_2
+        } else {
+            f64::ln_1p(x + x * x / (1.0 + f64::sqrt(1.0 + x * x)))
+        };
+        value.copysign(self)
+    }
+    #[inline]
+    fn abs(self) -> f64 {
+        self.abs()
+    }
+}

@@ -1,0 +1,75 @@
+//! One zero of a scalar function in a bracket: Newton steps where they behave, bisection where they don't.
+
+use crate::error::{Error, Result};
+
+/// Doubles can be halved about 2100 times from end to end; a safeguarded step at least halves the bracket every other time.
+const MAX_ITERATIONS: usize = 300;
+
+/// The zero of g in `[a, b]`, where g(a) and g(b) have opposite signs; g returns its value and slope.
+///
+/// Converges to the floating-point number at which the computed g changes sign: the last bracket is two neighbours, or the
+/// Newton correction is below half a unit in the last place.
+///
+/// # Errors
+/// [`Error::NotConverged`] if the signs at the ends agree or g is not finite in between.
+pub fn bracketed_root(
+    what: &'static str,
+    a: f64,
+    b: f64,
+    mut g: impl FnMut(f64) -> (f64, f64),
+) -> Result<f64> {
+    let (ga, gb) = (g(a).0, g(b).0);
+    if ga == 0.0 {
+        return Ok(a);
+    }
+    if gb == 0.0 {
+        return Ok(b);
+    }
+    if !(ga * gb.signum() < 0.0) {
+        return Err(Error::NotConverged {
+            what,
+            iterations: 0,
+            residual: ga.abs().min(gb.abs()),
+            tolerance: 0.0,
+        });
+    }
+    // `below` keeps the side where g is negative.
+    let (mut below, mut above) = if ga < 0.0 { (a, b) } else { (b, a) };
+    let mut x = 0.5 * a + 0.5 * b;
+    let mut last_step = (b - a).abs();
+    let mut residual = f64::NAN;
+    for _ in 0..MAX_ITERATIONS {
+        let (value, slope) = g(x);
+        residual = value;
+        if value == 0.0 {
+            return Ok(x);
+        }
+        if !value.is_finite() {
+            break;
+        }
+        if value < 0.0 {
+            below = x;
+        } else {
+            above = x;
+        }
+        let newton = x - value / slope;
+        let inside = newton > below.min(above) && newton < below.max(above);
+        // Newton steps must at least halve, or be rounding already; otherwise bisect, so that no function makes this crawl.
+        let next = if newton == x || (inside && (newton - x).abs() < 0.5 * last_step) {
+            newton
+        } else {
+            0.5 * below + 0.5 * above
+        };
+        last_step = (next - x).abs();
+        if last_step == 0.0 || next == below || next == above {
+            return Ok(next);
+        }
+        x = next;
+    }
+    Err(Error::NotConverged {
+        what,
+        iterations: MAX_ITERATIONS,
+        residual: residual.abs(),
+        tolerance: 0.0,
+    })
+}
