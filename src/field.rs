@@ -18,7 +18,7 @@ pub type Jacobian<const N: usize> = SMatrix<f64, N, N>;
 /// struct Decay;
 /// impl VectorField<1> for Decay {
 ///     fn f(&self, y: &State<1>) -> State<1> { -y }
-///     fn jacobian(&self, _: &State<1>) -> Jacobian<1> { Jacobian::new(-1.0) }
+///     fn jacobian(&self, _: &State<1>) -> Jacobian<1> { Jacobian::<1>::new(-1.0) }
 ///     fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> { State::zeros() }
 /// }
 /// assert_eq!(Decay.f(&State::<1>::new(2.0))[0], -2.0);
