@@ -6,7 +6,7 @@ use crate::number::{Interval, Jet, Real, bracketed_root};
 
 /// tau_ss(V) = F(V, psi_ss(V))  (2), for V > 0.
 pub fn steady_stress<T: Real>(law: &impl Law, v: T) -> T {
-    law.stress(v, law.steady_log_state(v))
+    law.stress(v, law.steady_state(v))
 }
 
 /// d tau_ss / dV.
@@ -15,15 +15,13 @@ pub fn steady_slope<T: Real>(law: &impl Law, v: T) -> T {
 }
 
 /// k_c(V) = -G_psi d tau_ss/dV  (16): one interface driven at V slides steadily where it is stiffer than this.
-///
-/// At a steady state -G_psi is d(dw/dt)/dw at fixed v, the same in psi and in w = ln psi.
 pub fn critical_stiffness<T: Real>(law: &impl Law, v: T) -> T {
-    let w = Jet::<T, 1>::variable(law.steady_log_state(v), 0);
+    let psi = Jet::<T, 1>::variable(law.steady_state(v), 0);
     let held = Jet {
         value: v,
         gradient: [T::constant(0.0)],
     };
-    law.evolution(held, w).gradient[0] * steady_slope(law, v)
+    law.evolution(held, psi).gradient[0] * steady_slope(law, v)
 }
 
 /// Maximum (V_M) or minimum (V_m) of the steady stress.

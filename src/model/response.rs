@@ -21,11 +21,10 @@ impl<T: Real> Response<T> {
     /// At an activation s(tau) computed once for all interfaces, and w.
     #[inline]
     pub fn new(law: &impl Law, activation: T, w: T) -> Self {
-        let v = law.slip_rate(activation, w);
-        Response {
-            v,
-            g: law.evolution(v, w),
-        }
+        let psi = w.exp();
+        let v = law.slip_rate(activation, psi);
+        let g = law.evolution(v, psi) / psi;
+        Response { v, g }
     }
 }
 
