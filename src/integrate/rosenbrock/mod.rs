@@ -1,0 +1,215 @@
+//! Rosenbrock methods: implicit enough for stiff systems, and no iteration, since each stage is one linear system.
+//!
+//! The matrix is exact at every step, so the order does not suffer; a step costs s evaluations of f, one of J and one
+//! small factorisation. Steps, errors and dense output are those of the tableau; see [`Tableau`].
+
+mod control;
+mod drive;
+mod factors;
+mod trajectory;
+
+use super::tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
+use super::{Control, Integrator, Observer, Step, Tolerances, Work};
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State, VectorField};
+use control::first_step;
+use drive::drive;
+use std::marker::PhantomData;
+use trajectory::{Linearisation, Scheme, Trajectory, interpolate};
+
+/// The Rosenbrock methods.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Rodas5P, order 5(4).
+    Rodas5p,
+    /// RODAS, order 4(3).
+    Rodas4,
+    /// The pair of ode23s, order 2(3).
+    Ros23,
+}
+
+impl Method {
+    /// All of them.
+    pub const ALL: [Method; 3] = [Method::Rodas5p, Method::Rodas4, Method::Ros23];
+
+    /// The coefficients.
+    pub const fn tableau(self) -> &'static Tableau {
+        match self {
+            Method::Rodas5p => &RODAS5P,
+            Method::Rodas4 => &RODAS4,
+            Method::Ros23 => &ROS23,
+        }
+    }
+
+    /// The method of that name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is not one of `rodas5p`, `rodas4`, `rosenbrock23`.
+    pub fn named(name: &str) -> Result<Self> {
+        Self::ALL
+            .into_iter()
+            .find(|method| method.tableau().name == name)
+            .ok_or_else(|| Error::parameter("method", name, "one of rodas5p, rodas4, rosenbrock23"))
+    }
+}
+
+struct Rodas5p;
+struct Rodas4;
+struct Ros23;
+
+impl Scheme for Rodas5p {
+    const TABLEAU: Tableau = RODAS5P;
+}
+impl Scheme for Rodas4 {
+    const TABLEAU: Tableau = RODAS4;
+}
+impl Scheme for Ros23 {
+    const TABLEAU: Tableau = ROS23;
+}
+
+/// An integrator that steps by a Rosenbrock method.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Rosenbrock<const N: usize> {
+    method: Method,
+    tolerances: Tolerances,
+    max_steps: usize,
+    work: Work,
+}
+
+impl<const N: usize> Rosenbrock<N> {
+    /// With a bound on the steps of one call, refused ones included.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if `max_steps` is 0 or the tolerances are not those of [`Tolerances::new`].
+    pub fn new(method: Method, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
+        if max_steps == 0 {
+            return Err(Error::parameter("max-steps", max_steps, "at least 1"));
+        }
+        Ok(Rosenbrock {
+            method,
+            tolerances: Tolerances::new(tolerances.rtol, tolerances.atol)?,
+            max_steps,
+            work: Work::default(),
+        })
+    }
+
+    /// The method.
+    pub fn method(&self) -> Method {
+        self.method
+    }
+
+    /// f and J at the start, finite, and the first step.
+    fn start(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(Linearisation<N>, f64)> {
+        if y0.iter().any(|x| !x.is_finite()) {
+            return Err(Error::NonFinite {
+                what: "the initial state",
+                t: t.0,
+            });
+        }
+        self.work.rhs += 1;
+        self.work.jacobians += 1;
+        let here = Linearisation::new(field, y0, field.f(y0)).ok_or(Error::NonFinite {
+            what: "the right-hand side or its Jacobian",
+            t: t.0,
+        })?;
+        let span = t.1 - t.0;
+        let order = self.method.tableau().order;
+        let length = first_step(
+            self.tolerances,
+            order,
+            span.abs(),
+            y0,
+            &here.f,
+            &here.jacobian,
+        );
+        Ok((here, length.copysign(span)))
+    }
+
+    fn flow_by<S: Scheme>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        mut observer: Option<Observer<'_, N>>,
+    ) -> Result<State<N>> {
+        let (here, h) = self.start(field, t, y0)?;
+        let mut trajectory = Trajectory::<S, N> {
+            field,
+            tolerances: self.tolerances,
+            work: &mut self.work,
+            y: *y0,
+            here,
+            next: *y0,
+            stages: [State::zeros(); MAX_STAGES],
+            last_f: here.f,
+            ahead: here,
+            scheme: PhantomData,
+        };
+        drive(&mut trajectory, t, h, self.max_steps, |moved, t0, t1| {
+            let Some(observer) = observer.as_mut() else {
+                return Ok(Control::Continue);
+            };
+            let dense = |t: f64| {
+                let theta = (t - t0) / (t1 - t0);
+                interpolate(&S::TABLEAU, theta, &moved.y, &moved.next, &moved.stages)
+            };
+            observer(&Step {
+                t0,
+                y0: &moved.y,
+                t1,
+                y1: &moved.next,
+                dense: &dense,
+            })
+        })?;
+        Ok(trajectory.y)
+    }
+}
+
+impl<const N: usize> Integrator<N> for Rosenbrock<N> {
+    fn name(&self) -> &'static str {
+        self.method.tableau().name
+    }
+
+    fn flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        observer: Option<Observer<'_, N>>,
+    ) -> Result<State<N>> {
+        self.work = Work::default();
+        check_times(t)?;
+        match self.method {
+            Method::Rodas5p => self.flow_by::<Rodas5p>(field, t, y0, observer),
+            Method::Rodas4 => self.flow_by::<Rodas4>(field, t, y0, observer),
+            Method::Ros23 => self.flow_by::<Ros23>(field, t, y0, observer),
+        }
+    }
+
+    fn tangent_flow(
+        &mut self,
+        _field: &dyn VectorField<N>,
+        _t: (f64, f64),
+        _y0: &State<N>,
+    ) -> Result<(State<N>, Jacobian<N>)> {
+        Err(Error::Input("tangent flow: not yet".into()))
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+fn check_times(t: (f64, f64)) -> Result<()> {
+    for (name, time) in [("start time", t.0), ("end time", t.1)] {
+        if !time.is_finite() {
+            return Err(Error::parameter(name, time, "finite"));
+        }
+    }
+    Ok(())
+}
