@@ -17,11 +17,14 @@
 //! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
 //! Journal of the Mechanics and Physics of Solids.
 
+pub mod cli;
 pub mod error;
 pub mod field;
 pub mod friction;
 pub mod integrate;
 pub mod model;
 pub mod number;
+pub mod output;
+pub mod scene;
 
 pub use error::{Error, Result};

@@ -3,9 +3,11 @@
 //! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+mod choice;
 mod rosenbrock;
 mod tableau;
 
+pub use choice::{Choice, available};
 pub use rosenbrock::{Method, Rosenbrock};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 

@@ -1,0 +1,198 @@
+//! The range of an axis, its ticks and their labels; and curves thinned to what the eye can see.
+
+use super::Axis;
+
+/// At most so many ticks.
+const TICKS: usize = 7;
+/// Room between the curves and the frame, as a part of the range.
+const MARGIN: f64 = 0.04;
+
+/// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scale {
+    /// Left or lower end.
+    pub lo: f64,
+    /// Right or upper end.
+    pub hi: f64,
+    /// Where there are ticks.
+    pub ticks: Vec<f64>,
+    log: bool,
+    step: f64,
+}
+
+impl Scale {
+    /// For all these values; `None` if none of them can be drawn. A `tight` range ends with the data.
+    pub fn new<'a>(
+        axis: &Axis,
+        values: impl Iterator<Item = &'a f64>,
+        tight: bool,
+    ) -> Option<Self> {
+        let drawn = values
+            .map(|&x| coordinate(axis.log, x))
+            .filter(|x| x.is_finite());
+        let (lo, hi) = drawn.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| {
+            (lo.min(x), hi.max(x))
+        });
+        if lo > hi {
+            return None;
+        }
+        // A constant gets a range that shows it as one.
+        let least = if axis.log {
+            1.0
+        } else {
+            1e-3 * lo.abs().max(hi.abs()).max(1e-300)
+        };
+        let pad = if hi - lo < least {
+            least
+        } else if tight {
+            0.0
+        } else {
+            MARGIN * (hi - lo)
+        };
+        let (lo, hi) = (lo - pad, hi + pad);
+        let step = if axis.log {
+            nice((hi - lo) / TICKS as f64).max(1.0).ceil()
+        } else {
+            nice((hi - lo) / TICKS as f64)
+        };
+        let ticks = (0..=2 * TICKS)
+            .map(|i| ((lo / step).ceil() + i as f64) * step)
+            .filter(|&x| x <= hi + 1e-9 * step)
+            .collect();
+        Some(Scale {
+            lo,
+            hi,
+            ticks,
+            log: axis.log,
+            step,
+        })
+    }
+
+    /// Where a value is drawn.
+    pub fn at(&self, x: f64) -> f64 {
+        coordinate(self.log, x)
+    }
+
+    /// What a tick says.
+    pub fn label(&self, tick: f64) -> String {
+        if self.log {
+            return power(tick.round() as i64);
+        }
+        let largest = self.lo.abs().max(self.hi.abs());
+        if (1e-4..1e6).contains(&largest) {
+            let digits = (-self.step.log10() + 1e-9).ceil().max(0.0) as usize;
+            let text = format!("{tick:.digits$}");
+            return if text.trim_start_matches(['-', '0', '.']).is_empty() {
+                "0".into()
+            } else {
+                text.replace('-', "−")
+            };
+        }
+        // One power for all ticks, with as many digits as the step needs.
+        let exponent = largest.log10().floor();
+        let digits = (exponent - self.step.log10() + 1e-9).ceil().max(0.0) as usize;
+        if tick == 0.0 {
+            return "0".into();
+        }
+        let mantissa = format!("{:.digits$}", tick / 10f64.powf(exponent));
+        format!("{}·{}", mantissa.replace('-', "−"), power(exponent as i64))
+    }
+}
+
+fn coordinate(log: bool, x: f64) -> f64 {
+    if log { x.log10() } else { x }
+}
+
+/// 1, 2 or 5 times a power of ten, not less than x.
+fn nice(x: f64) -> f64 {
+    let power = 10f64.powf(x.log10().floor());
+    [1.0, 2.0, 5.0]
+        .into_iter()
+        .map(|m| m * power)
+        .find(|&candidate| candidate >= x * (1.0 - 1e-9))
+        .unwrap_or(10.0 * power)
+}
+
+/// 10 to the n, in superscripts.
+fn power(n: i64) -> String {
+    let digits = n.abs().to_string();
+    let raised = digits.bytes().map(|digit| match digit {
+        b'1' => '¹',
+        b'2' => '²',
+        b'3' => '³',
+        b'0' => '⁰',
+        other => char::from_u32(0x2074 + u32::from(other - b'4')).unwrap_or('?'),
+    });
+    let sign = if n < 0 { "⁻" } else { "" };
+    format!("10{sign}{}", raised.collect::<String>())
+}
+
+/// A curve in pixels without the points that lie within half a pixel of the one before: what remains looks the same.
+/// Breaks where a point can't be drawn.
+pub fn thinned(
+    points: impl Iterator<Item = (f64, f64)>,
+    per_pixel: (f64, f64),
+) -> Vec<Vec<(f64, f64)>> {
+    /// In pixels.
+    const VISIBLE: f64 = 0.35;
+    let mut pieces: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
+    let mut skipped = None;
+    for (x, y) in points {
+        let piece = pieces.last_mut().expect("there is always a last piece");
+        if !(x.is_finite() && y.is_finite()) {
+            piece.extend(skipped.take());
+            if !piece.is_empty() {
+                pieces.push(Vec::new());
+            }
+            continue;
+        }
+        let near = piece.last().is_some_and(|&(x0, y0): &(f64, f64)| {
+            ((x - x0) / per_pixel.0).abs() < VISIBLE && ((y - y0) / per_pixel.1).abs() < VISIBLE
+        });
+        if near {
+            skipped = Some((x, y));
+        } else {
+            piece.push((x, y));
+            skipped = None;
+        }
+    }
+    if let Some(piece) = pieces.last_mut() {
+        piece.extend(skipped);
+    }
+    pieces.retain(|piece| !piece.is_empty());
+    pieces
+}
+
+#[cfg(test)]
+mod test {
+    use super::*;
+
+    #[test]
+    fn ticks_are_few_and_read_well() {
+        let scale = Scale::new(&Axis::log("v"), [1e-7, 1e5].iter(), false).unwrap();
+        assert!(scale.ticks.len() <= TICKS + 1);
+        assert_eq!(scale.label(-6.0), "10⁻⁶");
+        assert_eq!(scale.label(14.0), "10¹⁴");
+        let scale = Scale::new(&Axis::linear("t"), [0.0, 2000.0].iter(), true).unwrap();
+        assert_eq!((scale.lo, scale.hi), (0.0, 2000.0));
+        assert_eq!(scale.label(500.0), "500");
+        let scale = Scale::new(&Axis::linear("t"), [0.0, 0.3].iter(), true).unwrap();
+        assert_eq!(scale.label(0.1), "0.10");
+        let scale = Scale::new(&Axis::linear("p"), [0.0, 4e7].iter(), true).unwrap();
+        assert_eq!(scale.label(2e7), "2·10⁷");
+    }
+
+    #[test]
+    fn thinning_keeps_ends_and_breaks() {
+        let points = [
+            (0.0, 0.0),
+            (0.1, 0.0),
+            (0.2, 0.0),
+            (5.0, 1.0),
+            (6.0, f64::NAN),
+            (7.0, 2.0),
+        ];
+        let pieces = thinned(points.into_iter(), (1.0, 1.0));
+        assert_eq!(pieces, vec![vec![(0.0, 0.0), (5.0, 1.0)], vec![(7.0, 2.0)]]);
+    }
+}
