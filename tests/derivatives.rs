@@ -100,15 +100,22 @@ fn law() -> impl Strategy<Value = AnyLaw> {
     })
 }
 
+/// |v| has a corner at v = 0, where no difference quotient makes sense.
+fn away_from_the_corner(tau: f64) -> bool {
+    tau.abs() > 0.05
+}
+
 proptest! {
     #[test]
     fn derivatives_of_two_interfaces(law in law(), tau in -12.0..12.0, w1 in -9.0..0.0, w2 in -9.0..0.0, v_h in 0.01..100.0, k in 0.01..10.0) {
+        prop_assume!(away_from_the_corner(tau));
         let at = Loading::new(v_h, k).expect("valid");
         check(|l| two_interfaces(law, l), at, State::<3>::new(tau, w1, w2), &format!("{law:?}"));
     }
 
     #[test]
     fn derivatives_in_two_dimensions(law in law(), tau in -12.0..12.0, w in -9.0..0.0, v_h in 0.01..100.0, k in 0.01..10.0) {
+        prop_assume!(away_from_the_corner(tau));
         let at = Loading::new(v_h, k).expect("valid");
         let y = State::<2>::new(tau, w);
         check(|l| single_interface(law, l), at, y, &format!("single {law:?}"));
