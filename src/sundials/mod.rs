@@ -13,13 +13,18 @@
 #![allow(unsafe_code)]
 
 mod callback;
+mod cvode;
 mod kinsol;
 mod linear_solver;
 mod native;
+mod sensitivity;
 mod vector;
 
-pub use callback::Problem;
+pub use callback::{Events, Forcing, Problem};
+pub use cvode::{Arrival, Cvode, Method, Mode, Operations, Reason};
 pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residual, Strategy};
+
+pub use sensitivity::{ErrorControl, Scheme, Sensitivity};
 
 use crate::error::{Error, Result};
 use std::cell::RefCell;
@@ -42,7 +47,6 @@ macro_rules! check {
         check!($table, $messages, sundials_sys::$function($($argument),*))
     };
     ($table:ident, $messages:expr, $home:ident::$function:ident($($argument:expr),* $(,)?)) => {{
-        $messages.clear();
         let code: i32 = $home::$function($($argument),*);
         if code < 0 {
             let table = $crate::sundials::flags::$table;
@@ -67,7 +71,7 @@ fn failure(
         name: flag_name(table, code),
         code,
         time,
-        message: messages.last(),
+        message: messages.take(),
     }
 }
 
@@ -104,8 +108,8 @@ impl Messages {
         }
     }
 
-    fn last(&self) -> String {
-        self.last.borrow().clone()
+    fn take(&self) -> String {
+        self.last.take()
     }
 
     fn clear(&self) {
