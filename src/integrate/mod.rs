@@ -3,6 +3,12 @@
 //! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+#[cfg(feature = "sundials")]
+mod cvode;
+
+#[cfg(feature = "sundials")]
+pub use cvode::CvodeIntegrator;
+
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 
