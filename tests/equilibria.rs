@@ -9,7 +9,11 @@ use twinslip::field::{State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::{Loading, TwoInterfaces};
 
-const SOLVERS: &[Solver] = &[Solver::Newton];
+const SOLVERS: &[Solver] = &[
+    #[cfg(feature = "sundials")]
+    Solver::Kinsol,
+    Solver::Newton,
+];
 
 fn spinodal() -> AnyLaw {
     AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())

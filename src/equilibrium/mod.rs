@@ -6,6 +6,8 @@
 
 mod eigenvalues;
 mod isolate;
+#[cfg(feature = "sundials")]
+mod kinsol;
 mod newton;
 
 pub use eigenvalues::{Stability, Verdict, stability};
@@ -17,6 +19,9 @@ use crate::number::{Interval, Uncertain, enclosing_radius};
 /// Which solver finds the asymmetric steady states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Solver {
+    /// KINSOL, of SUNDIALS, in (ln V_slow, ln V_fast).
+    #[cfg(feature = "sundials")]
+    Kinsol,
     /// Newton's method in a bracket of V_slow.
     Newton,
 }
@@ -137,10 +142,14 @@ fn of_law(law: &impl Law, driving: f64, interfaces: usize, solver: Solver) -> Re
     if interfaces == 2 {
         let isolation = isolate::asymmetric(law, driving)?;
         found.complete = isolation.certain;
-        for bracket in isolation.brackets {
-            let [slow, fast] = match solver {
-                Solver::Newton => newton::solve(law, driving, bracket)?,
-            };
+        let slower_rates = match solver {
+            #[cfg(feature = "sundials")]
+            Solver::Kinsol => kinsol::solve(law, driving, &isolation.brackets)?,
+            Solver::Newton => newton::solve(law, driving, &isolation.brackets)?,
+        };
+        for slow in slower_rates {
+            // of the two, the faster rate is the one that V_H - V does not rob of digits
+            let fast = driving - slow;
             // The error budget belongs to the number, not to the solver: signs on both sides of it, in intervals.
             let radius = enclosing_radius(slow, |s| isolate::quotient(law, driving, s));
             let rates = [(slow, radius), (fast, radius + fast * f64::EPSILON)];
