@@ -154,7 +154,7 @@ fn polished(
     for _ in 0..POLISH {
         let next = s - value / slope;
         let (at_next, slope_at_next) = g(next);
-        if !(at_next.norm() < value.norm()) {
+        if at_next.norm().is_nan() || at_next.norm() >= value.norm() {
             break;
         }
         (s, value, slope) = (next, at_next, slope_at_next);
