@@ -9,6 +9,7 @@
 //! | [`friction::Law`] | how an interface resists: two formulas, and what follows from them |
 //! | [`field::VectorField`] | what a dynamical system is |
 //! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
+//! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
@@ -18,6 +19,7 @@
 //! Journal of the Mechanics and Physics of Solids.
 
 pub mod cli;
+pub mod equilibrium;
 pub mod error;
 pub mod field;
 pub mod friction;
@@ -26,5 +28,7 @@ pub mod model;
 pub mod number;
 pub mod output;
 pub mod scene;
+#[cfg(feature = "sundials")]
+pub mod sundials;
 
 pub use error::{Error, Result};

@@ -289,10 +289,7 @@ fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
 
 fn picture(system: &System, rows: &Rows) -> plot::Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
-    let unit = |quantity| {
-        let name = system.units.name(quantity);
-        name.replace("sigma", "σ").replace(' ', "")
-    };
+    let unit = |quantity| report::short_unit(&system.units, quantity);
     let each = |name: &str, of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>)| -> Vec<plot::Series> {
         let count = system.interfaces;
         (1..=count)
@@ -300,7 +297,7 @@ fn picture(system: &System, rows: &Rows) -> plot::Drawing {
                 let label = if count == 1 {
                     String::new()
                 } else {
-                    format!("{name}_{i}")
+                    format!("{name}{}", ["₁", "₂"][i - 1])
                 };
                 let (x, y) = of(i);
                 plot::Series::new(label, x, y)

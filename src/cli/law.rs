@@ -1,13 +1,13 @@
 //! `twinslip law`.
 
-use super::report::{Report, unit_names};
+use super::report::{self, Report, unit_names};
 use super::{Ending, written};
 use crate::error::{Error, Result};
 use crate::friction::{
     Extremum, ExtremumKind, Law, critical_stiffness, critical_stiffness_maximum, positive,
     steady_stress,
 };
-use crate::output::{Cell, Format, Rows, object, plot, uncertain};
+use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
 
@@ -101,23 +101,21 @@ fn rows(system: &System, grid: &[f64]) -> Rows {
 
 /// Extrema and the maximum of k_c, in the user's units.
 fn landmarks(system: &System) -> Result<(Vec<Value>, Value)> {
-    let out = |quantity, (value, radius): (f64, f64)| {
-        uncertain(system.units.outward_uncertain(quantity, value, radius))
-    };
+    let out = |quantity, x| report::uncertain(&system.units, quantity, x);
     let extrema = Extremum::all(&system.law)
         .iter()
         .map(|extremum| {
             json!({
                 "kind": kind(extremum.kind),
-                "slip_rate": out(Quantity::SlipRate, (extremum.slip_rate, extremum.slip_rate_uncertainty)),
-                "stress": out(Quantity::Stress, (extremum.stress, extremum.stress_uncertainty)),
+                "slip_rate": out(Quantity::SlipRate, extremum.slip_rate),
+                "stress": out(Quantity::Stress, extremum.stress),
             })
         })
         .collect();
-    let maximum = critical_stiffness_maximum(&system.law)?.map(|(v, k)| {
+    let maximum = critical_stiffness_maximum(&system.law)?.map(|maximum| {
         json!({
-            "slip_rate": out(Quantity::SlipRate, v),
-            "stiffness": out(Quantity::Stiffness, k),
+            "slip_rate": out(Quantity::SlipRate, maximum.slip_rate),
+            "stiffness": out(Quantity::Stiffness, maximum.stiffness),
         })
     });
     Ok((extrema, json!(maximum)))
@@ -207,28 +205,23 @@ fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -
 fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let out = |quantity, x| system.units.outward(quantity, x);
-    let v_unit = system.units.name(Quantity::SlipRate);
+    let unit = |quantity| report::short_unit(&system.units, quantity);
     let marks = Extremum::all(&system.law)
         .iter()
         .map(|extremum| plot::Mark {
-            x: out(Quantity::SlipRate, extremum.slip_rate),
-            y: system.direct_effect * extremum.stress,
+            x: out(Quantity::SlipRate, extremum.slip_rate.value),
+            y: system.direct_effect * extremum.stress.value,
             label: match extremum.kind {
-                ExtremumKind::Maximum => "V_M".into(),
-                ExtremumKind::Minimum => "V_m".into(),
+                ExtremumKind::Maximum => "maximum V_M".into(),
+                ExtremumKind::Minimum => "minimum V_m".into(),
             },
         })
         .collect();
-    let top = critical_stiffness_maximum(&system.law)?.map(|((v, _), (k, _))| plot::Mark {
-        x: out(Quantity::SlipRate, v),
-        y: out(Quantity::Stiffness, k),
-        label: "max".into(),
-    });
-    let x = plot::Axis::log(format!("slip rate V [{v_unit}]"));
+    let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
     let friction = plot::Panel {
         title: "steady-state friction".into(),
         x: x.clone(),
-        y: plot::Axis::linear("friction coefficient τ_ss/σ"),
+        y: plot::Axis::linear("friction coefficient τₛₛ/σ"),
         series: vec![plot::Series::new(
             "",
             column("slip_rate"),
@@ -237,20 +230,38 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
         marks,
         zero_line: false,
     };
+    let top = critical_stiffness_maximum(&system.law)?.map(|maximum| plot::Mark {
+        x: out(Quantity::SlipRate, maximum.slip_rate.value),
+        y: out(Quantity::Stiffness, maximum.stiffness.value),
+        label: "maximum".into(),
+    });
     let stiffness = plot::Panel {
-        title: "critical stiffness: steady sliding of one interface is stable above".into(),
+        title: "critical stiffness: a stiffer single interface slides steadily".into(),
         x,
         y: plot::Axis::linear(format!(
-            "k_c [{}]",
-            system.units.name(Quantity::Stiffness).replace("sigma", "σ")
+            "critical stiffness k_c [{}]",
+            unit(Quantity::Stiffness)
         )),
         series: vec![plot::Series::new(
             "",
             column("slip_rate"),
-            column("critical_stiffness"),
+            from_above(column("critical_stiffness")),
         )],
         marks: top.into_iter().collect(),
         zero_line: true,
     };
     Ok(plot::Drawing::columns(vec![vec![friction, stiffness]]))
+}
+
+/// Without its far negative part: where a law strengthens, k_c falls without bound and only says that all is stable.
+fn from_above(mut stiffness: Vec<f64>) -> Vec<f64> {
+    let top = stiffness.iter().copied().fold(0.0, f64::max);
+    if top > 0.0 {
+        for k in &mut stiffness {
+            if *k < -top {
+                *k = f64::NAN;
+            }
+        }
+    }
+    stiffness
 }

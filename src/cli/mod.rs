@@ -1,5 +1,6 @@
 //! The command line: arguments, messages and exit codes. Data goes to standard output or a file, all talk to standard error.
 
+mod equilibria;
 mod integrate;
 mod interrupt;
 mod law;
@@ -32,6 +33,9 @@ enum Command {
     /// A run in time: stress, states, slip rates, slips, stick-slip events
     #[command(after_help = integrate::EXAMPLE)]
     Integrate(Box<crate::scene::IntegrateOptions>),
+    /// All steady states at a driving velocity, with eigenvalues and stability
+    #[command(after_help = equilibria::EXAMPLE)]
+    Equilibria(Box<crate::scene::EquilibriaOptions>),
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
@@ -42,6 +46,8 @@ enum Command {
 pub(crate) enum Ending {
     /// All is done, or the reader of our output has gone: there is nobody to tell.
     Done,
+    /// All is done, but a verdict could not be reached.
+    Undecided,
     /// Ctrl-C; what was computed is kept.
     Interrupted,
 }
@@ -50,6 +56,8 @@ pub(crate) enum Ending {
 const FAILED: u8 = 1;
 /// Exit status of wrong usage or input.
 const WRONG_INPUT: u8 = 2;
+/// Exit status where a verdict is undecided.
+const UNDECIDED: u8 = 3;
 /// Exit status after Ctrl-C, as shells have it.
 const INTERRUPTED: u8 = 130;
 
@@ -75,10 +83,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let ended = match &line.command {
         Command::Law(options) => law::run(options, &words),
         Command::Integrate(options) => integrate::run(options, &words),
+        Command::Equilibria(options) => equilibria::run(options, &words),
         Command::Run(options) => run::run(options, &words),
     };
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::Undecided) => ExitCode::from(UNDECIDED),
         Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
         Err(error) => {
             eprintln!("error: {error}");

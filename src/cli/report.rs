@@ -2,7 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::integrate::Work;
-use crate::output::{CsvRows, Envelope, Format, Place, RowWriter, TableRows};
+use crate::number::Uncertain;
+use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows};
 use crate::scene::{OutputOptions, Quantity, System, Units};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -124,7 +125,10 @@ impl<'a> Report<'a> {
 
 /// The version of SUNDIALS, where it is built in.
 pub fn sundials() -> Option<String> {
-    None
+    #[cfg(feature = "sundials")]
+    return Some(crate::sundials::version().to_owned());
+    #[cfg(not(feature = "sundials"))]
+    return None;
 }
 
 fn units(units: &Units) -> Value {
@@ -139,6 +143,17 @@ pub fn unit_names(units: &Units, quantities: impl Iterator<Item = Quantity>) -> 
     quantities
         .map(|quantity| units.name(quantity).to_owned())
         .collect()
+}
+
+/// A quantity with its error budget, in the user's units.
+pub fn uncertain(units: &Units, quantity: Quantity, x: Uncertain) -> Value {
+    let x = units.outward_uncertain(quantity, x);
+    output::uncertain((x.value, x.uncertainty))
+}
+
+/// The unit as the label of an axis has it.
+pub fn short_unit(units: &Units, quantity: Quantity) -> String {
+    units.name(quantity).replace("sigma", "σ").replace(' ', "")
 }
 
 /// The work as an object.

@@ -1,6 +1,6 @@
 //! `twinslip run SCENE.toml`.
 
-use super::{Command, Ending, integrate, law, parse, program};
+use super::{Command, Ending, equilibria, integrate, law, parse, program};
 use crate::error::{Error, Result};
 use crate::scene::SceneFile;
 use std::path::PathBuf;
@@ -58,6 +58,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
     let ended = match &command {
         Command::Law(options) => law::run(options, words),
         Command::Integrate(options) => integrate::run(options, words),
+        Command::Equilibria(options) => equilibria::run(options, words),
         Command::Run(_) => unreachable!("a scene file can't name the command run"),
     };
     ended.map_err(|error| match error {

@@ -19,8 +19,8 @@ pub use regularised::RegularisedAgeing;
 pub use slip::Slip;
 pub use spinodal::Spinodal;
 pub use steady::{
-    Extremum, ExtremumKind, critical_stiffness, critical_stiffness_maximum, steady_slope,
-    steady_stress,
+    Extremum, ExtremumKind, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
+    steady_slope, steady_stress, steady_stress_within,
 };
 
 use crate::error::{Error, Result};

@@ -4,10 +4,14 @@
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
 mod choice;
+#[cfg(feature = "sundials")]
+mod cvode;
 mod rosenbrock;
 mod tableau;
 
 pub use choice::{Choice, available};
+#[cfg(feature = "sundials")]
+pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Method, Rosenbrock};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 

@@ -39,7 +39,9 @@ pub use column::{Column, Instant};
 pub use event::Event;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
-pub use options::{IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OutputOptions};
+pub use options::{
+    EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OutputOptions,
+};
 pub use plan::{Dimension, Plan, Sampling};
 pub use run::{Outcome, Sink, run};
 pub use system::System;

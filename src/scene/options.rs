@@ -165,6 +165,20 @@ pub struct IntegrateOptions {
     pub output: OutputOptions,
 }
 
+/// `equilibria`: all steady states at a driving velocity.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct EquilibriaOptions {
+    /// What slides; without --stiffness there are no eigenvalues and no verdict.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
+    #[arg(long, value_name = "NAME", help_heading = "Numerics")]
+    pub solver: Option<String>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
 /// A finite number; the domain of each parameter is checked where it has its meaning.
 fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

@@ -1,6 +1,7 @@
 //! What a number on the command line is measured in: dimensionless, or SI with `--si`.
 
 use crate::model::scales::Scales;
+use crate::number::Uncertain;
 
 /// What a number measures.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -19,6 +20,8 @@ pub enum Quantity {
     LogState,
     /// Stiffness K.
     Stiffness,
+    /// An eigenvalue.
+    Growth,
     /// A friction coefficient, a ratio, a name.
     Number,
 }
@@ -55,6 +58,7 @@ impl Units {
             Quantity::Length => scales.length,
             Quantity::Time => scales.time,
             Quantity::Stiffness => scales.stiffness,
+            Quantity::Growth => 1.0 / scales.time,
             Quantity::State if self.state_is_time => scales.time,
             Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
         }
@@ -77,20 +81,15 @@ impl Units {
     }
 
     /// A value and the bound on its error, in the user's units; conversion in and out costs a few roundings more.
-    pub fn outward_uncertain(
-        &self,
-        quantity: Quantity,
-        value: f64,
-        uncertainty: f64,
-    ) -> (f64, f64) {
+    pub fn outward_uncertain(&self, quantity: Quantity, x: Uncertain) -> Uncertain {
         /// Roundings of the inputs, of the scales and of the product, generously.
         const CONVERSION_ULPS: f64 = 16.0;
-        let out = self.outward(quantity, value);
+        let value = self.outward(quantity, x.value);
         if !self.si() {
-            return (out, uncertainty);
+            return x;
         }
-        let rounding = CONVERSION_ULPS * f64::EPSILON * out.abs();
-        (out, uncertainty * self.factor(quantity) + rounding)
+        let rounding = CONVERSION_ULPS * f64::EPSILON * value.abs();
+        Uncertain::new(value, x.uncertainty * self.factor(quantity) + rounding)
     }
 
     /// The unit's name.
@@ -107,6 +106,8 @@ impl Units {
             Quantity::Time => "L/V*",
             Quantity::Stiffness if si => "Pa/m",
             Quantity::Stiffness => "a sigma/L",
+            Quantity::Growth if si => "1/s",
+            Quantity::Growth => "V*/L",
             Quantity::State if self.state_is_time && si => "s",
             Quantity::State if self.state_is_time => "L/V*",
             Quantity::State | Quantity::LogState | Quantity::Number => "1",
@@ -114,7 +115,7 @@ impl Units {
     }
 
     /// The names of all units, by quantity: what the `units` object of the output holds.
-    pub fn names(&self) -> [(&'static str, &'static str); 6] {
+    pub fn names(&self) -> [(&'static str, &'static str); 7] {
         [
             ("stress", self.name(Quantity::Stress)),
             ("slip_rate", self.name(Quantity::SlipRate)),
@@ -122,6 +123,7 @@ impl Units {
             ("time", self.name(Quantity::Time)),
             ("state", self.name(Quantity::State)),
             ("stiffness", self.name(Quantity::Stiffness)),
+            ("eigenvalue", self.name(Quantity::Growth)),
         ]
     }
 }

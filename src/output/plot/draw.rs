@@ -18,7 +18,8 @@ const ROW: f64 = 235.0;
 const LEAST: f64 = 470.0;
 /// Height of the strip with title and legend.
 const STRIP: f64 = 26.0;
-const LEFT_LABELS: f64 = 78.0;
+const LEFT_MARGIN: f64 = 10.0;
+const LEFT_LABELS: f64 = 74.0;
 const BOTTOM_LABELS: f64 = 44.0;
 const TEXT: f64 = 15.0;
 /// Okabe and Ito: told apart by all.
@@ -88,6 +89,7 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
     let (strip, frame) = area.split_vertically(px(STRIP));
     heading(&strip, panel)?;
     let mut chart = ChartBuilder::on(&frame)
+        .margin_left(px(LEFT_MARGIN))
         .margin_right(px(22.0))
         .margin_bottom(px(6.0))
         .x_label_area_size(px(BOTTOM_LABELS))
@@ -185,7 +187,7 @@ fn heading(strip: &Canvas<'_>, panel: &Panel) -> Result<()> {
     let middle = px(0.62 * STRIP);
     let centred = |style: TextStyle<'static>| style.pos(Pos::new(HPos::Left, VPos::Center));
     let title = centred(font(TEXT, INK));
-    let mut left = px(LEFT_LABELS);
+    let mut left = px(LEFT_MARGIN + LEFT_LABELS);
     strip
         .draw(&Text::new(
             panel.title.clone(),

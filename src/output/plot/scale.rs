@@ -80,7 +80,7 @@ impl Scale {
         }
         let largest = self.lo.abs().max(self.hi.abs());
         if (1e-4..1e6).contains(&largest) {
-            let digits = (-self.step.log10() + 1e-9).ceil().max(0.0) as usize;
+            let digits = (-self.step.log10() - 1e-9).ceil().max(0.0) as usize;
             let text = format!("{tick:.digits$}");
             return if text.trim_start_matches(['-', '0', '.']).is_empty() {
                 "0".into()
@@ -90,7 +90,7 @@ impl Scale {
         }
         // One power for all ticks, with as many digits as the step needs.
         let exponent = largest.log10().floor();
-        let digits = (exponent - self.step.log10() + 1e-9).ceil().max(0.0) as usize;
+        let digits = (exponent - self.step.log10() - 1e-9).ceil().max(0.0) as usize;
         if tick == 0.0 {
             return "0".into();
         }

@@ -1,0 +1,639 @@
+//! CVODES: dy/dt = f(y) by BDF or Adams formulas of variable order and step, with an analytic Jacobian.
+#![allow(unsafe_code)]
+
+use super::callback::{self, Frame, Problem, Slot, all_finite};
+use super::linear_solver::{LinearSolver, Matrix};
+use super::sensitivity::Columns;
+use super::vector::{Fixed, Serial, Vector};
+use super::{Context, Messages, Stable, check, failure, flags, native, null};
+use crate::error::{Error, Result};
+use crate::field::State;
+use crate::integrate::{MAX_STEPS, Tolerances, Work};
+use std::ffi::{c_int, c_long, c_void};
+use std::ptr::NonNull;
+
+/// The family of formulas.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Backward differentiation, orders 1 to 5: for stiff systems.
+    Bdf,
+    /// Adams-Moulton, orders 1 to 12: cheaper where the system is not stiff, here along stick-slip cycles.
+    Adams,
+}
+
+/// Whose vector operations and linear solver are used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Operations {
+    /// Ours, of fixed length.
+    #[default]
+    Fixed,
+    /// SUNDIALS's serial vectors and dense direct solver: about twice as slow; kept for comparison.
+    Stock,
+}
+
+/// When [`Cvode::advance`] returns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Mode {
+    /// At the time asked for, by interpolation from a step that may reach beyond.
+    Normal,
+    /// After every step.
+    OneStep,
+}
+
+/// Why [`Cvode::advance`] returned.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Reason {
+    /// The time asked for is reached.
+    Time,
+    /// A step is done ([`Mode::OneStep`]).
+    Step,
+    /// The stop time is reached, exactly.
+    StopTime,
+    /// An event function has a zero here; [`Cvode::events_found`] says which.
+    Event,
+    /// Success with a warning: a positive flag other than these.
+    Warning(i32),
+}
+
+/// Where [`Cvode::advance`] returned, and why.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Arrival {
+    /// Time of [`Cvode::state`].
+    pub t: f64,
+    /// Why there.
+    pub reason: Reason,
+}
+
+/// Steps between two looks at whether t still advances. A field that is not finite beyond some point makes the steps shrink
+/// towards it forever, and CVODE would burn the whole bound on work there.
+const WATCH: usize = 1000;
+
+/// The owner of a CVODES memory.
+pub(super) struct Memory(NonNull<c_void>);
+
+impl Memory {
+    fn new(method: Method, context: &Context) -> Result<Self> {
+        let lmm = match method {
+            Method::Bdf => sundials_sys::CV_BDF,
+            Method::Adams => sundials_sys::CV_ADAMS,
+        };
+        // SAFETY: a live context, which the solver keeps longer.
+        let memory = unsafe { sundials_sys::CVodeCreate(lmm, context.as_ptr()) };
+        Ok(Memory(
+            NonNull::new(memory).ok_or_else(|| null("CVodeCreate"))?,
+        ))
+    }
+
+    pub(super) fn as_ptr(&self) -> *mut c_void {
+        self.0.as_ptr()
+    }
+}
+
+impl Drop for Memory {
+    fn drop(&mut self) {
+        let mut memory = self.as_ptr();
+        // SAFETY: a live memory that this value alone owns.
+        unsafe { sundials_sys::CVodeFree(&mut memory) };
+    }
+}
+
+/// An integrator of N equations. Reuse it: [`Cvode::start`] is a hundred times cheaper than making one.
+///
+/// ```
+/// use twinslip::field::{Jacobian, State, VectorField};
+/// use twinslip::integrate::Tolerances;
+/// use twinslip::sundials::{Cvode, Method, Mode, Operations, Problem, Reason};
+/// struct Decay;
+/// impl VectorField<1> for Decay {
+///     fn f(&self, y: &State<1>) -> State<1> { -y }
+///     fn jacobian(&self, _: &State<1>) -> Jacobian<1> { Jacobian::<1>::new(-1.0) }
+///     fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> { State::zeros() }
+/// }
+/// # fn main() -> twinslip::Result<()> {
+/// let mut cvode = Cvode::<1>::new(Method::Bdf, Operations::Fixed)?;
+/// cvode.set_tolerances(Tolerances::equal(1e-10)?)?;
+/// cvode.start(0.0, &State::<1>::new(1.0))?;
+/// let arrival = cvode.advance(&Problem::new(&Decay), 2.0, Mode::Normal)?;
+/// assert_eq!((arrival.t, arrival.reason), (2.0, Reason::Time));
+/// assert!((cvode.state()[0] - (-2.0_f64).exp()).abs() < 1e-8);
+/// # Ok(())
+/// # }
+/// ```
+pub struct Cvode<const N: usize> {
+    // In the order in which they must go.
+    pub(super) memory: Memory,
+    _solver: LinearSolver,
+    _matrix: Matrix,
+    state: Vector,
+    dense: Vector,
+    pub(super) columns: Option<Columns>,
+    pub(super) context: Context,
+    slot: Stable<Slot>,
+    pub(super) messages: Stable<Messages>,
+    pub(super) operations: Operations,
+    pub(super) tolerances: Tolerances,
+    max_steps: usize,
+    start: f64,
+    stop_time: Option<f64>,
+    // What CVODES was told, where it still knows: it forgets a stop time when it has reached it.
+    armed: Option<Option<f64>>,
+    event_count: usize,
+    stalled: usize,
+    tangents: usize,
+    watched: usize,
+}
+
+// SAFETY: a solver owns its context and everything made from it, shares nothing with other solvers, and SUNDIALS keeps no
+// thread-local state; it may be used from any one thread at a time. Frames with borrowed user code live in `advance` only.
+unsafe impl<const N: usize> Send for Cvode<N> {}
+
+impl<const N: usize> Cvode<N> {
+    /// With tolerances of 1e-8, [`MAX_STEPS`], no stop time and no events; [`Cvode::start`] comes next.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] if SUNDIALS can't allocate, or is not of the version of its headers.
+    pub fn new(method: Method, operations: Operations) -> Result<Self> {
+        let messages = Stable::new(Messages::default());
+        let slot = Stable::new(Slot::new());
+        let context = Context::new(&messages)?;
+        let state = vector::<N>(operations, &context)?;
+        let dense = vector::<N>(operations, &context)?;
+        let (matrix, solver) = match operations {
+            Operations::Fixed => (
+                Matrix::fixed::<N>(&context)?,
+                LinearSolver::fixed::<N>(&context)?,
+            ),
+            Operations::Stock => {
+                let matrix = Matrix::dense::<N>(&context)?;
+                let solver = LinearSolver::dense(&context, &state, &matrix)?;
+                (matrix, solver)
+            }
+        };
+        let memory = Memory::new(method, &context)?;
+        let tolerances = Tolerances {
+            rtol: 1e-8,
+            atol: 1e-8,
+        };
+        let m = memory.as_ptr();
+        // SAFETY: live objects of one context, kept by the solver longer than the memory; the callbacks are of this N and of
+        // the storage of these vectors and matrix, and the user data are the slot, whose address never changes.
+        unsafe {
+            native::keep_cvode_messages(m, &messages)?;
+            // Before everything that copies the user data.
+            check!(CV, &messages, CVodeSetUserData(m, slot.as_ptr()))?;
+            let f = match operations {
+                Operations::Fixed => callback::right_hand_side::<Fixed, N>,
+                Operations::Stock => callback::right_hand_side::<Serial, N>,
+            };
+            check!(CV, &messages, CVodeInit(m, Some(f), 0.0, state.as_ptr()))?;
+            check!(
+                CV,
+                &messages,
+                CVodeSStolerances(m, tolerances.rtol, tolerances.atol)
+            )?;
+            // Steps below the spacing of t are watched for here, and not worth a message.
+            check!(CV, &messages, CVodeSetMaxHnilWarns(m, -1))?;
+            check!(
+                CVLS,
+                &messages,
+                CVodeSetLinearSolver(m, solver.as_ptr(), matrix.as_ptr())
+            )?;
+            match operations {
+                Operations::Fixed => check!(
+                    CVLS,
+                    &messages,
+                    CVodeSetLinSysFn(m, Some(callback::linear_system::<N>))
+                )?,
+                Operations::Stock => check!(
+                    CVLS,
+                    &messages,
+                    CVodeSetJacFn(m, Some(callback::dense_jacobian::<Serial, N>))
+                )?,
+            };
+        }
+        Ok(Cvode {
+            memory,
+            _solver: solver,
+            _matrix: matrix,
+            state,
+            dense,
+            columns: None,
+            context,
+            slot,
+            messages,
+            operations,
+            tolerances,
+            max_steps: MAX_STEPS,
+            start: 0.0,
+            stop_time: None,
+            armed: None,
+            event_count: 0,
+            stalled: 0,
+            tangents: 0,
+            watched: 0,
+        })
+    }
+
+    /// Tolerances of the state, and of sensitivities that have none of their own, from the next [`Cvode::start`] on.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] if CVODES refuses them.
+    pub fn set_tolerances(&mut self, tolerances: Tolerances) -> Result<()> {
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeSStolerances(m, tolerances.rtol, tolerances.atol)
+            )?;
+        }
+        self.tolerances = tolerances;
+        Ok(())
+    }
+
+    /// Bound on the steps from one [`Cvode::start`] to the next.
+    pub fn set_max_steps(&mut self, max_steps: usize) {
+        self.max_steps = max_steps;
+    }
+
+    /// Failures of the error test, and failures of Newton's iteration, that one step may have before it is given up; CVODES's
+    /// own choice is 7 and 10. More let the step shrink farther before the integration fails.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] if CVODES refuses the number.
+    pub fn set_max_failures(&mut self, failures: u16) -> Result<()> {
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeSetMaxErrTestFails(m, c_int::from(failures))
+            )?;
+            check!(
+                CV,
+                &self.messages,
+                CVodeSetMaxConvFails(m, c_int::from(failures))
+            )?;
+        }
+        Ok(())
+    }
+
+    /// A time beyond which f is never evaluated and at which [`Cvode::advance`] returns; `None` for none.
+    pub fn set_stop_time(&mut self, t: Option<f64>) {
+        self.stop_time = t;
+    }
+
+    /// Watches for zeros of `count` event functions, which the [`Problem`] then must have; zero for none. Each may be watched
+    /// in one direction of crossing only: 1 upwards, -1 downwards, 0 both; missing ones are 0.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] if CVODES can't allocate.
+    pub fn watch_events(&mut self, count: usize, directions: &[i32]) -> Result<()> {
+        let m = self.memory.as_ptr();
+        let g = match self.operations {
+            Operations::Fixed => callback::events::<Fixed, N>,
+            Operations::Stock => callback::events::<Serial, N>,
+        };
+        let mut direction: Vec<c_int> = directions.to_vec();
+        direction.resize(count, 0);
+        self.event_count = 0;
+        // SAFETY: a live memory; the callback is of this N and storage; CVODES copies the `count` directions.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeRootInit(m, count as c_int, (count > 0).then_some(g as _))
+            )?;
+            if count > 0 {
+                check!(
+                    CV,
+                    &self.messages,
+                    CVodeSetRootDirection(m, direction.as_mut_ptr())
+                )?;
+                check!(CV, &self.messages, CVodeSetNoInactiveRootWarn(m))?;
+            }
+        }
+        self.event_count = count;
+        Ok(())
+    }
+
+    /// Begins at `y0`, without sensitivities. Forgets everything before but the settings.
+    ///
+    /// # Errors
+    /// [`Error::NonFinite`] if `y0` or `t0` is not finite.
+    pub fn start(&mut self, t0: f64, y0: &State<N>) -> Result<()> {
+        self.restart(t0, y0)?;
+        self.forget_sensitivities()
+    }
+
+    pub(super) fn restart(&mut self, t0: f64, y0: &State<N>) -> Result<()> {
+        if !(t0.is_finite() && all_finite(y0.as_slice())) {
+            return Err(Error::NonFinite {
+                what: "the initial state",
+                t: t0,
+            });
+        }
+        self.state.set(y0);
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory and a vector like the one it was given at first.
+        unsafe { check!(CV, &self.messages, CVodeReInit(m, t0, self.state.as_ptr()))? };
+        (self.start, self.stalled, self.tangents, self.armed) = (t0, 0, 0, None);
+        Ok(())
+    }
+
+    /// Integrates towards `to`, and says where and why it stopped. The field must be the one of the last calls since
+    /// [`Cvode::start`].
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] with the flag's name and the time; [`Error::StepTooSmall`] where steps no longer change t;
+    /// [`Error::WrongTime`] if CVODES succeeds elsewhere; [`Error::NonFinite`] where f is not finite and can't be avoided;
+    /// [`Error::Input`] for watched events without event functions. A panic of the user's code goes on here.
+    pub fn advance(&mut self, problem: &Problem<'_, N>, to: f64, mode: Mode) -> Result<Arrival> {
+        if self.event_count > 0 && problem.events.is_none() {
+            return Err(Error::Input(
+                "events are watched, but the problem has no event functions".to_owned(),
+            ));
+        }
+        if !to.is_finite() {
+            return Err(Error::parameter("time", to, "finite"));
+        }
+        self.arm_stop_time(to)?;
+        let frame = Frame::new(*problem, self.event_count);
+        loop {
+            let before = self.steps()?;
+            let left = self.max_steps.saturating_sub(before);
+            let (t, code) = if left == 0 {
+                self.messages
+                    .keep("the bound on steps had been used up before");
+                (self.time()?, sundials_sys::CV_TOO_MUCH_WORK)
+            } else {
+                self.enter(&frame, to, mode, left.min(WATCH))?
+            };
+            self.tangents += frame.tangents.take();
+            frame.guard.resume();
+            match code {
+                // A return to look at the step, not the end of the bound.
+                sundials_sys::CV_TOO_MUCH_WORK if self.steps()? < self.max_steps => {
+                    let h = self.step_size()?;
+                    if t + h == t {
+                        return Err(Error::StepTooSmall { t, h });
+                    }
+                }
+                code if code < 0 => return Err(self.explain(code, t, &frame)),
+                code => return self.arrived(t, code, to, mode),
+            }
+        }
+    }
+
+    /// The state where [`Cvode::advance`] last returned; after an error, where the integration had come.
+    pub fn state(&self) -> State<N> {
+        self.state.get()
+    }
+
+    /// The continuous solution at `t`, which must be within the last step.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] with `CV_BAD_T` outside it.
+    pub fn dense(&self, t: f64) -> Result<State<N>> {
+        self.dense_derivative(t, 0)
+    }
+
+    /// The derivative of the given order of the continuous solution at `t`, which must be within the last step.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] with `CV_BAD_T` outside it, with `CV_BAD_K` above the order of the last step.
+    pub fn dense_derivative(&self, t: f64, order: usize) -> Result<State<N>> {
+        let m = self.memory.as_ptr();
+        let order = c_int::try_from(order).unwrap_or(c_int::MAX);
+        // SAFETY: a live memory and a vector like the one it was given; nothing else reads or writes it meanwhile, since the
+        // solver is not Sync and no reference into the vector is ever given away.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetDky(m, t, order, self.dense.as_ptr())
+            )?
+        };
+        Ok(self.dense.get())
+    }
+
+    /// For each watched event whether it was found by the last [`Cvode::advance`]: 1 upwards, -1 downwards, 0 not.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`] if there is nothing watched.
+    pub fn events_found(&self) -> Result<Vec<i32>> {
+        let mut found = vec![0 as c_int; self.event_count.max(1)];
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory and a place for as many flags as events are watched.
+        unsafe { check!(CV, &self.messages, CVodeGetRootInfo(m, found.as_mut_ptr()))? };
+        found.truncate(self.event_count);
+        Ok(found)
+    }
+
+    /// The time that the integration has reached inside, at or beyond the last return.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
+    pub fn time(&self) -> Result<f64> {
+        let mut t = 0.0;
+        // SAFETY: a live memory and a valid place.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetCurrentTime(self.memory.as_ptr(), &mut t)
+            )?
+        };
+        Ok(t)
+    }
+
+    /// The size of the last step, with its sign.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
+    pub fn step_size(&self) -> Result<f64> {
+        let mut h = 0.0;
+        // SAFETY: a live memory and a valid place.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetLastStep(self.memory.as_ptr(), &mut h)
+            )?
+        };
+        Ok(h)
+    }
+
+    /// The size of the step that was being tried, or is to be tried next, with its sign.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
+    pub fn trial_step_size(&self) -> Result<f64> {
+        let mut h = 0.0;
+        // SAFETY: a live memory and a valid place.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetCurrentStep(self.memory.as_ptr(), &mut h)
+            )?
+        };
+        Ok(h)
+    }
+
+    /// The work since [`Cvode::start`]. Jacobians count those of sensitivities, right-hand sides don't.
+    ///
+    /// # Errors
+    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
+    pub fn work(&self) -> Result<Work> {
+        let m = self.memory.as_ptr();
+        let messages = &self.messages;
+        let mut counts: [c_long; 7] = [0; 7];
+        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] = &mut counts;
+        // SAFETY: a live memory, and valid places for the results.
+        unsafe {
+            check!(CV, messages, CVodeGetNumSteps(m, steps))?;
+            check!(CV, messages, CVodeGetNumErrTestFails(m, rejected))?;
+            check!(CV, messages, CVodeGetNumStepSolveFails(m, unsolved))?;
+            check!(CV, messages, CVodeGetNumRhsEvals(m, rhs))?;
+            check!(CVLS, messages, CVodeGetNumJacEvals(m, jacobians))?;
+            check!(CV, messages, CVodeGetNumLinSolvSetups(m, setups))?;
+            check!(CV, messages, CVodeGetNumNonlinSolvIters(m, nonlinear))?;
+        }
+        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] =
+            counts.map(|n| n as usize);
+        Ok(Work {
+            steps,
+            rejected: rejected + unsolved,
+            rhs,
+            jacobians: jacobians + self.tangents,
+            factorisations: setups,
+            nonlinear,
+        })
+    }
+
+    fn steps(&self) -> Result<usize> {
+        let mut steps = 0;
+        // SAFETY: a live memory and a valid place.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetNumSteps(self.memory.as_ptr(), &mut steps)
+            )?
+        };
+        Ok(steps as usize)
+    }
+
+    /// Tells CVODES the stop time, if it does not have it. There is no way to unset one before version 6.5: infinity does.
+    fn arm_stop_time(&mut self, to: f64) -> Result<()> {
+        if self.armed == Some(self.stop_time) {
+            return Ok(());
+        }
+        let t = self
+            .stop_time
+            .unwrap_or(f64::INFINITY.copysign(to - self.start));
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory.
+        unsafe { check!(CV, &self.messages, CVodeSetStopTime(m, t))? };
+        self.armed = Some(self.stop_time);
+        Ok(())
+    }
+
+    /// One stay in C, of at most `steps` steps: the time reached and the flag.
+    fn enter(
+        &mut self,
+        frame: &Frame<'_, N>,
+        to: f64,
+        mode: Mode,
+        steps: usize,
+    ) -> Result<(f64, c_int)> {
+        let m = self.memory.as_ptr();
+        if self.watched != steps {
+            // SAFETY: a live memory.
+            unsafe { check!(CV, &self.messages, CVodeSetMaxNumSteps(m, steps as c_long))? };
+            self.watched = steps;
+        }
+        self.messages.clear();
+        let task = match mode {
+            Mode::Normal => sundials_sys::CV_NORMAL,
+            Mode::OneStep => sundials_sys::CV_ONE_STEP,
+        };
+        let mut t = self.start;
+        let entered = self.slot.enter(frame);
+        // SAFETY: a live memory that `new` has set up, a live vector like the one it was given, and a place for the time.
+        let code = unsafe { sundials_sys::CVode(m, to, self.state.as_ptr(), &mut t, task) };
+        drop(entered);
+        Ok((t, code))
+    }
+
+    fn arrived(&mut self, t: f64, code: c_int, to: f64, mode: Mode) -> Result<Arrival> {
+        let reason = match (code, mode) {
+            (sundials_sys::CV_SUCCESS, Mode::Normal) => Reason::Time,
+            (sundials_sys::CV_SUCCESS, Mode::OneStep) => Reason::Step,
+            (sundials_sys::CV_TSTOP_RETURN, _) => Reason::StopTime,
+            (sundials_sys::CV_ROOT_RETURN, _) => Reason::Event,
+            (code, _) => Reason::Warning(code),
+        };
+        match reason {
+            Reason::Time if t != to => {
+                return Err(Error::WrongTime {
+                    asked: to,
+                    returned: t,
+                });
+            }
+            Reason::StopTime => self.armed = None,
+            _ => {}
+        }
+        let h = self.step_size()?;
+        if h == 0.0 {
+            return Err(Error::WrongTime {
+                asked: to,
+                returned: t,
+            });
+        }
+        // A step at the start of a stiff problem may be below the spacing of t and grow again; many in a row don't.
+        if reason == Reason::Step {
+            self.stalled = if t + h == t { self.stalled + 1 } else { 0 };
+            if self.stalled > WATCH {
+                return Err(Error::StepTooSmall { t, h });
+            }
+        }
+        if !all_finite(self.state().as_slice()) {
+            return Err(Error::NonFinite {
+                what: "the state",
+                t,
+            });
+        }
+        Ok(Arrival { t, reason })
+    }
+
+    fn explain(&self, code: c_int, t: f64, frame: &Frame<'_, N>) -> Error {
+        use sundials_sys::{
+            CV_FIRST_RHSFUNC_ERR, CV_FIRST_SRHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR,
+            CV_REPTD_SRHSFUNC_ERR, CV_RTFUNC_FAIL, CV_UNREC_RHSFUNC_ERR, CV_UNREC_SRHSFUNC_ERR,
+        };
+        const OF_USER_CODE: [c_int; 7] = [
+            CV_FIRST_RHSFUNC_ERR,
+            CV_FIRST_SRHSFUNC_ERR,
+            CV_REPTD_RHSFUNC_ERR,
+            CV_REPTD_SRHSFUNC_ERR,
+            CV_UNREC_RHSFUNC_ERR,
+            CV_UNREC_SRHSFUNC_ERR,
+            CV_RTFUNC_FAIL,
+        ];
+        match frame.guard.not_finite() {
+            Some(what) if OF_USER_CODE.contains(&code) => Error::NonFinite { what, t },
+            _ => failure(flags::CV, "CVode", code, Some(t), &self.messages),
+        }
+    }
+}
+
+pub(super) fn vector<const N: usize>(operations: Operations, context: &Context) -> Result<Vector> {
+    match operations {
+        Operations::Fixed => Vector::fixed::<N>(context),
+        Operations::Stock => Vector::serial::<N>(context),
+    }
+}
