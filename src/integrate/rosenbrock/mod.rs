@@ -6,16 +6,19 @@
 mod control;
 mod drive;
 mod factors;
+mod stages;
+mod tangent;
 mod trajectory;
 
-use super::tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
-use super::{Control, Integrator, Observer, Step, Tolerances, Work};
+use super::tableau::{RODAS4, RODAS5P, ROS23, Tableau};
+use super::{Control, Integrator, Observer, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use control::first_step;
 use drive::drive;
-use std::marker::PhantomData;
-use trajectory::{Linearisation, Scheme, Trajectory, interpolate};
+use stages::{Linearisation, Scheme};
+use tangent::Bundle;
+use trajectory::Trajectory;
 
 /// The Rosenbrock methods.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -138,35 +141,37 @@ impl<const N: usize> Rosenbrock<N> {
         mut observer: Option<Observer<'_, N>>,
     ) -> Result<State<N>> {
         let (here, h) = self.start(field, t, y0)?;
-        let mut trajectory = Trajectory::<S, N> {
-            field,
-            tolerances: self.tolerances,
-            work: &mut self.work,
-            y: *y0,
-            here,
-            next: *y0,
-            stages: [State::zeros(); MAX_STAGES],
-            last_f: here.f,
-            ahead: here,
-            scheme: PhantomData,
-        };
-        drive(&mut trajectory, t, h, self.max_steps, |moved, t0, t1| {
-            let Some(observer) = observer.as_mut() else {
-                return Ok(Control::Continue);
-            };
-            let dense = |t: f64| {
-                let theta = (t - t0) / (t1 - t0);
-                interpolate(&S::TABLEAU, theta, &moved.y, &moved.next, &moved.stages)
-            };
-            observer(&Step {
-                t0,
-                y0: &moved.y,
-                t1,
-                y1: &moved.next,
-                dense: &dense,
-            })
+        let mut trajectory =
+            Trajectory::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here);
+        drive(
+            &mut trajectory,
+            t,
+            h,
+            self.max_steps,
+            |moved, t0, t1| match observer.as_mut() {
+                Some(observer) => moved.show(t0, t1, observer),
+                None => Ok(Control::Continue),
+            },
+        )?;
+        Ok(*trajectory.state())
+    }
+
+    fn tangent_flow_by<S: Scheme>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(State<N>, Jacobian<N>)> {
+        let (here, h) = self.start(field, t, y0)?;
+        let mut bundle = Bundle::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here)
+            .ok_or(Error::NonFinite {
+                what: "the second derivative of the right-hand side",
+                t: t.0,
+            })?;
+        drive(&mut bundle, t, h, self.max_steps, |_, _, _| {
+            Ok(Control::Continue)
         })?;
-        Ok(trajectory.y)
+        Ok(bundle.state_and_tangent())
     }
 }
 
@@ -193,11 +198,17 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
 
     fn tangent_flow(
         &mut self,
-        _field: &dyn VectorField<N>,
-        _t: (f64, f64),
-        _y0: &State<N>,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        Err(Error::Input("tangent flow: not yet".into()))
+        self.work = Work::default();
+        check_times(t)?;
+        match self.method {
+            Method::Rodas5p => self.tangent_flow_by::<Rodas5p>(field, t, y0),
+            Method::Rodas4 => self.tangent_flow_by::<Rodas4>(field, t, y0),
+            Method::Ros23 => self.tangent_flow_by::<Ros23>(field, t, y0),
+        }
     }
 
     fn work(&self) -> Work {
