@@ -35,6 +35,7 @@ impl Run {
     }
 
     /// Starts on the symmetric subspace, which a run in three dimensions leaves by rounding.
+    #[allow(dead_code, reason = "not every test integrates the symmetric run")]
     pub fn is_symmetric(&self) -> bool {
         self.start[1] == self.start[2]
     }
