@@ -127,7 +127,7 @@ fn run_error(run: &Run, method: Method, tolerance: f64) -> Result<f64> {
 #[test]
 fn rodas5p_reaches_every_reference_end() {
     for run in Run::all() {
-        let error = run_error(&run, Method::Rodas5p, 1e-13).unwrap();
+        let error = run_error(&run, Method::Rodas5P, 1e-13).unwrap();
         println!("{}: {error:.1e}", run.name);
         assert!(error < 1e-9, "{}: {error:e}", run.name);
     }
@@ -137,7 +137,7 @@ fn rodas5p_reaches_every_reference_end() {
 fn the_error_falls_with_the_tolerance() {
     // A step of tolerance^(1/(q+1)), q the order of the estimate, leaves an error of that step^p.
     let cases = [
-        (Method::Rodas5p, 1e-7, 1e-11, 1.0),
+        (Method::Rodas5P, 1e-7, 1e-11, 1.0),
         (Method::Rodas4, 1e-7, 1e-11, 1.0),
         (Method::Ros23, 1e-5, 1e-8, 2.0 / 3.0),
     ];
@@ -229,7 +229,7 @@ fn backwards_returns_to_the_start() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
     for (method, tolerance) in [
-        (Method::Rodas5p, 1e-11),
+        (Method::Rodas5P, 1e-11),
         (Method::Rodas4, 1e-11),
         (Method::Ros23, 1e-9),
     ] {
@@ -277,7 +277,7 @@ fn steps_join_land_on_the_end_and_leave_no_sliver() {
 fn an_observer_changes_nothing_and_can_stop_or_fail() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
-    let mut rosenbrock = integrator::<3>(Method::Rodas5p, 1e-6);
+    let mut rosenbrock = integrator::<3>(Method::Rodas5P, 1e-6);
     let alone = rosenbrock.flow(&field, (0.0, 1.0), &start, None).unwrap();
     let work = rosenbrock.work();
     let mut look = |step: &Step<'_, 3>| {
@@ -366,7 +366,7 @@ fn a_finite_time_singularity_is_found_where_it_is() {
     };
     let start = State::<3>::new(10.85, 1.99_f64.ln(), 2.01_f64.ln());
     for (method, tolerance, allowed) in [
-        (Method::Rodas5p, 1e-14, 1e-9),
+        (Method::Rodas5P, 1e-14, 1e-9),
         (Method::Rodas4, 1e-13, 1e-9),
         (Method::Ros23, 1e-8, 1e-2),
     ] {

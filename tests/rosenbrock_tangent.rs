@@ -99,12 +99,12 @@ fn a_run_is_that_of_the_extended_system() {
         let run = Run::named(name);
         let t = (0.0, run.end_time);
         let start = joined(&run.start, &Jacobian::identity());
-        let exact = integrator::<12>(Method::Rodas5p, 1e-12)
+        let exact = integrator::<12>(Method::Rodas5P, 1e-12)
             .flow(&Extended(field(&run)), t, &start, None)
             .unwrap();
         let (_, exact) = parted(&exact);
         for (method, tolerance, allowed) in [
-            (Method::Rodas5p, 1e-10, 1e-7),
+            (Method::Rodas5P, 1e-10, 1e-7),
             (Method::Rodas4, 1e-10, 1e-7),
             (Method::Ros23, 1e-7, 3e-2),
         ] {
@@ -124,7 +124,7 @@ fn a_run_is_that_of_the_extended_system() {
 fn a_tangent_is_the_limit_of_differences() {
     let run = Run::named("D_K0.2_VH0.102_torus, t = 2000");
     let t = (0.0, 300.0);
-    for (method, tolerance) in [(Method::Rodas5p, 1e-12), (Method::Rodas4, 1e-11)] {
+    for (method, tolerance) in [(Method::Rodas5P, 1e-12), (Method::Rodas4, 1e-11)] {
         let mut rosenbrock = integrator::<3>(method, tolerance);
         let (_, tangent) = rosenbrock
             .tangent_flow(&*field(&run), t, &run.start)
@@ -151,7 +151,7 @@ fn a_tangent_is_the_limit_of_differences() {
 fn the_determinant_is_that_of_liouville() {
     let run = Run::named("A3_K0.14_VH100, t = 2");
     let field = field(&run);
-    let mut rosenbrock = integrator::<3>(Method::Rodas5p, 1e-11);
+    let mut rosenbrock = integrator::<3>(Method::Rodas5P, 1e-11);
     let (_, tangent) = rosenbrock
         .tangent_flow(&*field, (0.0, 0.1), &run.start)
         .unwrap();
@@ -175,7 +175,7 @@ fn the_determinant_is_that_of_liouville() {
 fn backwards_the_tangent_is_the_inverse() {
     let run = Run::named("E1_DR_K0.45, t = 50");
     for (method, tolerance) in [
-        (Method::Rodas5p, 1e-12),
+        (Method::Rodas5P, 1e-12),
         (Method::Rodas4, 1e-12),
         (Method::Ros23, 1e-9),
     ] {
@@ -200,7 +200,7 @@ fn the_tangent_error_falls_with_the_tolerance() {
     let run = Run::named("A3_K0.14_VH100, t = 2");
     let t = (0.0, run.end_time);
     let tangent = |tolerance| {
-        let mut rosenbrock = integrator::<3>(Method::Rodas5p, tolerance);
+        let mut rosenbrock = integrator::<3>(Method::Rodas5P, tolerance);
         rosenbrock
             .tangent_flow(&*field(&run), t, &run.start)
             .unwrap()

@@ -242,7 +242,7 @@ fn every_method_is_a_stable() {
 /// Rodas5P and RODAS: the last stage is at the end of the step and its weights are those of y1.
 #[test]
 fn the_rodas_methods_are_stiffly_accurate() {
-    for method in [Method::Rodas5p, Method::Rodas4] {
+    for method in [Method::Rodas5P, Method::Rodas4] {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let b = classical.weights(&tableau.m);
@@ -259,7 +259,7 @@ fn the_rodas_methods_are_stiffly_accurate() {
 #[test]
 fn the_row_sums_are_the_printed_ones() {
     let rodas4 = Classical::of(Method::Rodas4.tableau());
-    let rodas5p = Classical::of(Method::Rodas5p.tableau());
+    let rodas5p = Classical::of(Method::Rodas5P.tableau());
     let check = |matrix: &DMatrix<f64>, printed: &[f64]| {
         for (row, printed) in matrix.row_iter().zip(printed) {
             assert!((row.iter().sum::<f64>() - printed).abs() < 10.0 * PRINTED);

@@ -12,7 +12,7 @@ pub struct Robertson;
 pub const ROBERTSON_AT_1E11: [f64; 3] = [
     0.2083340149701255e-7,
     0.8333360770334713e-13,
-    0.9999999791665050,
+    0.999999979166505,
 ];
 
 impl VectorField<3> for Robertson {
@@ -41,7 +41,7 @@ const EPSILON: f64 = 1e-6;
 
 /// At t = 1 and t = 2, from (2, 0): Hairer's test set, problem VDPOL.
 pub const VAN_DER_POL: [[f64; 2]; 2] = [
-    [-0.1863646254808130e1, 0.7535430865435460],
+    [-0.186364625480813e1, 0.753543086543546],
     [0.1706167732170456e1, -0.8928097010248257],
 ];
 

@@ -1,7 +1,12 @@
 //! Rosenbrock methods: implicit enough for stiff systems, and no iteration, since each stage is one linear system.
 //!
-//! The matrix is exact at every step, so the order does not suffer; a step costs s evaluations of f, one of J and one
-//! small factorisation. Steps, errors and dense output are those of the tableau; see [`Tableau`].
+//! J is exact and new at every step, so the methods keep their classical order. A step costs s evaluations of f, one of J
+//! and one small factorisation; on the two interfaces five sixths of its time are the model's. [`Tableau`] has the
+//! coefficients, `drive` the way from one time to another, `trajectory` and `tangent` what a step does to a state alone
+//! and to a state with its tangent flow.
+//!
+//! Against the reference runs Rodas5P needs the least time for every error below 1e-4, up to half that of Rodas4 at 1e-8,
+//! and is the default. The pair of ode23s is for errors of a per cent.
 
 mod control;
 mod drive;
@@ -21,10 +26,11 @@ use tangent::Bundle;
 use trajectory::Trajectory;
 
 /// The Rosenbrock methods.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Rodas5P, order 5(4).
-    Rodas5p,
+    /// Rodas5P, order 5(4): the fastest where the error is to be below 1e-4.
+    #[default]
+    Rodas5P,
     /// RODAS, order 4(3).
     Rodas4,
     /// The pair of ode23s, order 2(3).
@@ -33,12 +39,12 @@ pub enum Method {
 
 impl Method {
     /// All of them.
-    pub const ALL: [Method; 3] = [Method::Rodas5p, Method::Rodas4, Method::Ros23];
+    pub const ALL: [Method; 3] = [Method::Rodas5P, Method::Rodas4, Method::Ros23];
 
     /// The coefficients.
     pub const fn tableau(self) -> &'static Tableau {
         match self {
-            Method::Rodas5p => &RODAS5P,
+            Method::Rodas5P => &RODAS5P,
             Method::Rodas4 => &RODAS4,
             Method::Ros23 => &ROS23,
         }
@@ -56,11 +62,11 @@ impl Method {
     }
 }
 
-struct Rodas5p;
+struct Rodas5P;
 struct Rodas4;
 struct Ros23;
 
-impl Scheme for Rodas5p {
+impl Scheme for Rodas5P {
     const TABLEAU: Tableau = RODAS5P;
 }
 impl Scheme for Rodas4 {
@@ -71,6 +77,25 @@ impl Scheme for Ros23 {
 }
 
 /// An integrator that steps by a Rosenbrock method.
+///
+/// A step is accepted if no component errs by more than `atol + rtol |y_i|`, in a tangent flow no entry of the tangent
+/// either. Nothing is allocated on the way.
+///
+/// ```
+/// use twinslip::field::State;
+/// use twinslip::friction::Parameters;
+/// use twinslip::integrate::{Integrator, MAX_STEPS, Method, Rosenbrock, Tolerances};
+/// use twinslip::model::{Loading, TwoInterfaces};
+/// # fn main() -> twinslip::Result<()> {
+/// let law = Parameters::heslot_1994().spinodal();
+/// let field = TwoInterfaces { law, loading: Loading::new(1000.0, 0.14)? };
+/// let start = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
+/// let mut rosenbrock = Rosenbrock::new(Method::default(), Tolerances::equal(1e-8)?, MAX_STEPS)?;
+/// let end = rosenbrock.flow(&field, (0.0, 200.0), &start, None)?;
+/// assert!((end[0] - 8.7802282536803).abs() < 1e-8);
+/// # Ok(())
+/// # }
+/// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rosenbrock<const N: usize> {
     method: Method,
@@ -190,7 +215,7 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         self.work = Work::default();
         check_times(t)?;
         match self.method {
-            Method::Rodas5p => self.flow_by::<Rodas5p>(field, t, y0, observer),
+            Method::Rodas5P => self.flow_by::<Rodas5P>(field, t, y0, observer),
             Method::Rodas4 => self.flow_by::<Rodas4>(field, t, y0, observer),
             Method::Ros23 => self.flow_by::<Ros23>(field, t, y0, observer),
         }
@@ -205,7 +230,7 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         self.work = Work::default();
         check_times(t)?;
         match self.method {
-            Method::Rodas5p => self.tangent_flow_by::<Rodas5p>(field, t, y0),
+            Method::Rodas5P => self.tangent_flow_by::<Rodas5P>(field, t, y0),
             Method::Rodas4 => self.tangent_flow_by::<Rodas4>(field, t, y0),
             Method::Ros23 => self.tangent_flow_by::<Ros23>(field, t, y0),
         }
