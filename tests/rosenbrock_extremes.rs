@@ -1,7 +1,7 @@
 //! Far outside what anybody would ask for: a finite state or a typed error within the bound on steps, and nothing else.
 
 use twinslip::error::{Error, Result};
-use twinslip::field::State;
+use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Integrator, Method, Rosenbrock, Tolerances, Work};
 use twinslip::model::{Driven, Loading, two_interfaces};
@@ -84,5 +84,35 @@ fn a_step_of_1e_minus_210_is_one_to_start_with() {
         let end = rosenbrock.flow(&*field, (0.0, 1.0), &start, None).unwrap();
         println!("{method:?}: {end:?}, {:?}", rosenbrock.work());
         assert!(end[0] < 100.0 && end.iter().all(|x| x.is_finite()));
+    }
+}
+
+/// y' = 1 where y < 1, and nothing beyond.
+struct Cliff;
+
+impl VectorField<1> for Cliff {
+    fn f(&self, y: &State<1>) -> State<1> {
+        State::<1>::new(if y[0] < 1.0 { 1.0 } else { f64::NAN })
+    }
+    fn jacobian(&self, _: &State<1>) -> Jacobian<1> {
+        Jacobian::<1>::zeros()
+    }
+    fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> {
+        State::zeros()
+    }
+}
+
+#[test]
+fn where_the_field_ends_the_flow_ends() {
+    for method in Method::ALL {
+        let mut rosenbrock =
+            Rosenbrock::<1>::new(method, Tolerances::equal(1e-6).unwrap(), LIMIT).unwrap();
+        let outcome = rosenbrock.flow(&Cliff, (0.0, 2.0), &State::zeros(), None);
+        let Err(Error::StepTooSmall { t, .. }) = outcome else {
+            panic!("{method:?}: {outcome:?}");
+        };
+        assert!((t - 1.0).abs() < 1e-12, "{method:?}: {t}");
+        let tangent = rosenbrock.tangent_flow(&Cliff, (0.0, 2.0), &State::zeros());
+        assert!(matches!(tangent, Err(Error::StepTooSmall { .. })));
     }
 }
