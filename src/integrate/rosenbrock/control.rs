@@ -66,8 +66,9 @@ pub(super) fn first_step<const N: usize>(
 
 /// Chooses each step by the predictive controller of Gustafsson (1994), in the form of Hairer & Wanner II, section IV.8.
 ///
-/// Of eight controllers tried on eighteen runs of the two interfaces it needs the least work at equal error, mostly 2 to 5 per cent
-/// less than the elementary one, PI controllers and the digital filters H211. Its limits and safety factor hardly matter.
+/// Of eight controllers tried on eighteen runs of the two interfaces it needs the least work at equal error, mostly 2 to 5
+/// per cent less than the elementary one, PI controllers and the digital filters H211. Its limits and safety factor hardly
+/// matter.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Controller {
     /// 1 / (order of the error estimate)
