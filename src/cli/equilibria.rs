@@ -128,7 +128,7 @@ fn write(
     written(all, &report.place)
 }
 
-/// The columns of CSV; a table has no room for logarithms and error budgets.
+/// The columns of CSV; a table has room for what is looked at first.
 fn columns(interfaces: usize, table: bool) -> Vec<(String, Quantity)> {
     let mut columns = vec![
         ("symmetry".to_owned(), Quantity::Number),
@@ -147,13 +147,20 @@ fn columns(interfaces: usize, table: bool) -> Vec<(String, Quantity)> {
             columns.extend((1..=interfaces).map(|i| (format!("{name}_{i}"), quantity)));
         }
     }
-    for i in 1..=interfaces + 1 {
+    for i in 1..=shown_eigenvalues(interfaces, table) {
         columns.push((format!("eigenvalue_{i}_re"), Quantity::Growth));
         columns.push((format!("eigenvalue_{i}_im"), Quantity::Growth));
     }
     columns.push(("verdict".to_owned(), Quantity::Number));
-    columns.push(("residual".to_owned(), Quantity::Number));
+    if !table {
+        columns.push(("residual".to_owned(), Quantity::Number));
+    }
     columns
+}
+
+/// A table shows the leading one, which decides.
+fn shown_eigenvalues(interfaces: usize, table: bool) -> usize {
+    if table { 1 } else { interfaces + 1 }
 }
 
 fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
@@ -179,7 +186,7 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
         extend(Quantity::LogState, &equilibrium.log_state);
     }
     extend(Quantity::SlipRate, &equilibrium.slip_rate);
-    for i in 0..=system.interfaces {
+    for i in 0..shown_eigenvalues(system.interfaces, table) {
         let eigenvalue = found.stability.as_ref().map(|s| s.eigenvalues[i]);
         for part in [eigenvalue.map(|z| z.re), eigenvalue.map(|z| z.im)] {
             cells.push(part.map(|x| units.outward(Quantity::Growth, x)).into());
@@ -187,7 +194,9 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
     }
     let verdict = found.stability.as_ref().map(|s| verdict(s.verdict));
     cells.push(verdict.map_or(Cell::Missing, Cell::from));
-    cells.push(found.residual.into());
+    if !table {
+        cells.push(found.residual.into());
+    }
     cells
 }
 

@@ -34,6 +34,7 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
     let (mut now, end) = t;
     let mut controller = Controller::new(M::ERROR_ORDER);
     let mut tried = 0;
+    let mut refused = None;
     while now != end {
         if tried == limit {
             return Err(Error::TooManySteps { t: now, end, limit });
@@ -42,13 +43,15 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
         let next = next_time(now, end, h);
         // As the sum of times is rounded, so is the step: no error of time builds up.
         let step = next - now;
-        if step == 0.0 || !step.is_finite() {
+        // Nothing, or rounded up again to what was just refused: no shorter step can be added to t.
+        if step == 0.0 || refused == Some(step) || !step.is_finite() {
             return Err(step_underflow(motion.field(), now, h, motion.state()));
         }
         let error = motion.attempt(step);
         let accepted = error.is_some_and(|error| error <= 1.0);
         if accepted && (next == end || motion.look_ahead()) {
             h = controller.accepted(step, error.unwrap_or(0.0));
+            refused = None;
             motion.work().steps += 1;
             let control = seen(motion, now, next)?;
             motion.advance();
@@ -58,6 +61,7 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
             }
         } else {
             h = controller.refused(step, error.filter(|_| !accepted));
+            refused = Some(step);
             motion.work().rejected += 1;
         }
     }

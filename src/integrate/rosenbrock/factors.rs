@@ -31,6 +31,7 @@ impl<const N: usize> Factors<N> {
         factors.eliminate().then_some(factors)
     }
 
+    #[expect(clippy::needless_range_loop, reason = "two rows of one matrix")]
     #[inline]
     fn eliminate(&mut self) -> bool {
         let rows = &mut self.rows;
