@@ -26,7 +26,7 @@ impl Choice {
     /// [`Error::Input`] for a method that does not exist, or not in this build.
     pub fn named(name: &str) -> Result<Self> {
         match name {
-            "auto" => Ok(Choice::Rosenbrock(Method::Rodas5p)),
+            "auto" => Ok(Choice::Rosenbrock(Method::default())),
             "taylor" => Err(Error::Input(format!(
                 "method taylor is not available yet; choose one of {}",
                 available()
@@ -78,7 +78,7 @@ impl Choice {
     /// Why one would take it, for a reader of `--explain`.
     pub fn reason(self) -> &'static str {
         match self {
-            Choice::Rosenbrock(Method::Rodas5p) => {
+            Choice::Rosenbrock(Method::Rodas5P) => {
                 "order 5, one factorisation a step and no iteration, stable on stiff scenes"
             }
             Choice::Rosenbrock(Method::Rodas4) => "order 4, six stages: cheaper steps than rodas5p",
