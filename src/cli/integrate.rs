@@ -8,7 +8,8 @@ use crate::error::Result;
 use crate::integrate::Control;
 use crate::output::{Cell, Format, Place, RowWriter, Rows, object, plot};
 use crate::scene::{
-    Column, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, Sink, System, explain,
+    Column, Dimension, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, Sink, System,
+    explain,
 };
 use serde_json::{Map, Value, json};
 use std::io;
@@ -65,7 +66,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     }
     let ending = write(&plan, &report, &rows, &outcome, events_path.as_deref())?;
     if let Some(path) = &options.plot {
-        plot::write(path, &picture(&plan.system, &rows))?;
+        plot::write(path, &picture(&plan, &rows))?;
     }
     report.say(summary(&outcome, plan.events.is_some(), seconds));
     match outcome.failure {
@@ -287,22 +288,29 @@ fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
     text
 }
 
-fn picture(system: &System, rows: &Rows) -> plot::Drawing {
+/// `v₁ = v₂` from `v` and `₁ = ₂`.
+fn label(name: &str, marks: &str) -> String {
+    let parts = marks.split(" = ").filter(|mark| !mark.is_empty());
+    let parts: Vec<String> = parts.map(|mark| format!("{name}{mark}")).collect();
+    parts.join(" = ")
+}
+
+fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
+    let system = &plan.system;
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let unit = |quantity| report::short_unit(&system.units, quantity);
+    // Equal interfaces are one curve, not one that hides another.
+    let curves = match plan.dimension {
+        Dimension::Single => vec![(1, "")],
+        Dimension::Symmetric => vec![(1, "₁ = ₂")],
+        Dimension::Full => vec![(1, "₁"), (2, "₂")],
+    };
     let each = |name: &str, of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>)| -> Vec<plot::Series> {
-        let count = system.interfaces;
-        (1..=count)
-            .map(|i| {
-                let label = if count == 1 {
-                    String::new()
-                } else {
-                    format!("{name}{}", ["₁", "₂"][i - 1])
-                };
-                let (x, y) = of(i);
-                plot::Series::new(label, x, y)
-            })
-            .collect()
+        let series = curves.iter().map(|(i, marks)| {
+            let (x, y) = of(*i);
+            plot::Series::new(label(name, marks), x, y)
+        });
+        series.collect()
     };
     let time = plot::Axis::linear(format!("time t [{}]", unit(Quantity::Time)));
     let stress = plot::Axis::linear(format!("stress τ [{}]", unit(Quantity::Stress)));

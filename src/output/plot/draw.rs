@@ -22,6 +22,8 @@ const LEFT_MARGIN: f64 = 10.0;
 const LEFT_LABELS: f64 = 74.0;
 const BOTTOM_LABELS: f64 = 44.0;
 const TEXT: f64 = 15.0;
+const LINE: f64 = 1.2;
+const WIDE: f64 = 2.4;
 /// Okabe and Ito: told apart by all.
 const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 114, 178),
@@ -123,7 +125,13 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
         (x.hi - x.lo) / (f64::from(width) / FINE),
         (y.hi - y.lo) / (f64::from(height) / FINE),
     );
-    for (series, colour) in panel.series.iter().zip(COLOURS.iter().cycle()) {
+    for (i, (series, colour)) in panel.series.iter().zip(COLOURS.iter().cycle()).enumerate() {
+        // The curve below is wider where another one follows, so that both are seen where they coincide.
+        let width = if i + 1 < panel.series.len() {
+            WIDE
+        } else {
+            LINE
+        };
         let points = series
             .x
             .iter()
@@ -131,7 +139,10 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
             .map(|(&a, &b)| (x.at(a), y.at(b)));
         for piece in thinned(points, per_pixel) {
             chart
-                .draw_series(LineSeries::new(piece, colour.stroke_width(px(1.3) as u32)))
+                .draw_series(LineSeries::new(
+                    piece,
+                    colour.stroke_width(px(width) as u32),
+                ))
                 .map_err(unrendered)?;
         }
     }

@@ -4,6 +4,8 @@ use super::Axis;
 
 /// At most so many ticks.
 const TICKS: usize = 7;
+/// Logarithmic axes shorter than this have ticks at 2 and 5 too.
+const FEW_DECADES: f64 = 2.2;
 /// Room between the curves and the frame, as a part of the range.
 const MARGIN: f64 = 0.04;
 
@@ -55,9 +57,21 @@ impl Scale {
         } else {
             nice((hi - lo) / TICKS as f64)
         };
-        let ticks = (0..=2 * TICKS)
-            .map(|i| ((lo / step).ceil() + i as f64) * step)
-            .filter(|&x| x <= hi + 1e-9 * step)
+        let first = (lo / step).ceil();
+        let even = (0..=2 * TICKS).map(|i| (first + i as f64) * step);
+        let ticks: Vec<f64> = if axis.log && hi - lo < FEW_DECADES {
+            // Powers of ten alone would leave an axis with one number or none.
+            let decades = lo.floor() as i32..=hi.ceil() as i32;
+            decades
+                .flat_map(|n| [1.0_f64, 2.0, 5.0].map(|m| f64::from(n) + m.log10()))
+                .collect()
+        } else {
+            even.collect()
+        };
+        let rounding = 1e-9 * step;
+        let ticks = ticks
+            .into_iter()
+            .filter(|&x| x >= lo - rounding && x <= hi + rounding)
             .collect();
         Some(Scale {
             lo,
@@ -76,7 +90,21 @@ impl Scale {
     /// What a tick says.
     pub fn label(&self, tick: f64) -> String {
         if self.log {
-            return power(tick.round() as i64);
+            let exponent = (tick + 1e-9).floor();
+            let mantissa = 10f64.powf(tick - exponent).round();
+            return match (mantissa as i64, exponent as i64) {
+                (1, n) if self.hi - self.lo >= FEW_DECADES => power(n),
+                (m, n @ -3..=0) => {
+                    format!(
+                        "{:.*}",
+                        n.unsigned_abs() as usize,
+                        m as f64 * 10f64.powi(n as i32)
+                    )
+                }
+                (m, n @ 1..=3) => (m * 10_i64.pow(n as u32)).to_string(),
+                (1, n) => power(n),
+                (m, n) => format!("{m}·{}", power(n)),
+            };
         }
         let largest = self.lo.abs().max(self.hi.abs());
         if (1e-4..1e6).contains(&largest) {
