@@ -59,7 +59,7 @@ fn every_scene_runs_and_can_be_drawn() {
 fn a_scene_is_the_same_as_its_flags() {
     let place = folder("same");
     let path = place.join("one.toml");
-    let text = "command = \"integrate\"\nlaw = \"bounded\"\ndriving = 0.2\nstiffness = 5e-2\n\
+    let text = "command = \"integrate\"\nlaw = \"spinodal\"\ndriving = 0.2\nstiffness = 5e-2\n\
                 start = [11.4, 0.3, 0.05]\nuntil = 500\nmethod = \"rodas4\"\nrtol = 1e-7\n\
                 points = 50\nevents = true\nestimate-error = false\ncolumns = [\"time\", \"slip_1\"]\n\
                 format = \"json\"\nquiet = true\n";
@@ -67,7 +67,7 @@ fn a_scene_is_the_same_as_its_flags() {
     let scene = run(&["run", path.to_str().unwrap()]);
     assert_eq!(scene.code, 0, "{}", scene.err);
     let flags = twinslip(
-        "integrate --law bounded --driving 0.2 --stiffness 5e-2 --start 11.4,0.3,0.05 --until 500 \
+        "integrate --law spinodal --driving 0.2 --stiffness 5e-2 --start 11.4,0.3,0.05 --until 500 \
          --method rodas4 --rtol 1e-7 --points 50 --events --columns time,slip_1 --format json -q",
     );
     let mut made =

@@ -215,6 +215,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
                 ExtremumKind::Maximum => "maximum V_M".into(),
                 ExtremumKind::Minimum => "minimum V_m".into(),
             },
+            above: extremum.kind == ExtremumKind::Maximum,
         })
         .collect();
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
@@ -234,6 +235,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
         x: out(Quantity::SlipRate, maximum.slip_rate.value),
         y: out(Quantity::Stiffness, maximum.stiffness.value),
         label: "maximum".into(),
+        above: true,
     });
     let stiffness = plot::Panel {
         title: "critical stiffness: a stiffer single interface slides steadily".into(),

@@ -22,8 +22,12 @@ const LEFT_MARGIN: f64 = 10.0;
 const LEFT_LABELS: f64 = 74.0;
 const BOTTOM_LABELS: f64 = 44.0;
 const TEXT: f64 = 15.0;
-const LINE: f64 = 1.2;
-const WIDE: f64 = 2.4;
+const LINE: f64 = 1.1;
+const WIDE: f64 = 1.9;
+/// Room between the curves and the frame, as a part of the range.
+const MARGIN: f64 = 0.04;
+/// The same where points have names.
+const MARKED_MARGIN: f64 = 0.14;
 /// Okabe and Ito: told apart by all.
 const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 114, 178),
@@ -76,11 +80,16 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
     let ys = panel.series.iter().flat_map(|series| &series.y);
     let zero = [0.0];
     let zero = zero.iter().filter(|_| panel.zero_line);
-    // Time and slip rate of a law end with the data; a phase plane needs air around it.
-    let tight = !panel.x.log || panel.series.len() == 1;
+    // A function of time ends with its data; a phase plane needs air around it, and so do names above and below.
+    let tight = panel.series.iter().all(|series| series.x.is_sorted());
+    let margin = if panel.marks.is_empty() {
+        MARGIN
+    } else {
+        MARKED_MARGIN
+    };
     let scales = (
-        Scale::new(&panel.x, xs, tight),
-        Scale::new(&panel.y, ys.chain(zero), false),
+        Scale::new(&panel.x, xs, if tight { 0.0 } else { MARGIN }),
+        Scale::new(&panel.y, ys.chain(zero), margin),
     );
     let (Some(x), Some(y)) = scales else {
         return Err(unrendered(format!(
@@ -149,8 +158,7 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
     for mark in &panel.marks {
         let at = (x.at(mark.x), y.at(mark.y));
         let dot = Circle::new(at, px(3.8), COLOURS[1].filled());
-        // Above a point in the lower half, below one in the upper half: there is room.
-        let above = at.1 < 0.5 * (y.lo + y.hi);
+        let above = mark.above;
         let style = font(TEXT, COLOURS[1]).pos(Pos::new(
             HPos::Center,
             if above { VPos::Bottom } else { VPos::Top },

@@ -101,6 +101,8 @@ pub struct Mark {
     pub y: f64,
     /// Its name.
     pub label: String,
+    /// Whether the name stands above the point, or below: outside of the curve's bend.
+    pub above: bool,
 }
 
 /// One pair of axes with curves.

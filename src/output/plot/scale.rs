@@ -6,8 +6,6 @@ use super::Axis;
 const TICKS: usize = 7;
 /// Logarithmic axes shorter than this have ticks at 2 and 5 too.
 const FEW_DECADES: f64 = 2.2;
-/// Room between the curves and the frame, as a part of the range.
-const MARGIN: f64 = 0.04;
 
 /// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,11 +21,11 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// For all these values; `None` if none of them can be drawn. A `tight` range ends with the data.
+    /// For all these values; `None` if none of them can be drawn. The `margin` is a part of their range.
     pub fn new<'a>(
         axis: &Axis,
         values: impl Iterator<Item = &'a f64>,
-        tight: bool,
+        margin: f64,
     ) -> Option<Self> {
         let drawn = values
             .map(|&x| coordinate(axis.log, x))
@@ -46,10 +44,8 @@ impl Scale {
         };
         let pad = if hi - lo < least {
             least
-        } else if tight {
-            0.0
         } else {
-            MARGIN * (hi - lo)
+            margin * (hi - lo)
         };
         let (lo, hi) = (lo - pad, hi + pad);
         let step = if axis.log {
@@ -197,16 +193,16 @@ mod test {
 
     #[test]
     fn ticks_are_few_and_read_well() {
-        let scale = Scale::new(&Axis::log("v"), [1e-7, 1e5].iter(), false).unwrap();
+        let scale = Scale::new(&Axis::log("v"), [1e-7, 1e5].iter(), 0.04).unwrap();
         assert!(scale.ticks.len() <= TICKS + 1);
         assert_eq!(scale.label(-6.0), "10⁻⁶");
         assert_eq!(scale.label(14.0), "10¹⁴");
-        let scale = Scale::new(&Axis::linear("t"), [0.0, 2000.0].iter(), true).unwrap();
+        let scale = Scale::new(&Axis::linear("t"), [0.0, 2000.0].iter(), 0.0).unwrap();
         assert_eq!((scale.lo, scale.hi), (0.0, 2000.0));
         assert_eq!(scale.label(500.0), "500");
-        let scale = Scale::new(&Axis::linear("t"), [0.0, 0.3].iter(), true).unwrap();
+        let scale = Scale::new(&Axis::linear("t"), [0.0, 0.3].iter(), 0.0).unwrap();
         assert_eq!(scale.label(0.1), "0.10");
-        let scale = Scale::new(&Axis::linear("p"), [0.0, 4e7].iter(), true).unwrap();
+        let scale = Scale::new(&Axis::linear("p"), [0.0, 4e7].iter(), 0.0).unwrap();
         assert_eq!(scale.label(2e7), "2·10⁷");
     }
 
