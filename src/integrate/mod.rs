@@ -5,9 +5,13 @@
 
 #[cfg(feature = "sundials")]
 mod cvode;
+mod rosenbrock;
+mod tableau;
 
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
+pub use rosenbrock::{Method, Rosenbrock};
+pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
