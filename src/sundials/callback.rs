@@ -100,6 +100,7 @@ impl Guard {
         if self.panicked.get() {
             return None;
         }
+        self.not_finite.set(None);
         match catch_unwind(AssertUnwindSafe(code)) {
             Ok(value) => Some(value),
             Err(payload) => {
@@ -124,7 +125,7 @@ impl Guard {
         }
     }
 
-    /// What was last not finite.
+    /// What was not finite at the last call of user code; `None` if that call was good.
     pub fn not_finite(&self) -> Option<&'static str> {
         self.not_finite.get()
     }

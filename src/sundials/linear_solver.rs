@@ -221,8 +221,10 @@ unsafe extern "C" fn factorise<const N: usize>(s: SUNLinearSolver, a: SUNMatrix)
         if pivot != k {
             m.swap_rows(pivot, k);
         }
+        // As SUNDIALS's dense solver does, so that both take the same steps.
+        let reciprocal = 1.0 / divisor;
         for i in k + 1..N {
-            m[(i, k)] /= divisor;
+            m[(i, k)] *= reciprocal;
             let factor = m[(i, k)];
             for j in k + 1..N {
                 let upper = m[(k, j)];
