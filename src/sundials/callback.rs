@@ -166,12 +166,12 @@ pub(super) struct ResidualFrame<'a, const N: usize> {
     pub guard: Guard,
 }
 
-/// Whether all are finite. One sum instead of a branch for each: a sum of finite differences x - x is zero, others are NaN.
+/// Whether all are finite. One sum instead of a branch for each: 0 x is zero where x is finite, NaN elsewhere.
 #[inline(always)]
 pub(super) fn all_finite(x: &[f64]) -> bool {
     let mut sum = 0.0;
     for value in x {
-        sum += value - value;
+        sum += 0.0 * value;
     }
     sum == 0.0
 }

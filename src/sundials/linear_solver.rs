@@ -251,8 +251,8 @@ unsafe extern "C" fn substitute<const N: usize>(
             vector::read::<Fixed, N>(b),
         )
     };
-    for k in 0..N {
-        y.swap_rows(k, pivots[k]);
+    for (k, pivot) in pivots.iter().enumerate() {
+        y.swap_rows(k, *pivot);
     }
     for k in 0..N {
         for i in k + 1..N {
