@@ -18,8 +18,8 @@ pub struct Bounded {
 impl Bounded {
     // psi / psi_*, with psi_* = L / (L + V* t**) = 1 / (1 + R)
     #[inline]
-    fn relative_state<T: Real>(&self, w: T) -> T {
-        (T::constant(1.0) + self.r) * w.exp()
+    fn relative_state<T: Real>(&self, psi: T) -> T {
+        (T::constant(1.0) + self.r) * psi
     }
 }
 
@@ -31,24 +31,24 @@ impl Law for Bounded {
 
     // v = 2 exp(-a_v/a) (psi/psi_*)^(-beta) sinh(tau)  (9)
     #[inline]
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        activation / self.relative_state(w).powf(self.beta)
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        activation / self.relative_state(psi).powf(self.beta)
     }
 
     // (6)
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        (v * self.relative_state(w).powf(self.beta) / self.gamma0).asinh()
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        (v * self.relative_state(psi).powf(self.beta) / self.gamma0).asinh()
     }
 
-    // dpsi/dt = (1 - psi)/R - |v| psi  (6), divided by psi
+    // dpsi/dt = (1 - psi)/R - |v| psi  (6)
     #[inline]
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        ((-w).exp() - 1.0) / self.r - v.abs()
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        (T::constant(1.0) - psi) / self.r - v.abs() * psi
     }
 
     // psi_ss = 1 / (1 + R V)
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        -(v * self.r).ln_1p()
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        T::constant(1.0) / (v * self.r + 1.0)
     }
 
     // V_M = 1 / (R (beta - 1))  (7)

@@ -21,24 +21,24 @@ impl Law for DieterichRuina {
 
     // v = exp(-a_v/a) psi^(-beta) exp(tau)  (8)
     #[inline]
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        activation * (w * -self.beta).exp()
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        activation * psi.powf(-self.beta)
     }
 
     // tau = a_v/a + ln v + beta ln psi  (4)
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        v.ln() + w * self.beta - T::constant(0.5 * self.gamma0).ln()
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        v.ln() + psi.ln() * self.beta - T::constant(0.5 * self.gamma0).ln()
     }
 
     // dpsi/dt = 1 - v psi  (4)
     #[inline]
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        (-w).exp() - v
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        T::constant(1.0) - v * psi
     }
 
     // psi_ss = 1 / V
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        -v.ln()
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        T::constant(1.0) / v
     }
 
     // tau_ss = a_v/a + (1 - beta) ln V is monotonic

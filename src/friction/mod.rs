@@ -1,7 +1,6 @@
 //! How an interface resists: rate-and-state friction laws, each written once.
 //!
-//! Everything is dimensionless: stress in a sigma, slip rate in V*, time in L/V*. The state psi enters through its
-//! logarithm w = ln psi, so that it stays positive by construction. A law is two formulas, the direct effect
+//! Everything is dimensionless: stress in a sigma, slip rate in V*, time in L/V*. A law is two formulas, the direct effect
 //! tau = F(v, psi) with its inverse v(tau, psi), and the evolution of the state; steady state, extrema and the critical
 //! stiffness follow from them.
 //!
@@ -20,33 +19,33 @@ pub use regularised::RegularisedAgeing;
 pub use slip::Slip;
 pub use spinodal::Spinodal;
 pub use steady::{
-    Extremum, ExtremumKind, critical_stiffness, critical_stiffness_maximum, steady_slope,
-    steady_stress,
+    Extremum, ExtremumKind, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
+    steady_slope, steady_stress, steady_stress_within,
 };
 
 use crate::error::{Error, Result};
 use crate::number::Real;
 use std::fmt::Debug;
 
-/// A rate-and-state friction law (1), in w = ln psi.
+/// A rate-and-state friction law (1), for a state psi > 0.
 ///
-/// The stress acts through one function of its own, as in any thermally activated process: v = s(tau) / strength(w).
+/// The stress acts through one function of its own, as in any thermally activated process: v = s(tau) / strength(psi).
 /// Interfaces under the same stress share s(tau), which is why it is a formula apart.
 pub trait Law: Copy + Debug + Send + Sync {
     /// s(tau), the activation by the stress. Same sign as the slip rate.
     fn activation<T: Real>(&self, tau: T) -> T;
 
-    /// v, from s(tau) and w: the direct effect, solved for the slip rate.
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T;
+    /// v, from s(tau) and psi: the direct effect, solved for the slip rate.
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T;
 
-    /// tau = F(v, w): the direct effect as printed.
-    fn stress<T: Real>(&self, v: T, w: T) -> T;
+    /// tau = F(v, psi): the direct effect as printed.
+    fn stress<T: Real>(&self, v: T, psi: T) -> T;
 
-    /// dw/dt = (dpsi/dt) / psi at slip rate v.
-    fn evolution<T: Real>(&self, v: T, w: T) -> T;
+    /// dpsi/dt = -G(v, psi) as printed.
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T;
 
-    /// ln psi_ss(V) for V > 0: the zero of the evolution (3).
-    fn steady_log_state<T: Real>(&self, v: T) -> T;
+    /// psi_ss(V) for V > 0: the zero of the evolution (3).
+    fn steady_state<T: Real>(&self, v: T) -> T;
 
     /// The extrema of tau_ss(V), by slip rate ascending: a maximum V_M, then a minimum V_m, where the law has them.
     fn steady_extrema(&self) -> Vec<f64>;
@@ -248,17 +247,17 @@ impl Law for AnyLaw {
     fn activation<T: Real>(&self, tau: T) -> T {
         with_law!(self, law => law.activation(tau))
     }
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        with_law!(self, law => law.slip_rate(activation, w))
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        with_law!(self, law => law.slip_rate(activation, psi))
     }
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        with_law!(self, law => law.stress(v, w))
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        with_law!(self, law => law.stress(v, psi))
     }
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        with_law!(self, law => law.evolution(v, w))
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        with_law!(self, law => law.evolution(v, psi))
     }
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        with_law!(self, law => law.steady_log_state(v))
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        with_law!(self, law => law.steady_state(v))
     }
     fn steady_extrema(&self) -> Vec<f64> {
         with_law!(self, law => law.steady_extrema())

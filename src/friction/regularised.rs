@@ -19,23 +19,23 @@ impl Law for RegularisedAgeing {
     }
 
     #[inline]
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        activation * (w * -self.beta).exp()
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        activation * psi.powf(-self.beta)
     }
 
     // tau = asinh{(v/2) exp[(a_v + b ln psi)/a]}  (5)
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        (v * (w * self.beta).exp() / self.gamma0).asinh()
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        (v * psi.powf(self.beta) / self.gamma0).asinh()
     }
 
     // dpsi/dt = 1 - |v| psi
     #[inline]
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        (-w).exp() - v.abs()
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        T::constant(1.0) - v.abs() * psi
     }
 
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        -v.ln()
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        T::constant(1.0) / v
     }
 
     // tau_ss = asinh(V^(1-beta) / gamma0) is monotonic

@@ -30,22 +30,23 @@ impl Law for Slip {
     }
 
     #[inline]
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        self.direct_effect().slip_rate(activation, w)
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        self.direct_effect().slip_rate(activation, psi)
     }
 
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        self.direct_effect().stress(v, w)
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        self.direct_effect().stress(v, psi)
     }
 
     // dpsi/dt = -v psi ln(v psi)
     #[inline]
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        -(v * (v.ln() + w))
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        let x = v * psi;
+        -(x * x.ln())
     }
 
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        -v.ln()
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        T::constant(1.0) / v
     }
 
     fn steady_extrema(&self) -> Vec<f64> {

@@ -20,8 +20,8 @@ pub struct Spinodal {
 impl Spinodal {
     // c + (1+R) psi
     #[inline]
-    fn strength<T: Real>(&self, w: T) -> T {
-        (T::constant(1.0) + self.r) * w.exp() + self.c
+    fn strength<T: Real>(&self, psi: T) -> T {
+        (T::constant(1.0) + self.r) * psi + self.c
     }
 }
 
@@ -33,24 +33,24 @@ impl Law for Spinodal {
 
     // v = gamma0 sinh(tau) / [c + (1+R) psi]^beta, from (35)
     #[inline]
-    fn slip_rate<T: Real>(&self, activation: T, w: T) -> T {
-        activation / self.strength(w).powf(self.beta)
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        activation / self.strength(psi).powf(self.beta)
     }
 
     // tau = asinh{v [c + (1+R) psi]^beta / gamma0}  (35)
-    fn stress<T: Real>(&self, v: T, w: T) -> T {
-        (v * self.strength(w).powf(self.beta) / self.gamma0).asinh()
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        (v * self.strength(psi).powf(self.beta) / self.gamma0).asinh()
     }
 
-    // dpsi/dt = (1 - psi)/R - |v| psi  (35), divided by psi
+    // dpsi/dt = (1 - psi)/R - |v| psi  (35)
     #[inline]
-    fn evolution<T: Real>(&self, v: T, w: T) -> T {
-        ((-w).exp() - 1.0) / self.r - v.abs()
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        (T::constant(1.0) - psi) / self.r - v.abs() * psi
     }
 
     // psi_ss = 1 / (1 + R V)
-    fn steady_log_state<T: Real>(&self, v: T) -> T {
-        -(v * self.r).ln_1p()
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        T::constant(1.0) / (v * self.r + 1.0)
     }
 
     // With X = 1 + R V the extrema of (36) solve c X^2 - (1+R)(beta-1) X + beta (1+R) = 0. Written in V no digit is lost:

@@ -2,11 +2,11 @@
 
 use super::Law;
 use crate::error::Result;
-use crate::number::{Interval, Jet, Real, bracketed_root};
+use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
 
 /// tau_ss(V) = F(V, psi_ss(V))  (2), for V > 0.
 pub fn steady_stress<T: Real>(law: &impl Law, v: T) -> T {
-    law.stress(v, law.steady_log_state(v))
+    law.stress(v, law.steady_state(v))
 }
 
 /// d tau_ss / dV.
@@ -14,16 +14,27 @@ pub fn steady_slope<T: Real>(law: &impl Law, v: T) -> T {
     steady_stress(law, Jet::<T, 1>::variable(v, 0)).gradient[0]
 }
 
+/// tau_ss at a rate known within `radius`, with its error budget: rounding at the point, and the largest slope nearby.
+pub fn steady_stress_within(law: &impl Law, v: f64, radius: f64) -> Uncertain {
+    let stress = steady_stress(law, v);
+    let rounding = steady_stress(law, Interval::constant(v)).distance_from(stress);
+    let spread = if radius == 0.0 {
+        0.0
+    } else {
+        let slope = steady_slope(law, Interval::around(v, radius)).abs();
+        (slope * Interval::constant(radius)).hi()
+    };
+    Uncertain::new(stress, rounding + spread)
+}
+
 /// k_c(V) = -G_psi d tau_ss/dV  (16): one interface driven at V slides steadily where it is stiffer than this.
-///
-/// At a steady state -G_psi is d(dw/dt)/dw at fixed v, the same in psi and in w = ln psi.
 pub fn critical_stiffness<T: Real>(law: &impl Law, v: T) -> T {
-    let w = Jet::<T, 1>::variable(law.steady_log_state(v), 0);
+    let psi = Jet::<T, 1>::variable(law.steady_state(v), 0);
     let held = Jet {
         value: v,
         gradient: [T::constant(0.0)],
     };
-    law.evolution(held, w).gradient[0] * steady_slope(law, v)
+    law.evolution(held, psi).gradient[0] * steady_slope(law, v)
 }
 
 /// Maximum (V_M) or minimum (V_m) of the steady stress.
@@ -41,13 +52,9 @@ pub struct Extremum {
     /// Maximum or minimum.
     pub kind: ExtremumKind,
     /// V_M or V_m.
-    pub slip_rate: f64,
-    /// The true extremum of the law with these very parameters lies within this distance.
-    pub slip_rate_uncertainty: f64,
+    pub slip_rate: Uncertain,
     /// tau_ss there.
-    pub stress: f64,
-    /// The true stress lies within this distance.
-    pub stress_uncertainty: f64,
+    pub stress: Uncertain,
 }
 
 impl Extremum {
@@ -58,47 +65,36 @@ impl Extremum {
             .enumerate()
             .map(|(i, v)| {
                 let radius = enclosing_radius(v, |x| steady_slope(law, x));
-                let stress = steady_stress(law, v);
                 Extremum {
                     kind: if i % 2 == 0 {
                         ExtremumKind::Maximum
                     } else {
                         ExtremumKind::Minimum
                     },
-                    slip_rate: v,
-                    slip_rate_uncertainty: radius,
-                    stress,
-                    // The slope vanishes there: the interval at the point alone, plus second order in the radius.
-                    stress_uncertainty: steady_stress(law, Interval::around(v, radius))
-                        .distance_from(stress),
+                    slip_rate: Uncertain::new(v, radius),
+                    stress: steady_stress_within(law, v, radius),
                 }
             })
             .collect()
     }
 }
 
-/// The smallest radius (by powers of two) within which g certainly changes sign around v > 0; infinite if there is none.
-pub(crate) fn enclosing_radius(v: f64, g: impl Fn(Interval) -> Interval) -> f64 {
-    let mut radius = v * f64::EPSILON;
-    while radius < 0.5 * v {
-        let ends = [v - radius, v + radius].map(|x| g(Interval::constant(x)).sign());
-        if let [Some(left), Some(right)] = ends
-            && left != right
-        {
-            return radius;
-        }
-        radius *= 2.0;
-    }
-    f64::INFINITY
+/// A maximum of k_c(V).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StiffnessMaximum {
+    /// Where it is.
+    pub slip_rate: Uncertain,
+    /// The largest critical stiffness.
+    pub stiffness: Uncertain,
 }
 
-/// The largest critical stiffness and its slip rate, `((V, radius), (k_c, radius))`; `None` where k_c has no maximum.
+/// The largest critical stiffness; `None` where k_c has no maximum.
 ///
 /// Only a law that weakens between two extrema has one: k_c vanishes at both.
 ///
 /// # Errors
 /// [`crate::Error::NotConverged`] if the search fails, which the shape of the laws excludes.
-pub fn critical_stiffness_maximum(law: &impl Law) -> Result<Option<((f64, f64), (f64, f64))>> {
+pub fn critical_stiffness_maximum(law: &impl Law) -> Result<Option<StiffnessMaximum>> {
     let extrema = law.steady_extrema();
     let [v_peak, v_trough] = extrema[..] else {
         return Ok(None);
@@ -110,13 +106,14 @@ pub fn critical_stiffness_maximum(law: &impl Law) -> Result<Option<((f64, f64), 
         (rate.value, rate.gradient[0])
     };
     let v = bracketed_root("the maximum of k_c", v_peak.ln(), v_trough.ln(), slope)?.exp();
-    let radius = enclosing_radius(v, |x| {
-        critical_stiffness(law, Jet::<Interval, 1>::variable(x, 0)).gradient[0]
-    });
+    let rate =
+        |x: Interval| critical_stiffness(law, Jet::<Interval, 1>::variable(x, 0)).gradient[0];
+    let radius = enclosing_radius(v, rate);
     let stiffness = critical_stiffness(law, v);
-    let bounds = critical_stiffness(law, Interval::around(v, radius));
-    Ok(Some((
-        (v, radius),
-        (stiffness, bounds.distance_from(stiffness)),
-    )))
+    let rounding = critical_stiffness(law, Interval::constant(v)).distance_from(stiffness);
+    let spread = (rate(Interval::around(v, radius)).abs() * Interval::constant(radius)).hi();
+    Ok(Some(StiffnessMaximum {
+        slip_rate: Uncertain::new(v, radius),
+        stiffness: Uncertain::new(stiffness, rounding + spread),
+    }))
 }

@@ -1,6 +1,6 @@
 //! The paper's systems: one interface (11), two interfaces (19), and the symmetric subspace of the latter.
 //!
-//! State (tau, ln psi_1, ln psi_2); everything dimensionless. [`scales`] alone knows metres and pascals.
+//! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
 
 mod response;
 pub mod scales;

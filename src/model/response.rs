@@ -21,11 +21,10 @@ impl<T: Real> Response<T> {
     /// At an activation s(tau) computed once for all interfaces, and w.
     #[inline]
     pub fn new(law: &impl Law, activation: T, w: T) -> Self {
-        let v = law.slip_rate(activation, w);
-        Response {
-            v,
-            g: law.evolution(v, w),
-        }
+        let psi = w.exp();
+        let v = law.slip_rate(activation, psi);
+        let g = law.evolution(v, psi) / psi;
+        Response { v, g }
     }
 }
 
@@ -43,11 +42,6 @@ pub(super) fn curvature_variables(tau: f64, w: f64) -> [Curvature; 2] {
 /// The second derivative of one component applied to two directions in (tau, w).
 #[inline]
 pub(super) fn bilinear(x: &Curvature, a: [f64; 2], b: [f64; 2]) -> f64 {
-    let mut sum = 0.0;
-    for i in 0..2 {
-        for j in 0..2 {
-            sum += x.gradient[i].gradient[j] * a[i] * b[j];
-        }
-    }
-    sum
+    let along = |row: &Slope| row.gradient[0] * b[0] + row.gradient[1] * b[1];
+    along(&x.gradient[0]) * a[0] + along(&x.gradient[1]) * a[1]
 }

@@ -73,6 +73,6 @@ impl<L: Law> Driven<2> for SingleInterface<L> {
     }
 
     fn slip_rates(&self, y: &State<2>) -> Vec<f64> {
-        vec![self.law.slip_rate(self.law.activation(y[0]), y[1])]
+        vec![self.law.slip_rate(self.law.activation(y[0]), y[1].exp())]
     }
 }

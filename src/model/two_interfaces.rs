@@ -89,6 +89,9 @@ impl<L: Law> Driven<3> for TwoInterfaces<L> {
 
     fn slip_rates(&self, y: &State<3>) -> Vec<f64> {
         let s = self.law.activation(y[0]);
-        vec![self.law.slip_rate(s, y[1]), self.law.slip_rate(s, y[2])]
+        vec![
+            self.law.slip_rate(s, y[1].exp()),
+            self.law.slip_rate(s, y[2].exp()),
+        ]
     }
 }

@@ -72,16 +72,100 @@ impl Interval {
         Self::widened(g(self.lo), g(self.hi), LIBRARY_ULPS)
     }
 
-    fn hull(candidates: [f64; 4]) -> Self {
-        if candidates.iter().any(|x| x.is_nan()) {
-            return Interval {
-                lo: f64::NEG_INFINITY,
-                hi: f64::INFINITY,
-            };
+    /// The hull of an operation on the ends, each result known with the sign of its rounding error.
+    fn corners(a: Self, b: Self, operation: impl Fn(f64, f64) -> Rounded) -> Self {
+        let candidates = [
+            operation(a.lo, b.lo),
+            operation(a.lo, b.hi),
+            operation(a.hi, b.lo),
+            operation(a.hi, b.hi),
+        ];
+        if candidates.iter().any(|x| x.value.is_nan()) {
+            return Self::EVERYTHING;
         }
-        let lo = candidates.into_iter().fold(f64::INFINITY, f64::min);
-        let hi = candidates.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        Self::widened(lo, hi, 1)
+        let lo = candidates
+            .iter()
+            .map(Rounded::below)
+            .fold(f64::INFINITY, f64::min);
+        let hi = candidates
+            .iter()
+            .map(Rounded::above)
+            .fold(f64::NEG_INFINITY, f64::max);
+        Interval { lo, hi }
+    }
+
+    const EVERYTHING: Self = Interval {
+        lo: f64::NEG_INFINITY,
+        hi: f64::INFINITY,
+    };
+}
+
+/// A rounded result and a number of the sign of (exact - rounded), from an error-free transformation. An exact result is
+/// not widened: the gap of two close points stays as sharp as it is.
+#[derive(Debug, Clone, Copy)]
+struct Rounded {
+    value: f64,
+    error: f64,
+}
+
+impl Rounded {
+    // Knuth's two-sum
+    fn sum(a: f64, b: f64) -> Self {
+        let value = a + b;
+        let virtual_b = value - a;
+        Rounded {
+            value,
+            error: (a - (value - virtual_b)) + (b - virtual_b),
+        }
+    }
+
+    fn product(a: f64, b: f64) -> Self {
+        let value = a * b;
+        let error = if a == 0.0 || b == 0.0 {
+            0.0
+        } else {
+            Self::trusted(value, a.mul_add(b, -value))
+        };
+        Rounded { value, error }
+    }
+
+    fn quotient(a: f64, b: f64) -> Self {
+        let value = a / b;
+        let remainder = (-value).mul_add(b, a);
+        let signed = if b < 0.0 { -remainder } else { remainder };
+        Rounded {
+            value,
+            error: if a == 0.0 {
+                0.0
+            } else {
+                Self::trusted(value, signed)
+            },
+        }
+    }
+
+    /// Near the ends of the range the transformation itself may round: then nothing is known of the sign.
+    fn trusted(value: f64, error: f64) -> f64 {
+        if (1e-280..1e280).contains(&value.abs()) {
+            error
+        } else {
+            f64::NAN
+        }
+    }
+
+    fn below(&self) -> f64 {
+        if self.error >= 0.0 {
+            self.value
+        } else {
+            self.value.next_down()
+        }
+    }
+
+    fn above(&self) -> f64 {
+        if self.error <= 0.0 {
+            self.value
+        } else {
+            self.value.next_up()
+        }
     }
 }
 
@@ -98,7 +182,10 @@ impl Neg for Interval {
 impl Add for Interval {
     type Output = Self;
     fn add(self, o: Self) -> Self {
-        Self::widened(self.lo + o.lo, self.hi + o.hi, 1)
+        Interval {
+            lo: Rounded::sum(self.lo, o.lo).below(),
+            hi: Rounded::sum(self.hi, o.hi).above(),
+        }
     }
 }
 
@@ -112,12 +199,7 @@ impl Sub for Interval {
 impl Mul for Interval {
     type Output = Self;
     fn mul(self, o: Self) -> Self {
-        Self::hull([
-            self.lo * o.lo,
-            self.lo * o.hi,
-            self.hi * o.lo,
-            self.hi * o.hi,
-        ])
+        Self::corners(self, o, Rounded::product)
     }
 }
 
@@ -130,12 +212,7 @@ impl Div for Interval {
                 hi: f64::INFINITY,
             };
         }
-        Self::hull([
-            self.lo / o.lo,
-            self.lo / o.hi,
-            self.hi / o.lo,
-            self.hi / o.hi,
-        ])
+        Self::corners(self, o, Rounded::quotient)
     }
 }
 

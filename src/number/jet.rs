@@ -80,6 +80,8 @@ impl<T: Real, const N: usize> Sub for Jet<T, N> {
 
 impl<T: Real, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
+    // the product rule
+    #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline]
     fn mul(self, o: Self) -> Self {
         self.zip(o, self.value * o.value, |d, e| d * o.value + self.value * e)
@@ -88,6 +90,8 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
 
 impl<T: Real, const N: usize> Div for Jet<T, N> {
     type Output = Self;
+    // the quotient rule
+    #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline]
     fn div(self, o: Self) -> Self {
         let quotient = self.value / o.value;

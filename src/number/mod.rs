@@ -7,11 +7,13 @@ mod difference;
 mod interval;
 mod jet;
 mod root;
+mod uncertain;
 
 pub use difference::Difference;
 pub use interval::Interval;
 pub use jet::Jet;
-pub use root::bracketed_root;
+pub use root::{bracketed_root, enclosing_radius};
+pub use uncertain::Uncertain;
 
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};

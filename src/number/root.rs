@@ -1,5 +1,7 @@
-//! One zero of a scalar function in a bracket: Newton steps where they behave, bisection where they don't.
+//! One zero of a scalar function: in a bracket, by Newton steps where they behave and bisection where they don't; and how
+//! far off it can be.
 
+use super::{Interval, Real};
 use crate::error::{Error, Result};
 
 /// Doubles can be halved about 2100 times from end to end; a safeguarded step at least halves the bracket every other time.
@@ -72,4 +74,19 @@ pub fn bracketed_root(
         residual: residual.abs(),
         tolerance: 0.0,
     })
+}
+
+/// The smallest radius (by powers of two) within which g certainly changes sign around v > 0; infinite if there is none.
+pub fn enclosing_radius(v: f64, g: impl Fn(Interval) -> Interval) -> f64 {
+    let mut radius = v * f64::EPSILON;
+    while radius < 0.5 * v {
+        let ends = [v - radius, v + radius].map(|x| g(Interval::constant(x)).sign());
+        if let [Some(left), Some(right)] = ends
+            && left != right
+        {
+            return radius;
+        }
+        radius *= 2.0;
+    }
+    f64::INFINITY
 }

@@ -124,6 +124,8 @@ pub enum Outcome {
     GuessWasSolution,
     /// The steps became small before the residual did: a root to rounding, or no root.
     SmallStep,
+    /// The bound on iterations was reached.
+    IterationLimit,
 }
 
 /// What a solution cost.
@@ -256,7 +258,7 @@ impl<const N: usize> Kinsol<N> {
         f_scale: &State<N>,
     ) -> Result<State<N>> {
         let (root, outcome) = self.iterate(problem, guess, u_scale, f_scale)?;
-        if outcome == Outcome::SmallStep {
+        if matches!(outcome, Outcome::SmallStep | Outcome::IterationLimit) {
             // KINSOL looks at the step first where both are small.
             let residual = problem.residual(&root).component_mul(f_scale).amax();
             if residual.is_nan() || residual > self.settings.residual_tolerance {
@@ -271,7 +273,8 @@ impl<const N: usize> Kinsol<N> {
         Ok(root)
     }
 
-    /// As [`Kinsol::solve`], with KINSOL's own word on how it ended: [`Outcome::SmallStep`] is left to the caller's judgement.
+    /// As [`Kinsol::solve`], with KINSOL's own word on how it ended: [`Outcome::SmallStep`] and
+    /// [`Outcome::IterationLimit`] are left to the caller's judgement, with the last iterate.
     ///
     /// # Errors
     /// As [`Kinsol::solve`].
@@ -312,12 +315,13 @@ impl<const N: usize> Kinsol<N> {
         drop(entered);
         frame.guard.resume();
 
-        if code < 0 {
+        if code < 0 && code != sundials_sys::KIN_MAXITER_REACHED {
             return Err(self.explain(code, frame.guard.not_finite()));
         }
         let outcome = match code {
             sundials_sys::KIN_SUCCESS => Outcome::Converged,
             sundials_sys::KIN_INITIAL_GUESS_OK => Outcome::GuessWasSolution,
+            sundials_sys::KIN_MAXITER_REACHED => Outcome::IterationLimit,
             _ => Outcome::SmallStep,
         };
         let root = self.unknown.get::<N>();
@@ -414,19 +418,13 @@ impl<const N: usize> Kinsol<N> {
     fn explain(&self, code: c_int, not_finite: Option<&'static str>) -> Error {
         use sundials_sys::{
             KIN_FIRST_SYSFUNC_ERR, KIN_LINESEARCH_BCFAIL, KIN_LINESEARCH_NONCONV,
-            KIN_MAXITER_REACHED, KIN_MXNEWT_5X_EXCEEDED, KIN_REPTD_SYSFUNC_ERR,
+            KIN_MXNEWT_5X_EXCEEDED, KIN_REPTD_SYSFUNC_ERR,
         };
         match (code, not_finite) {
             (KIN_FIRST_SYSFUNC_ERR | KIN_REPTD_SYSFUNC_ERR, Some(what)) => {
                 Error::NonFinite { what, t: 0.0 }
             }
-            (
-                KIN_LINESEARCH_NONCONV
-                | KIN_MAXITER_REACHED
-                | KIN_MXNEWT_5X_EXCEEDED
-                | KIN_LINESEARCH_BCFAIL,
-                _,
-            ) => {
+            (KIN_LINESEARCH_NONCONV | KIN_MXNEWT_5X_EXCEEDED | KIN_LINESEARCH_BCFAIL, _) => {
                 let work = self.work().unwrap_or_default();
                 Error::NotConverged {
                     what: "the Newton iteration of KINSOL",

@@ -1,0 +1,54 @@
+//! Reference data and small comparisons, shared by the tests.
+#![allow(dead_code, missing_docs)]
+
+use serde_json::Value;
+
+/// A file of `tests/data`.
+pub fn data(name: &str) -> Value {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{path}: {e}"));
+    serde_json::from_str(&text).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// A number that is written as a number or as a decimal string.
+pub fn number(value: &Value) -> f64 {
+    match value {
+        Value::String(s) => s.parse().unwrap_or_else(|_| panic!("not a number: {s}")),
+        _ => value
+            .as_f64()
+            .unwrap_or_else(|| panic!("not a number: {value}")),
+    }
+}
+
+/// A complex number that mpmath wrote: `(a + bj)`, or `a`.
+pub fn complex(value: &Value) -> (f64, f64) {
+    let text = value
+        .as_str()
+        .expect("a string")
+        .trim_matches(['(', ')'])
+        .trim_end_matches('j');
+    match text
+        .split_once(" + ")
+        .map(|p| (p, 1.0))
+        .or_else(|| text.split_once(" - ").map(|p| (p, -1.0)))
+    {
+        Some(((re, im), sign)) => (
+            re.parse().expect("real"),
+            sign * im.parse::<f64>().expect("imaginary"),
+        ),
+        None => (text.parse().expect("real"), 0.0),
+    }
+}
+
+pub fn relative(a: f64, b: f64) -> f64 {
+    (a - b).abs() / b.abs()
+}
+
+#[track_caller]
+pub fn assert_close(a: f64, b: f64, tolerance: f64, what: &str) {
+    assert!(
+        relative(a, b) <= tolerance,
+        "{what}: {a:e} against {b:e}, off by {:e} > {tolerance:e}",
+        relative(a, b)
+    );
+}

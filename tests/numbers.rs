@@ -1,0 +1,103 @@
+//! The number types: differences keep relative accuracy, intervals contain the truth, jets differentiate exactly.
+#![allow(missing_docs)]
+
+use proptest::prelude::*;
+use twinslip::number::{Difference, Interval, Jet, Real, bracketed_root, enclosing_radius};
+
+/// A formula that uses every operation, for positive x.
+fn formula<T: Real>(x: T) -> T {
+    let s = (x + 1.0).sqrt() * 0.5 + x.powf(1.4) / 3.0;
+    let t = (x * 0.1).sinh() - (x * 0.2).cosh() + (x - 0.5).exp() * (-x).exp_m1();
+    (s.asinh() + x.ln_1p()) / (x.ln().abs() + 2.0) - t * 0.01
+}
+
+/// Its derivative by jets.
+fn slope(x: f64) -> f64 {
+    formula(Jet::<f64, 1>::variable(x, 0)).gradient[0]
+}
+
+proptest! {
+    #[test]
+    fn jets_match_differences(x in 0.1..5.0_f64) {
+        prop_assume!((x - 1.0_f64).abs() > 1e-2); // |ln x| has a corner at 1
+        let h = 1e-4;
+        let five_point = (8.0 * (formula(x + h) - formula(x - h)) - (formula(x + 2.0 * h) - formula(x - 2.0 * h))) / (12.0 * h);
+        prop_assert!((slope(x) - five_point).abs() < 1e-9);
+    }
+
+    #[test]
+    fn differences_keep_their_accuracy_however_close(x in 0.1..5.0_f64, ln_gap in -300.0..-9.0_f64) {
+        prop_assume!((x - 1.0_f64).abs() > 1e-2);
+        let gap = x * ln_gap.exp();
+        let d = formula(Difference::new(x + gap, x, gap)).gap;
+        // against the slope in the middle, which differs from the mean slope in second order
+        prop_assert!((d / gap - slope(x + 0.5 * gap)).abs() <= (gap / x).powi(2) + 1e-13, "{} {}", d / gap, slope(x));
+    }
+
+    #[test]
+    fn differences_agree_with_subtraction_far_apart(x in 0.1..5.0_f64, y in 0.1..5.0_f64) {
+        let d = formula(Difference::new(x, y, x - y));
+        prop_assert!((d.gap - (formula(x) - formula(y))).abs() < 1e-13);
+        prop_assert!(d.first == formula(x) && d.second == formula(y));
+    }
+
+    #[test]
+    fn intervals_contain_the_values_of_their_points(x in 0.1..5.0, radius in 0.0..0.05, inside in -1.0..1.0) {
+        let bounds = formula(Interval::around(x, radius));
+        let value = formula(x + radius * inside);
+        prop_assert!(bounds.lo() <= value && value <= bounds.hi());
+        let point = formula(Interval::constant(x));
+        prop_assert!(point.hi() - point.lo() < 1e-13, "{point:?}");
+    }
+
+    #[test]
+    fn interval_arithmetic_contains_the_exact_result(a in -1e3..1e3_f64, b in -1e3..1e3_f64) {
+        // exact sums and products of doubles, from integers that i128 holds
+        let scaled = |x: f64| (x * 2f64.powi(40)).trunc();
+        let (m, n) = (scaled(a), scaled(b));
+        let exact = (m as i128) * (n as i128);
+        let product = Interval::constant(m) * Interval::constant(n);
+        prop_assert!((product.lo() as i128) <= exact && exact <= (product.hi() as i128));
+        let sum = Interval::constant(m) + Interval::constant(n);
+        prop_assert!((sum.lo() as i128) <= m as i128 + n as i128 && m as i128 + n as i128 <= (sum.hi() as i128));
+    }
+
+    #[test]
+    fn roots_are_found_to_the_last_digits(root in 0.2..4.0_f64, curl in 0.1..50.0_f64) {
+        let g = |x: f64| ((curl * (x - root)).sinh(), curl * (curl * (x - root)).cosh());
+        let x = bracketed_root("a test", 0.1, 5.0, g).expect("bracketed");
+        prop_assert!((x - root).abs() <= f64::EPSILON * root);
+    }
+}
+
+#[test]
+fn division_by_an_interval_around_zero_certifies_nothing() {
+    let q = Interval::constant(1.0) / Interval::new(-1.0, 1.0);
+    assert_eq!(q.sign(), None);
+    assert_eq!(
+        (Interval::constant(f64::NAN) * Interval::constant(1.0)).sign(),
+        None
+    );
+    assert_eq!(
+        Interval::constant(1e-200).powf(2.0).sign(),
+        None,
+        "underflow is not certainly positive"
+    );
+    assert_eq!(
+        (Interval::constant(1e-200) * Interval::constant(1e-200)).sign(),
+        None
+    );
+}
+
+#[test]
+fn a_bracket_without_sign_change_is_refused() {
+    assert!(bracketed_root("x^2 + 1", -1.0, 1.0, |x| (x * x + 1.0, 2.0 * x)).is_err());
+    assert!(bracketed_root("not a number", -1.0, 1.0, |_| (f64::NAN, 1.0)).is_err());
+}
+
+#[test]
+fn enclosing_radius_is_infinite_where_nothing_changes_sign() {
+    assert_eq!(enclosing_radius(1.0, |x| x * x), f64::INFINITY);
+    let radius = enclosing_radius(2.0, |x| x * x - 4.0);
+    assert!(radius < 1e-14, "{radius:e}");
+}

@@ -1,0 +1,147 @@
+//! The drawing of the rooms in the README is true: imports point one way only.
+#![allow(missing_docs)]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Each room and the rooms that it may import; `error` is open to all.
+const MAY_IMPORT: &[(&str, &[&str])] = &[
+    ("error", &[]),
+    ("number", &[]),
+    ("friction", &["number"]),
+    ("field", &[]),
+    ("model", &["friction", "field", "number"]),
+    ("sundials", &["field"]),
+    ("integrate", &["field", "sundials"]),
+    (
+        "equilibrium",
+        &["number", "friction", "field", "model", "sundials"],
+    ),
+    ("output", &[]),
+    (
+        "scene",
+        &[
+            "number",
+            "friction",
+            "field",
+            "model",
+            "integrate",
+            "equilibrium",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "number",
+            "friction",
+            "field",
+            "model",
+            "sundials",
+            "integrate",
+            "equilibrium",
+            "scene",
+            "output",
+        ],
+    ),
+];
+
+fn sources(dir: &Path, found: &mut Vec<PathBuf>) {
+    for entry in fs::read_dir(dir).expect("a readable folder") {
+        let path = entry.expect("an entry").path();
+        if path.is_dir() {
+            sources(&path, found);
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            found.push(path);
+        }
+    }
+}
+
+/// Names of rooms after `crate::`, in code and not in comments, single or in braces.
+fn imports(text: &str) -> Vec<String> {
+    let code: String = text
+        .lines()
+        .filter(|l| !l.trim_start().starts_with("//"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    let mut names = Vec::new();
+    for rest in code.split("crate::").skip(1) {
+        let word = |s: &str| {
+            s.chars()
+                .take_while(|c| c.is_alphanumeric() || *c == '_')
+                .collect::<String>()
+        };
+        if let Some(list) = rest.strip_prefix('{') {
+            names.extend(
+                list.split('}')
+                    .next()
+                    .unwrap_or("")
+                    .split(',')
+                    .map(|item| word(item.trim())),
+            );
+        } else {
+            names.push(word(rest));
+        }
+    }
+    names
+}
+
+#[test]
+fn imports_point_one_way() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let allowed: BTreeMap<&str, &[&str]> = MAY_IMPORT.iter().copied().collect();
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for file in &files {
+        let inside = file
+            .strip_prefix(&root)
+            .expect("below src")
+            .with_extension("");
+        let room = inside
+            .iter()
+            .next()
+            .expect("a name")
+            .to_str()
+            .expect("ASCII")
+            .to_string();
+        if room == "lib" || room == "main" {
+            continue;
+        }
+        let may = allowed
+            .get(room.as_str())
+            .unwrap_or_else(|| panic!("{} is in no known room", file.display()));
+        for import in imports(&fs::read_to_string(file).expect("readable")) {
+            // an import of something that is no room (a re-export at the root, a macro) says nothing of direction
+            if allowed.contains_key(import.as_str()) && import != room && import != "error" {
+                seen += 1;
+                if !may.contains(&import.as_str()) {
+                    wrong.push(format!("{} imports {import}", file.display()));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert!(
+        seen > 20,
+        "only {seen} imports were read: the reader is blind"
+    );
+}
+
+#[test]
+fn only_the_sundials_room_allows_unsafe() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("src");
+    let mut files = Vec::new();
+    sources(&root, &mut files);
+    for file in files {
+        let text = fs::read_to_string(&file).expect("readable");
+        if text.contains("unsafe_code") || text.contains("unsafe {") {
+            assert!(
+                file.starts_with(root.join("sundials")),
+                "{} has unsafe code",
+                file.display()
+            );
+        }
+    }
+}
