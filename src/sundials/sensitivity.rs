@@ -196,6 +196,9 @@ impl<const N: usize> Cvode<N> {
     /// # Errors
     /// [`Error::Sundials`] with `CV_BAD_T` outside it, with `CV_NO_SENS` if there are none; [`Error::NonFinite`].
     pub fn dense_sensitivities(&mut self, t: f64) -> Result<Vec<State<N>>> {
+        // CVodeGetSensDky prints a time outside the step with arguments that it forgets to pass (6.4.1, 7.1.1); CVodeGetDky tests the
+        // same bounds and does not.
+        self.dense(t)?;
         let m = self.memory.as_ptr();
         let messages = &self.messages;
         let Some(columns) = &mut self.columns else {
