@@ -144,8 +144,9 @@ pub(crate) fn step_underflow<const N: usize>(
         };
     }
     let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
-    // d|f|^2/dt = 2 f . J f
-    let accelerates = f.dot(&(field.jacobian(y) * f)) * h.signum() > 0.0;
+    // d|f|^2/dt = 2 f . J f, with f scaled: its square may overflow.
+    let direction = f / rate;
+    let accelerates = direction.dot(&(field.jacobian(y) * direction)) * h.signum() > 0.0;
     if rate * spacing > VISIBLE && accelerates {
         Error::BlowUp { t, rate }
     } else {
