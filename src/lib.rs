@@ -19,6 +19,7 @@
 //! Journal of the Mechanics and Physics of Solids.
 
 pub mod cli;
+pub mod contract;
 pub mod equilibrium;
 pub mod error;
 pub mod field;

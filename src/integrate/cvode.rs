@@ -13,7 +13,7 @@ use std::cell::RefCell;
 
 /// Failures of one step before it is given up. CVODE's own 7 and 10 end a run before the step is small enough to tell a
 /// singularity from a tolerance that can't be met.
-const MAX_FAILURES: u16 = 100;
+const MAX_FAILURES: u16 = 1000;
 
 /// CVODES with our fixed-length operations.
 ///

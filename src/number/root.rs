@@ -27,7 +27,9 @@ pub fn bracketed_root(
     if gb == 0.0 {
         return Ok(b);
     }
-    if !(ga * gb.signum() < 0.0) {
+    // False for NaN too.
+    let straddled = ga * gb.signum() < 0.0;
+    if !straddled {
         return Err(Error::NotConverged {
             what,
             iterations: 0,

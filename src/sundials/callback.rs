@@ -100,6 +100,7 @@ impl Guard {
         if self.panicked.get() {
             return None;
         }
+        self.not_finite.set(None);
         match catch_unwind(AssertUnwindSafe(code)) {
             Ok(value) => Some(value),
             Err(payload) => {
@@ -124,7 +125,7 @@ impl Guard {
         }
     }
 
-    /// What was last not finite.
+    /// What was not finite at the last call of user code; `None` if that call was good.
     pub fn not_finite(&self) -> Option<&'static str> {
         self.not_finite.get()
     }
@@ -165,12 +166,12 @@ pub(super) struct ResidualFrame<'a, const N: usize> {
     pub guard: Guard,
 }
 
-/// Whether all are finite. One sum instead of a branch for each: a sum of finite differences x - x is zero, others are NaN.
+/// Whether all are finite. One sum instead of a branch for each: 0 x is zero where x is finite, NaN elsewhere.
 #[inline(always)]
 pub(super) fn all_finite(x: &[f64]) -> bool {
     let mut sum = 0.0;
     for value in x {
-        sum += value - value;
+        sum += 0.0 * value;
     }
     sum == 0.0
 }

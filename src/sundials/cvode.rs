@@ -6,9 +6,9 @@ use super::linear_solver::{LinearSolver, Matrix};
 use super::sensitivity::Columns;
 use super::vector::{Fixed, Serial, Vector};
 use super::{Context, Messages, Stable, check, failure, flags, native, null};
+use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::{MAX_STEPS, Tolerances, Work};
 use std::ffi::{c_int, c_long, c_void};
 use std::ptr::NonNull;
 
@@ -422,7 +422,7 @@ impl<const N: usize> Cvode<N> {
     /// For each watched event whether it was found by the last [`Cvode::advance`]: 1 upwards, -1 downwards, 0 not.
     ///
     /// # Errors
-    /// [`Error::Sundials`] if there is nothing watched.
+    /// [`Error::Sundials`]; not after a successful [`Cvode::advance`].
     pub fn events_found(&self) -> Result<Vec<i32>> {
         let mut found = vec![0 as c_int; self.event_count.max(1)];
         let m = self.memory.as_ptr();
@@ -612,10 +612,12 @@ impl<const N: usize> Cvode<N> {
 
     fn explain(&self, code: c_int, t: f64, frame: &Frame<'_, N>) -> Error {
         use sundials_sys::{
-            CV_FIRST_RHSFUNC_ERR, CV_FIRST_SRHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR,
+            CV_CONV_FAILURE, CV_FIRST_RHSFUNC_ERR, CV_FIRST_SRHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR,
             CV_REPTD_SRHSFUNC_ERR, CV_RTFUNC_FAIL, CV_UNREC_RHSFUNC_ERR, CV_UNREC_SRHSFUNC_ERR,
         };
-        const OF_USER_CODE: [c_int; 7] = [
+        const OF_USER_CODE: [c_int; 8] = [
+            // What a Jacobian that is never finite ends in.
+            CV_CONV_FAILURE,
             CV_FIRST_RHSFUNC_ERR,
             CV_FIRST_SRHSFUNC_ERR,
             CV_REPTD_RHSFUNC_ERR,

@@ -169,6 +169,7 @@ pub struct Kinsol<const N: usize> {
     /// What is asked for; may be changed between solutions.
     pub settings: KinsolSettings<N>,
     applied: Option<KinsolSettings<N>>,
+    constrained: bool,
     // In the order in which they must go.
     memory: Memory,
     _solver: LinearSolver,
@@ -227,6 +228,7 @@ impl<const N: usize> Kinsol<N> {
         Ok(Kinsol {
             settings: KinsolSettings::default(),
             applied: None,
+            constrained: false,
             memory,
             _solver: solver,
             _matrix: matrix,
@@ -366,14 +368,11 @@ impl<const N: usize> Kinsol<N> {
             return Ok(());
         }
         self.applied = None;
-        let constrained = settings.constraints.iter().any(|c| *c != Constraint::Free);
+        // KINSetConstraints(NULL) frees the constraints but goes on using them (6.4.1, 7.1.1): once there are some, they stay,
+        // all free if need be.
+        self.constrained |= settings.constraints.iter().any(|c| *c != Constraint::Free);
         self.constraints
             .set(&State::from(settings.constraints.map(Constraint::code)));
-        let constraints = if constrained {
-            self.constraints.as_ptr()
-        } else {
-            std::ptr::null_mut()
-        };
         let m = self.memory.0.as_ptr();
         let messages = &self.messages;
         // SAFETY: a live memory; KINSOL copies the constraints.
@@ -404,7 +403,13 @@ impl<const N: usize> Kinsol<N> {
                 messages,
                 KINSetMaxNewtonStep(m, settings.longest_step.unwrap_or(0.0))
             )?;
-            check!(KIN, messages, KINSetConstraints(m, constraints))?;
+            if self.constrained {
+                check!(
+                    KIN,
+                    messages,
+                    KINSetConstraints(m, self.constraints.as_ptr())
+                )?;
+            }
         }
         self.applied = Some(settings);
         Ok(())

@@ -221,8 +221,10 @@ unsafe extern "C" fn factorise<const N: usize>(s: SUNLinearSolver, a: SUNMatrix)
         if pivot != k {
             m.swap_rows(pivot, k);
         }
+        // As SUNDIALS's dense solver does, so that both take the same steps.
+        let reciprocal = 1.0 / divisor;
         for i in k + 1..N {
-            m[(i, k)] /= divisor;
+            m[(i, k)] *= reciprocal;
             let factor = m[(i, k)];
             for j in k + 1..N {
                 let upper = m[(k, j)];
@@ -249,8 +251,8 @@ unsafe extern "C" fn substitute<const N: usize>(
             vector::read::<Fixed, N>(b),
         )
     };
-    for k in 0..N {
-        y.swap_rows(k, pivots[k]);
+    for (k, pivot) in pivots.iter().enumerate() {
+        y.swap_rows(k, *pivot);
     }
     for k in 0..N {
         for i in k + 1..N {

@@ -4,10 +4,10 @@
 use super::callback::{self, all_finite};
 use super::cvode::{Cvode, Operations, vector};
 use super::vector::{Fixed, Serial, Vector};
-use super::{Context, check};
+use super::{Context, Messages, check, failure, flags};
+use crate::contract::Tolerances;
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::Tolerances;
 use std::ffi::c_int;
 use sundials_sys::N_Vector;
 
@@ -72,17 +72,24 @@ impl Columns {
         Ok(Columns { vectors, pointers })
     }
 
-    fn get<const N: usize>(&self) -> Result<Vec<State<N>>> {
+    fn get<const N: usize>(&self, t: f64) -> Result<Vec<State<N>>> {
         let columns: Vec<State<N>> = self.vectors.iter().map(Vector::get).collect();
         if columns.iter().all(|s| all_finite(s.as_slice())) {
             Ok(columns)
         } else {
             Err(Error::NonFinite {
                 what: "a sensitivity",
-                t: f64::NAN,
+                t,
             })
         }
     }
+}
+
+/// The error for sensitivities that were never started: CVODES then says that all none of them were got.
+fn none(function: &'static str, messages: &Messages) -> Error {
+    let code = sundials_sys::CV_NO_SENS;
+    messages.keep("no sensitivities were started");
+    failure(flags::CV, function, code, None, messages)
 }
 
 impl<const N: usize> Cvode<N> {
@@ -175,14 +182,13 @@ impl<const N: usize> Cvode<N> {
         let mut t = 0.0;
         let m = self.memory.as_ptr();
         let messages = &self.messages;
-        let pointers = self
-            .columns
-            .as_mut()
-            .map_or(std::ptr::null_mut(), |c| c.pointers.as_mut_ptr());
-        // SAFETY: a live memory, a place for the time, and as many live vectors as there are sensitivities. Without any,
-        // CVODES refuses before it looks at the array.
+        let Some(columns) = &mut self.columns else {
+            return Err(none("CVodeGetSens", messages));
+        };
+        let pointers = columns.pointers.as_mut_ptr();
+        // SAFETY: a live memory, a place for the time, and as many live vectors as there are sensitivities.
         unsafe { check!(CV, messages, CVodeGetSens(m, &mut t, pointers))? };
-        self.columns.as_ref().map_or(Ok(Vec::new()), Columns::get)
+        columns.get(t)
     }
 
     /// The continuous sensitivities at `t`, which must be within the last step.
@@ -190,15 +196,18 @@ impl<const N: usize> Cvode<N> {
     /// # Errors
     /// [`Error::Sundials`] with `CV_BAD_T` outside it, with `CV_NO_SENS` if there are none; [`Error::NonFinite`].
     pub fn dense_sensitivities(&mut self, t: f64) -> Result<Vec<State<N>>> {
+        // CVodeGetSensDky prints a time outside the step with arguments that it forgets to pass (6.4.1, 7.1.1); CVodeGetDky tests the
+        // same bounds and does not.
+        self.dense(t)?;
         let m = self.memory.as_ptr();
         let messages = &self.messages;
-        let pointers = self
-            .columns
-            .as_mut()
-            .map_or(std::ptr::null_mut(), |c| c.pointers.as_mut_ptr());
+        let Some(columns) = &mut self.columns else {
+            return Err(none("CVodeGetSensDky", messages));
+        };
+        let pointers = columns.pointers.as_mut_ptr();
         // SAFETY: as in `sensitivities`.
         unsafe { check!(CV, messages, CVodeGetSensDky(m, t, 0, pointers))? };
-        self.columns.as_ref().map_or(Ok(Vec::new()), Columns::get)
+        columns.get(t)
     }
 
     /// Goes on without sensitivities; their memory stays for the next start with as many.

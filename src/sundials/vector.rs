@@ -252,7 +252,14 @@ operations! {
     }
 
     fn linear_sum(a: f64, x: N_Vector, b: f64, y: N_Vector, z: N_Vector) {
-        zip::<N>(x, y, z, |x, y| a * x + b * y);
+        // The cases in which the serial vector rounds otherwise.
+        if a == b {
+            zip::<N>(x, y, z, |x, y| a * (x + y));
+        } else if a == -b {
+            zip::<N>(x, y, z, |x, y| a * (x - y));
+        } else {
+            zip::<N>(x, y, z, |x, y| a * x + b * y);
+        }
     }
 
     fn constant(c: f64, z: N_Vector) {

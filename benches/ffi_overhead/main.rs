@@ -1,0 +1,371 @@
+//! What the safe types cost and gain against a plain C program with stock CVODES, side by side in one run.
+//!
+//! Scene: two interfaces, law (35), K = 0.14, V_H = 10, from beside the symmetric state; 20 stick-slip cycles for the state,
+//! one for the tangent. The C program is compiled here with `cc -O3`, runs as a child, and takes turns with Rust, so that a
+//! busy machine disturbs both alike; the ratio printed is the median of the ratios of neighbours. Errors: the largest
+//! component of |y - y*| / |y*| for the state, of |M - M*| / max |M*| for the tangent, against a run at 1e-13.
+//!
+//! First the table, then criterion on the same work.
+
+use criterion::{Criterion, criterion_group};
+use std::hint::black_box;
+use std::io::{BufRead, BufReader, Write};
+use std::path::PathBuf;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::time::{Duration, Instant};
+use twinslip::field::{Jacobian, State};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::Tolerances;
+use twinslip::model::{Driven, Loading, two_interfaces};
+use twinslip::sundials::{
+    self, Cvode, Kinsol, Method, Mode, Operations, Problem, Residual, Sensitivity,
+};
+
+const STIFFNESS: f64 = 0.14;
+const DRIVING: f64 = 10.0;
+/// Twenty cycles.
+const LONG: f64 = 132.0;
+/// One cycle.
+const SHORT: f64 = 6.6;
+const STATE_TOLERANCE: f64 = 1e-8;
+const TANGENT_TOLERANCE: f64 = 1e-10;
+const ROUNDS: usize = 41;
+
+fn field() -> Box<dyn Driven<3>> {
+    let law = AnyLaw::named("spinodal", Parameters::heslot_1994()).expect("a law");
+    two_interfaces(law, Loading::new(DRIVING, STIFFNESS).expect("positive"))
+}
+
+fn start() -> State<3> {
+    let w = 0.01_f64.ln();
+    State::<3>::new(9.0, w, w + 0.01)
+}
+
+/// One answer: time of a run, steps, state, and tangent if asked for.
+struct Answer {
+    time: Duration,
+    steps: usize,
+    y: State<3>,
+    m: Option<Jacobian<3>>,
+}
+
+/// The C program.
+struct C {
+    child: Child,
+    input: ChildStdin,
+    output: BufReader<ChildStdout>,
+}
+
+impl C {
+    fn new() -> Self {
+        let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("ffi_overhead_stock");
+        let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("benches/ffi_overhead/stock.c");
+        let mut compile = Command::new("cc");
+        compile.args(["-O3", "-o"]).arg(&program).arg(&source);
+        if let Ok(directory) = std::env::var("SUNDIALS_INCLUDE_DIR") {
+            compile.arg(format!("-I{directory}"));
+        }
+        if let Ok(directory) = std::env::var("SUNDIALS_LIBRARY_DIR") {
+            compile.args([format!("-L{directory}"), format!("-Wl,-rpath,{directory}")]);
+        }
+        if sundials::version().starts_with('7') {
+            compile.arg("-lsundials_core");
+        }
+        compile.args([
+            "-lsundials_cvodes",
+            "-lsundials_nvecserial",
+            "-lsundials_sunlinsoldense",
+            "-lsundials_sunmatrixdense",
+            "-lm",
+        ]);
+        let status = compile.status().expect("a C compiler, as `cc`");
+        assert!(status.success(), "{} can't be compiled", source.display());
+
+        let p = Parameters::heslot_1994();
+        let (beta, gamma0) = (p.beta, p.gamma0);
+        let (r, c) = (p.healing_time, p.residual_strength);
+        let y0 = start();
+        let numbers = [STIFFNESS, DRIVING, beta, gamma0, r, c, y0[0], y0[1], y0[2]];
+        let mut child = Command::new(program)
+            .args(numbers.map(|x| format!("{x:e}")))
+            .stdin(Stdio::piped())
+            .stdout(Stdio::piped())
+            .spawn()
+            .expect("the program just compiled");
+        let input = child.stdin.take().expect("piped");
+        let output = BufReader::new(child.stdout.take().expect("piped"));
+        C {
+            child,
+            input,
+            output,
+        }
+    }
+
+    fn run(&mut self, tangent: bool, repeat: u64) -> Answer {
+        let (what, tolerance, end) = if tangent {
+            ("tangent", TANGENT_TOLERANCE, SHORT)
+        } else {
+            ("state", STATE_TOLERANCE, LONG)
+        };
+        writeln!(self.input, "{what} {tolerance:e} {end} {repeat}").expect("it listens");
+        let mut line = String::new();
+        self.output.read_line(&mut line).expect("it answers");
+        let numbers: Vec<f64> = line
+            .split_whitespace()
+            .map(|n| n.parse().expect("a number"))
+            .collect();
+        Answer {
+            time: Duration::from_secs_f64(numbers[0]),
+            steps: numbers[1] as usize,
+            y: State::from_column_slice(&numbers[2..5]),
+            m: tangent.then(|| Jacobian::from_column_slice(&numbers[5..14])),
+        }
+    }
+}
+
+impl Drop for C {
+    fn drop(&mut self) {
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// Our wrapper, with either operations.
+struct Ours {
+    solver: Cvode<3>,
+    field: Box<dyn Driven<3>>,
+    unit: Vec<State<3>>,
+}
+
+impl Ours {
+    fn new(method: Method, operations: Operations) -> Self {
+        let identity = Jacobian::<3>::identity();
+        Ours {
+            solver: Cvode::new(method, operations).expect("SUNDIALS"),
+            field: field(),
+            unit: identity.column_iter().map(|c| c.into_owned()).collect(),
+        }
+    }
+
+    fn state(&mut self, tolerance: f64, end: f64) -> State<3> {
+        let tolerances = Tolerances::equal(tolerance).expect("sensible");
+        self.solver.set_tolerances(tolerances).expect("accepted");
+        self.solver.start(0.0, &start()).expect("finite");
+        let problem = Problem::new(&*self.field);
+        self.solver
+            .advance(&problem, end, Mode::Normal)
+            .expect("an end");
+        self.solver.state()
+    }
+
+    fn tangent(&mut self, tolerance: f64, end: f64) -> Jacobian<3> {
+        let tolerances = Tolerances::equal(tolerance).expect("sensible");
+        self.solver.set_tolerances(tolerances).expect("accepted");
+        self.solver
+            .start_with_sensitivities(0.0, &start(), &self.unit, &Sensitivity::default())
+            .expect("finite");
+        let problem = Problem::new(&*self.field);
+        self.solver
+            .advance(&problem, end, Mode::Normal)
+            .expect("an end");
+        Jacobian::<3>::from_columns(&self.solver.sensitivities().expect("some"))
+    }
+
+    fn run(&mut self, tangent: bool, repeat: u64) -> Answer {
+        let begin = Instant::now();
+        let mut m = None;
+        for _ in 0..repeat {
+            if tangent {
+                m = Some(black_box(self.tangent(TANGENT_TOLERANCE, SHORT)));
+            } else {
+                black_box(self.state(STATE_TOLERANCE, LONG));
+            }
+        }
+        Answer {
+            time: begin.elapsed(),
+            steps: self.solver.work().expect("counted").steps,
+            y: self.solver.state(),
+            m,
+        }
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+/// One row of the table.
+fn row(name: &str, times: &[f64], c: &[f64], answer: &Answer, error: f64) {
+    let time = median(times.to_vec());
+    let ratio = median(times.iter().zip(c).map(|(ours, c)| ours / c).collect());
+    println!(
+        "{name:42} {:10.1} us  {ratio:6.3} x C  {:6} steps  {:7.1} ns/step  error {error:.2e}",
+        1e6 * time,
+        answer.steps,
+        1e9 * time / answer.steps as f64,
+    );
+}
+
+fn table() {
+    let mut c = C::new();
+    let mut stock = Ours::new(Method::Bdf, Operations::Stock);
+    let mut fixed = Ours::new(Method::Bdf, Operations::Fixed);
+    let mut tight = Ours::new(Method::Adams, Operations::Fixed);
+    let y = tight.state(1e-13, LONG);
+    let m = tight.tangent(1e-13, SHORT);
+    let error = |answer: &Answer| match answer.m {
+        Some(ours) => (ours - m).amax() / m.amax(),
+        None => (answer.y - y).component_div(&y).amax(),
+    };
+
+    println!("SUNDIALS {}", sundials::version());
+    println!(
+        "{} falls of the stress by t = {LONG}: two a cycle, one for each interface",
+        falls()
+    );
+    for (tangent, repeat, title) in [
+        (false, 1, "state, 20 cycles, 1e-8"),
+        (true, 3, "tangent, 1 cycle, 1e-10, simultaneous"),
+    ] {
+        let mut times: [Vec<f64>; 3] = Default::default();
+        let mut answers: [Option<Answer>; 3] = Default::default();
+        for round in 0..=ROUNDS {
+            let runs = [
+                c.run(tangent, repeat),
+                stock.run(tangent, repeat),
+                fixed.run(tangent, repeat),
+            ];
+            for (i, run) in runs.into_iter().enumerate() {
+                // The first round warms up.
+                if round > 0 {
+                    times[i].push(run.time.as_secs_f64() / repeat as f64);
+                }
+                answers[i] = Some(run);
+            }
+        }
+        let names = ["C, stock CVODES BDF", "ours, stock operations", "ours"];
+        for (i, name) in names.iter().enumerate() {
+            let answer = answers[i].as_ref().expect("run");
+            row(
+                &format!("{title}: {name}"),
+                &times[i],
+                &times[0],
+                answer,
+                error(answer),
+            );
+        }
+    }
+}
+
+/// Falls of the stress through its middle.
+fn falls() -> usize {
+    let mut solver = Cvode::<3>::new(Method::Adams, Operations::Fixed).expect("SUNDIALS");
+    let field = field();
+    solver.watch_events(1, &[-1]).expect("room");
+    solver.start(0.0, &start()).expect("finite");
+    let problem = Problem {
+        events: Some(&|_, y: &State<3>, g| g[0] = y[0] - 9.5),
+        ..Problem::new(&*field)
+    };
+    let mut count = 0;
+    while solver
+        .advance(&problem, LONG, Mode::Normal)
+        .expect("an end")
+        .t
+        < LONG
+    {
+        count += 1;
+    }
+    count
+}
+
+/// The equilibria of the system in (tau, w1, w2).
+struct Equilibrium(Box<dyn Driven<3>>);
+
+impl Residual<3> for Equilibrium {
+    fn residual(&self, u: &State<3>) -> State<3> {
+        self.0.f(u)
+    }
+
+    fn jacobian(&self, u: &State<3>) -> Jacobian<3> {
+        self.0.jacobian(u)
+    }
+}
+
+/// An asymmetric equilibrium from a guess one per cent off in every unknown, with a solver that is reused.
+fn equilibrium(criterion: &mut Criterion) {
+    let law = AnyLaw::named("spinodal", Parameters::heslot_1994()).expect("a law");
+    let (k, v_h) = (0.14, 0.12);
+    let problem = Equilibrium(two_interfaces(law, Loading::new(v_h, k).expect("positive")));
+    // Of tests/data/equilibria.json.
+    let (v_slow, v_fast) = (0.007155123670426197, 0.1128448763295738);
+    let root = State::<3>::new(
+        11.343406289643613,
+        0.5829162291169635_f64.ln(),
+        0.08140347647199829_f64.ln(),
+    );
+    let f_scale = State::<3>::new(1.0 / (k * v_h), 1.0 / v_slow, 1.0 / v_fast);
+    let u_scale = State::<3>::repeat(1.0);
+    let mut kinsol = Kinsol::<3>::new().expect("SUNDIALS");
+    let mut solve = || {
+        kinsol
+            .solve(&problem, &black_box(root * 1.01), &u_scale, &f_scale)
+            .expect("a root")
+    };
+    let error = (solve() - root).amax();
+    let iterations = kinsol.work().expect("counted").iterations;
+    let mut solve = || {
+        kinsol
+            .solve(&problem, &black_box(root * 1.01), &u_scale, &f_scale)
+            .expect("a root")
+    };
+    let mut times = Vec::new();
+    for _ in 0..ROUNDS {
+        let begin = Instant::now();
+        for _ in 0..1000 {
+            black_box(solve());
+        }
+        times.push(begin.elapsed().as_secs_f64() / 1000.0);
+    }
+    println!(
+        "KINSOL, asymmetric equilibrium: {:.2} us, {iterations} iterations, error {error:.1e}",
+        1e6 * median(times)
+    );
+    criterion.bench_function("kinsol/asymmetric equilibrium", |b| b.iter(&mut solve));
+}
+
+fn cvodes(criterion: &mut Criterion) {
+    // Not when `cargo test` only looks whether the bench runs.
+    if std::env::args().any(|argument| argument == "--bench") {
+        table();
+    }
+    let mut c = C::new();
+    for (tangent, name) in [(false, "state"), (true, "tangent")] {
+        let mut group = criterion.benchmark_group(name);
+        group.bench_function("C stock", |b| {
+            b.iter_custom(|repeat| c.run(tangent, repeat).time)
+        });
+        for operations in [Operations::Stock, Operations::Fixed] {
+            let mut ours = Ours::new(Method::Bdf, operations);
+            group.bench_function(format!("ours, {operations:?}"), |b| {
+                b.iter_custom(|repeat| ours.run(tangent, repeat).time)
+            });
+        }
+        group.finish();
+    }
+}
+
+criterion_group! {
+    name = benches;
+    config = Criterion::default()
+        .sample_size(20)
+        .warm_up_time(Duration::from_millis(500))
+        .measurement_time(Duration::from_secs(2));
+    targets = equilibrium, cvodes
+}
+
+fn main() {
+    benches();
+    Criterion::default().configure_from_args().final_summary();
+}
