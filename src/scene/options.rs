@@ -3,6 +3,9 @@
 
 use std::path::PathBuf;
 
+const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given";
+
 /// The friction law, how many interfaces there are and how they are driven; the defaults are the paper's.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
@@ -23,7 +26,7 @@ pub struct ModelOptions {
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     pub healing_time: Option<f64>,
     /// Residual strength c of the spinodal law
-    #[arg(long, value_name = "c", default_value_t = 1e-3, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "c", default_value = "1e-3", value_parser = number, allow_negative_numbers = true)]
     pub residual_strength: f64,
     /// Direct effect a
     #[arg(long, value_name = "a", default_value_t = 0.0349, value_parser = number, allow_negative_numbers = true)]
@@ -56,7 +59,7 @@ pub struct NumericsOptions {
     #[arg(long, value_name = "NAME", default_value = "auto")]
     pub method: String,
     /// Relative local error tolerance
-    #[arg(long, value_name = "X", default_value_t = 1e-8, value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true)]
     pub rtol: f64,
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true)]
@@ -113,14 +116,14 @@ pub struct IntegrateOptions {
     /// What slides.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the symmetric steady state and
-    /// psi2 = psi1 exp(EPS), EPS = 0.01 unless given
+    /// How the run starts.
     #[arg(
         long,
         value_name = "START",
         default_value = "near-symmetric",
         allow_hyphen_values = true,
-        help_heading = "Run"
+        help_heading = "Run",
+        help = START_HELP
     )]
     pub start: String,
     /// End of the run; it begins at 0

@@ -27,7 +27,7 @@ const WIDE: f64 = 1.9;
 /// Room between the curves and the frame, as a part of the range.
 const MARGIN: f64 = 0.04;
 /// The same where points have names.
-const MARKED_MARGIN: f64 = 0.14;
+const MARKED_MARGIN: f64 = 0.26;
 /// Okabe and Ito: told apart by all.
 const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 114, 178),

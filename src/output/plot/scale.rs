@@ -5,7 +5,7 @@ use super::Axis;
 /// At most so many ticks.
 const TICKS: usize = 7;
 /// Logarithmic axes shorter than this have ticks at 2 and 5 too.
-const FEW_DECADES: f64 = 2.2;
+const FEW_DECADES: f64 = 2.6;
 
 /// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
 #[derive(Debug, Clone, PartialEq)]
