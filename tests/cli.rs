@@ -143,7 +143,6 @@ fn conflicts_and_gaps_are_refused() {
         "--points 5 --final-only",
         "--every 1 --final-only",
         "--final-only --plot x.svg",
-        "--columns time --plot x.svg",
     ] {
         refused(&format!("{RUN} {pair}"), "cannot be used with");
     }

@@ -41,7 +41,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         .flatten()
         .collect();
     let report = Report::new(&options.output, words, &others)?;
-    let kept = report.format == Format::Json || options.plot.is_some();
+    let kept = report.format == Format::Json;
     if options.output.explain {
         let keeping = if kept {
             Keeping::Stored
@@ -60,13 +60,18 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     let outcome = crate::scene::run(&plan, &mut out)?;
     interrupt::unwatch();
     let seconds = out.progress.finish().as_secs_f64();
-    let Out { rows, broken, .. } = out;
+    let Out {
+        rows,
+        drawn,
+        broken,
+        ..
+    } = out;
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
     let ending = write(&plan, &report, &rows, &outcome, events_path.as_deref())?;
     if let Some(path) = &options.plot {
-        plot::write(path, &picture(&plan, &rows))?;
+        plot::write(path, &picture(&plan, &drawn))?;
     }
     report.say(summary(&outcome, plan.events.is_some(), seconds));
     match outcome.failure {
@@ -82,6 +87,7 @@ struct Out {
     broken: Option<io::Error>,
     keep: bool,
     rows: Rows,
+    drawn: Rows,
     cells: Vec<Cell>,
     progress: Progress,
 }
@@ -89,6 +95,7 @@ struct Out {
 impl Out {
     fn new(plan: &Plan, report: &Report<'_>, keep: bool) -> io::Result<Self> {
         let columns: Vec<String> = plan.columns.iter().map(Column::name).collect();
+        let pictured = Column::pictured(plan.system.interfaces);
         let writer = if report.format == Format::Json {
             None
         } else {
@@ -105,6 +112,7 @@ impl Out {
             broken: None,
             keep,
             rows: Rows::new(columns),
+            drawn: Rows::new(pictured.iter().map(Column::name).collect()),
             cells: Vec::new(),
             progress: Progress::new(report.quiet),
         })
@@ -125,6 +133,10 @@ impl Sink for Out {
             }
         }
         Control::Continue
+    }
+
+    fn drawn(&mut self, point: &[f64]) {
+        self.drawn.numbers.extend_from_slice(point);
     }
 
     fn reached(&mut self, fraction: f64) -> Control {
@@ -245,13 +257,15 @@ fn cells(event: &Event, system: &System) -> Vec<Cell> {
         Some(event.peak_slip_rate),
         Some(first),
         two.then_some(second),
-        event.leader().filter(|_| two).map(|leader| leader as f64),
     ];
-    EVENT_COLUMNS
+    let mut cells: Vec<Cell> = EVENT_COLUMNS
         .iter()
         .zip(values)
         .map(|((_, quantity), x)| x.map(|x| system.units.outward(*quantity, x)).into())
-        .collect()
+        .collect();
+    let leader = event.leader().filter(|_| two);
+    cells.push(leader.map_or(Cell::Missing, |leader| Cell::Text(leader.to_string())));
+    cells
 }
 
 fn event_object(event: &Event, system: &System) -> Map<String, Value> {
@@ -260,7 +274,8 @@ fn event_object(event: &Event, system: &System) -> Map<String, Value> {
         .zip(cells(event, system))
         .map(|((name, _), cell)| {
             let value = match cell {
-                Cell::Number(leader) if *name == "leader" => json!(leader as u8),
+                // The leader is a number here, and a word without a point in tables.
+                Cell::Text(leader) if *name == "leader" => json!(leader.parse::<u8>().ok()),
                 Cell::Number(x) => json!(x),
                 Cell::Text(text) => json!(text),
                 Cell::Missing => Value::Null,
@@ -277,7 +292,9 @@ fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
         work.steps, work.rejected, work.rhs, work.jacobians
     );
     if events {
-        text.push_str(&format!(", {} events", outcome.events.len()));
+        let count = outcome.events.len();
+        let plural = if count == 1 { "" } else { "s" };
+        text.push_str(&format!(", {count} event{plural}"));
     }
     if let Some(estimate) = outcome.error_estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));

@@ -74,6 +74,12 @@ impl Column {
         all
     }
 
+    /// The columns that a picture shows.
+    pub fn pictured(interfaces: usize) -> Vec<Column> {
+        let shown = |column: &Column| !matches!(column, Column::LogState(_) | Column::Slip(_));
+        Column::all(interfaces).into_iter().filter(shown).collect()
+    }
+
     /// The columns of a comma-separated list of names.
     ///
     /// # Errors

@@ -9,7 +9,7 @@ use std::fmt::Write;
 pub enum Keeping {
     /// Rows leave as they come.
     Streamed,
-    /// Rows are kept for a JSON object or a picture.
+    /// Rows are kept for a JSON object.
     Stored,
 }
 
@@ -99,6 +99,9 @@ fn dense(plan: &Plan) -> String {
     if plan.events.is_some() {
         why.push("events");
     }
+    if plan.picture {
+        why.push("the picture");
+    }
     if why.is_empty() {
         "off: rows are the ends of steps, and no slip is asked for".into()
     } else {
@@ -122,8 +125,13 @@ fn trajectory(plan: &Plan, keeping: Keeping) -> String {
             plan.system.units.outward(Quantity::Time, dt)
         ),
     };
-    match keeping {
+    let rows = match keeping {
         Keeping::Streamed => format!("not stored: {rows}, written as it comes"),
-        Keeping::Stored => format!("stored: {rows}, for the JSON object or the picture"),
+        Keeping::Stored => format!("stored: {rows}, for the JSON object"),
+    };
+    if plan.picture {
+        format!("{rows}; the points of the picture are stored")
+    } else {
+        rows
     }
 }

@@ -139,12 +139,7 @@ pub struct IntegrateOptions {
     #[arg(long, conflicts_with = "plot", help_heading = "Run")]
     pub final_only: bool,
     /// Only these columns, comma-separated; what is not asked for is not computed
-    #[arg(
-        long,
-        value_name = "NAMES",
-        conflicts_with = "plot",
-        help_heading = "Run"
-    )]
+    #[arg(long, value_name = "NAMES", help_heading = "Run")]
     pub columns: Option<String>,
     /// Find stick-slip events: times between a maximum and a minimum of stress, when the interfaces together slip faster
     /// than V_H. In JSON they are result.events; in CSV and tables a second table, in FILE.events.csv beside -o FILE.csv or

@@ -74,6 +74,8 @@ pub struct Plan {
     pub columns: Vec<Column>,
     /// The threshold of stick-slip events over V_H, where they are asked for.
     pub events: Option<f64>,
+    /// Whether the run is drawn, which takes points between the steps and whatever rows are asked for.
+    pub picture: bool,
     /// Whether a second run estimates the error.
     pub estimate_error: bool,
     /// The method's name as it was asked for.
@@ -124,6 +126,7 @@ impl Plan {
             events: options
                 .events
                 .then(|| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
+            picture: options.plot.is_some(),
             estimate_error: options.estimate_error,
             asked_method: options.numerics.method.clone(),
             method,
@@ -154,7 +157,7 @@ impl Plan {
 
     /// Whether anything must be seen between start and end.
     pub fn observed(&self) -> bool {
-        self.sampling != Sampling::FinalOnly || self.needs_slip()
+        self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture
     }
 
     /// The tolerances of the second run.

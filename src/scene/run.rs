@@ -1,6 +1,6 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
-use super::column::{Instant, fill, slip_rates};
+use super::column::{Column, Instant, fill, slip_rates};
 use super::event::{Detector, Event, at};
 use super::plan::{Dimension, Plan, Sampling};
 use crate::error::{Error, Result};
@@ -19,10 +19,15 @@ const GAUSS: [(f64, f64); 5] = [
     (0.953_089_922_969_332, 0.118_463_442_528_094_54),
 ];
 
+/// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
+const PICTURED: usize = 4;
+
 /// Takes what a run yields, as it comes.
 pub trait Sink {
     /// A row, in the plan's columns and the user's units.
     fn row(&mut self, row: &[f64]) -> Control;
+    /// A point of the picture, in the columns [`Column::pictured`] and the user's units.
+    fn drawn(&mut self, _point: &[f64]) {}
     /// The run has come to this fraction of its time.
     fn reached(&mut self, fraction: f64) -> Control;
 }
@@ -140,6 +145,7 @@ struct Watch<'a, const N: usize> {
     /// The end of the last step seen.
     here: Instant,
     row: Vec<f64>,
+    pictured: Vec<Column>,
     /// Rows at fixed times made so far.
     sampled: usize,
     stopped: bool,
@@ -160,12 +166,17 @@ impl<'a, const N: usize> Watch<'a, N> {
                 .map(|threshold| Detector::new(field, plan, threshold)),
             here: Instant::new(0.0, y0, [0.0; 2]),
             row: Vec::new(),
+            pictured: Column::pictured(plan.system.interfaces),
             sampled: 0,
             stopped: false,
         }
     }
 
     fn start(&mut self) {
+        if self.plan.picture {
+            let here = self.here;
+            self.draw(&here);
+        }
         if self.plan.sampling != Sampling::FinalOnly {
             let here = self.here;
             self.emit(&here);
@@ -190,6 +201,12 @@ impl<'a, const N: usize> Watch<'a, N> {
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
             self.emit(&instant(t));
             self.sampled += 1;
+        }
+        if self.plan.picture {
+            for part in 1..=PICTURED {
+                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
+                self.draw(&Instant::new(t, &at(step, t), before));
+            }
         }
         self.here = instant(step.t1);
         if self.plan.sampling == Sampling::EveryStep {
@@ -227,6 +244,11 @@ impl<'a, const N: usize> Watch<'a, N> {
                 }
             }
         }
+    }
+
+    fn draw(&mut self, at: &Instant) {
+        fill(&mut self.row, &self.pictured, &self.plan.system, at);
+        self.sink.drawn(&self.row);
     }
 
     fn emit(&mut self, at: &Instant) {
