@@ -36,6 +36,10 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
             added.push(format!("--{flag}={value}"));
         }
     }
+    if options.output.output.is_some() && options.output.format.is_none() {
+        // A new FILE has a format of its own, by its extension.
+        replaced.push("format");
+    }
     let switches = [
         ("quiet", options.output.quiet),
         ("explain", options.output.explain),
