@@ -78,7 +78,7 @@ fn flow<const N: usize>(
     let mut integrator = plan
         .method
         .integrator::<N>(plan.tolerances, plan.max_steps)?;
-    let mut watch = Watch::new(plan, field, &y0, sink);
+    let mut watch = Watch::new(plan, field, &y0, &mut *sink);
     watch.start();
     let span = (0.0, plan.until);
     let end = if plan.observed() {
@@ -90,7 +90,7 @@ fn flow<const N: usize>(
     let mut outcome = watch.finish(&end);
     outcome.work = integrator.work();
     if let (Ok(y), true) = (end, plan.estimate_error && !outcome.stopped) {
-        estimate_error(plan, field, &y0, &y, &mut outcome)?;
+        estimate_error(plan, field, &y0, &y, &mut outcome, sink)?;
     }
     Ok(outcome)
 }
@@ -106,12 +106,25 @@ fn estimate_error<const N: usize>(
     y0: &State<N>,
     end: &State<N>,
     outcome: &mut Outcome,
+    sink: &mut dyn Sink,
 ) -> Result<()> {
     let tolerances: Tolerances = plan.tighter();
     let mut integrator = plan.method.integrator::<N>(tolerances, plan.max_steps)?;
-    let reference = integrator.flow(as_field(field), (0.0, plan.until), y0, None);
+    let span = (0.0, plan.until);
+    let mut stopped = false;
+    let reference = if plan.observed() {
+        let mut observer = |step: &Step<'_, N>| {
+            let control = sink.reached(step.t1 / plan.until);
+            stopped = control == Control::Stop;
+            Ok(control)
+        };
+        integrator.flow(as_field(field), span, y0, Some(&mut observer))
+    } else {
+        integrator.flow(as_field(field), span, y0, None)
+    };
     outcome.work = sum(outcome.work, integrator.work());
     match reference {
+        Ok(_) if stopped => outcome.stopped = true,
         Ok(reference) => outcome.error_estimate = Some(relative_distance(end, &reference)),
         Err(error) => outcome.estimate_failure = Some(error),
     }
