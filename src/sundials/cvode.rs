@@ -64,9 +64,12 @@ pub struct Arrival {
     pub reason: Reason,
 }
 
-/// Steps between two looks at whether t still advances. A field that is not finite beyond some point makes the steps shrink
-/// towards it forever, and CVODE would burn the whole bound on work there.
-const WATCH: usize = 1000;
+/// Steps between two looks at whether t still advances. Before a singularity, or a point beyond which f is not finite, the
+/// steps shrink forever, and CVODE would burn the whole bound on work there.
+const WATCH: usize = 25;
+
+/// Steps in a row that may leave t where it is. At the start of a stiff problem there are some, until the steps have grown.
+const STANDSTILL: usize = 200;
 
 /// The owner of a CVODES memory.
 pub(super) struct Memory(NonNull<c_void>);
@@ -138,7 +141,9 @@ pub struct Cvode<const N: usize> {
     // What CVODES was told, where it still knows: it forgets a stop time when it has reached it.
     armed: Option<Option<f64>>,
     event_count: usize,
+    // Steps in a row that did not change t, and the state at the first of them.
     stalled: usize,
+    standstill: State<N>,
     tangents: usize,
     watched: usize,
 }
@@ -229,6 +234,7 @@ impl<const N: usize> Cvode<N> {
             armed: None,
             event_count: 0,
             stalled: 0,
+            standstill: State::zeros(),
             tangents: 0,
             watched: 0,
         })
@@ -377,7 +383,7 @@ impl<const N: usize> Cvode<N> {
                 // A return to look at the step, not the end of the bound.
                 sundials_sys::CV_TOO_MUCH_WORK if self.steps()? < self.max_steps => {
                     let h = self.step_size()?;
-                    if t + h == t {
+                    if self.stands_still(t, h, WATCH) {
                         return Err(Error::StepTooSmall { t, h });
                     }
                 }
@@ -594,12 +600,8 @@ impl<const N: usize> Cvode<N> {
                 returned: t,
             });
         }
-        // A step at the start of a stiff problem may be below the spacing of t and grow again; many in a row don't.
-        if reason == Reason::Step {
-            self.stalled = if t + h == t { self.stalled + 1 } else { 0 };
-            if self.stalled > WATCH {
-                return Err(Error::StepTooSmall { t, h });
-            }
+        if reason == Reason::Step && self.stands_still(t, h, 1) {
+            return Err(Error::StepTooSmall { t, h });
         }
         if !all_finite(self.state().as_slice()) {
             return Err(Error::NonFinite {
@@ -608,6 +610,24 @@ impl<const N: usize> Cvode<N> {
             });
         }
         Ok(Arrival { t, reason })
+    }
+
+    /// Whether t has stood still for too long. The state is then that of the first such step: later ones at the same t have
+    /// followed a singularity to where numbers mean nothing.
+    fn stands_still(&mut self, t: f64, h: f64, steps: usize) -> bool {
+        if t + h != t {
+            self.stalled = 0;
+            return false;
+        }
+        if self.stalled == 0 {
+            self.standstill = self.state();
+        }
+        self.stalled += steps;
+        let too_long = self.stalled >= STANDSTILL;
+        if too_long {
+            self.state.set(&self.standstill);
+        }
+        too_long
     }
 
     fn explain(&self, code: c_int, t: f64, frame: &Frame<'_, N>) -> Error {

@@ -5,11 +5,11 @@
 //! 1. One C pointer is one private newtype over `NonNull` with one `Drop`, made only from a checked pointer, so that an
 //!    early return frees what exists. Solvers declare them in the order in which they must go: solver memory, linear solver,
 //!    matrix, vectors, context.
-//! 2. Every C call that returns a code goes through [`check!`]: negative codes become [`Error::Sundials`], others are returned.
-//! 3. User code runs behind [`callback`]: a panic in it is kept, C is told to stop, and it is resumed in Rust.
+//! 2. Every C call that returns a code goes through `check!`: negative codes become [`Error::Sundials`], others are returned.
+//! 3. User code runs behind `callback`: a panic in it is kept, C is told to stop, and it is resumed in Rust.
 //! 4. SUNDIALS prints nothing: its messages are kept for the [`Error`].
 //!
-//! Supporting another major version of SUNDIALS is a matter of [`native`] alone.
+//! Supporting another major version of SUNDIALS is a matter of `native` alone.
 #![allow(unsafe_code)]
 
 mod callback;
@@ -147,7 +147,7 @@ impl<T> Drop for Stable<T> {
 }
 
 /// A SUNContext: everything of one solver belongs to one context, and no context is shared.
-struct Context(NonNull<sundials_sys::_SUNContext>);
+struct Context(NonNull<native::RawContext>);
 
 impl Context {
     /// # Errors

@@ -70,6 +70,9 @@ mod major {
     use super::*;
     use crate::sundials::check;
 
+    /// What a SUNContext points at.
+    pub type RawContext = sundials_sys::_SUNContext;
+
     /// # Safety
     /// As SUNDIALS 6 calls it: C strings, and the data given with the handler.
     unsafe extern "C" fn handler(
@@ -128,6 +131,9 @@ mod major {
     use super::*;
     use crate::sundials::check;
 
+    /// What a SUNContext points at.
+    pub type RawContext = sundials_sys::SUNContext_;
+
     /// # Safety
     /// As SUNDIALS 7 calls it: C strings, and the data given with the handler.
     unsafe extern "C" fn handler(
@@ -175,4 +181,6 @@ mod major {
     }
 }
 
-pub(super) use major::{keep_context_messages, keep_cvode_messages, keep_kinsol_messages};
+pub(super) use major::{
+    RawContext, keep_context_messages, keep_cvode_messages, keep_kinsol_messages,
+};
