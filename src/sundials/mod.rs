@@ -14,9 +14,11 @@
 
 mod callback;
 mod cvode;
+mod events;
 mod kinsol;
 mod linear_solver;
 mod native;
+mod output;
 mod sensitivity;
 mod vector;
 
