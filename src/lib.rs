@@ -18,6 +18,7 @@
 //! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
 //! Journal of the Mechanics and Physics of Solids.
 
+pub mod contract;
 pub mod equilibrium;
 pub mod error;
 pub mod field;

@@ -12,8 +12,9 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("friction", &["number"]),
     ("field", &[]),
     ("model", &["friction", "field", "number"]),
-    ("sundials", &["field"]),
-    ("integrate", &["field", "sundials"]),
+    ("contract", &[]),
+    ("sundials", &["field", "contract"]),
+    ("integrate", &["field", "contract", "sundials"]),
     (
         "equilibrium",
         &["number", "friction", "field", "model", "sundials"],

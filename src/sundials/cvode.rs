@@ -6,9 +6,9 @@ use super::linear_solver::{LinearSolver, Matrix};
 use super::sensitivity::Columns;
 use super::vector::{Fixed, Serial, Vector};
 use super::{Context, Messages, Stable, check, failure, flags, native, null};
+use crate::contract::{MAX_STEPS, Tolerances};
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::{MAX_STEPS, Tolerances};
 use std::ffi::{c_int, c_long, c_void};
 use std::ptr::NonNull;
 

@@ -3,9 +3,10 @@
 
 use super::check;
 use super::cvode::Cvode;
+use crate::contract::Work;
 use crate::error::Result;
 use crate::field::State;
-use crate::integrate::Work;
+
 use std::ffi::{c_int, c_long};
 
 impl<const N: usize> Cvode<N> {

@@ -5,9 +5,9 @@ use super::callback::{self, all_finite};
 use super::cvode::{Cvode, Operations, vector};
 use super::vector::{Fixed, Serial, Vector};
 use super::{Context, Messages, check, failure, flags};
+use crate::contract::Tolerances;
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::Tolerances;
 use std::ffi::c_int;
 use sundials_sys::N_Vector;
 

