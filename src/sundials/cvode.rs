@@ -66,7 +66,7 @@ pub struct Arrival {
 
 /// Steps between two looks at whether t still advances. Before a singularity, or a point beyond which f is not finite, the
 /// steps shrink forever, and CVODE would burn the whole bound on work there.
-const WATCH: usize = 25;
+const WATCH: usize = 50;
 
 /// Steps in a row that may leave t where it is. At the start of a stiff problem there are some, until the steps have grown.
 const STANDSTILL: usize = 200;
@@ -341,6 +341,13 @@ impl<const N: usize> Cvode<N> {
                     .keep("the bound on steps had been used up before");
                 (self.time()?, sundials_sys::CV_TOO_MUCH_WORK)
             } else {
+                // The end of a portion is no failure, the end of the bound is.
+                let expected = if left > WATCH {
+                    sundials_sys::CV_TOO_MUCH_WORK
+                } else {
+                    sundials_sys::CV_SUCCESS
+                };
+                self.messages.expected.set(expected);
                 self.enter(&frame, to, mode, left.min(WATCH))?
             };
             self.tangents += frame.tangents.take();
@@ -398,6 +405,7 @@ impl<const N: usize> Cvode<N> {
         // SAFETY: a live memory that `new` has set up, a live vector like the one it was given, and a place for the time.
         let code = unsafe { sundials_sys::CVode(m, to, self.state.as_ptr(), &mut t, task) };
         drop(entered);
+        self.messages.expected.set(sundials_sys::CV_SUCCESS);
         Ok((t, code))
     }
 

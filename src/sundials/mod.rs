@@ -29,7 +29,8 @@ pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residu
 pub use sensitivity::{ErrorControl, Scheme, Sensitivity};
 
 use crate::error::{Error, Result};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::ffi::{c_int, c_void};
 use std::ops::Deref;
 use std::ptr::NonNull;
 use std::sync::OnceLock;
@@ -99,6 +100,8 @@ fn null(function: &'static str) -> Error {
 #[derive(Default)]
 struct Messages {
     last: RefCell<String>,
+    /// A flag whose message is not worth keeping: a way of working, no failure.
+    expected: Cell<c_int>,
 }
 
 impl Messages {
@@ -127,7 +130,7 @@ impl<T> Stable<T> {
         Stable(NonNull::from(Box::leak(Box::new(value))))
     }
 
-    fn as_ptr(&self) -> *mut std::ffi::c_void {
+    fn as_ptr(&self) -> *mut c_void {
         self.0.as_ptr().cast()
     }
 }
@@ -149,7 +152,7 @@ impl<T> Drop for Stable<T> {
 }
 
 /// A SUNContext: everything of one solver belongs to one context, and no context is shared.
-struct Context(NonNull<native::RawContext>);
+struct Context(NonNull<c_void>);
 
 impl Context {
     /// # Errors
@@ -165,19 +168,20 @@ impl Context {
                 SUNContext_Create(sundials_sys::comm_no_mpi(), &mut context)
             )?;
         }
-        let context = Context(NonNull::new(context).ok_or_else(|| null("SUNContext_Create"))?);
+        let context =
+            Context(NonNull::new(context.cast()).ok_or_else(|| null("SUNContext_Create"))?);
         native::keep_context_messages(&context, messages)?;
         Ok(context)
     }
 
     fn as_ptr(&self) -> sundials_sys::SUNContext {
-        self.0.as_ptr()
+        self.0.as_ptr().cast()
     }
 }
 
 impl Drop for Context {
     fn drop(&mut self) {
-        let mut context = self.0.as_ptr();
+        let mut context = self.as_ptr();
         // SAFETY: a live context that this value alone owns; solvers declare it last, so nothing made from it lives.
         unsafe { sundials_sys::SUNContext_Free(&mut context) };
     }
