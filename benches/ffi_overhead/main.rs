@@ -25,9 +25,9 @@ use twinslip::sundials::{
 const STIFFNESS: f64 = 0.14;
 const DRIVING: f64 = 10.0;
 /// Twenty cycles.
-const LONG: f64 = 132.0;
+const LONG: f64 = 64.0;
 /// One cycle.
-const SHORT: f64 = 6.6;
+const SHORT: f64 = 4.0;
 const STATE_TOLERANCE: f64 = 1e-8;
 const TANGENT_TOLERANCE: f64 = 1e-10;
 const ROUNDS: usize = 41;
@@ -223,10 +223,7 @@ fn table() {
     };
 
     println!("SUNDIALS {}", sundials::version());
-    println!(
-        "{} falls of the stress by t = {LONG}: two a cycle, one for each interface",
-        falls()
-    );
+    println!("{} cycles by t = {LONG}, one by t = {SHORT}", cycles());
     for (tangent, repeat, title) in [
         (false, 1, "state, 20 cycles, 1e-8"),
         (true, 3, "tangent, 1 cycle, 1e-10, simultaneous"),
@@ -261,8 +258,8 @@ fn table() {
     }
 }
 
-/// Falls of the stress through its middle.
-fn falls() -> usize {
+/// Slips: falls of the stress through its middle. One interface slips, the other creeps.
+fn cycles() -> usize {
     let mut solver = Cvode::<3>::new(Method::Adams, Operations::Fixed).expect("SUNDIALS");
     let field = field();
     solver.watch_events(1, &[-1]).expect("room");
