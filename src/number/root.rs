@@ -27,7 +27,9 @@ pub fn bracketed_root(
     if gb == 0.0 {
         return Ok(b);
     }
-    if !(ga * gb.signum() < 0.0) {
+    // False for NaN too.
+    let opposite = ga * gb.signum() < 0.0;
+    if !opposite {
         return Err(Error::NotConverged {
             what,
             iterations: 0,
