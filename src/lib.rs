@@ -18,6 +18,7 @@
 //! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
 //! Journal of the Mechanics and Physics of Solids.
 
+pub mod cli;
 pub mod contract;
 pub mod equilibrium;
 pub mod error;
@@ -26,6 +27,8 @@ pub mod friction;
 pub mod integrate;
 pub mod model;
 pub mod number;
+pub mod output;
+pub mod scene;
 #[cfg(feature = "sundials")]
 pub mod sundials;
 

@@ -3,11 +3,13 @@
 //! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
 mod rosenbrock;
 mod tableau;
 
+pub use choice::{Choice, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Method, Rosenbrock};

@@ -28,8 +28,8 @@ pub fn bracketed_root(
         return Ok(b);
     }
     // False for NaN too.
-    let opposite = ga * gb.signum() < 0.0;
-    if !opposite {
+    let straddled = ga * gb.signum() < 0.0;
+    if !straddled {
         return Err(Error::NotConverged {
             what,
             iterations: 0,

@@ -1,0 +1,378 @@
+//! `twinslip integrate`.
+
+use super::interrupt;
+use super::progress::Progress;
+use super::report::{self, Report, unit_names};
+use super::{Ending, written};
+use crate::error::Result;
+use crate::integrate::Control;
+use crate::output::{Cell, Format, Place, RowWriter, Rows, object, plot};
+use crate::scene::{
+    Column, Dimension, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, Sink, System,
+    explain,
+};
+use serde_json::{Map, Value, json};
+use std::io;
+use std::path::{Path, PathBuf};
+
+pub const EXAMPLE: &str =
+    "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
+  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
+
+const EVENT_COLUMNS: [(&str, Quantity); 8] = [
+    ("onset", Quantity::Time),
+    ("recurrence", Quantity::Time),
+    ("duration", Quantity::Time),
+    ("stress_drop", Quantity::Stress),
+    ("peak_slip_rate", Quantity::SlipRate),
+    ("slip_1", Quantity::Length),
+    ("slip_2", Quantity::Length),
+    ("leader", Quantity::Number),
+];
+
+pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+    let plan = Plan::new(options)?;
+    if let Some(path) = &options.plot {
+        plot::Kind::of(path)?;
+    }
+    let events_path = events_path(options);
+    let others: Vec<&Path> = [options.plot.as_deref(), events_path.as_deref()]
+        .into_iter()
+        .flatten()
+        .collect();
+    let report = Report::new(&options.output, words, &others)?;
+    let kept = report.format == Format::Json;
+    if options.output.explain {
+        let keeping = if kept {
+            Keeping::Stored
+        } else {
+            Keeping::Streamed
+        };
+        eprint!("{}", explain(&plan, keeping));
+    }
+    let mut out = match Out::new(&plan, &report, kept) {
+        Ok(out) => out,
+        Err(error) => return written(Err(error), &report.place),
+    };
+    if plan.observed() {
+        interrupt::watch();
+    }
+    let outcome = crate::scene::run(&plan, &mut out)?;
+    interrupt::unwatch();
+    let seconds = out.progress.finish().as_secs_f64();
+    let Out {
+        rows,
+        drawn,
+        broken,
+        ..
+    } = out;
+    if let Some(error) = broken {
+        return written(Err(error), &report.place);
+    }
+    let ending = write(&plan, &report, &rows, &outcome, events_path.as_deref())?;
+    if let Some(path) = &options.plot {
+        plot::write(path, &picture(&plan, &drawn))?;
+    }
+    report.say(summary(&outcome, plan.events.is_some(), seconds));
+    match outcome.failure {
+        Some(error) => Err(error),
+        None if interrupt::asked() => Ok(Ending::Interrupted),
+        None => Ok(ending),
+    }
+}
+
+/// Takes the rows of a run: writes them, keeps them, or both.
+struct Out {
+    writer: Option<Box<dyn RowWriter>>,
+    broken: Option<io::Error>,
+    keep: bool,
+    rows: Rows,
+    drawn: Rows,
+    cells: Vec<Cell>,
+    progress: Progress,
+}
+
+impl Out {
+    fn new(plan: &Plan, report: &Report<'_>, keep: bool) -> io::Result<Self> {
+        let columns: Vec<String> = plan.columns.iter().map(Column::name).collect();
+        let pictured = Column::pictured(plan.system.interfaces);
+        let writer = if report.format == Format::Json {
+            None
+        } else {
+            let units = unit_names(
+                &plan.system.units,
+                plan.columns.iter().map(Column::quantity),
+            );
+            let remarks = report.remarks(&plan.system, &numerics(plan));
+            let stream = report.place.stream().map_err(io::Error::other)?;
+            Some(report.rows(stream, &remarks, &columns, &units)?)
+        };
+        Ok(Out {
+            writer,
+            broken: None,
+            keep,
+            rows: Rows::new(columns),
+            drawn: Rows::new(pictured.iter().map(Column::name).collect()),
+            cells: Vec::new(),
+            progress: Progress::new(report.quiet),
+        })
+    }
+}
+
+impl Sink for Out {
+    fn row(&mut self, row: &[f64]) -> Control {
+        if self.keep {
+            self.rows.numbers.extend_from_slice(row);
+        }
+        if let Some(writer) = &mut self.writer {
+            self.cells.clear();
+            self.cells.extend(row.iter().map(|&x| Cell::Number(x)));
+            if let Err(error) = writer.row(&self.cells) {
+                self.broken = Some(error);
+                return Control::Stop;
+            }
+        }
+        Control::Continue
+    }
+
+    fn drawn(&mut self, point: &[f64]) {
+        self.drawn.numbers.extend_from_slice(point);
+    }
+
+    fn reached(&mut self, fraction: f64) -> Control {
+        self.progress.reached(fraction);
+        if interrupt::asked() {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
+    }
+}
+
+fn numerics(plan: &Plan) -> Value {
+    json!({
+        "method": plan.method.name(),
+        "asked": plan.asked_method,
+        "rtol": plan.tolerances.rtol,
+        "atol": plan.tolerances.atol,
+        "max_steps": plan.max_steps,
+        "dimension": plan.dimension.number(),
+    })
+}
+
+/// The file of the events table, beside the file of the rows; `None` where events are in the object or follow on the
+/// standard output.
+fn events_path(options: &IntegrateOptions) -> Option<PathBuf> {
+    let file = options
+        .output
+        .output
+        .as_deref()
+        .filter(|path| *path != Path::new("-"))?;
+    let named = options.output.format.as_deref();
+    let is_object = Format::choose(named, Some(file), false).ok()? == Format::Json;
+    if !options.events || is_object {
+        return None;
+    }
+    let mut name = file.file_stem()?.to_owned();
+    name.push(".events.");
+    name.push(file.extension().unwrap_or("csv".as_ref()));
+    Some(file.with_file_name(name))
+}
+
+/// The object, or the events after the rows.
+fn write(
+    plan: &Plan,
+    report: &Report<'_>,
+    rows: &Rows,
+    outcome: &Outcome,
+    events_path: Option<&Path>,
+) -> Result<Ending> {
+    if report.format == Format::Json {
+        let bytes = report.envelope(
+            &plan.system,
+            numerics(plan),
+            result(plan, rows, outcome),
+            report::work(&outcome.work),
+            outcome.failure.as_ref(),
+        );
+        return written(report.place.write(&bytes), &report.place);
+    }
+    if plan.events.is_none() {
+        return Ok(Ending::Done);
+    }
+    let place = Place::new(events_path);
+    let mut to = place.stream()?;
+    let mut remarks = Vec::new();
+    let begun = if events_path.is_some() {
+        remarks = report.remarks(&plan.system, &numerics(plan));
+        Ok(())
+    } else {
+        writeln!(to)
+    };
+    let columns = EVENT_COLUMNS.map(|(name, _)| name.to_owned());
+    let units = unit_names(&plan.system.units, EVENT_COLUMNS.iter().map(|(_, q)| *q));
+    let all = begun
+        .and_then(|()| report.rows(to, &remarks, &columns, &units))
+        .and_then(|mut writer| {
+            let mut events = outcome.events.iter();
+            events.try_for_each(|event| writer.row(&cells(event, &plan.system)))
+        });
+    written(all, &place)
+}
+
+/// What the object holds.
+#[derive(serde::Serialize)]
+struct Found<'a> {
+    rows: &'a Rows,
+    #[serde(rename = "final")]
+    last: Option<Map<String, Value>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    events: Option<Vec<Map<String, Value>>>,
+}
+
+fn result<'a>(plan: &Plan, rows: &'a Rows, outcome: &Outcome) -> Found<'a> {
+    let last = outcome.last.as_ref().map(|row| {
+        let mut last = object(&rows.columns, row);
+        last.insert("error_estimate".into(), json!(outcome.error_estimate));
+        last
+    });
+    let events = plan.events.is_some().then(|| {
+        let events = outcome.events.iter();
+        events
+            .map(|event| event_object(event, &plan.system))
+            .collect()
+    });
+    Found { rows, last, events }
+}
+
+/// An event in the user's units; a single interface has no second slip, and neither it nor equal ones have a leader.
+fn cells(event: &Event, system: &System) -> Vec<Cell> {
+    let two = system.interfaces == 2;
+    let [first, second] = event.slip;
+    let values = [
+        Some(event.onset),
+        event.recurrence,
+        Some(event.duration),
+        Some(event.stress_drop),
+        Some(event.peak_slip_rate),
+        Some(first),
+        two.then_some(second),
+    ];
+    let mut cells: Vec<Cell> = EVENT_COLUMNS
+        .iter()
+        .zip(values)
+        .map(|((_, quantity), x)| x.map(|x| system.units.outward(*quantity, x)).into())
+        .collect();
+    let leader = event.leader().filter(|_| two);
+    cells.push(leader.map_or(Cell::Missing, |leader| Cell::Text(leader.to_string())));
+    cells
+}
+
+fn event_object(event: &Event, system: &System) -> Map<String, Value> {
+    EVENT_COLUMNS
+        .iter()
+        .zip(cells(event, system))
+        .map(|((name, _), cell)| {
+            let value = match cell {
+                // The leader is a number here, and a word without a point in tables.
+                Cell::Text(leader) if *name == "leader" => json!(leader.parse::<u8>().ok()),
+                Cell::Number(x) => json!(x),
+                Cell::Text(text) => json!(text),
+                Cell::Missing => Value::Null,
+            };
+            ((*name).to_owned(), value)
+        })
+        .collect()
+}
+
+fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
+    let work = &outcome.work;
+    let mut text = format!(
+        "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {seconds:.3} s",
+        work.steps, work.rejected, work.rhs, work.jacobians
+    );
+    if events {
+        let count = outcome.events.len();
+        let plural = if count == 1 { "" } else { "s" };
+        text.push_str(&format!(", {count} event{plural}"));
+    }
+    if let Some(estimate) = outcome.error_estimate {
+        text.push_str(&format!(", error estimate {estimate:.1e}"));
+    }
+    if let Some(error) = &outcome.estimate_failure {
+        text.push_str(&format!(", no error estimate: {error}"));
+    }
+    text
+}
+
+/// `v₁ = v₂` from `v` and `₁ = ₂`.
+fn label(name: &str, marks: &str) -> String {
+    let parts = marks.split(" = ").filter(|mark| !mark.is_empty());
+    let parts: Vec<String> = parts.map(|mark| format!("{name}{mark}")).collect();
+    parts.join(" = ")
+}
+
+fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
+    let system = &plan.system;
+    let column = |name: &str| rows.column(name).unwrap_or_default();
+    let unit = |quantity| report::short_unit(&system.units, quantity);
+    // Equal interfaces are one curve, not one that hides another.
+    let curves = match plan.dimension {
+        Dimension::Single => vec![(1, "")],
+        Dimension::Symmetric => vec![(1, "₁ = ₂")],
+        Dimension::Full => vec![(1, "₁"), (2, "₂")],
+    };
+    let each = |name: &str, of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>)| -> Vec<plot::Series> {
+        let series = curves.iter().map(|(i, marks)| {
+            let (x, y) = of(*i);
+            plot::Series::new(label(name, marks), x, y)
+        });
+        series.collect()
+    };
+    let time = plot::Axis::linear(format!("time t [{}]", unit(Quantity::Time)));
+    let stress = plot::Axis::linear(format!("stress τ [{}]", unit(Quantity::Stress)));
+    let rate = plot::Axis::log(format!("slip rate v [{}]", unit(Quantity::SlipRate)));
+    let state_unit = match unit(Quantity::State).as_str() {
+        "1" => String::new(),
+        unit => format!(" [{unit}]"),
+    };
+    let panel = |title: &str, x: &plot::Axis, y: plot::Axis, series| plot::Panel {
+        title: title.into(),
+        x: x.clone(),
+        y,
+        series,
+        marks: Vec::new(),
+        zero_line: false,
+    };
+    let in_time =
+        |field: &'static str| move |i: usize| (column("time"), column(&format!("{field}_{i}")));
+    let left = vec![
+        panel(
+            "stress",
+            &time,
+            stress.clone(),
+            vec![plot::Series::new("", column("time"), column("stress"))],
+        ),
+        panel(
+            "state",
+            &time,
+            plot::Axis::log(format!("state ψ{state_unit}")),
+            each("ψ", &in_time("state")),
+        ),
+        panel(
+            "slip rate",
+            &time,
+            rate.clone(),
+            each("v", &in_time("slip_rate")),
+        ),
+    ];
+    let plane = panel(
+        "phase plane",
+        &rate,
+        stress,
+        each("v", &|i| {
+            (column(&format!("slip_rate_{i}")), column("stress"))
+        }),
+    );
+    plot::Drawing::columns(vec![left, vec![plane]])
+}

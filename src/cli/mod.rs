@@ -1,0 +1,137 @@
+//! The command line: arguments, messages and exit codes. Data goes to standard output or a file, all talk to standard error.
+
+mod equilibria;
+mod integrate;
+mod interrupt;
+mod law;
+mod progress;
+mod report;
+mod run;
+
+use crate::error::Error;
+use clap::{CommandFactory, Parser, Subcommand};
+use std::ffi::OsString;
+use std::process::ExitCode;
+
+/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria.
+///
+/// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
+/// Data goes to standard output or a file, messages to standard error.
+/// Exit status: 0 done; 1 the computation failed, rows so far are kept; 2 wrong usage or input; 3 a verdict is undecided.
+#[derive(Debug, Parser)]
+#[command(name = "twinslip", version, max_term_width = 110)]
+struct Line {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// The steady-state friction law of one interface: tau_ss(V), its extrema, the critical stiffness k_c(V)
+    #[command(after_help = law::EXAMPLE)]
+    Law(Box<crate::scene::LawOptions>),
+    /// A run in time: stress, states, slip rates, slips, stick-slip events
+    #[command(after_help = integrate::EXAMPLE)]
+    Integrate(Box<crate::scene::IntegrateOptions>),
+    /// All steady states at a driving velocity, with eigenvalues and stability
+    #[command(after_help = equilibria::EXAMPLE)]
+    Equilibria(Box<crate::scene::EquilibriaOptions>),
+    /// What a scene file says
+    #[command(after_help = run::EXAMPLE)]
+    Run(run::RunOptions),
+}
+
+/// How a command ended, if it ended well.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Ending {
+    /// All is done, or the reader of our output has gone: there is nobody to tell.
+    Done,
+    /// All is done, but a verdict could not be reached.
+    Undecided,
+    /// Ctrl-C; what was computed is kept.
+    Interrupted,
+}
+
+/// Exit status of a failed computation.
+const FAILED: u8 = 1;
+/// Exit status of wrong usage or input.
+const WRONG_INPUT: u8 = 2;
+/// Exit status where a verdict is undecided.
+const UNDECIDED: u8 = 3;
+/// Exit status after Ctrl-C, as shells have it.
+const INTERRUPTED: u8 = 130;
+
+/// Parses the arguments, runs, and says how it ended.
+pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
+    let arguments: Vec<OsString> = arguments.into_iter().collect();
+    let line = match Line::try_parse_from(&arguments) {
+        Ok(line) => line,
+        Err(error) => {
+            // Help and version are no errors; a closed standard output is nobody's.
+            let _ = error.print();
+            return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT));
+        }
+    };
+    let words: Vec<String> = std::iter::once("twinslip".into())
+        .chain(
+            arguments
+                .iter()
+                .skip(1)
+                .map(|word| word.to_string_lossy().into_owned()),
+        )
+        .collect();
+    let ended = match &line.command {
+        Command::Law(options) => law::run(options, &words),
+        Command::Integrate(options) => integrate::run(options, &words),
+        Command::Equilibria(options) => equilibria::run(options, &words),
+        Command::Run(options) => run::run(options, &words),
+    };
+    match ended {
+        Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::Undecided) => ExitCode::from(UNDECIDED),
+        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(if error.is_input() {
+                WRONG_INPUT
+            } else {
+                FAILED
+            })
+        }
+    }
+}
+
+/// The command line that scene files are read against.
+fn program() -> clap::Command {
+    Line::command()
+}
+
+/// A scene's command line, parsed like one that was typed.
+fn parse(arguments: &[String]) -> Result<Command, clap::Error> {
+    let program = std::iter::once("twinslip".to_owned());
+    Line::try_parse_from(program.chain(arguments.iter().cloned())).map(|line| line.command)
+}
+
+/// A failed write: to a file it is an error, to a pipe that nobody reads the end.
+fn written(result: std::io::Result<()>, place: &crate::output::Place) -> Result<Ending, Error> {
+    match result {
+        Ok(()) => Ok(Ending::Done),
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => Ok(Ending::Done),
+        Err(error) => Err(Error::File {
+            action: "write",
+            path: place
+                .path()
+                .unwrap_or("standard output".as_ref())
+                .to_owned(),
+            reason: error.to_string(),
+        }),
+    }
+}
+
+#[cfg(test)]
+mod test {
+    #[test]
+    fn arguments_are_consistent() {
+        super::program().debug_assert();
+    }
+}

@@ -1,0 +1,55 @@
+//! A bar on standard error for runs that take long, if somebody looks at it.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Runs shorter than this show nothing.
+const PATIENCE: Duration = Duration::from_millis(800);
+/// Steps between two looks at the clock.
+const STEPS: u32 = 64;
+/// Ticks of the bar.
+const TICKS: u64 = 1000;
+
+/// Shows how far a run has come.
+pub struct Progress {
+    begun: Instant,
+    wanted: bool,
+    calls: u32,
+    bar: Option<ProgressBar>,
+}
+
+impl Progress {
+    /// Silent if asked to be, or if standard error is no terminal.
+    pub fn new(quiet: bool) -> Self {
+        Progress {
+            begun: Instant::now(),
+            wanted: !quiet && std::io::stderr().is_terminal(),
+            calls: 0,
+            bar: None,
+        }
+    }
+
+    /// The run has come so far.
+    pub fn reached(&mut self, fraction: f64) {
+        self.calls += 1;
+        if !self.wanted || !self.calls.is_multiple_of(STEPS) || self.begun.elapsed() < PATIENCE {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let style =
+                ProgressStyle::with_template("{bar:40} {percent:>3} %  {elapsed}, {eta} to go")
+                    .expect("the template is valid");
+            ProgressBar::new(TICKS).with_style(style)
+        });
+        bar.set_position((fraction * TICKS as f64) as u64);
+    }
+
+    /// Removes the bar.
+    pub fn finish(&mut self) -> Duration {
+        if let Some(bar) = self.bar.take() {
+            bar.finish_and_clear();
+        }
+        self.begun.elapsed()
+    }
+}

@@ -1,0 +1,179 @@
+//! What all commands share: format and place of the output, the object around a result, remarks, messages.
+
+use crate::error::{Error, Result};
+use crate::integrate::Work;
+use crate::number::Uncertain;
+use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows};
+use crate::scene::{OutputOptions, Quantity, System, Units};
+use serde::Serialize;
+use serde_json::{Value, json};
+use std::io::IsTerminal;
+use std::path::Path;
+
+/// Where a command's output goes, checked.
+pub struct Report<'a> {
+    /// In which form.
+    pub format: Format,
+    /// Where to.
+    pub place: Place,
+    /// No talk.
+    pub quiet: bool,
+    words: &'a [String],
+}
+
+impl<'a> Report<'a> {
+    /// Chooses the format and makes sure that all files can be written, before anything is computed.
+    pub fn new(options: &OutputOptions, words: &'a [String], others: &[&Path]) -> Result<Self> {
+        let place = Place::new(options.output.as_deref());
+        let terminal = std::io::stdout().is_terminal();
+        let format = Format::choose(options.format.as_deref(), place.path(), terminal)?;
+        place.check()?;
+        for path in others {
+            Place::File(path.to_path_buf()).check()?;
+            if place.path() == Some(path) {
+                return Err(Error::Input(format!(
+                    "{} cannot be both data and picture",
+                    path.display()
+                )));
+            }
+        }
+        Ok(Report {
+            format,
+            place,
+            quiet: options.quiet,
+            words,
+        })
+    }
+
+    /// A message on standard error.
+    pub fn say(&self, text: impl std::fmt::Display) {
+        if !self.quiet {
+            eprintln!("{text}");
+        }
+    }
+
+    /// The `# ` lines of CSV: program, command, parameters, units.
+    pub fn remarks(&self, system: &System, numerics: &Value) -> Vec<String> {
+        let list = |pairs: &serde_json::Map<String, Value>| {
+            let pairs: Vec<String> = pairs
+                .iter()
+                .filter(|(_, value)| !value.is_null())
+                .map(|(name, value)| match value.as_str() {
+                    Some(text) => format!("{name} = {text}"),
+                    None => format!("{name} = {value}"),
+                })
+                .collect();
+            pairs.join(", ")
+        };
+        let words: Vec<String> = self.words.iter().map(|word| quoted(word)).collect();
+        let units: Vec<String> = system
+            .units
+            .names()
+            .map(|(name, unit)| format!("{name} [{unit}]"))
+            .into();
+        let mut remarks = vec![
+            format!("twinslip {}", env!("CARGO_PKG_VERSION")),
+            format!("command: {}", words.join(" ")),
+            format!("model: {}", list(system.echo())),
+        ];
+        if let Some(numerics) = numerics.as_object().filter(|map| !map.is_empty()) {
+            remarks.push(format!("numerics: {}", list(numerics)));
+        }
+        remarks.push(format!("units: {}", units.join(", ")));
+        remarks
+    }
+
+    /// Opens the table or CSV.
+    pub fn rows(
+        &self,
+        to: Box<dyn std::io::Write>,
+        remarks: &[String],
+        columns: &[String],
+        units: &[String],
+    ) -> std::io::Result<Box<dyn RowWriter>> {
+        Ok(match self.format {
+            Format::Table => Box::new(TableRows::new(to, columns, units)?),
+            Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
+        })
+    }
+
+    /// The object of a command as one line.
+    pub fn envelope<R: Serialize>(
+        &self,
+        system: &System,
+        numerics: Value,
+        result: R,
+        work: Value,
+        error: Option<&Error>,
+    ) -> Vec<u8> {
+        let envelope = Envelope {
+            twinslip: env!("CARGO_PKG_VERSION"),
+            command: self.words,
+            sundials: sundials(),
+            model: system.echo(),
+            units: units(&system.units),
+            numerics,
+            result,
+            work,
+            error: error.map(Error::to_string),
+        };
+        let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
+        bytes.push(b'\n');
+        bytes
+    }
+}
+
+/// The version of SUNDIALS, where it is built in.
+pub fn sundials() -> Option<String> {
+    #[cfg(feature = "sundials")]
+    return Some(crate::sundials::version().to_owned());
+    #[cfg(not(feature = "sundials"))]
+    return None;
+}
+
+fn units(units: &Units) -> Value {
+    let names = units
+        .names()
+        .map(|(name, unit)| (name.to_owned(), json!(unit)));
+    Value::Object(names.into_iter().collect())
+}
+
+/// The names of the units of some quantities.
+pub fn unit_names(units: &Units, quantities: impl Iterator<Item = Quantity>) -> Vec<String> {
+    quantities
+        .map(|quantity| units.name(quantity).to_owned())
+        .collect()
+}
+
+/// A quantity with its error budget, in the user's units.
+pub fn uncertain(units: &Units, quantity: Quantity, x: Uncertain) -> Value {
+    let x = units.outward_uncertain(quantity, x);
+    output::uncertain((x.value, x.uncertainty))
+}
+
+/// The unit as the label of an axis has it.
+pub fn short_unit(units: &Units, quantity: Quantity) -> String {
+    units.name(quantity).replace("sigma", "σ").replace(' ', "")
+}
+
+/// The work as an object.
+pub fn work(work: &Work) -> Value {
+    json!({
+        "steps": work.steps,
+        "rejected": work.rejected,
+        "rhs": work.rhs,
+        "jacobians": work.jacobians,
+        "factorisations": work.factorisations,
+        "nonlinear": work.nonlinear,
+    })
+}
+
+/// A word as a shell would need it.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_alphanumeric() || "-_=./,:+".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''").replace('\n', " "))
+    }
+}

@@ -1,0 +1,108 @@
+//! From the name of a method to an integrator: the one place that knows them all.
+
+use super::rosenbrock::{Method, Rosenbrock};
+use super::{Integrator, Tolerances};
+use crate::error::{Error, Result};
+#[cfg(feature = "sundials")]
+use {super::CvodeIntegrator, crate::sundials};
+
+/// A method that this build can run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Choice {
+    /// A Rosenbrock method.
+    Rosenbrock(Method),
+    /// CVODES, of SUNDIALS.
+    #[cfg(feature = "sundials")]
+    Cvode(sundials::Method),
+}
+
+/// The names of the CVODES methods, in any build.
+const CVODE: [&str; 2] = ["cvode-bdf", "cvode-adams"];
+
+impl Choice {
+    /// The method of that name; `auto` is Rodas5P, the fastest here that takes stiff scenes too.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a method that does not exist, or not in this build.
+    pub fn named(name: &str) -> Result<Self> {
+        match name {
+            "auto" => Ok(Choice::Rosenbrock(Method::default())),
+            "taylor" => Err(Error::Input(format!(
+                "method taylor is not available yet; choose one of {}",
+                available()
+            ))),
+            #[cfg(feature = "sundials")]
+            "cvode-bdf" => Ok(Choice::Cvode(sundials::Method::Bdf)),
+            #[cfg(feature = "sundials")]
+            "cvode-adams" => Ok(Choice::Cvode(sundials::Method::Adams)),
+            _ if CVODE.contains(&name) => Err(Error::Input(format!(
+                "method {name} needs SUNDIALS, which this build is without; choose one of {}",
+                available()
+            ))),
+            _ => Method::named(name).map(Choice::Rosenbrock).map_err(|_| {
+                Error::Input(format!(
+                    "there is no method {name:?}; choose one of {}",
+                    available()
+                ))
+            }),
+        }
+    }
+
+    /// An integrator in dimension N.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for tolerances or a bound on steps outside their domain.
+    pub fn integrator<const N: usize>(
+        self,
+        tolerances: Tolerances,
+        max_steps: usize,
+    ) -> Result<Box<dyn Integrator<N>>> {
+        Ok(match self {
+            Choice::Rosenbrock(method) => Box::new(Rosenbrock::new(method, tolerances, max_steps)?),
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(method) => Box::new(CvodeIntegrator::new(method, tolerances, max_steps)?),
+        })
+    }
+
+    /// The method's own name.
+    pub fn name(self) -> &'static str {
+        match self {
+            Choice::Rosenbrock(method) => method.tableau().name,
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::Method::Bdf) => CVODE[0],
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::Method::Adams) => CVODE[1],
+        }
+    }
+
+    /// Why one would take it, for a reader of `--explain`.
+    pub fn reason(self) -> &'static str {
+        match self {
+            Choice::Rosenbrock(Method::Rodas5P) => {
+                "order 5, one factorisation a step and no iteration, stable on stiff scenes"
+            }
+            Choice::Rosenbrock(Method::Rodas4) => "order 4, six stages: cheaper steps than rodas5p",
+            Choice::Rosenbrock(Method::Ros23) => {
+                "order 2, the pair of ode23s, which the paper used: slow at tight tolerances"
+            }
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::Method::Bdf) => {
+                "orders 1 to 5, the reference of the field: slower here at equal error"
+            }
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::Method::Adams) => {
+                "orders 1 to 12: good along stick-slip cycles, slow on stiff scenes"
+            }
+        }
+    }
+}
+
+/// The names of the methods in this build.
+pub fn available() -> String {
+    let mut names = vec!["auto"];
+    names.extend(Method::ALL.map(|method| method.tableau().name));
+    if cfg!(feature = "sundials") {
+        names.extend(CVODE);
+    }
+    names.join(", ")
+}

@@ -1,0 +1,98 @@
+//! Rows and objects to files, pipes and terminals. Knows columns and cells, nothing of what they mean.
+
+mod csv;
+mod json;
+mod place;
+pub mod plot;
+mod table;
+
+pub use csv::CsvRows;
+pub use json::{Envelope, Rows, object, uncertain};
+pub use place::{Place, write_whole};
+pub use table::TableRows;
+
+use crate::error::{Error, Result};
+use std::path::Path;
+
+/// In which form data is written.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Columns for the eye, seven digits.
+    Table,
+    /// Comma-separated values with all digits, after `# ` lines that say where they come from.
+    Csv,
+    /// One object.
+    Json,
+}
+
+impl Format {
+    /// The format of that name; without one, by the file's extension; without a file, a table on a terminal, else CSV.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is none.
+    pub fn choose(name: Option<&str>, file: Option<&Path>, terminal: bool) -> Result<Self> {
+        match name {
+            Some("table") => return Ok(Format::Table),
+            Some("csv") => return Ok(Format::Csv),
+            Some("json") => return Ok(Format::Json),
+            Some(other) => {
+                return Err(Error::parameter("format", other, "one of table, csv, json"));
+            }
+            None => {}
+        }
+        let extension = file.and_then(Path::extension).and_then(|e| e.to_str());
+        Ok(match extension {
+            Some("json") => Format::Json,
+            Some(_) => Format::Csv,
+            None if file.is_none() && terminal => Format::Table,
+            None => Format::Csv,
+        })
+    }
+}
+
+/// One entry of a row.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Cell {
+    /// A number; one that is not finite is written as missing.
+    Number(f64),
+    /// A word.
+    Text(String),
+    /// Not known, or none.
+    Missing,
+}
+
+impl From<f64> for Cell {
+    fn from(x: f64) -> Self {
+        Cell::Number(x)
+    }
+}
+
+impl From<Option<f64>> for Cell {
+    fn from(x: Option<f64>) -> Self {
+        x.map_or(Cell::Missing, Cell::Number)
+    }
+}
+
+impl From<&str> for Cell {
+    fn from(text: &str) -> Self {
+        Cell::Text(text.to_owned())
+    }
+}
+
+/// Takes rows one by one, each complete in the file when the call returns.
+pub trait RowWriter {
+    /// A row of cells, as many as there are columns.
+    ///
+    /// # Errors
+    /// Those of the file or pipe.
+    fn row(&mut self, cells: &[Cell]) -> std::io::Result<()>;
+}
+
+/// The shortest decimal that reads back as the same double; empty if it is not finite.
+pub fn shortest(x: f64) -> String {
+    if x.is_finite() {
+        serde_json::to_string(&x).expect("a finite number can be written")
+    } else {
+        String::new()
+    }
+}

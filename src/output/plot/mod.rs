@@ -1,0 +1,196 @@
+//! Pictures: panels of curves, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
+//! a machine without fonts.
+
+mod draw;
+mod scale;
+
+use crate::error::{Error, Result};
+use crate::output::write_whole;
+use resvg::{tiny_skia, usvg};
+use std::path::Path;
+use std::sync::Arc;
+
+/// DejaVu Sans, reduced to what labels need.
+static FONT: &[u8] = include_bytes!("../../../assets/font/plot.ttf");
+/// The names by which a viewer of the SVG finds a font like ours.
+const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
+/// Pixels of a PNG per unit of the SVG.
+const PNG_ZOOM: f32 = 2.0;
+
+/// Which kind of picture a file name asks for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Vector graphics.
+    Svg,
+    /// Pixels.
+    Png,
+}
+
+impl Kind {
+    /// By the extension.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for any other than svg and png.
+    pub fn of(path: &Path) -> Result<Self> {
+        match path.extension().and_then(|e| e.to_str()) {
+            Some("svg") => Ok(Kind::Svg),
+            Some("png") => Ok(Kind::Png),
+            _ => Err(Error::Input(format!(
+                "--plot {}: the name must end in .svg or .png",
+                path.display()
+            ))),
+        }
+    }
+}
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What it measures, with the unit.
+    pub label: String,
+    /// Whether it is logarithmic: points that are not positive are then left out.
+    pub log: bool,
+}
+
+impl Axis {
+    /// Equal steps are equal differences.
+    pub fn linear(label: impl Into<String>) -> Self {
+        Axis {
+            label: label.into(),
+            log: false,
+        }
+    }
+
+    /// Equal steps are equal ratios.
+    pub fn log(label: impl Into<String>) -> Self {
+        Axis {
+            label: label.into(),
+            log: true,
+        }
+    }
+}
+
+/// One curve.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; empty for none.
+    pub label: String,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
+}
+
+impl Series {
+    /// From two columns.
+    pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Series {
+            label: label.into(),
+            x,
+            y,
+        }
+    }
+}
+
+/// A point that is pointed out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Abscissa.
+    pub x: f64,
+    /// Ordinate.
+    pub y: f64,
+    /// Its name.
+    pub label: String,
+    /// Whether the name stands above the point, or below: outside of the curve's bend.
+    pub above: bool,
+}
+
+/// One pair of axes with curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Above the frame.
+    pub title: String,
+    /// Horizontal.
+    pub x: Axis,
+    /// Vertical.
+    pub y: Axis,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// The points.
+    pub marks: Vec<Mark>,
+    /// Whether zero on the vertical axis deserves a line.
+    pub zero_line: bool,
+}
+
+/// Panels in columns of equal width; those of a column share its height.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    columns: Vec<Vec<Panel>>,
+}
+
+impl Drawing {
+    /// From left to right, each from top to bottom.
+    pub fn columns(columns: Vec<Vec<Panel>>) -> Self {
+        Drawing { columns }
+    }
+
+    /// The picture as SVG.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if there is nothing that can be drawn.
+    pub fn svg(&self) -> Result<String> {
+        draw::svg(&self.columns)
+    }
+
+    /// The picture as PNG.
+    ///
+    /// # Errors
+    /// As [`Drawing::svg`].
+    pub fn png(&self) -> Result<Vec<u8>> {
+        let svg = self.svg()?;
+        let mut fonts = usvg::fontdb::Database::new();
+        fonts.load_font_data(FONT.to_vec());
+        let family = fonts
+            .faces()
+            .next()
+            .and_then(|face| face.families.first())
+            .map_or_else(String::new, |(name, _)| name.clone());
+        // None of the names in the SVG is known here, and the last of them, sans-serif, is ours.
+        fonts.set_sans_serif_family(family);
+        let options = usvg::Options {
+            fontdb: Arc::new(fonts),
+            ..usvg::Options::default()
+        };
+        let tree = usvg::Tree::from_str(&svg, &options).map_err(unrendered)?;
+        let size = tree.size().to_int_size();
+        let zoomed = |x: u32| (x as f32 * PNG_ZOOM) as u32;
+        let mut pixels = tiny_skia::Pixmap::new(zoomed(size.width()), zoomed(size.height()))
+            .ok_or_else(|| unrendered("it has no area"))?;
+        let zoom = tiny_skia::Transform::from_scale(PNG_ZOOM, PNG_ZOOM);
+        resvg::render(&tree, zoom, &mut pixels.as_mut());
+        pixels.encode_png().map_err(unrendered)
+    }
+}
+
+/// Draws into a file, which appears complete or not at all.
+///
+/// # Errors
+/// [`Error::Input`] for an extension that is none of ours or nothing to draw; [`Error::File`] if the file can't be written.
+pub fn write(path: &Path, drawing: &Drawing) -> Result<()> {
+    let bytes = match Kind::of(path)? {
+        Kind::Svg => drawing.svg()?.into_bytes(),
+        Kind::Png => drawing.png()?,
+    };
+    write_whole(path, &bytes).map_err(|error| Error::File {
+        action: "write",
+        path: path.to_owned(),
+        reason: error.to_string(),
+    })
+}
+
+fn unrendered(reason: impl ToString) -> Error {
+    Error::Input(format!(
+        "the picture can't be drawn: {}",
+        reason.to_string()
+    ))
+}

@@ -1,0 +1,151 @@
+//! The columns of a run, and how each follows from the state: nothing else is computed.
+
+use super::system::System;
+use super::units::{Quantity, Units};
+use crate::error::{Error, Result};
+use crate::field::State;
+use crate::friction::{AnyLaw, Law};
+
+/// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// Time.
+    pub time: f64,
+    /// tau.
+    pub stress: f64,
+    /// ln psi of each interface.
+    pub log_state: [f64; 2],
+    /// Slip of each interface since the start.
+    pub slip: [f64; 2],
+}
+
+impl Instant {
+    /// From a state in dimension 2, (tau, w), or 3, (tau, w_1, w_2).
+    pub fn new<const N: usize>(time: f64, y: &State<N>, slip: [f64; 2]) -> Self {
+        Instant {
+            time,
+            stress: y[0],
+            log_state: [y[1], y[N - 1]],
+            slip,
+        }
+    }
+}
+
+/// v of both interfaces at a state.
+pub(super) fn slip_rates<const N: usize>(law: &AnyLaw, y: &State<N>) -> [f64; 2] {
+    let s = law.activation(y[0]);
+    let first = law.slip_rate(s, y[1].exp());
+    if N == 2 {
+        [first, first]
+    } else {
+        [first, law.slip_rate(s, y[N - 1].exp())]
+    }
+}
+
+/// One column of a run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Column {
+    /// `time`
+    Time,
+    /// `stress`
+    Stress,
+    /// `state_1`, `state_2`
+    State(usize),
+    /// `log_state_1`, `log_state_2`
+    LogState(usize),
+    /// `slip_rate_1`, `slip_rate_2`
+    SlipRate(usize),
+    /// `slip_1`, `slip_2`
+    Slip(usize),
+}
+
+impl Column {
+    /// All columns of a system of one or two interfaces, in the order of the output.
+    pub fn all(interfaces: usize) -> Vec<Column> {
+        let mut all = vec![Column::Time, Column::Stress];
+        for column in [
+            Column::State,
+            Column::LogState,
+            Column::SlipRate,
+            Column::Slip,
+        ] {
+            all.extend((0..interfaces).map(column));
+        }
+        all
+    }
+
+    /// The columns that a picture shows.
+    pub fn pictured(interfaces: usize) -> Vec<Column> {
+        let shown = |column: &Column| !matches!(column, Column::LogState(_) | Column::Slip(_));
+        Column::all(interfaces).into_iter().filter(shown).collect()
+    }
+
+    /// The columns of a comma-separated list of names.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a name that is none, with the nearest that is one.
+    pub fn listed(names: &str, interfaces: usize) -> Result<Vec<Column>> {
+        let all = Column::all(interfaces);
+        names
+            .split(',')
+            .map(str::trim)
+            .map(|name| {
+                let found = all.iter().copied().find(|column| column.name() == name);
+                found.ok_or_else(|| {
+                    let known: Vec<String> = all.iter().map(Column::name).collect();
+                    Error::Input(format!(
+                        "there is no column {name:?}{}; the columns are {}",
+                        super::file::did_you_mean(name, known.iter().map(String::as_str)),
+                        known.join(", ")
+                    ))
+                })
+            })
+            .collect()
+    }
+
+    /// The name in CSV and JSON.
+    pub fn name(&self) -> String {
+        match self {
+            Column::Time => "time".into(),
+            Column::Stress => "stress".into(),
+            Column::State(i) => format!("state_{}", i + 1),
+            Column::LogState(i) => format!("log_state_{}", i + 1),
+            Column::SlipRate(i) => format!("slip_rate_{}", i + 1),
+            Column::Slip(i) => format!("slip_{}", i + 1),
+        }
+    }
+
+    /// What it measures.
+    pub fn quantity(&self) -> Quantity {
+        match self {
+            Column::Time => Quantity::Time,
+            Column::Stress => Quantity::Stress,
+            Column::State(_) => Quantity::State,
+            Column::LogState(_) => Quantity::LogState,
+            Column::SlipRate(_) => Quantity::SlipRate,
+            Column::Slip(_) => Quantity::Length,
+        }
+    }
+
+    fn value(&self, law: &AnyLaw, units: &Units, at: &Instant) -> f64 {
+        let x = match *self {
+            Column::Time => at.time,
+            Column::Stress => at.stress,
+            Column::State(i) => at.log_state[i].exp(),
+            Column::LogState(i) => at.log_state[i],
+            Column::SlipRate(i) => law.slip_rate(law.activation(at.stress), at.log_state[i].exp()),
+            Column::Slip(i) => at.slip[i],
+        };
+        units.outward(self.quantity(), x)
+    }
+}
+
+/// Fills a row with the columns at an instant, in the user's units.
+pub(super) fn fill(row: &mut Vec<f64>, columns: &[Column], system: &System, at: &Instant) {
+    row.clear();
+    row.extend(
+        columns
+            .iter()
+            .map(|column| column.value(&system.law, &system.units, at)),
+    );
+}

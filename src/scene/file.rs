@@ -1,0 +1,232 @@
+//! A scene file: TOML that holds what the flags of a command hold, by the same names, and `command = "NAME"`.
+//!
+//! Its keys are turned into the flags themselves, so a scene and a command line are read, checked and run by the same code.
+
+use crate::error::{Error, Result};
+use clap::{Arg, ArgAction, Command};
+use std::ops::Range;
+use std::path::Path;
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+/// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
+const SIMILAR: f64 = 0.75;
+
+/// A scene file, read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SceneFile {
+    /// Where it came from.
+    pub name: String,
+    /// The subcommand that it sets.
+    pub command: String,
+    /// Its keys as flags, with the line of each.
+    flags: Vec<(String, Option<String>, usize)>,
+}
+
+impl SceneFile {
+    /// Reads a file; `program` is the command line that it stands for.
+    ///
+    /// # Errors
+    /// [`Error::File`] if it can't be read; [`Error::Input`] with file, line and key for what is wrong in it.
+    pub fn read(path: &Path, program: &Command) -> Result<Self> {
+        let text = std::fs::read_to_string(path).map_err(|error| Error::File {
+            action: "read",
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })?;
+        Self::parse(&path.display().to_string(), &text, program)
+    }
+
+    /// Reads a text under the name that messages shall use for it.
+    ///
+    /// # Errors
+    /// As [`SceneFile::read`].
+    pub fn parse(name: &str, text: &str, program: &Command) -> Result<Self> {
+        let reader = Reader { name, text };
+        let table = DeTable::parse(text).map_err(|error| {
+            let place = error.span().unwrap_or(0..0);
+            reader.wrong(&place, error.message().replace('\n', ", "))
+        })?;
+        let table = table.get_ref();
+        let command = reader.command(table, program)?;
+        let options: Vec<&Arg> = command
+            .get_arguments()
+            .filter(|arg| arg.get_long().is_some_and(|long| long != "help"))
+            .collect();
+        let mut flags = Vec::new();
+        for (key, value) in table {
+            if key.get_ref() == "command" {
+                continue;
+            }
+            let line = reader.line(&key.span());
+            if let Some((flag, value)) = reader.flag(key, value, &options)? {
+                flags.push((flag, value, line));
+            }
+        }
+        Ok(SceneFile {
+            name: name.to_owned(),
+            command: command.get_name().to_owned(),
+            flags,
+        })
+    }
+
+    /// The command line that the scene stands for: subcommand and flags, without the keys in `replaced`.
+    pub fn arguments(&self, replaced: &[&str]) -> Vec<String> {
+        let mut arguments = vec![self.command.clone()];
+        for (flag, value, _) in &self.flags {
+            if !replaced.contains(&flag.as_str()) {
+                arguments.push(match value {
+                    Some(value) => format!("--{flag}={value}"),
+                    None => format!("--{flag}"),
+                });
+            }
+        }
+        arguments
+    }
+
+    /// The same error, with the file and, if it names a key of this file, the line.
+    pub fn locate(&self, error: &Error) -> Error {
+        let named = match error {
+            Error::Parameter { name, .. } => Some(name.trim_start_matches("psi in --").to_owned()),
+            Error::Input(text) => text
+                .split_whitespace()
+                .map(|word| word.trim_matches(|c: char| !c.is_alphanumeric() && c != '-'))
+                .map(|word| word.trim_start_matches("--").to_owned())
+                .find(|word| self.flags.iter().any(|(flag, ..)| flag == word)),
+            _ => return error.clone(),
+        };
+        let line = self
+            .flags
+            .iter()
+            .find(|(flag, ..)| Some(flag) == named.as_ref())
+            .map_or(String::new(), |(.., line)| format!("{line}:"));
+        Error::Input(format!("{}:{line} {error}", self.name))
+    }
+}
+
+struct Reader<'a> {
+    name: &'a str,
+    text: &'a str,
+}
+
+impl Reader<'_> {
+    fn line(&self, span: &Range<usize>) -> usize {
+        let upto = span.start.min(self.text.len());
+        1 + self.text.as_bytes()[..upto]
+            .iter()
+            .filter(|&&byte| byte == b'\n')
+            .count()
+    }
+
+    fn wrong(&self, span: &Range<usize>, what: impl std::fmt::Display) -> Error {
+        Error::Input(format!("{}:{}: {what}", self.name, self.line(span)))
+    }
+
+    fn command<'c>(&self, table: &DeTable<'_>, program: &'c Command) -> Result<&'c Command> {
+        let known = || {
+            program
+                .get_subcommands()
+                .map(Command::get_name)
+                .filter(|&name| name != "run" && name != "help")
+        };
+        let list = known().collect::<Vec<_>>().join(", ");
+        let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref() == "command") else {
+            return Err(self.wrong(
+                &(0..0),
+                format!("the key command is missing; it must be one of {list}"),
+            ));
+        };
+        let text = value.get_ref().as_str().unwrap_or_default();
+        known()
+            .find(|&name| name == text)
+            .and_then(|name| program.find_subcommand(name))
+            .ok_or_else(|| {
+                let hint = did_you_mean(text, known());
+                self.wrong(
+                    &value.span(),
+                    format!("command must be one of {list}, not {text:?}{hint}"),
+                )
+            })
+    }
+
+    /// One key as a flag; `None` for a switch that is off.
+    fn flag(
+        &self,
+        key: &Spanned<std::borrow::Cow<'_, str>>,
+        value: &Spanned<DeValue<'_>>,
+        options: &[&Arg],
+    ) -> Result<Option<(String, Option<String>)>> {
+        let name = key.get_ref().as_ref();
+        let longs = || options.iter().filter_map(|arg| arg.get_long());
+        let Some(option) = options.iter().find(|arg| arg.get_long() == Some(name)) else {
+            let hint = did_you_mean(name, longs());
+            return Err(self.wrong(&key.span(), format!("unknown key {name:?}{hint}")));
+        };
+        let wrong = |must: &str| {
+            let kind = value.get_ref().type_str();
+            self.wrong(&value.span(), format!("{name} must be {must}, not {kind}"))
+        };
+        if matches!(option.get_action(), ArgAction::SetTrue) {
+            let on = value
+                .get_ref()
+                .as_bool()
+                .ok_or_else(|| wrong("true or false"))?;
+            return Ok(on.then(|| (name.to_owned(), None)));
+        }
+        let numeric = is_numeric(option);
+        let text = match value.get_ref() {
+            DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),
+            DeValue::Float(number) => number.as_str().to_owned(),
+            DeValue::String(text) if !numeric => text.to_string(),
+            DeValue::Array(items) if !numeric => {
+                let items: Option<Vec<String>> =
+                    items.iter().map(|item| scalar(item.get_ref())).collect();
+                items
+                    .ok_or_else(|| wrong("a list of numbers or names"))?
+                    .join(",")
+            }
+            _ => return Err(wrong(if numeric { "a number" } else { "a text" })),
+        };
+        if text.is_empty() {
+            return Err(self.wrong(&value.span(), format!("{name} is empty")));
+        }
+        if numeric && !text.parse::<f64>().is_ok_and(f64::is_finite) {
+            return Err(self.wrong(
+                &value.span(),
+                format!("{name} is {text}, but must be finite"),
+            ));
+        }
+        Ok(Some((name.to_owned(), Some(text))))
+    }
+}
+
+fn scalar(value: &DeValue<'_>) -> Option<String> {
+    match value {
+        DeValue::Integer(number) => Some(number.as_str().to_owned()),
+        DeValue::Float(number) => Some(number.as_str().to_owned()),
+        DeValue::String(text) => Some(text.to_string()),
+        _ => None,
+    }
+}
+
+/// Whether an option takes a number: its parser says what it makes.
+fn is_numeric(option: &Arg) -> bool {
+    let made = option.get_value_parser().type_id();
+    made == std::any::TypeId::of::<f64>()
+        || made == std::any::TypeId::of::<usize>()
+        || made == std::any::TypeId::of::<u8>()
+}
+
+/// `; did you mean "x"?` for the known name most like the given one, or nothing if none is.
+pub(super) fn did_you_mean<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
+    // Underscores are what most would write first: they count as hyphens.
+    let given = given.replace('_', "-");
+    let plain = |name: &str| name.replace('_', "-");
+    known
+        .map(|name| (strsim::jaro_winkler(&given, &plain(name)), name))
+        .filter(|&(similarity, _)| similarity >= SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(String::new(), |(_, name)| {
+            format!("; did you mean {name:?}?")
+        })
+}

@@ -1,0 +1,48 @@
+//! From what a user asks for to a run: options, checked once, make a plan that holds only what the outputs need.
+//!
+//! A scene file and the flags of the command line are the same options: a file is turned into flags.
+//!
+//! ```
+//! use twinslip::integrate::Control;
+//! use twinslip::scene::{IntegrateOptions, Plan, Sink, run};
+//!
+//! #[derive(clap::Parser)]
+//! struct Line { #[command(flatten)] options: IntegrateOptions }
+//! let line = <Line as clap::Parser>::parse_from(
+//!     ["line", "--driving=0.2", "--stiffness=0.05", "--start=near-symmetric:0", "--until=10", "--final-only"]);
+//!
+//! struct Last(Vec<f64>);
+//! impl Sink for Last {
+//!     fn row(&mut self, row: &[f64]) -> Control { self.0 = row.to_vec(); Control::Continue }
+//!     fn reached(&mut self, _: f64) -> Control { Control::Continue }
+//! }
+//! let plan = Plan::new(&line.options)?;
+//! assert_eq!(plan.dimension.number(), 2);
+//! let mut last = Last(Vec::new());
+//! let outcome = run(&plan, &mut last)?;
+//! assert!(outcome.failure.is_none());
+//! assert_eq!(last.0[0], 10.0);
+//! # Ok::<(), twinslip::Error>(())
+//! ```
+
+mod column;
+mod event;
+mod explain;
+mod file;
+mod options;
+mod plan;
+mod run;
+mod system;
+mod units;
+
+pub use column::{Column, Instant};
+pub use event::Event;
+pub use explain::{Keeping, explain};
+pub use file::SceneFile;
+pub use options::{
+    EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OutputOptions,
+};
+pub use plan::{Dimension, Plan, Sampling};
+pub use run::{Outcome, Sink, run};
+pub use system::System;
+pub use units::{Quantity, Units};

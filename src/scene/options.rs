@@ -1,0 +1,188 @@
+//! What a user can set. Declared once: the flags of the command line, their help and the keys of a scene file are these
+//! fields, so they cannot drift apart.
+
+use std::path::PathBuf;
+
+const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given";
+
+/// The friction law, how many interfaces there are and how they are driven; the defaults are the paper's.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Model")]
+pub struct ModelOptions {
+    /// Friction law: spinodal (35), bounded (6), regularised-ageing (5), dieterich-ruina (4) or slip (Ruina 1983)
+    #[arg(long, value_name = "NAME", default_value = "spinodal")]
+    pub law: String,
+    /// Number of frictional interfaces in the slab, 1 or 2
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    pub interfaces: u8,
+    /// Driving velocity V_H [V*; m/s with --si]
+    #[arg(long, value_name = "V_H", value_parser = number, allow_negative_numbers = true)]
+    pub driving: Option<f64>,
+    /// Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with --si]
+    #[arg(long, value_name = "K", value_parser = number, allow_negative_numbers = true)]
+    pub stiffness: Option<f64>,
+    /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
+    #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
+    pub healing_time: Option<f64>,
+    /// Residual strength c of the spinodal law
+    #[arg(long, value_name = "c", default_value = "1e-3", value_parser = number, allow_negative_numbers = true)]
+    pub residual_strength: f64,
+    /// Direct effect a
+    #[arg(long, value_name = "a", default_value_t = 0.0349, value_parser = number, allow_negative_numbers = true)]
+    pub direct_effect: f64,
+    /// Evolution effect b
+    #[arg(long, value_name = "b", default_value_t = 0.0489, value_parser = number, allow_negative_numbers = true)]
+    pub evolution_effect: f64,
+    /// Friction coefficient a_v at V*
+    #[arg(long, value_name = "a_v", default_value_t = 0.369, value_parser = number, allow_negative_numbers = true)]
+    pub reference_friction: f64,
+    /// All input and output in SI units
+    #[arg(long)]
+    pub si: bool,
+    /// With --si: L in m [default: 0.9e-6]
+    #[arg(long, value_name = "L", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub slip_length: Option<f64>,
+    /// With --si: V* in m/s [default: 1e-6]
+    #[arg(long, value_name = "V*", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub reference_rate: Option<f64>,
+    /// With --si: sigma in Pa; the paper states none, and it only scales stress and stiffness [default: 1e6]
+    #[arg(long, value_name = "sigma", requires = "si", value_parser = number, allow_negative_numbers = true)]
+    pub normal_stress: Option<f64>,
+}
+
+/// How accurately and by which method.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Numerics")]
+pub struct NumericsOptions {
+    /// Integrator: auto, taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
+    #[arg(long, value_name = "NAME", default_value = "auto")]
+    pub method: String,
+    /// Relative local error tolerance
+    #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true)]
+    pub rtol: f64,
+    /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
+    #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true)]
+    pub atol: Option<f64>,
+    /// Give up after so many steps
+    #[arg(long, value_name = "N", default_value_t = crate::integrate::MAX_STEPS)]
+    pub max_steps: usize,
+}
+
+/// Where results go and how.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Output")]
+pub struct OutputOptions {
+    /// table, csv or json [default: by FILE's extension; else table on a terminal, csv into a file or pipe]
+    #[arg(long, value_name = "FORMAT")]
+    pub format: Option<String>,
+    /// Write data to FILE; - is standard output
+    #[arg(short, long, value_name = "FILE")]
+    pub output: Option<PathBuf>,
+    /// No messages, no progress, no summary; errors are still told
+    #[arg(short, long)]
+    pub quiet: bool,
+    /// Before computing, tell on standard error what will be computed, how and why
+    #[arg(long)]
+    pub explain: bool,
+}
+
+/// `law`: the steady-state friction law of one interface.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct LawOptions {
+    /// The law; --interfaces, --driving and --stiffness are accepted and change nothing here.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// Lowest slip rate [default: 1e-3 V*]
+    #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Grid")]
+    pub from: Option<f64>,
+    /// Highest slip rate [default: 1e6 V*]
+    #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Grid")]
+    pub to: Option<f64>,
+    /// Number of slip rates, equally spaced in ln V
+    #[arg(long, value_name = "N", default_value_t = 200, help_heading = "Grid")]
+    pub points: usize,
+    /// Draw tau_ss and k_c against V as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// `integrate`: a run in time.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct IntegrateOptions {
+    /// What slides.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// How the run starts.
+    #[arg(
+        long,
+        value_name = "START",
+        default_value = "near-symmetric",
+        allow_hyphen_values = true,
+        help_heading = "Run",
+        help = START_HELP
+    )]
+    pub start: String,
+    /// End of the run; it begins at 0
+    #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
+    pub until: Option<f64>,
+    /// N rows equally spaced in time, both ends included, instead of one at every step
+    #[arg(long, value_name = "N", conflicts_with_all = ["every", "final_only"], help_heading = "Run")]
+    pub points: Option<usize>,
+    /// A row at every multiple of DT
+    #[arg(long, value_name = "DT", value_parser = number, allow_negative_numbers = true, conflicts_with = "final_only", help_heading = "Run")]
+    pub every: Option<f64>,
+    /// Only the last row: nothing else is stored, and without slip columns nothing but steps is computed
+    #[arg(long, conflicts_with = "plot", help_heading = "Run")]
+    pub final_only: bool,
+    /// Only these columns, comma-separated; what is not asked for is not computed
+    #[arg(long, value_name = "NAMES", help_heading = "Run")]
+    pub columns: Option<String>,
+    /// Find stick-slip events: times between a maximum and a minimum of stress, when the interfaces together slip faster
+    /// than V_H. In JSON they are result.events; in CSV and tables a second table, in FILE.events.csv beside -o FILE.csv or
+    /// after an empty line
+    #[arg(long, help_heading = "Run")]
+    pub events: bool,
+    /// Count events whose total slip rate exceeds X times V_H [default: 2]
+    #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
+    pub event_threshold: Option<f64>,
+    /// Estimate the error of the last row by a second run, 100 times more accurate
+    #[arg(long, help_heading = "Run")]
+    pub estimate_error: bool,
+    /// By which method.
+    #[command(flatten)]
+    pub numerics: NumericsOptions,
+    /// Draw stress, states and slip rates in time, and the phase plane, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// `equilibria`: all steady states at a driving velocity.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct EquilibriaOptions {
+    /// What slides; without --stiffness there are no eigenvalues and no verdict.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
+    #[arg(long, value_name = "NAME", help_heading = "Numerics")]
+    pub solver: Option<String>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// A finite number; the domain of each parameter is checked where it has its meaning.
+fn number(text: &str) -> Result<f64, String> {
+    match text.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        Ok(_) => Err("must be a finite number".into()),
+        Err(_) if text.trim().is_empty() => Err("is empty, must be a number".into()),
+        Err(_) => Err("is not a number".into()),
+    }
+}

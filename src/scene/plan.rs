@@ -1,0 +1,275 @@
+//! From options to a plan: what is integrated, in which dimension, and which extras the outputs need. What no output needs
+//! is not in the plan, and so is not done.
+
+use super::column::Column;
+use super::options::{IntegrateOptions, NumericsOptions};
+use super::system::System;
+use super::units::Quantity;
+use crate::error::{Error, Result};
+use crate::friction::{Law, positive, steady_stress};
+use crate::integrate::{Choice, Tolerances};
+use crate::model::Loading;
+
+/// The asymmetry of `--start near-symmetric` where none is given.
+const NEAR_SYMMETRIC: f64 = 0.01;
+/// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
+const EVENT_THRESHOLD: f64 = 2.0;
+/// More rows than this are a slip of the pen.
+const MAX_ROWS: f64 = 1e9;
+/// How much tighter the second run of `--estimate-error` is.
+pub(super) const TIGHTER: f64 = 100.0;
+/// Below this tolerance rounding rules, and a tighter one gains nothing.
+const TIGHTEST: f64 = 1e-14;
+
+/// The system that is integrated.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Dimension {
+    /// One interface (11), in 2-D.
+    Single,
+    /// Two interfaces that start equal and so stay equal: their symmetric subspace, in 2-D.
+    Symmetric,
+    /// Two interfaces (19), in 3-D.
+    Full,
+}
+
+impl Dimension {
+    /// 2 or 3.
+    pub fn number(self) -> usize {
+        match self {
+            Dimension::Single | Dimension::Symmetric => 2,
+            Dimension::Full => 3,
+        }
+    }
+}
+
+/// At which times there are rows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sampling {
+    /// At the ends of the integrator's own steps.
+    EveryStep,
+    /// At so many times, equally spaced, both ends included.
+    Points(usize),
+    /// At all multiples of a time.
+    Every(f64),
+    /// At the end alone.
+    FinalOnly,
+}
+
+/// A run, checked, and only what its outputs need.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Plan {
+    /// What slides.
+    pub system: System,
+    /// V_H and K.
+    pub loading: Loading,
+    /// tau and ln psi_1, ln psi_2 at the start.
+    pub start: (f64, [f64; 2]),
+    /// What is integrated.
+    pub dimension: Dimension,
+    /// End of the run.
+    pub until: f64,
+    /// When there are rows.
+    pub sampling: Sampling,
+    /// What a row holds.
+    pub columns: Vec<Column>,
+    /// The threshold of stick-slip events over V_H, where they are asked for.
+    pub events: Option<f64>,
+    /// Whether the run is drawn, which takes points between the steps and whatever rows are asked for.
+    pub picture: bool,
+    /// Whether a second run estimates the error.
+    pub estimate_error: bool,
+    /// The method's name as it was asked for.
+    pub asked_method: String,
+    /// The method.
+    pub method: Choice,
+    /// The tolerances.
+    pub tolerances: Tolerances,
+    /// The bound on steps.
+    pub max_steps: usize,
+}
+
+impl Plan {
+    /// Checks the options of a run and keeps what its outputs need.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &IntegrateOptions) -> Result<Self> {
+        let system = System::new(&options.model)?;
+        let loading = system.loading()?;
+        let start = start(&options.start, &system, &loading)?;
+        let dimension = if system.interfaces == 1 {
+            Dimension::Single
+        } else if start.1[0] == start.1[1] {
+            Dimension::Symmetric
+        } else {
+            Dimension::Full
+        };
+        let until = options
+            .until
+            .ok_or_else(|| Error::Input("--until T is missing: when shall the run end?".into()))?;
+        let until = system
+            .units
+            .inward(Quantity::Time, positive("until", until)?);
+        let sampling = sampling(options, &system, until)?;
+        let columns = match &options.columns {
+            Some(names) => Column::listed(names, system.interfaces)?,
+            None => Column::all(system.interfaces),
+        };
+        let (method, tolerances) = numerics(&options.numerics)?;
+        Ok(Plan {
+            loading,
+            start,
+            dimension,
+            until,
+            sampling,
+            columns,
+            events: options
+                .events
+                .then(|| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
+            picture: options.plot.is_some(),
+            estimate_error: options.estimate_error,
+            asked_method: options.numerics.method.clone(),
+            method,
+            tolerances,
+            max_steps: options.numerics.max_steps,
+            system,
+        })
+        .and_then(Plan::checked)
+    }
+
+    fn checked(self) -> Result<Self> {
+        if let Some(threshold) = self.events {
+            // Below 1 the excursions would not be slip faster than V_H, which is what an event is.
+            if threshold < 1.0 {
+                return Err(Error::parameter("event-threshold", threshold, "at least 1"));
+            }
+        }
+        if self.max_steps == 0 {
+            return Err(Error::parameter("max-steps", 0, "at least 1"));
+        }
+        Ok(self)
+    }
+
+    /// Whether a column or the events need the slip, and with it a quadrature along every step.
+    pub fn needs_slip(&self) -> bool {
+        self.events.is_some() || self.columns.iter().any(|c| matches!(c, Column::Slip(_)))
+    }
+
+    /// Whether anything must be seen between start and end.
+    pub fn observed(&self) -> bool {
+        self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture
+    }
+
+    /// The tolerances of the second run.
+    pub fn tighter(&self) -> Tolerances {
+        let tighten = |x: f64| (x / TIGHTER).max(TIGHTEST.min(x));
+        Tolerances {
+            rtol: tighten(self.tolerances.rtol),
+            atol: tighten(self.tolerances.atol),
+        }
+    }
+}
+
+/// The method and the tolerances, checked.
+fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
+    let tolerances = Tolerances::new(options.rtol, options.atol.unwrap_or(options.rtol))?;
+    Ok((Choice::named(&options.method)?, tolerances))
+}
+
+fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<Sampling> {
+    if options.final_only {
+        return Ok(Sampling::FinalOnly);
+    }
+    if let Some(points) = options.points {
+        if !(2..=MAX_ROWS as usize).contains(&points) {
+            return Err(Error::parameter("points", points, "from 2 to 1e9"));
+        }
+        return Ok(Sampling::Points(points));
+    }
+    let Some(every) = options.every else {
+        return Ok(Sampling::EveryStep);
+    };
+    let interval = system
+        .units
+        .inward(Quantity::Time, positive("every", every)?);
+    if until / interval > MAX_ROWS {
+        return Err(Error::parameter(
+            "every",
+            every,
+            "at least a billionth of --until",
+        ));
+    }
+    Ok(Sampling::Every(interval))
+}
+
+/// tau and ln psi of both interfaces; equal entries stand for one interface too.
+fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
+    if let Some(rest) = text.strip_prefix("near-symmetric") {
+        let asymmetry = match rest.strip_prefix(':') {
+            Some(number) => start_number(number, text)?,
+            None if rest.is_empty() => NEAR_SYMMETRIC,
+            None => return Err(unreadable(text, system)),
+        };
+        return near_symmetric(asymmetry, system, loading);
+    }
+    let numbers: Vec<f64> = text
+        .split(',')
+        .map(|part| start_number(part, text))
+        .collect::<Result<_>>()?;
+    if numbers.len() != system.interfaces + 1 {
+        return Err(unreadable(text, system));
+    }
+    let mut log_state = [0.0; 2];
+    for (w, &psi) in log_state.iter_mut().zip(&numbers[1..]) {
+        *w = system
+            .units
+            .inward(Quantity::State, positive("psi in --start", psi)?)
+            .ln();
+    }
+    if system.interfaces == 1 {
+        log_state[1] = log_state[0];
+    }
+    bounded(log_state, system)?;
+    Ok((system.units.inward(Quantity::Stress, numbers[0]), log_state))
+}
+
+/// The symmetric steady state, with the second interface (the only one, if there is one) moved off it by exp(EPS).
+fn near_symmetric(asymmetry: f64, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
+    let v = loading.driving / system.interfaces as f64;
+    let w = system.law.steady_state(v).ln();
+    let moved = w + asymmetry;
+    let log_state = if system.interfaces == 1 {
+        [moved, moved]
+    } else {
+        [w, moved]
+    };
+    bounded(log_state, system)?;
+    Ok((steady_stress(&system.law, v), log_state))
+}
+
+fn bounded(log_state: [f64; 2], system: &System) -> Result<()> {
+    match log_state.into_iter().find(|&w| w > 0.0) {
+        Some(w) if system.law.bounds_state() => Err(Error::parameter(
+            "psi in --start",
+            w.exp(),
+            "in (0, 1], where this law keeps the state",
+        )),
+        _ => Ok(()),
+    }
+}
+
+fn start_number(part: &str, whole: &str) -> Result<f64> {
+    match part.trim().parse::<f64>() {
+        Ok(x) if x.is_finite() => Ok(x),
+        _ => Err(Error::Input(format!(
+            "--start {whole:?}: {part:?} is not a finite number"
+        ))),
+    }
+}
+
+fn unreadable(text: &str, system: &System) -> Error {
+    let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][system.interfaces - 1];
+    Error::Input(format!(
+        "--start {text:?} must be {shape} or near-symmetric[:EPS]"
+    ))
+}

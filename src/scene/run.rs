@@ -1,0 +1,297 @@
+//! From a plan to rows: one flow, watched only as far as the plan needs.
+
+use super::column::{Column, Instant, fill, slip_rates};
+use super::event::{Detector, Event, at};
+use super::plan::{Dimension, Plan, Sampling};
+use crate::error::{Error, Result};
+use crate::field::State;
+use crate::friction::AnyLaw;
+use crate::integrate::{Control, Step, Tolerances, Work};
+use crate::model::{self, Driven};
+
+/// Nodes and weights of the Gauss-Legendre quadrature with five points on (0, 1): exact to degree 9, more than the dense
+/// output has.
+const GAUSS: [(f64, f64); 5] = [
+    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
+    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
+    (0.5, 0.284_444_444_444_444_44),
+    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
+    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
+];
+
+/// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
+const PICTURED: usize = 4;
+
+/// Takes what a run yields, as it comes.
+pub trait Sink {
+    /// A row, in the plan's columns and the user's units.
+    fn row(&mut self, row: &[f64]) -> Control;
+    /// A point of the picture, in the columns [`Column::pictured`] and the user's units.
+    fn drawn(&mut self, _point: &[f64]) {}
+    /// The run has come to this fraction of its time.
+    fn reached(&mut self, fraction: f64) -> Control;
+}
+
+/// What a run came to.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome {
+    /// The last row, in all columns asked for; `None` if a run that nobody watched failed.
+    pub last: Option<Vec<f64>>,
+    /// The events, dimensionless.
+    pub events: Vec<Event>,
+    /// What it cost, the second run of an error estimate included.
+    pub work: Work,
+    /// Relative global error of the last row, largest of stress and states; `None` where not asked for or not known.
+    pub error_estimate: Option<f64>,
+    /// Why the error could not be estimated.
+    pub estimate_failure: Option<Error>,
+    /// Why it ended early.
+    pub failure: Option<Error>,
+    /// Whether the sink stopped it.
+    pub stopped: bool,
+}
+
+/// Runs a plan.
+///
+/// # Errors
+/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`Outcome::failure`].
+pub fn run(plan: &Plan, sink: &mut dyn Sink) -> Result<Outcome> {
+    let (law, loading) = (plan.system.law, plan.loading);
+    let (tau, [first, second]) = plan.start;
+    let y = State::<2>::new(tau, first);
+    match plan.dimension {
+        Dimension::Single => flow(plan, &*model::single_interface(law, loading), y, sink),
+        Dimension::Symmetric => flow(plan, &*model::symmetric(law, loading), y, sink),
+        Dimension::Full => {
+            let y = State::<3>::new(tau, first, second);
+            flow(plan, &*model::two_interfaces(law, loading), y, sink)
+        }
+    }
+}
+
+fn flow<const N: usize>(
+    plan: &Plan,
+    field: &dyn Driven<N>,
+    y0: State<N>,
+    sink: &mut dyn Sink,
+) -> Result<Outcome> {
+    let mut integrator = plan
+        .method
+        .integrator::<N>(plan.tolerances, plan.max_steps)?;
+    let mut watch = Watch::new(plan, field, &y0, sink);
+    watch.start();
+    let span = (0.0, plan.until);
+    let end = if plan.observed() {
+        let mut observer = |step: &Step<'_, N>| watch.see(step);
+        integrator.flow(as_field(field), span, &y0, Some(&mut observer))
+    } else {
+        integrator.flow(as_field(field), span, &y0, None)
+    };
+    let mut outcome = watch.finish(&end);
+    outcome.work = integrator.work();
+    if let (Ok(y), true) = (end, plan.estimate_error && !outcome.stopped) {
+        estimate_error(plan, field, &y0, &y, &mut outcome)?;
+    }
+    Ok(outcome)
+}
+
+fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorField<N> {
+    field
+}
+
+/// The distance to a run that is so much more accurate that its own error does not count.
+fn estimate_error<const N: usize>(
+    plan: &Plan,
+    field: &dyn Driven<N>,
+    y0: &State<N>,
+    end: &State<N>,
+    outcome: &mut Outcome,
+) -> Result<()> {
+    let tolerances: Tolerances = plan.tighter();
+    let mut integrator = plan.method.integrator::<N>(tolerances, plan.max_steps)?;
+    let reference = integrator.flow(as_field(field), (0.0, plan.until), y0, None);
+    outcome.work = sum(outcome.work, integrator.work());
+    match reference {
+        Ok(reference) => outcome.error_estimate = Some(relative_distance(end, &reference)),
+        Err(error) => outcome.estimate_failure = Some(error),
+    }
+    Ok(())
+}
+
+/// Largest relative difference in stress and states: the states by their logarithms.
+fn relative_distance<const N: usize>(y: &State<N>, reference: &State<N>) -> f64 {
+    let stress = ((y[0] - reference[0]) / reference[0]).abs();
+    (1..N).fold(stress, |largest, i| {
+        largest.max((y[i] - reference[i]).exp_m1().abs())
+    })
+}
+
+fn sum(a: Work, b: Work) -> Work {
+    Work {
+        steps: a.steps + b.steps,
+        rejected: a.rejected + b.rejected,
+        rhs: a.rhs + b.rhs,
+        jacobians: a.jacobians + b.jacobians,
+        factorisations: a.factorisations + b.factorisations,
+        nonlinear: a.nonlinear + b.nonlinear,
+    }
+}
+
+/// Sees the steps of a run and makes rows, slips and events of them.
+struct Watch<'a, const N: usize> {
+    plan: &'a Plan,
+    sink: &'a mut dyn Sink,
+    detector: Option<Detector<'a, N>>,
+    /// The end of the last step seen.
+    here: Instant,
+    row: Vec<f64>,
+    pictured: Vec<Column>,
+    /// Rows at fixed times made so far.
+    sampled: usize,
+    stopped: bool,
+}
+
+impl<'a, const N: usize> Watch<'a, N> {
+    fn new(
+        plan: &'a Plan,
+        field: &'a dyn Driven<N>,
+        y0: &State<N>,
+        sink: &'a mut dyn Sink,
+    ) -> Self {
+        Watch {
+            plan,
+            sink,
+            detector: plan
+                .events
+                .map(|threshold| Detector::new(field, plan, threshold)),
+            here: Instant::new(0.0, y0, [0.0; 2]),
+            row: Vec::new(),
+            pictured: Column::pictured(plan.system.interfaces),
+            sampled: 0,
+            stopped: false,
+        }
+    }
+
+    fn start(&mut self) {
+        if self.plan.picture {
+            let here = self.here;
+            self.draw(&here);
+        }
+        if self.plan.sampling != Sampling::FinalOnly {
+            let here = self.here;
+            self.emit(&here);
+            self.sampled = 1;
+        }
+    }
+
+    fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
+        let law = &self.plan.system.law;
+        let before = self.here.slip;
+        // Always from the step's beginning, so that a slip does not depend on which rows are asked for. In 2-D the balance
+        // K (V_H t - n slip) = tau - tau(0) would do without a quadrature, but loses digits where K is small.
+        let slip = |t: f64| advance(law, step, before, t);
+        if let Some(detector) = &mut self.detector {
+            detector.see(step, &slip)?;
+        }
+        let needs_slip = self.plan.needs_slip();
+        let instant = |t: f64| {
+            let slip = if needs_slip { slip(t) } else { before };
+            Instant::new(t, &at(step, t), slip)
+        };
+        while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
+            self.emit(&instant(t));
+            self.sampled += 1;
+        }
+        if self.plan.picture {
+            for part in 1..=PICTURED {
+                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
+                self.draw(&Instant::new(t, &at(step, t), before));
+            }
+        }
+        self.here = instant(step.t1);
+        if self.plan.sampling == Sampling::EveryStep {
+            let here = self.here;
+            self.emit(&here);
+        }
+        if self.sink.reached(step.t1 / self.plan.until) == Control::Stop {
+            self.stopped = true;
+        }
+        Ok(if self.stopped {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    }
+
+    /// The next fixed time of a row.
+    fn next_sample(&self) -> Option<f64> {
+        let (i, until) = (self.sampled, self.plan.until);
+        match self.plan.sampling {
+            Sampling::EveryStep | Sampling::FinalOnly => None,
+            Sampling::Points(n) if i < n => Some(if i + 1 == n {
+                until
+            } else {
+                until * (i as f64 / (n - 1) as f64)
+            }),
+            Sampling::Points(_) => None,
+            Sampling::Every(dt) => {
+                let t = i as f64 * dt;
+                // The last multiple may exceed the end by rounding alone.
+                if (t - until).abs() <= 1e-9 * dt {
+                    Some(until)
+                } else {
+                    Some(t)
+                }
+            }
+        }
+    }
+
+    fn draw(&mut self, at: &Instant) {
+        fill(&mut self.row, &self.pictured, &self.plan.system, at);
+        self.sink.drawn(&self.row);
+    }
+
+    fn emit(&mut self, at: &Instant) {
+        fill(&mut self.row, &self.plan.columns, &self.plan.system, at);
+        if self.sink.row(&self.row) == Control::Stop {
+            self.stopped = true;
+        }
+    }
+
+    fn finish(mut self, end: &Result<State<N>>) -> Outcome {
+        let plan = self.plan;
+        let known = end.is_ok() || plan.observed();
+        if let Ok(y) = end
+            && !self.stopped
+        {
+            self.here = Instant::new(plan.until, y, self.here.slip);
+        }
+        if plan.sampling == Sampling::FinalOnly && end.is_ok() && !self.stopped {
+            let here = self.here;
+            self.emit(&here);
+        }
+        fill(&mut self.row, &plan.columns, &plan.system, &self.here);
+        Outcome {
+            last: known.then_some(self.row),
+            events: self.detector.map_or_else(Vec::new, |d| d.events),
+            work: Work::default(),
+            error_estimate: None,
+            estimate_failure: None,
+            failure: end.as_ref().err().cloned(),
+            stopped: self.stopped,
+        }
+    }
+}
+
+/// The slips at t, from those at the beginning of the step, by quadrature along the dense output.
+fn advance<const N: usize>(law: &AnyLaw, step: &Step<'_, N>, before: [f64; 2], t: f64) -> [f64; 2] {
+    let h = t - step.t0;
+    let mut slip = before;
+    for (node, weight) in GAUSS {
+        let v = slip_rates(law, &(step.dense)(step.t0 + node * h));
+        for i in 0..2 {
+            slip[i] += weight * h * v[i];
+        }
+    }
+    slip
+}

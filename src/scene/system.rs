@@ -1,0 +1,148 @@
+//! From the model's options to a checked system, and back to what the output says about it.
+
+use super::options::ModelOptions;
+use super::units::{Quantity, Units};
+use crate::error::{Error, Result};
+use crate::friction::{AnyLaw, Law, Parameters, positive};
+use crate::model::Loading;
+use crate::model::scales::Scales;
+use serde_json::{Map, Value, json};
+
+/// L in m, fitted by the paper to Heslot et al. (1994).
+const SLIP_LENGTH: f64 = 0.9e-6;
+/// V* in m/s of the paper.
+const REFERENCE_RATE: f64 = 1e-6;
+/// sigma in Pa. The paper states none.
+const NORMAL_STRESS: f64 = 1e6;
+/// R of the paper.
+const HEALING_TIME: f64 = 100.0;
+
+/// What slides, checked and dimensionless, with the units that lead back.
+#[derive(Debug, Clone, PartialEq)]
+pub struct System {
+    /// The law of every interface.
+    pub law: AnyLaw,
+    /// 1 or 2.
+    pub interfaces: usize,
+    /// V_H, where given.
+    pub driving: Option<f64>,
+    /// K, where given.
+    pub stiffness: Option<f64>,
+    /// What numbers are measured in.
+    pub units: Units,
+    /// a: friction = a tau.
+    pub direct_effect: f64,
+    echo: Map<String, Value>,
+}
+
+impl System {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a value outside its domain, in the user's own name and number.
+    pub fn new(options: &ModelOptions) -> Result<Self> {
+        if !(1..=2).contains(&options.interfaces) {
+            return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
+        }
+        // Checked in the user's numbers, before any conversion, so that the message shows what was typed.
+        for (name, value) in [
+            ("driving", options.driving),
+            ("stiffness", options.stiffness),
+            ("healing-time", options.healing_time),
+        ] {
+            value.map(|value| positive(name, value)).transpose()?;
+        }
+        let scales = options.si.then(|| scales(options)).transpose()?;
+        let time = scales.map_or(1.0, |s| s.time);
+        let healing_time = options.healing_time.unwrap_or(HEALING_TIME * time);
+        let parameters = Parameters::new(
+            options.direct_effect,
+            options.evolution_effect,
+            options.reference_friction,
+            positive("healing-time", healing_time / time)?,
+            options.residual_strength,
+        )?;
+        let law = AnyLaw::named(&options.law, parameters)?;
+        let units = Units::new(scales, !law.bounds_state());
+        let inward = |quantity, name, value: Option<f64>| {
+            value
+                .map(|x| positive(name, units.inward(quantity, x)))
+                .transpose()
+        };
+        Ok(System {
+            law,
+            interfaces: usize::from(options.interfaces),
+            driving: inward(Quantity::SlipRate, "driving", options.driving)?,
+            stiffness: inward(Quantity::Stiffness, "stiffness", options.stiffness)?,
+            units,
+            direct_effect: options.direct_effect,
+            echo: echo(options, healing_time),
+        })
+    }
+
+    /// V_H and K, both needed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the missing option.
+    pub fn loading(&self) -> Result<Loading> {
+        Loading::new(
+            self.needed("driving", "V_H", self.driving)?,
+            self.needed("stiffness", "K", self.stiffness)?,
+        )
+    }
+
+    /// V_H, needed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the missing option.
+    pub fn needed_driving(&self) -> Result<f64> {
+        self.needed("driving", "V_H", self.driving)
+    }
+
+    fn needed(&self, name: &str, symbol: &str, value: Option<f64>) -> Result<f64> {
+        value.ok_or_else(|| {
+            Error::Input(format!("--{name} {symbol} is missing, and has no default"))
+        })
+    }
+
+    /// The model as the output tells it: every parameter, in the user's units.
+    pub fn echo(&self) -> &Map<String, Value> {
+        &self.echo
+    }
+}
+
+fn scales(options: &ModelOptions) -> Result<Scales> {
+    Scales::new(
+        options.direct_effect,
+        options.slip_length.unwrap_or(SLIP_LENGTH),
+        options.reference_rate.unwrap_or(REFERENCE_RATE),
+        options.normal_stress.unwrap_or(NORMAL_STRESS),
+    )
+}
+
+fn echo(options: &ModelOptions, healing_time: f64) -> Map<String, Value> {
+    let mut pairs = vec![
+        ("law", json!(options.law)),
+        ("interfaces", json!(options.interfaces)),
+        ("driving", json!(options.driving)),
+        ("stiffness", json!(options.stiffness)),
+        ("healing_time", json!(healing_time)),
+        ("residual_strength", json!(options.residual_strength)),
+        ("direct_effect", json!(options.direct_effect)),
+        ("evolution_effect", json!(options.evolution_effect)),
+        ("reference_friction", json!(options.reference_friction)),
+        ("si", json!(options.si)),
+    ];
+    if options.si {
+        let or = |value: Option<f64>, default: f64| json!(value.unwrap_or(default));
+        pairs.extend([
+            ("slip_length", or(options.slip_length, SLIP_LENGTH)),
+            ("reference_rate", or(options.reference_rate, REFERENCE_RATE)),
+            ("normal_stress", or(options.normal_stress, NORMAL_STRESS)),
+        ]);
+    }
+    pairs
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}

@@ -1,0 +1,129 @@
+//! What a number on the command line is measured in: dimensionless, or SI with `--si`.
+
+use crate::model::scales::Scales;
+use crate::number::Uncertain;
+
+/// What a number measures.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Stress tau.
+    Stress,
+    /// Slip rate v, and the driving velocity.
+    SlipRate,
+    /// Slip.
+    Length,
+    /// Time.
+    Time,
+    /// State psi: a number in (0, 1], or a time for the laws that do not bound it.
+    State,
+    /// ln psi.
+    LogState,
+    /// Stiffness K.
+    Stiffness,
+    /// An eigenvalue.
+    Growth,
+    /// A friction coefficient, a ratio, a name.
+    Number,
+}
+
+/// The units in which numbers come in and go out.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Units {
+    scales: Option<Scales>,
+    state_is_time: bool,
+}
+
+impl Units {
+    /// SI by these scales, or dimensionless without; `state_is_time` for laws whose steady state is psi = L/V.
+    pub fn new(scales: Option<Scales>, state_is_time: bool) -> Self {
+        Units {
+            scales,
+            state_is_time,
+        }
+    }
+
+    /// Whether the numbers are in SI.
+    pub fn si(&self) -> bool {
+        self.scales.is_some()
+    }
+
+    /// One dimensionless unit, in the user's units.
+    pub fn factor(&self, quantity: Quantity) -> f64 {
+        let Some(scales) = &self.scales else {
+            return 1.0;
+        };
+        match quantity {
+            Quantity::Stress => scales.stress,
+            Quantity::SlipRate => scales.slip_rate,
+            Quantity::Length => scales.length,
+            Quantity::Time => scales.time,
+            Quantity::Stiffness => scales.stiffness,
+            Quantity::Growth => 1.0 / scales.time,
+            Quantity::State if self.state_is_time => scales.time,
+            Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
+        }
+    }
+
+    /// From dimensionless to the user's units.
+    pub fn outward(&self, quantity: Quantity, x: f64) -> f64 {
+        match quantity {
+            Quantity::LogState => x + self.factor(Quantity::State).ln(),
+            _ => x * self.factor(quantity),
+        }
+    }
+
+    /// From the user's units to dimensionless.
+    pub fn inward(&self, quantity: Quantity, x: f64) -> f64 {
+        match quantity {
+            Quantity::LogState => x - self.factor(Quantity::State).ln(),
+            _ => x / self.factor(quantity),
+        }
+    }
+
+    /// A value and the bound on its error, in the user's units; conversion in and out costs a few roundings more.
+    pub fn outward_uncertain(&self, quantity: Quantity, x: Uncertain) -> Uncertain {
+        /// Roundings of the inputs, of the scales and of the product, generously.
+        const CONVERSION_ULPS: f64 = 16.0;
+        let value = self.outward(quantity, x.value);
+        if !self.si() {
+            return x;
+        }
+        let rounding = CONVERSION_ULPS * f64::EPSILON * value.abs();
+        Uncertain::new(value, x.uncertainty * self.factor(quantity) + rounding)
+    }
+
+    /// The unit's name.
+    pub fn name(&self, quantity: Quantity) -> &'static str {
+        let si = self.si();
+        match quantity {
+            Quantity::Stress if si => "Pa",
+            Quantity::Stress => "a sigma",
+            Quantity::SlipRate if si => "m/s",
+            Quantity::SlipRate => "V*",
+            Quantity::Length if si => "m",
+            Quantity::Length => "L",
+            Quantity::Time if si => "s",
+            Quantity::Time => "L/V*",
+            Quantity::Stiffness if si => "Pa/m",
+            Quantity::Stiffness => "a sigma/L",
+            Quantity::Growth if si => "1/s",
+            Quantity::Growth => "V*/L",
+            Quantity::State if self.state_is_time && si => "s",
+            Quantity::State if self.state_is_time => "L/V*",
+            Quantity::State | Quantity::LogState | Quantity::Number => "1",
+        }
+    }
+
+    /// The names of all units, by quantity: what the `units` object of the output holds.
+    pub fn names(&self) -> [(&'static str, &'static str); 7] {
+        [
+            ("stress", self.name(Quantity::Stress)),
+            ("slip_rate", self.name(Quantity::SlipRate)),
+            ("slip", self.name(Quantity::Length)),
+            ("time", self.name(Quantity::Time)),
+            ("state", self.name(Quantity::State)),
+            ("stiffness", self.name(Quantity::Stiffness)),
+            ("eigenvalue", self.name(Quantity::Growth)),
+        ]
+    }
+}

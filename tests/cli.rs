@@ -1,0 +1,310 @@
+//! The command line as a user meets it: exit codes, messages, files.
+#![allow(missing_docs)]
+
+mod command;
+
+use command::{contents, csv, folder, object, run, twinslip};
+use std::io::{BufRead, BufReader};
+use std::process::{Command, Stdio};
+
+const RUN: &str = "integrate --driving 0.12 --stiffness 0.14 --until 10";
+
+/// Exit code 2, nothing on standard output, and the sentence.
+fn refused(arguments: &str, sentence: &str) {
+    let ended = twinslip(arguments);
+    assert_eq!(ended.code, 2, "{arguments}: {}", ended.err);
+    assert_eq!(ended.out, "", "{arguments}");
+    assert!(
+        ended.err.starts_with("error: ") && ended.err.contains(sentence),
+        "{arguments}: {}",
+        ended.err
+    );
+}
+
+#[test]
+fn parameters_outside_their_domain_are_refused() {
+    let model = |change: &str| format!("{RUN} {change}");
+    for value in ["0", "-1"] {
+        refused(
+            &format!("integrate --driving {value} --stiffness 0.14 --until 10"),
+            &format!("driving is {value}, but must be positive and finite"),
+        );
+        refused(
+            &format!("integrate --driving 1 --stiffness {value} --until 10"),
+            &format!("stiffness is {value}, but must be positive and finite"),
+        );
+        refused(
+            &format!("integrate --driving 1 --stiffness 1 --until {value}"),
+            &format!("until is {value}, but must be positive and finite"),
+        );
+        refused(
+            &model(&format!("--healing-time {value}")),
+            &format!("healing-time is {value}, but must be positive and finite"),
+        );
+        refused(
+            &model(&format!("--start 10,{value},0.1")),
+            &format!("psi in --start is {value}, but must be positive and finite"),
+        );
+        refused(&model(&format!("--rtol {value}")), "rtol is");
+        refused(&model(&format!("--atol {value}")), "atol is");
+        refused(&model(&format!("--every {value}")), "every is");
+        refused(
+            &model(&format!("--direct-effect {value}")),
+            "direct-effect is",
+        );
+        refused(
+            &format!("equilibria --driving {value}"),
+            &format!("driving is {value}, but must be positive and finite"),
+        );
+        refused(&format!("law --from {value}"), "from is");
+    }
+    refused(&model("--residual-strength -1"), "residual-strength is -1");
+    refused(
+        &model("--interfaces 3"),
+        "interfaces is 3, but must be 1 or 2",
+    );
+    refused(
+        &model("--max-steps 0"),
+        "max-steps is 0, but must be at least 1",
+    );
+    refused(&model("--points 1"), "points is 1, but must be from 2");
+    refused(
+        &model("--rtol 1"),
+        "rtol is 1, but must be greater than 0 and less than 1",
+    );
+    refused(
+        &model("--law byerlee"),
+        "law is byerlee, but must be one of spinodal",
+    );
+    refused(
+        &model("--format xml"),
+        "format is xml, but must be one of table, csv, json",
+    );
+    refused(
+        &model("--events --event-threshold 0.5"),
+        "event-threshold is 0.5",
+    );
+    refused("law --from 2 --to 1", "--from must be less than --to");
+    refused(
+        "equilibria --driving 1 --solver gauss",
+        "solver is gauss, but must be kinsol or newton",
+    );
+}
+
+#[test]
+fn a_state_above_one_is_refused_where_the_law_bounds_it() {
+    for law in ["spinodal", "bounded"] {
+        refused(
+            &format!("{RUN} --law {law} --start 10,1.5,0.1"),
+            "psi in --start is 1.5, but must be in (0, 1]",
+        );
+    }
+    let free = twinslip(&format!("{RUN} --law dieterich-ruina --start 10,1.5,0.1"));
+    assert_eq!(free.code, 0, "{}", free.err);
+}
+
+#[test]
+fn what_is_no_finite_number_is_refused() {
+    for name in ["driving", "stiffness", "until", "rtol", "healing-time"] {
+        for value in ["nan", "inf", "-inf"] {
+            refused(
+                &format!("integrate --{name}={value}"),
+                "must be a finite number",
+            );
+        }
+        refused(&format!("integrate --{name}=ten"), "is not a number");
+        let empty = run(&["integrate", &format!("--{name}="), "--interfaces", "1"]);
+        assert_eq!(empty.code, 2, "{}", empty.err);
+    }
+    for start in [
+        "nan,0.1,0.1",
+        "10,inf,0.1",
+        "10,,0.1",
+        "near-symmetric:x",
+        "ten",
+    ] {
+        refused(&format!("{RUN} --start {start}"), "is not a finite number");
+    }
+    refused(&format!("{RUN} --start 10,0.1"), "must be TAU,PSI1,PSI2");
+    refused(
+        &format!("{RUN} --interfaces 1 --start 10,0.1,0.1"),
+        "must be TAU,PSI or",
+    );
+    refused(
+        &format!("{RUN} --start near-symmetrical"),
+        "must be TAU,PSI1,PSI2 or",
+    );
+}
+
+#[test]
+fn conflicts_and_gaps_are_refused() {
+    for pair in [
+        "--points 5 --every 1",
+        "--points 5 --final-only",
+        "--every 1 --final-only",
+        "--final-only --plot x.svg",
+    ] {
+        refused(&format!("{RUN} {pair}"), "cannot be used with");
+    }
+    refused(&format!("{RUN} --event-threshold 3"), "--events");
+    refused(&format!("{RUN} --normal-stress 1e6"), "--si");
+    refused(
+        "integrate --stiffness 1 --until 1",
+        "--driving V_H is missing",
+    );
+    refused(
+        "integrate --driving 1 --until 1",
+        "--stiffness K is missing",
+    );
+    refused(
+        "integrate --driving 1 --stiffness 1",
+        "--until T is missing",
+    );
+    refused("equilibria", "--driving V_H is missing");
+    refused(
+        &format!("{RUN} --columns time,stres"),
+        "did you mean \"stress\"?",
+    );
+    refused(&format!("{RUN} --plot run.pdf"), "must end in .svg or .png");
+    refused(
+        &format!("{RUN} --method taylor"),
+        "choose one of auto, rodas5p",
+    );
+    refused(
+        &format!("{RUN} --method euler"),
+        "choose one of auto, rodas5p",
+    );
+}
+
+#[cfg(not(feature = "sundials"))]
+#[test]
+fn without_sundials_its_methods_are_refused() {
+    refused(&format!("{RUN} --method cvode-bdf"), "needs SUNDIALS");
+    refused("equilibria --driving 1 --solver kinsol", "needs SUNDIALS");
+}
+
+#[test]
+fn every_method_of_this_build_runs() {
+    let methods = ["auto", "rodas5p", "rodas4", "rosenbrock23"];
+    let sundials: &[&str] = if cfg!(feature = "sundials") {
+        &["cvode-bdf", "cvode-adams"]
+    } else {
+        &[]
+    };
+    for method in methods.iter().chain(sundials) {
+        let made = object(&format!("{RUN} --rtol 1e-6 --method {method}"));
+        assert_eq!(made["numerics"]["asked"], *method);
+    }
+}
+
+#[test]
+fn paths_are_tried_before_computing_and_nothing_is_left() {
+    let place = folder("paths");
+    let missing = place.join("no").join("run.csv");
+    refused(&format!("{RUN} -o {}", missing.display()), "cannot write");
+    refused(
+        &format!("{RUN} --plot {}/no/run.svg", place.display()),
+        "cannot write",
+    );
+    refused(
+        &format!("{RUN} -o {}", place.display()),
+        "it is a directory",
+    );
+    // A good path and bad input: no file.
+    let good = place.join("run.csv");
+    refused(&format!("{RUN} --rtol -1 -o {}", good.display()), "rtol");
+    refused(
+        &format!(
+            "{RUN} --start 10,2,0.1 -o {}",
+            place.join("run.json").display()
+        ),
+        "psi",
+    );
+    assert_eq!(contents(&place), Vec::<String>::new());
+    let same = place.join("same.svg");
+    refused(
+        &format!("{RUN} -o {0} --plot {0}", same.display()),
+        "cannot be both",
+    );
+}
+
+#[test]
+fn files_get_the_format_of_their_extension() {
+    let place = folder("formats");
+    for (name, begins) in [
+        ("a.json", "{"),
+        ("a.csv", "# twinslip"),
+        ("a.dat", "# twinslip"),
+    ] {
+        let path = place.join(name);
+        let ended = twinslip(&format!("{RUN} -q -o {}", path.display()));
+        assert_eq!(
+            (ended.code, ended.out.as_str(), ended.err.as_str()),
+            (0, "", "")
+        );
+        let text = std::fs::read_to_string(&path).expect("written");
+        assert!(text.starts_with(begins), "{name}: {text}");
+    }
+    let dash = twinslip(&format!("{RUN} -q -o - --format json"));
+    assert!(dash.out.starts_with('{'));
+    assert_eq!(contents(&place).len(), 3, "no temporary file is left");
+}
+
+#[test]
+fn talk_goes_to_standard_error() {
+    let ended = twinslip(RUN);
+    assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    assert!(ended.err.contains("steps"), "{}", ended.err);
+    assert!(csv(&ended.out)[0][0] == "time");
+    assert_eq!(twinslip(&format!("{RUN} -q")).err, "");
+}
+
+#[test]
+fn a_reader_who_leaves_is_no_error() {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .args("integrate --driving 10 --stiffness 0.14 --until 2000".split(' '))
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    let mut first = String::new();
+    BufReader::new(child.stdout.take().expect("a pipe"))
+        .read_line(&mut first)
+        .expect("a line");
+    let ended = child.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.code(), Some(0));
+    assert!(first.starts_with("# twinslip"));
+    assert_eq!(String::from_utf8_lossy(&ended.stderr), "");
+}
+
+#[test]
+fn help_shows_an_example_that_runs() {
+    for command in ["law", "integrate", "equilibria", "run"] {
+        let help = twinslip(&format!("{command} --help"));
+        assert_eq!(help.code, 0);
+        let (_, example) = help.out.split_once("Example").expect("an example");
+        assert!(
+            example.contains(&format!("twinslip {command} ")),
+            "{example}"
+        );
+        for line in example
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("twinslip "))
+        {
+            let place = folder(&format!("help-{command}"));
+            let status = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+                .args(
+                    line.replace(
+                        "scenes/",
+                        &format!("{}/scenes/", env!("CARGO_MANIFEST_DIR")),
+                    )
+                    .split(' '),
+                )
+                .current_dir(place)
+                .output()
+                .expect("the program starts")
+                .status;
+            assert!(status.success(), "{line}");
+        }
+    }
+}

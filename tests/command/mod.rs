@@ -1,0 +1,83 @@
+//! Runs the program as a user does.
+#![allow(dead_code)]
+
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+
+/// How a run of the program ended.
+pub struct Ended {
+    /// Exit status.
+    pub code: i32,
+    /// Standard output.
+    pub out: String,
+    /// Standard error.
+    pub err: String,
+}
+
+/// Runs it with arguments separated by spaces.
+pub fn twinslip(arguments: &str) -> Ended {
+    run(&arguments.split_whitespace().collect::<Vec<_>>())
+}
+
+/// Runs it with these arguments.
+pub fn run(arguments: &[&str]) -> Ended {
+    let Output {
+        status,
+        stdout,
+        stderr,
+    } = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .args(arguments)
+        .output()
+        .expect("the program starts");
+    Ended {
+        code: status.code().expect("no signal"),
+        out: String::from_utf8(stdout).expect("UTF-8"),
+        err: String::from_utf8(stderr).expect("UTF-8"),
+    }
+}
+
+/// The object that a command writes, which must succeed.
+pub fn object(arguments: &str) -> Value {
+    let ended = twinslip(&format!("{arguments} --format json -q"));
+    assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
+    serde_json::from_str(&ended.out).expect("JSON")
+}
+
+/// The rows of a CSV as texts, header first, without remarks.
+pub fn csv(text: &str) -> Vec<Vec<String>> {
+    text.lines()
+        .filter(|line| !line.starts_with('#'))
+        .map(|line| line.split(',').map(str::to_owned).collect())
+        .collect()
+}
+
+/// A folder that is this test's own and empty.
+pub fn folder(name: &str) -> PathBuf {
+    let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
+    let _ = std::fs::remove_dir_all(&path);
+    std::fs::create_dir_all(&path).expect("a folder");
+    path
+}
+
+/// What lies in a folder.
+pub fn contents(folder: &Path) -> Vec<String> {
+    std::fs::read_dir(folder)
+        .expect("a readable folder")
+        .map(|entry| {
+            entry
+                .expect("an entry")
+                .file_name()
+                .to_string_lossy()
+                .into_owned()
+        })
+        .collect()
+}
+
+/// A number in an object, by a path such as `/result/final/time`.
+pub fn number(object: &Value, path: &str) -> f64 {
+    object
+        .pointer(path)
+        .and_then(Value::as_f64)
+        .unwrap_or_else(|| panic!("{path} is no number"))
+}

@@ -1,0 +1,227 @@
+//! Scene files: those that the repository ships, and what is wrong in others.
+#![allow(missing_docs)]
+
+mod command;
+
+use command::{folder, run, twinslip};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+
+fn shipped() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("scenes");
+    let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
+        .expect("scenes/")
+        .map(|entry| entry.expect("an entry").path())
+        .collect();
+    paths.sort();
+    paths
+}
+
+#[test]
+fn every_scene_runs_and_can_be_drawn() {
+    let place = folder("scenes");
+    let scenes = shipped();
+    assert!(scenes.len() >= 10);
+    for scene in scenes {
+        let name = scene.file_stem().unwrap().to_str().unwrap().to_owned();
+        let [data, svg, png] =
+            ["json", "svg", "png"].map(|end| place.join(format!("{name}.{end}")));
+        for picture in [&svg, &png] {
+            let ended = run(&[
+                "run",
+                scene.to_str().unwrap(),
+                "-q",
+                "-o",
+                data.to_str().unwrap(),
+                "--plot",
+                picture.to_str().unwrap(),
+            ]);
+            assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{name}");
+        }
+        let made: Value =
+            serde_json::from_slice(&std::fs::read(data).expect("data")).expect("JSON");
+        assert!(
+            made["result"]["rows"]
+                .as_array()
+                .is_some_and(|rows| rows.len() > 10)
+        );
+        let drawn = std::fs::read_to_string(svg).expect("a picture");
+        assert!(drawn.starts_with("<svg") && drawn.contains("phase plane"));
+        assert!(
+            std::fs::read(png)
+                .expect("a picture")
+                .starts_with(b"\x89PNG")
+        );
+    }
+}
+
+#[test]
+fn a_scene_is_the_same_as_its_flags() {
+    let place = folder("same");
+    let path = place.join("one.toml");
+    let text = "command = \"integrate\"\nlaw = \"spinodal\"\ndriving = 0.2\nstiffness = 5e-2\n\
+                start = [11.4, 0.3, 0.05]\nuntil = 500\nmethod = \"rodas4\"\nrtol = 1e-7\n\
+                points = 50\nevents = true\nestimate-error = false\ncolumns = [\"time\", \"slip_1\"]\n\
+                format = \"json\"\nquiet = true\n";
+    std::fs::write(&path, text).expect("written");
+    let scene = run(&["run", path.to_str().unwrap()]);
+    assert_eq!(scene.code, 0, "{}", scene.err);
+    let flags = twinslip(
+        "integrate --law spinodal --driving 0.2 --stiffness 5e-2 --start 11.4,0.3,0.05 --until 500 \
+         --method rodas4 --rtol 1e-7 --points 50 --events --columns time,slip_1 --format json -q",
+    );
+    let mut made =
+        [scene.out, flags.out].map(|text| serde_json::from_str::<Value>(&text).expect("JSON"));
+    for object in &mut made {
+        object["command"].take();
+    }
+    assert_eq!(made[0], made[1]);
+    // What is said anew replaces what the scene says.
+    let anew = run(&[
+        "run",
+        path.to_str().unwrap(),
+        "--format",
+        "csv",
+        "--explain",
+    ]);
+    assert!(anew.out.starts_with("# twinslip") && anew.err.contains("plan of this run"));
+    for (text, begins) in [
+        ("command = \"law\"\npoints = 3\n", "slip_rate,stress"),
+        (
+            "command = \"equilibria\"\ndriving = 10\n",
+            "symmetry,stress",
+        ),
+    ] {
+        std::fs::write(&path, text).expect("written");
+        let ended = run(&["run", path.to_str().unwrap()]);
+        assert_eq!(ended.code, 0, "{}", ended.err);
+        assert!(ended.out.contains(begins), "{}", ended.out);
+    }
+}
+
+#[test]
+fn what_is_wrong_in_a_scene_is_said_with_its_line() {
+    let place = folder("wrong");
+    let path = place.join("bad.toml");
+    let good = "command = \"integrate\"\ndriving = 0.2\nstiffness = 0.05\nuntil = 10\n";
+    for (text, line, sentence) in [
+        (
+            format!("{good}stifness = 1"),
+            5,
+            "unknown key \"stifness\"; did you mean \"stiffness\"?",
+        ),
+        (
+            format!("{good}healing_time = 1"),
+            5,
+            "unknown key \"healing_time\"; did you mean \"healing-time\"?",
+        ),
+        (format!("{good}help = true"), 5, "unknown key \"help\""),
+        (
+            format!("# a\n\n{good}rtol = nan"),
+            7,
+            "rtol is nan, but must be finite",
+        ),
+        (
+            format!("{good}rtol = inf"),
+            5,
+            "rtol is inf, but must be finite",
+        ),
+        (
+            format!("{good}rtol = -1e-8"),
+            5,
+            "rtol is -0.00000001, but must be greater than 0",
+        ),
+        (
+            format!("{good}rtol = \"tight\""),
+            5,
+            "rtol must be a number, not string",
+        ),
+        (
+            format!("{good}law = 3.5"),
+            5,
+            "law is 3.5, but must be one of",
+        ),
+        (format!("{good}law = \"\""), 5, "law is empty"),
+        (
+            format!("{good}law = true"),
+            5,
+            "law must be a text, not boolean",
+        ),
+        (
+            format!("{good}final-only = 1"),
+            5,
+            "final-only must be true or false, not integer",
+        ),
+        (format!("{good}points = 2.5"), 5, "points"),
+        (
+            format!("{good}start = [10, 2, 0.5]"),
+            5,
+            "psi in --start is 2, but must be in (0, 1]",
+        ),
+        (
+            format!("{good}start = [10, -1, 0.5]"),
+            5,
+            "psi in --start is -1",
+        ),
+        (
+            format!("{good}start = [10, [1], 0.5]"),
+            5,
+            "start must be a list",
+        ),
+        (
+            format!("{good}method = \"taylor\""),
+            5,
+            "choose one of auto",
+        ),
+        (format!("{good}driving = 3"), 5, "duplicate key"),
+        (format!("{good}rtol = "), 5, ""),
+        (
+            good.replace("0.2", "0"),
+            2,
+            "driving is 0, but must be positive and finite",
+        ),
+        (
+            good.replace("integrate", "integrat"),
+            1,
+            "did you mean \"integrate\"?",
+        ),
+        (
+            good.replace("integrate", "run"),
+            1,
+            "command must be one of",
+        ),
+        (
+            good.replace("command", "comand"),
+            1,
+            "the key command is missing",
+        ),
+        (
+            good.replace("stiffness = 0.05\n", ""),
+            0,
+            "--stiffness K is missing",
+        ),
+        (
+            format!("{good}points = 5\nevery = 1.0"),
+            0,
+            "cannot be used with",
+        ),
+    ] {
+        std::fs::write(&path, &text).expect("written");
+        let ended = run(&["run", path.to_str().unwrap()]);
+        assert_eq!(ended.code, 2, "{text}: {}", ended.err);
+        assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+        assert!(ended.err.contains(sentence), "{text}: {}", ended.err);
+        if line > 0 {
+            assert!(
+                ended.err.contains(&format!("bad.toml:{line}:")),
+                "{text}: {}",
+                ended.err
+            );
+        } else {
+            assert!(ended.err.contains("bad.toml:"), "{text}: {}", ended.err);
+        }
+    }
+    let absent = run(&["run", place.join("none.toml").to_str().unwrap()]);
+    assert_eq!(absent.code, 2);
+    assert!(absent.err.contains("cannot read"), "{}", absent.err);
+}

@@ -1,0 +1,237 @@
+//! The fields that scripts read, by name and type.
+#![allow(missing_docs)]
+
+mod command;
+
+use command::{csv, number, object, twinslip};
+use serde_json::Value;
+
+fn fields(value: &Value) -> Vec<&str> {
+    value
+        .as_object()
+        .expect("an object")
+        .keys()
+        .map(String::as_str)
+        .collect()
+}
+
+fn uncertain(value: &Value) {
+    assert_eq!(fields(value), ["value", "uncertainty"]);
+    assert!(value["value"].is_f64() && value["uncertainty"].as_f64().is_some_and(|u| u >= 0.0));
+}
+
+fn envelope(value: &Value, command: &str) {
+    for field in [
+        "twinslip", "command", "sundials", "model", "units", "numerics", "result", "work",
+    ] {
+        assert!(value.get(field).is_some(), "{field}");
+    }
+    assert_eq!(value["twinslip"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(value["command"][1], command);
+    assert_eq!(value["sundials"].is_string(), cfg!(feature = "sundials"));
+    assert_eq!(value["model"]["healing_time"], 100.0);
+}
+
+#[test]
+fn law() {
+    let made = object("law --points 11");
+    envelope(&made, "law");
+    let result = &made["result"];
+    let extrema = result["extrema"].as_array().expect("a list");
+    assert_eq!(extrema[0]["kind"], "maximum");
+    assert_eq!(extrema[1]["kind"], "minimum");
+    for extremum in extrema {
+        uncertain(&extremum["slip_rate"]);
+        uncertain(&extremum["stress"]);
+    }
+    let v_peak = number(&made, "/result/extrema/0/slip_rate/value");
+    assert!((v_peak / 0.024931583134438452 - 1.0).abs() < 1e-13);
+    uncertain(&result["critical_stiffness_maximum"]["slip_rate"]);
+    uncertain(&result["critical_stiffness_maximum"]["stiffness"]);
+    assert_eq!(result["transition_rate"], 1000.0);
+    let rows = result["rows"].as_array().expect("a list");
+    assert_eq!(rows.len(), 11);
+    assert_eq!(
+        fields(&rows[0]),
+        [
+            "slip_rate",
+            "stress",
+            "friction",
+            "state",
+            "critical_stiffness"
+        ]
+    );
+    assert_eq!(
+        (&rows[0]["slip_rate"], &rows[10]["slip_rate"]),
+        (&1e-3.into(), &1e6.into())
+    );
+    let ageing = object("law --law dieterich-ruina --points 2");
+    assert_eq!(ageing["result"]["extrema"], serde_json::json!([]));
+    assert!(ageing["result"]["critical_stiffness_maximum"].is_null());
+    assert!(ageing["result"]["transition_rate"].is_null());
+}
+
+const ROW: [&str; 10] = [
+    "time",
+    "stress",
+    "state_1",
+    "state_2",
+    "log_state_1",
+    "log_state_2",
+    "slip_rate_1",
+    "slip_rate_2",
+    "slip_1",
+    "slip_2",
+];
+
+#[test]
+fn integrate() {
+    let made =
+        object("integrate --driving 10 --stiffness 0.14 --until 12 --events --estimate-error");
+    envelope(&made, "integrate");
+    let rows = made["result"]["rows"].as_array().expect("a list");
+    assert_eq!(fields(&rows[0]), ROW);
+    assert!(
+        rows.iter()
+            .all(|row| row.as_object().unwrap().values().all(Value::is_number))
+    );
+    let last = &made["result"]["final"];
+    assert_eq!(fields(last)[..10], ROW);
+    assert!(
+        last["error_estimate"]
+            .as_f64()
+            .is_some_and(|e| e > 0.0 && e < 1e-3)
+    );
+    for field in [
+        "steps",
+        "rejected",
+        "rhs",
+        "jacobians",
+        "factorisations",
+        "nonlinear",
+    ] {
+        assert!(made["work"][field].is_u64(), "{field}");
+    }
+    let events = made["result"]["events"].as_array().expect("a list");
+    assert_eq!(
+        fields(&events[0]),
+        [
+            "onset",
+            "recurrence",
+            "duration",
+            "stress_drop",
+            "peak_slip_rate",
+            "slip_1",
+            "slip_2",
+            "leader"
+        ]
+    );
+    assert!(events[0]["recurrence"].is_null() && events[1]["recurrence"].is_f64());
+    assert!(events[0]["leader"] == 1 || events[0]["leader"] == 2);
+    let plain = object("integrate --driving 10 --stiffness 0.14 --until 1");
+    assert!(plain["result"].get("events").is_none());
+    assert!(plain["result"]["final"]["error_estimate"].is_null());
+    assert_eq!(plain["numerics"]["method"], "rodas5p");
+    assert_eq!(plain["numerics"]["atol"], 1e-8);
+}
+
+#[test]
+fn equilibria() {
+    let made = object("equilibria --driving 1000 --stiffness 0.45");
+    envelope(&made, "equilibria");
+    let list = made["result"]["equilibria"].as_array().expect("a list");
+    assert_eq!(list.len(), 3);
+    for one in list {
+        uncertain(&one["stress"]);
+        for field in ["state", "log_state", "slip_rate"] {
+            assert_eq!(one[field].as_array().map(Vec::len), Some(2), "{field}");
+        }
+        let eigenvalues = one["eigenvalues"].as_array().expect("a list");
+        assert_eq!(eigenvalues.len(), 3);
+        assert!(
+            eigenvalues
+                .iter()
+                .all(|z| z.as_array().is_some_and(|z| z.len() == 2))
+        );
+        assert!(one["residual"].is_f64());
+    }
+    let verdicts: Vec<&Value> = list.iter().map(|one| &one["verdict"]).collect();
+    assert_eq!(verdicts, ["stable", "unstable", "stable"]);
+    assert_eq!(list[2]["symmetry"], "symmetric");
+    let bare = object("equilibria --driving 1000 --solver newton");
+    assert!(bare["result"]["equilibria"][0]["eigenvalues"].is_null());
+    assert!(bare["result"]["equilibria"][0]["verdict"].is_null());
+}
+
+#[test]
+fn an_undecided_verdict_has_its_own_exit_code() {
+    // V_H = 2 V_M to the last digit: which side of the pitchfork it is on can't be told.
+    let ended =
+        twinslip("equilibria --driving 0.049863166268876906 --stiffness 0.45 --format json");
+    assert_eq!(ended.code, 3, "{}{}", ended.out, ended.err);
+}
+
+#[test]
+fn csv_holds_the_same_numbers_as_json() {
+    let arguments = "integrate --driving 10 --stiffness 0.14 --until 12";
+    let made = object(arguments);
+    let rows = made["result"]["rows"].as_array().expect("a list");
+    let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
+    assert_eq!(table[0], ROW);
+    assert_eq!(table.len() - 1, rows.len());
+    for (line, row) in table[1..].iter().zip(rows) {
+        for (text, value) in line.iter().zip(row.as_object().unwrap().values()) {
+            assert_eq!(text.parse::<f64>().unwrap(), value.as_f64().unwrap());
+        }
+    }
+    let law = object("law --points 7");
+    let table = csv(&twinslip("law --points 7 --format csv").out);
+    for (line, row) in table[1..]
+        .iter()
+        .zip(law["result"]["rows"].as_array().unwrap())
+    {
+        let values: Vec<f64> = row
+            .as_object()
+            .unwrap()
+            .values()
+            .map(|x| x.as_f64().unwrap())
+            .collect();
+        assert_eq!(
+            line.iter()
+                .map(|x| x.parse().unwrap())
+                .collect::<Vec<f64>>(),
+            values
+        );
+    }
+    let uncertain = csv(&twinslip("equilibria --driving 1000 --format csv").out);
+    assert_eq!(uncertain[0][1..3], ["stress", "stress_uncertainty"]);
+}
+
+#[test]
+fn si_is_the_same_run_in_other_units() {
+    // K = 0.14 a sigma/L and V_H = 10 V*, with L = 0.9 um, V* = 1 um/s, sigma = 2 MPa.
+    let stiffness = 0.14 * 0.0349 * 2e6 / 0.9e-6;
+    let si = object(&format!(
+        "integrate --si --normal-stress 2e6 --driving 1e-5 --stiffness {stiffness} --until 10.8 --final-only --rtol 1e-10"
+    ));
+    let plain =
+        object("integrate --driving 10 --stiffness 0.14 --until 12 --final-only --rtol 1e-10");
+    let units = [
+        ("time", 0.9),
+        ("stress", 0.0349 * 2e6),
+        ("state_1", 1.0),
+        ("slip_rate_1", 1e-6),
+        ("slip_1", 0.9e-6),
+    ];
+    for (name, unit) in units {
+        let ratio = number(&si, &format!("/result/final/{name}"))
+            / number(&plain, &format!("/result/final/{name}"));
+        assert!((ratio / unit - 1.0).abs() < 1e-5, "{name}: {ratio}");
+    }
+    assert_eq!(si["units"]["stress"], "Pa");
+    assert_eq!(plain["units"]["stress"], "a sigma");
+    let healing = object("law --si --points 2");
+    assert_eq!(healing["model"]["healing_time"], 90.0);
+    let v_peak = number(&healing, "/result/extrema/0/slip_rate/value");
+    assert!((v_peak / 2.4931583134438452e-8 - 1.0).abs() < 1e-13);
+}
