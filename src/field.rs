@@ -8,7 +8,7 @@ use nalgebra::{SMatrix, SVector};
 /// A point of the phase space.
 pub type State<const N: usize> = SVector<f64, N>;
 
-/// The matrix of first derivatives, J[i][j] = d f_i / d y_j; also a tangent flow, d y_i(t) / d y_j(0).
+/// The matrix of first derivatives, `J[i][j] = d f_i / d y_j`; also a tangent flow, d y_i(t) / d y_j(0).
 pub type Jacobian<const N: usize> = SMatrix<f64, N, N>;
 
 /// An autonomous system of N ordinary differential equations.

@@ -105,9 +105,9 @@ fn every_reference_end_state_is_reached_and_the_error_falls_with_the_tolerance()
             });
             let name = &end.name;
             assert!(tight < 1e-7, "{name} {method:?}: {tight:e}");
-            // At steady states the loose run is as good as exact already.
+            // At steady states the loose run may be as good as exact already.
             assert!(
-                tight < 0.02 * loose || tight < 1e-11,
+                tight < 0.02 * loose || tight < 1e-10,
                 "{name} {method:?}: {loose:e} falls to {tight:e} only"
             );
         }
@@ -125,7 +125,13 @@ fn the_finite_time_blow_up_is_named_with_its_time() {
     );
     let y0 = chart(three(&blow_up["y0"]));
     for method in METHODS {
-        for (tolerance, bound) in [(1e-6, 0.1), (1e-8, 0.01), (1e-10, 1e-4), (1e-12, 1e-6)] {
+        for (tolerance, bound) in [
+            (1e-4, 10.0),
+            (1e-6, 0.1),
+            (1e-8, 0.01),
+            (1e-10, 1e-4),
+            (1e-12, 1e-6),
+        ] {
             let mut cvode = integrator(method, tolerance);
             let mut last = 0.0;
             let mut observer = |step: &Step<'_, 3>| {

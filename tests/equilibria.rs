@@ -67,8 +67,8 @@ fn every_asymmetric_state_is_found_and_no_other() {
                     (state.stress.value - number(&truth["tau"])).abs() <= state.stress.uncertainty,
                     "{what}"
                 );
-                for i in 0..2 {
-                    let error = (state.slip_rate[i] - rates[i]).abs();
+                for (i, rate) in rates.iter().enumerate().take(2) {
+                    let error = (state.slip_rate[i] - rate).abs();
                     assert!(
                         error <= state.slip_rate_uncertainty()[i],
                         "{what}: {error:e}"

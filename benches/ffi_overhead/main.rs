@@ -2,8 +2,9 @@
 //!
 //! Scene: two interfaces, law (35), K = 0.14, V_H = 10, from beside the symmetric state; 20 stick-slip cycles for the state,
 //! one for the tangent. The C program is compiled here with `cc -O3`, runs as a child, and takes turns with Rust, so that a
-//! busy machine disturbs both alike; the ratio printed is the median of the ratios of neighbours. Errors: the largest
-//! component of |y - y*| / |y*| for the state, of |M - M*| / max |M*| for the tangent, against a run at 1e-13.
+//! busy machine disturbs both alike; the ratio printed is the median of the ratios of neighbours, beside that of the best times.
+//! Errors: the largest component of |y - y*| / |y*| for the state, of |M - M*| / max |M*| for the tangent, against a run at
+//! 1e-13.
 //!
 //! First the table, then criterion on the same work.
 
@@ -24,9 +25,9 @@ use twinslip::sundials::{
 const STIFFNESS: f64 = 0.14;
 const DRIVING: f64 = 10.0;
 /// Twenty cycles.
-const LONG: f64 = 132.0;
+const LONG: f64 = 64.0;
 /// One cycle.
-const SHORT: f64 = 6.6;
+const SHORT: f64 = 4.0;
 const STATE_TOLERANCE: f64 = 1e-8;
 const TANGENT_TOLERANCE: f64 = 1e-10;
 const ROUNDS: usize = 41;
@@ -199,8 +200,10 @@ fn median(mut values: Vec<f64>) -> f64 {
 fn row(name: &str, times: &[f64], c: &[f64], answer: &Answer, error: f64) {
     let time = median(times.to_vec());
     let ratio = median(times.iter().zip(c).map(|(ours, c)| ours / c).collect());
+    let least = |times: &[f64]| times.iter().copied().fold(f64::INFINITY, f64::min);
+    let best = least(times) / least(c);
     println!(
-        "{name:42} {:10.1} us  {ratio:6.3} x C  {:6} steps  {:7.1} ns/step  error {error:.2e}",
+        "{name:62} {:9.1} us  {ratio:.3} x C (best {best:.3})  {:6} steps  {:7.1} ns/step  error {error:.2e}",
         1e6 * time,
         answer.steps,
         1e9 * time / answer.steps as f64,
@@ -220,10 +223,7 @@ fn table() {
     };
 
     println!("SUNDIALS {}", sundials::version());
-    println!(
-        "{} falls of the stress by t = {LONG}: two a cycle, one for each interface",
-        falls()
-    );
+    println!("{} cycles by t = {LONG}, one by t = {SHORT}", cycles());
     for (tangent, repeat, title) in [
         (false, 1, "state, 20 cycles, 1e-8"),
         (true, 3, "tangent, 1 cycle, 1e-10, simultaneous"),
@@ -258,8 +258,8 @@ fn table() {
     }
 }
 
-/// Falls of the stress through its middle.
-fn falls() -> usize {
+/// Slips: falls of the stress through its middle. One interface slips, the other creeps.
+fn cycles() -> usize {
     let mut solver = Cvode::<3>::new(Method::Adams, Operations::Fixed).expect("SUNDIALS");
     let field = field();
     solver.watch_events(1, &[-1]).expect("room");

@@ -6,7 +6,7 @@ use super::linear_solver::{LinearSolver, Matrix};
 use super::sensitivity::Columns;
 use super::vector::{Fixed, Serial, Vector};
 use super::{Context, Messages, Stable, check, failure, flags, native, null};
-use crate::contract::{MAX_STEPS, Tolerances, Work};
+use crate::contract::{MAX_STEPS, Tolerances};
 use crate::error::{Error, Result};
 use crate::field::State;
 use std::ffi::{c_int, c_long, c_void};
@@ -64,9 +64,12 @@ pub struct Arrival {
     pub reason: Reason,
 }
 
-/// Steps between two looks at whether t still advances. A field that is not finite beyond some point makes the steps shrink
-/// towards it forever, and CVODE would burn the whole bound on work there.
-const WATCH: usize = 1000;
+/// Steps between two looks at whether t still advances. Before a singularity, or a point beyond which f is not finite, the
+/// steps shrink forever, and CVODE would burn the whole bound on work there.
+const WATCH: usize = 50;
+
+/// Steps in a row that may leave t where it is. At the start of a stiff problem there are some, until the steps have grown.
+const STANDSTILL: usize = 200;
 
 /// The owner of a CVODES memory.
 pub(super) struct Memory(NonNull<c_void>);
@@ -124,8 +127,8 @@ pub struct Cvode<const N: usize> {
     pub(super) memory: Memory,
     _solver: LinearSolver,
     _matrix: Matrix,
-    state: Vector,
-    dense: Vector,
+    pub(super) state: Vector,
+    pub(super) dense: Vector,
     pub(super) columns: Option<Columns>,
     pub(super) context: Context,
     slot: Stable<Slot>,
@@ -137,9 +140,11 @@ pub struct Cvode<const N: usize> {
     stop_time: Option<f64>,
     // What CVODES was told, where it still knows: it forgets a stop time when it has reached it.
     armed: Option<Option<f64>>,
-    event_count: usize,
+    pub(super) event_count: usize,
+    // Steps in a row that did not change t, and the state at the first of them.
     stalled: usize,
-    tangents: usize,
+    standstill: State<N>,
+    pub(super) tangents: usize,
     watched: usize,
 }
 
@@ -229,6 +234,7 @@ impl<const N: usize> Cvode<N> {
             armed: None,
             event_count: 0,
             stalled: 0,
+            standstill: State::zeros(),
             tangents: 0,
             watched: 0,
         })
@@ -285,40 +291,6 @@ impl<const N: usize> Cvode<N> {
         self.stop_time = t;
     }
 
-    /// Watches for zeros of `count` event functions, which the [`Problem`] then must have; zero for none. Each may be watched
-    /// in one direction of crossing only: 1 upwards, -1 downwards, 0 both; missing ones are 0.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`] if CVODES can't allocate.
-    pub fn watch_events(&mut self, count: usize, directions: &[i32]) -> Result<()> {
-        let m = self.memory.as_ptr();
-        let g = match self.operations {
-            Operations::Fixed => callback::events::<Fixed, N>,
-            Operations::Stock => callback::events::<Serial, N>,
-        };
-        let mut direction: Vec<c_int> = directions.to_vec();
-        direction.resize(count, 0);
-        self.event_count = 0;
-        // SAFETY: a live memory; the callback is of this N and storage; CVODES copies the `count` directions.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeRootInit(m, count as c_int, (count > 0).then_some(g as _))
-            )?;
-            if count > 0 {
-                check!(
-                    CV,
-                    &self.messages,
-                    CVodeSetRootDirection(m, direction.as_mut_ptr())
-                )?;
-                check!(CV, &self.messages, CVodeSetNoInactiveRootWarn(m))?;
-            }
-        }
-        self.event_count = count;
-        Ok(())
-    }
-
     /// Begins at `y0`, without sensitivities. Forgets everything before but the settings.
     ///
     /// # Errors
@@ -369,6 +341,13 @@ impl<const N: usize> Cvode<N> {
                     .keep("the bound on steps had been used up before");
                 (self.time()?, sundials_sys::CV_TOO_MUCH_WORK)
             } else {
+                // The end of a portion is no failure, the end of the bound is.
+                let expected = if left > WATCH {
+                    sundials_sys::CV_TOO_MUCH_WORK
+                } else {
+                    sundials_sys::CV_SUCCESS
+                };
+                self.messages.expected.set(expected);
                 self.enter(&frame, to, mode, left.min(WATCH))?
             };
             self.tangents += frame.tangents.take();
@@ -377,7 +356,7 @@ impl<const N: usize> Cvode<N> {
                 // A return to look at the step, not the end of the bound.
                 sundials_sys::CV_TOO_MUCH_WORK if self.steps()? < self.max_steps => {
                     let h = self.step_size()?;
-                    if t + h == t {
+                    if self.stands_still(t, h, WATCH) {
                         return Err(Error::StepTooSmall { t, h });
                     }
                 }
@@ -385,146 +364,6 @@ impl<const N: usize> Cvode<N> {
                 code => return self.arrived(t, code, to, mode),
             }
         }
-    }
-
-    /// The state where [`Cvode::advance`] last returned; after an error, where the integration had come.
-    pub fn state(&self) -> State<N> {
-        self.state.get()
-    }
-
-    /// The continuous solution at `t`, which must be within the last step.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`] with `CV_BAD_T` outside it.
-    pub fn dense(&self, t: f64) -> Result<State<N>> {
-        self.dense_derivative(t, 0)
-    }
-
-    /// The derivative of the given order of the continuous solution at `t`, which must be within the last step.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`] with `CV_BAD_T` outside it, with `CV_BAD_K` above the order of the last step.
-    pub fn dense_derivative(&self, t: f64, order: usize) -> Result<State<N>> {
-        let m = self.memory.as_ptr();
-        let order = c_int::try_from(order).unwrap_or(c_int::MAX);
-        // SAFETY: a live memory and a vector like the one it was given; nothing else reads or writes it meanwhile, since the
-        // solver is not Sync and no reference into the vector is ever given away.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetDky(m, t, order, self.dense.as_ptr())
-            )?
-        };
-        Ok(self.dense.get())
-    }
-
-    /// For each watched event whether it was found by the last [`Cvode::advance`]: 1 upwards, -1 downwards, 0 not.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`]; not after a successful [`Cvode::advance`].
-    pub fn events_found(&self) -> Result<Vec<i32>> {
-        let mut found = vec![0 as c_int; self.event_count.max(1)];
-        let m = self.memory.as_ptr();
-        // SAFETY: a live memory and a place for as many flags as events are watched.
-        unsafe { check!(CV, &self.messages, CVodeGetRootInfo(m, found.as_mut_ptr()))? };
-        found.truncate(self.event_count);
-        Ok(found)
-    }
-
-    /// The time that the integration has reached inside, at or beyond the last return.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
-    pub fn time(&self) -> Result<f64> {
-        let mut t = 0.0;
-        // SAFETY: a live memory and a valid place.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetCurrentTime(self.memory.as_ptr(), &mut t)
-            )?
-        };
-        Ok(t)
-    }
-
-    /// The size of the last step, with its sign.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
-    pub fn step_size(&self) -> Result<f64> {
-        let mut h = 0.0;
-        // SAFETY: a live memory and a valid place.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetLastStep(self.memory.as_ptr(), &mut h)
-            )?
-        };
-        Ok(h)
-    }
-
-    /// The size of the step that was being tried, or is to be tried next, with its sign.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
-    pub fn trial_step_size(&self) -> Result<f64> {
-        let mut h = 0.0;
-        // SAFETY: a live memory and a valid place.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetCurrentStep(self.memory.as_ptr(), &mut h)
-            )?
-        };
-        Ok(h)
-    }
-
-    /// The work since [`Cvode::start`]. Jacobians count those of sensitivities, right-hand sides don't.
-    ///
-    /// # Errors
-    /// [`Error::Sundials`]; not after a successful [`Cvode::start`].
-    pub fn work(&self) -> Result<Work> {
-        let m = self.memory.as_ptr();
-        let messages = &self.messages;
-        let mut counts: [c_long; 7] = [0; 7];
-        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] = &mut counts;
-        // SAFETY: a live memory, and valid places for the results.
-        unsafe {
-            check!(CV, messages, CVodeGetNumSteps(m, steps))?;
-            check!(CV, messages, CVodeGetNumErrTestFails(m, rejected))?;
-            check!(CV, messages, CVodeGetNumStepSolveFails(m, unsolved))?;
-            check!(CV, messages, CVodeGetNumRhsEvals(m, rhs))?;
-            check!(CVLS, messages, CVodeGetNumJacEvals(m, jacobians))?;
-            check!(CV, messages, CVodeGetNumLinSolvSetups(m, setups))?;
-            check!(CV, messages, CVodeGetNumNonlinSolvIters(m, nonlinear))?;
-        }
-        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] =
-            counts.map(|n| n as usize);
-        Ok(Work {
-            steps,
-            rejected: rejected + unsolved,
-            rhs,
-            jacobians: jacobians + self.tangents,
-            factorisations: setups,
-            nonlinear,
-        })
-    }
-
-    fn steps(&self) -> Result<usize> {
-        let mut steps = 0;
-        // SAFETY: a live memory and a valid place.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetNumSteps(self.memory.as_ptr(), &mut steps)
-            )?
-        };
-        Ok(steps as usize)
     }
 
     /// Tells CVODES the stop time, if it does not have it. There is no way to unset one before version 6.5: infinity does.
@@ -566,6 +405,7 @@ impl<const N: usize> Cvode<N> {
         // SAFETY: a live memory that `new` has set up, a live vector like the one it was given, and a place for the time.
         let code = unsafe { sundials_sys::CVode(m, to, self.state.as_ptr(), &mut t, task) };
         drop(entered);
+        self.messages.expected.set(sundials_sys::CV_SUCCESS);
         Ok((t, code))
     }
 
@@ -594,12 +434,8 @@ impl<const N: usize> Cvode<N> {
                 returned: t,
             });
         }
-        // A step at the start of a stiff problem may be below the spacing of t and grow again; many in a row don't.
-        if reason == Reason::Step {
-            self.stalled = if t + h == t { self.stalled + 1 } else { 0 };
-            if self.stalled > WATCH {
-                return Err(Error::StepTooSmall { t, h });
-            }
+        if reason == Reason::Step && self.stands_still(t, h, 1) {
+            return Err(Error::StepTooSmall { t, h });
         }
         if !all_finite(self.state().as_slice()) {
             return Err(Error::NonFinite {
@@ -608,6 +444,24 @@ impl<const N: usize> Cvode<N> {
             });
         }
         Ok(Arrival { t, reason })
+    }
+
+    /// Whether t has stood still for too long. The state is then that of the first such step: later ones at the same t have
+    /// followed a singularity to where numbers mean nothing.
+    fn stands_still(&mut self, t: f64, h: f64, steps: usize) -> bool {
+        if t + h != t {
+            self.stalled = 0;
+            return false;
+        }
+        if self.stalled == 0 {
+            self.standstill = self.state();
+        }
+        self.stalled += steps;
+        let too_long = self.stalled >= STANDSTILL;
+        if too_long {
+            self.state.set(&self.standstill);
+        }
+        too_long
     }
 
     fn explain(&self, code: c_int, t: f64, frame: &Frame<'_, N>) -> Error {

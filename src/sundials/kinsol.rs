@@ -249,7 +249,7 @@ impl<const N: usize> Kinsol<N> {
     ///
     /// # Errors
     /// [`Error::NotConverged`] if the residual tolerance is not met, [`Error::NonFinite`] if F or its Jacobian is not finite
-    /// where it must be, [`Error::Sundials`] otherwise. The root is always finite.
+    /// where it must be, [`Error::Parameter`] for a scale, [`Error::Sundials`] otherwise. The root is always finite.
     pub fn solve(
         &mut self,
         problem: &dyn Residual<N>,
@@ -290,6 +290,12 @@ impl<const N: usize> Kinsol<N> {
                 what: "the guess",
                 t: 0.0,
             });
+        }
+        for (name, scale) in [("u_scale", u_scale), ("f_scale", f_scale)] {
+            // False for NaN too, which KINSOL would let pass.
+            if let Some(bad) = scale.iter().find(|s| !(**s > 0.0 && s.is_finite())) {
+                return Err(Error::parameter(name, bad, "positive and finite"));
+            }
         }
         self.apply_settings()?;
         self.unknown.set(guess);

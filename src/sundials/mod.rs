@@ -5,18 +5,20 @@
 //! 1. One C pointer is one private newtype over `NonNull` with one `Drop`, made only from a checked pointer, so that an
 //!    early return frees what exists. Solvers declare them in the order in which they must go: solver memory, linear solver,
 //!    matrix, vectors, context.
-//! 2. Every C call that returns a code goes through [`check!`]: negative codes become [`Error::Sundials`], others are returned.
-//! 3. User code runs behind [`callback`]: a panic in it is kept, C is told to stop, and it is resumed in Rust.
+//! 2. Every C call that returns a code goes through `check!`: negative codes become [`Error::Sundials`], others are returned.
+//! 3. User code runs behind `callback`: a panic in it is kept, C is told to stop, and it is resumed in Rust.
 //! 4. SUNDIALS prints nothing: its messages are kept for the [`Error`].
 //!
-//! Supporting another major version of SUNDIALS is a matter of [`native`] alone.
+//! Supporting another major version of SUNDIALS is a matter of `native` alone.
 #![allow(unsafe_code)]
 
 mod callback;
 mod cvode;
+mod events;
 mod kinsol;
 mod linear_solver;
 mod native;
+mod output;
 mod sensitivity;
 mod vector;
 
@@ -27,7 +29,8 @@ pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residu
 pub use sensitivity::{ErrorControl, Scheme, Sensitivity};
 
 use crate::error::{Error, Result};
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
+use std::ffi::{c_int, c_void};
 use std::ops::Deref;
 use std::ptr::NonNull;
 use std::sync::OnceLock;
@@ -97,6 +100,8 @@ fn null(function: &'static str) -> Error {
 #[derive(Default)]
 struct Messages {
     last: RefCell<String>,
+    /// A flag whose message is not worth keeping: a way of working, no failure.
+    expected: Cell<c_int>,
 }
 
 impl Messages {
@@ -125,7 +130,7 @@ impl<T> Stable<T> {
         Stable(NonNull::from(Box::leak(Box::new(value))))
     }
 
-    fn as_ptr(&self) -> *mut std::ffi::c_void {
+    fn as_ptr(&self) -> *mut c_void {
         self.0.as_ptr().cast()
     }
 }
@@ -147,7 +152,7 @@ impl<T> Drop for Stable<T> {
 }
 
 /// A SUNContext: everything of one solver belongs to one context, and no context is shared.
-struct Context(NonNull<sundials_sys::_SUNContext>);
+struct Context(NonNull<c_void>);
 
 impl Context {
     /// # Errors
@@ -163,19 +168,20 @@ impl Context {
                 SUNContext_Create(sundials_sys::comm_no_mpi(), &mut context)
             )?;
         }
-        let context = Context(NonNull::new(context).ok_or_else(|| null("SUNContext_Create"))?);
+        let context =
+            Context(NonNull::new(context.cast()).ok_or_else(|| null("SUNContext_Create"))?);
         native::keep_context_messages(&context, messages)?;
         Ok(context)
     }
 
     fn as_ptr(&self) -> sundials_sys::SUNContext {
-        self.0.as_ptr()
+        self.0.as_ptr().cast()
     }
 }
 
 impl Drop for Context {
     fn drop(&mut self) {
-        let mut context = self.0.as_ptr();
+        let mut context = self.as_ptr();
         // SAFETY: a live context that this value alone owns; solvers declare it last, so nothing made from it lives.
         unsafe { sundials_sys::SUNContext_Free(&mut context) };
     }

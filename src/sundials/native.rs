@@ -54,7 +54,7 @@ pub(super) fn linked() -> [i32; 3] {
 
 /// # Safety
 /// `message` is NULL or a C string; `data` is the address of a live [`Messages`].
-unsafe fn keep(message: *const c_char, data: *mut c_void) {
+unsafe fn keep(code: c_int, message: *const c_char, data: *mut c_void) {
     // SAFETY: the caller's promise.
     let (messages, message) = unsafe {
         if message.is_null() || data.is_null() {
@@ -62,7 +62,9 @@ unsafe fn keep(message: *const c_char, data: *mut c_void) {
         }
         (&*data.cast::<Messages>(), CStr::from_ptr(message))
     };
-    messages.keep(&message.to_string_lossy());
+    if code != messages.expected.get() {
+        messages.keep(&message.to_string_lossy());
+    }
 }
 
 #[cfg(sundials_major = "6")]
@@ -73,14 +75,14 @@ mod major {
     /// # Safety
     /// As SUNDIALS 6 calls it: C strings, and the data given with the handler.
     unsafe extern "C" fn handler(
-        _code: c_int,
+        code: c_int,
         _module: *const c_char,
         _function: *const c_char,
         message: *mut c_char,
         data: *mut c_void,
     ) {
         // SAFETY: SUNDIALS gives a C string, and the data are the solver's Messages.
-        unsafe { keep(message, data) };
+        unsafe { keep(code, message, data) };
     }
 
     /// Version 6 has error handlers of the solvers, none of the context.
@@ -135,12 +137,12 @@ mod major {
         _function: *const c_char,
         _file: *const c_char,
         message: *const c_char,
-        _code: missing::SUNErrCode,
+        code: missing::SUNErrCode,
         data: *mut c_void,
         _context: missing::SUNContext,
     ) {
         // SAFETY: SUNDIALS gives a C string or NULL, and the data are the solver's Messages.
-        unsafe { keep(message, data) };
+        unsafe { keep(code, message, data) };
     }
 
     /// Takes the place of the handler that prints.

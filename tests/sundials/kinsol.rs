@@ -274,6 +274,20 @@ fn a_singular_jacobian_is_an_error_with_a_name() {
     }
 }
 
+#[test]
+fn scales_must_be_positive_and_finite() {
+    let mut kinsol = Kinsol::<2>::new().unwrap();
+    for bad in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        let bad = State::<2>::new(1.0, bad);
+        for (u_scale, f_scale) in [(bad, ones()), (ones(), bad)] {
+            let error = kinsol
+                .solve(&rosenbrock(), &State::<2>::zeros(), &u_scale, &f_scale)
+                .unwrap_err();
+            assert!(error.is_input(), "{error}");
+        }
+    }
+}
+
 /// What makes KINSOL print when nobody listens.
 pub fn provoke() {
     let mut kinsol = Kinsol::<1>::new().unwrap();
