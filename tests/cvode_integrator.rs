@@ -339,6 +339,40 @@ fn a_flow_over_no_time_is_the_identity_and_names_are_those_of_the_command_line()
 }
 
 #[test]
+fn an_interval_of_a_few_spacings_of_time_is_integrated_too() {
+    let (field, y0, _) = stick_slip();
+    for method in METHODS {
+        let mut cvode = integrator(method, 1e-8);
+        for end in [
+            1e6_f64.next_up(),
+            1e6_f64.next_down(),
+            1e6 + 1e-9,
+            1e6 + 1e-8,
+        ] {
+            let expected = y0 + field.f(&y0) * (end - 1e6);
+            let mut seen = 0.0;
+            let mut observer = |step: &Step<'_, 3>| {
+                assert!(((step.dense)(step.t1) - step.y1).amax() < 1e-12);
+                seen = step.t1;
+                Ok(Control::Continue)
+            };
+            let y = cvode
+                .flow(&*field, (1e6, end), &y0, Some(&mut observer))
+                .unwrap();
+            assert!(
+                (y - expected).amax() < 1e-10,
+                "{method:?}: {}",
+                y - expected
+            );
+            assert_eq!(seen, end);
+            let (_, m) = cvode.tangent_flow(&*field, (1e6, end), &y0).unwrap();
+            let expected = Jacobian::<3>::identity() + field.jacobian(&y0) * (end - 1e6);
+            assert!((m - expected).amax() < 1e-10);
+        }
+    }
+}
+
+#[test]
 fn one_solver_serves_many_fields_as_fresh_ones_would() {
     let (first, y0, end) = stick_slip();
     let second = field("dieterich-ruina", 0.45, 1.0);
