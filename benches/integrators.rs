@@ -12,7 +12,7 @@ use std::hint::black_box;
 use std::time::Duration;
 use trajectories::Run;
 use twinslip::field::{State, VectorField};
-use twinslip::integrate::{Integrator, MAX_STEPS, Method, Rosenbrock, Tolerances};
+use twinslip::integrate::{Choice, Integrator, MAX_STEPS, Tolerances};
 use twinslip::model::{symmetric, two_interfaces};
 
 const TOLERANCES: [f64; 3] = [1e-4, 1e-6, 1e-8];
@@ -25,13 +25,10 @@ const SCENES: [&str; 4] = [
     "A5_K0.14_VH1000_far, t = 200",
 ];
 
-/// Every integrator of this dimension. The CVODE integrator belongs here too, behind `cfg(feature = "sundials")`.
+/// Every integrator of this dimension and build.
 fn integrators<const N: usize>(tolerances: Tolerances) -> Vec<Box<dyn Integrator<N>>> {
-    let rosenbrock = |method| Rosenbrock::new(method, tolerances, MAX_STEPS);
-    Method::ALL
-        .into_iter()
-        .map(|method| Box::new(rosenbrock(method).expect("checked")) as Box<dyn Integrator<N>>)
-        .collect()
+    let integrator = |choice: Choice| choice.integrator(tolerances, MAX_STEPS).expect("checked");
+    Choice::all().into_iter().map(integrator).collect()
 }
 
 fn measure<const N: usize>(

@@ -14,13 +14,13 @@ pub struct Tolerances {
 }
 
 impl Tolerances {
-    /// Both tolerances, checked: positive and finite, rtol below one.
+    /// Both tolerances, checked: atol positive and finite, rtol from 1e-16, where doubles end, to below one.
     pub fn new(rtol: f64, atol: f64) -> Result<Self> {
-        if !(rtol > 0.0 && rtol < 1.0) {
+        if !(1e-16..1.0).contains(&rtol) {
             return Err(Error::parameter(
                 "rtol",
                 rtol,
-                "greater than 0 and less than 1",
+                "at least 1e-16 and less than 1",
             ));
         }
         if !(atol > 0.0 && atol.is_finite()) {

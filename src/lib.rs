@@ -11,6 +11,8 @@
 //! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
+//! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
+//! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
 //! L/V*. K = k L / (a sigma), R = t** V*/L, beta = b/a, gamma0 = 2 exp(-a_v/a). Numbers in parentheses are the equations of
@@ -18,18 +20,30 @@
 //! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
 //! Journal of the Mechanics and Physics of Solids.
 
-pub mod cli;
-pub mod contract;
-pub mod equilibrium;
+// Bottom up: a room imports only from those above it here. The drawing in the README says from which.
 pub mod error;
-pub mod field;
-pub mod friction;
-pub mod integrate;
-pub mod model;
+
 pub mod number;
-pub mod output;
-pub mod scene;
+
+pub mod friction;
+
+pub mod field;
+
+pub mod model;
+
+pub mod contract;
+
 #[cfg(feature = "sundials")]
 pub mod sundials;
+
+pub mod integrate;
+
+pub mod equilibrium;
+
+pub mod scene;
+
+pub mod output;
+
+pub mod cli;
 
 pub use error::{Error, Result};

@@ -70,7 +70,7 @@ fn parameters_outside_their_domain_are_refused() {
     refused(&model("--points 1"), "points is 1, but must be from 2");
     refused(
         &model("--rtol 1"),
-        "rtol is 1, but must be greater than 0 and less than 1",
+        "rtol is 1, but must be at least 1e-16 and less than 1",
     );
     refused(
         &model("--law byerlee"),

@@ -7,10 +7,12 @@ use trajectories::Run;
 use twinslip::error::{Error, Result};
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::Parameters;
-use twinslip::integrate::{Control, Integrator, MAX_STEPS, Method, Rosenbrock, Step, Tolerances};
+use twinslip::integrate::{
+    Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Tolerances,
+};
 use twinslip::model::{Loading, TwoInterfaces, symmetric, two_interfaces};
 
-fn integrator<const N: usize>(method: Method, tolerance: f64) -> Rosenbrock<N> {
+fn integrator<const N: usize>(method: RosenbrockMethod, tolerance: f64) -> Rosenbrock<N> {
     Rosenbrock::new(method, Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
 }
 
@@ -48,7 +50,7 @@ impl VectorField<2> for Spiral {
 }
 
 /// Errors after three time units in `steps` equal steps: of y at the end, and the largest of the continuous solution.
-fn fixed_step_errors(method: Method, steps: u32) -> (f64, f64) {
+fn fixed_step_errors(method: RosenbrockMethod, steps: u32) -> (f64, f64) {
     // So loose that each call takes one step of its whole length.
     let tolerances = Tolerances::new(0.5, 1e9).unwrap();
     let mut rosenbrock = Rosenbrock::<2>::new(method, tolerances, 1).unwrap();
@@ -85,7 +87,7 @@ fn slope(errors: &[f64]) -> f64 {
 
 #[test]
 fn every_method_converges_with_its_order() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         // Of the continuous solution the local error shows, one order higher than its name, or that of y0 if larger.
         let (ends, dense): (Vec<f64>, Vec<f64>) =
@@ -109,7 +111,7 @@ fn every_method_converges_with_its_order() {
 #[test]
 fn every_continuous_solution_converges_with_its_order() {
     let tolerances = Tolerances::new(0.5, 1e9).unwrap();
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let error = |halvings: i32| {
             let h = 0.2 * 0.5_f64.powi(halvings);
             let mut error = 0.0;
@@ -132,7 +134,7 @@ fn every_continuous_solution_converges_with_its_order() {
     }
 }
 
-fn run_error(run: &Run, method: Method, tolerance: f64) -> Result<f64> {
+fn run_error(run: &Run, method: RosenbrockMethod, tolerance: f64) -> Result<f64> {
     let t = (0.0, run.end_time);
     if run.is_symmetric() {
         let field = symmetric(run.law, run.loading);
@@ -149,7 +151,7 @@ fn run_error(run: &Run, method: Method, tolerance: f64) -> Result<f64> {
 #[test]
 fn rodas5p_reaches_every_reference_end() {
     for run in Run::all() {
-        let error = run_error(&run, Method::Rodas5P, 1e-13).unwrap();
+        let error = run_error(&run, RosenbrockMethod::Rodas5P, 1e-13).unwrap();
         println!("{}: {error:.1e}", run.name);
         assert!(error < 1e-9, "{}: {error:e}", run.name);
     }
@@ -159,9 +161,9 @@ fn rodas5p_reaches_every_reference_end() {
 fn the_error_falls_with_the_tolerance() {
     // A step of tolerance^(1/(q+1)), q the order of the estimate, leaves an error of that step^p.
     let cases = [
-        (Method::Rodas5P, 1e-7, 1e-11, 1.0),
-        (Method::Rodas4, 1e-7, 1e-11, 1.0),
-        (Method::Ros23, 1e-5, 1e-8, 2.0 / 3.0),
+        (RosenbrockMethod::Rodas5P, 1e-7, 1e-11, 1.0),
+        (RosenbrockMethod::Rodas4, 1e-7, 1e-11, 1.0),
+        (RosenbrockMethod::Ros23, 1e-5, 1e-8, 2.0 / 3.0),
     ];
     for name in [
         "A3_K0.14_VH100, t = 2",
@@ -194,9 +196,9 @@ fn backwards_returns_to_the_start() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
     for (method, tolerance) in [
-        (Method::Rodas5P, 1e-11),
-        (Method::Rodas4, 1e-11),
-        (Method::Ros23, 1e-9),
+        (RosenbrockMethod::Rodas5P, 1e-11),
+        (RosenbrockMethod::Rodas4, 1e-11),
+        (RosenbrockMethod::Ros23, 1e-9),
     ] {
         let mut rosenbrock = integrator::<3>(method, tolerance);
         let there = rosenbrock.flow(&field, (0.0, 0.5), &start, None).unwrap();
@@ -212,7 +214,7 @@ fn backwards_returns_to_the_start() {
 fn steps_join_land_on_the_end_and_leave_no_sliver() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         for end in [1.0, 1.7, -0.3] {
             let (mut now, mut y, mut lengths) = (0.0, start, Vec::new());
             let mut see = |step: &Step<'_, 3>| {
@@ -242,7 +244,7 @@ fn steps_join_land_on_the_end_and_leave_no_sliver() {
 fn an_observer_changes_nothing_and_can_stop_or_fail() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
-    let mut rosenbrock = integrator::<3>(Method::Rodas5P, 1e-6);
+    let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas5P, 1e-6);
     let alone = rosenbrock.flow(&field, (0.0, 1.0), &start, None).unwrap();
     let work = rosenbrock.work();
     let mut look = |step: &Step<'_, 3>| {
@@ -282,7 +284,7 @@ fn an_observer_changes_nothing_and_can_stop_or_fail() {
 fn no_time_no_change_and_no_nonsense() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
-    let mut rosenbrock = integrator::<3>(Method::Rodas4, 1e-6);
+    let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas4, 1e-6);
     assert_eq!(rosenbrock.flow(&field, (3.0, 3.0), &start, None), Ok(start));
     let (y, tangent) = rosenbrock.tangent_flow(&field, (3.0, 3.0), &start).unwrap();
     assert_eq!((y, tangent), (start, Jacobian::identity()));
@@ -304,14 +306,14 @@ fn no_time_no_change_and_no_nonsense() {
     let outcome = rosenbrock.flow(&field, (0.0, f64::INFINITY), &start, None);
     assert!(matches!(outcome, Err(Error::Parameter { .. })));
     let tolerances = Tolerances::equal(1e-6).unwrap();
-    assert!(Rosenbrock::<3>::new(Method::Rodas4, tolerances, 0).is_err());
+    assert!(Rosenbrock::<3>::new(RosenbrockMethod::Rodas4, tolerances, 0).is_err());
 }
 
 #[test]
 fn the_bound_on_steps_holds() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tolerances = Tolerances::equal(1e-8).unwrap();
         let mut rosenbrock = Rosenbrock::<3>::new(method, tolerances, 50).unwrap();
         let outcome = rosenbrock.flow(&field, (0.0, 100.0), &start, None);
@@ -331,9 +333,9 @@ fn a_finite_time_singularity_is_found_where_it_is() {
     };
     let start = State::<3>::new(10.85, 1.99_f64.ln(), 2.01_f64.ln());
     for (method, tolerance, allowed) in [
-        (Method::Rodas5P, 1e-14, 1e-9),
-        (Method::Rodas4, 1e-13, 1e-9),
-        (Method::Ros23, 1e-8, 1e-2),
+        (RosenbrockMethod::Rodas5P, 1e-14, 1e-9),
+        (RosenbrockMethod::Rodas4, 1e-13, 1e-9),
+        (RosenbrockMethod::Ros23, 1e-8, 1e-2),
     ] {
         let outcome = integrator::<3>(method, tolerance).flow(&field, (0.0, 300.0), &start, None);
         let Err(Error::BlowUp { t, rate }) = outcome else {
@@ -347,10 +349,10 @@ fn a_finite_time_singularity_is_found_where_it_is() {
 
 #[test]
 fn methods_are_known_by_name() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let name = method.tableau().name;
-        assert_eq!(Method::named(name), Ok(method));
+        assert_eq!(RosenbrockMethod::named(name), Ok(method));
         assert_eq!(integrator::<3>(method, 1e-6).name(), name);
     }
-    assert!(Method::named("rodas6").is_err_and(|error| error.is_input()));
+    assert!(RosenbrockMethod::named("rodas6").is_err_and(|error| error.is_input()));
 }

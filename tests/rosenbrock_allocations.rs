@@ -3,7 +3,9 @@
 use allocation_counter::measure;
 use twinslip::field::State;
 use twinslip::friction::Parameters;
-use twinslip::integrate::{Control, Integrator, MAX_STEPS, Method, Rosenbrock, Step, Tolerances};
+use twinslip::integrate::{
+    Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Tolerances,
+};
 use twinslip::model::{Loading, TwoInterfaces};
 
 #[test]
@@ -14,7 +16,7 @@ fn no_step_allocates() {
     };
     let start = State::<3>::new(10.0, -2.0, -4.0);
     let t = (0.0, 50.0);
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tolerances = Tolerances::equal(1e-6).unwrap();
         let mut rosenbrock = Rosenbrock::<3>::new(method, tolerances, MAX_STEPS).unwrap();
         let plain = measure(|| {

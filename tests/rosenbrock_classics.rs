@@ -6,7 +6,7 @@ mod stiff_classics;
 use nalgebra::SVector;
 use stiff_classics::*;
 use twinslip::field::{State, VectorField};
-use twinslip::integrate::{Integrator, MAX_STEPS, Method, Rosenbrock, Tolerances};
+use twinslip::integrate::{Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Tolerances};
 
 /// The largest relative error of a component.
 fn relative_error<const N: usize>(y: &State<N>, exact: &[f64; N]) -> f64 {
@@ -22,7 +22,7 @@ fn check_classic<const N: usize>(
     tolerances: Tolerances,
     allowed: [f64; 3],
 ) {
-    for (method, allowed) in Method::ALL.into_iter().zip(allowed) {
+    for (method, allowed) in RosenbrockMethod::ALL.into_iter().zip(allowed) {
         let mut rosenbrock = Rosenbrock::<N>::new(method, tolerances, MAX_STEPS).unwrap();
         let start = SVector::from(start);
         let y = rosenbrock

@@ -3,7 +3,7 @@
 use twinslip::error::{Error, Result};
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::integrate::{Integrator, Method, Rosenbrock, Tolerances, Work};
+use twinslip::integrate::{Integrator, Rosenbrock, RosenbrockMethod, Tolerances, Work};
 use twinslip::model::{Driven, Loading, two_interfaces};
 
 const LIMIT: usize = 400;
@@ -40,13 +40,13 @@ fn check_outcome(name: &str, outcome: Result<Vec<f64>>, work: Work) {
     }
 }
 
-fn integrator(method: Method) -> Rosenbrock<3> {
+fn integrator(method: RosenbrockMethod) -> Rosenbrock<3> {
     Rosenbrock::new(method, Tolerances::equal(1e-6).unwrap(), LIMIT).unwrap()
 }
 
 #[test]
 fn every_flow_ends_in_a_state_or_a_named_failure() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         grid(|name, field, start| {
             for t in [(0.0, 1e3), (1e3, 0.0), (0.0, 1e300)] {
                 let mut rosenbrock = integrator(method);
@@ -60,7 +60,7 @@ fn every_flow_ends_in_a_state_or_a_named_failure() {
 
 #[test]
 fn every_tangent_flow_ends_in_a_state_or_a_named_failure() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         grid(|name, field, start| {
             let mut rosenbrock = integrator(method);
             let outcome = rosenbrock.tangent_flow(field, (0.0, 1e3), start);
@@ -78,7 +78,7 @@ fn a_step_of_1e_minus_210_is_one_to_start_with() {
     let field = two_interfaces(law, Loading::new(1.0, 0.14).unwrap());
     let start = State::<3>::new(500.0, -2.0, -3.0);
     assert!(field.f(&start).amax() > 1e200);
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let mut rosenbrock =
             Rosenbrock::<3>::new(method, Tolerances::equal(1e-6).unwrap(), 1_000_000).unwrap();
         let end = rosenbrock.flow(&*field, (0.0, 1.0), &start, None).unwrap();
@@ -104,7 +104,7 @@ impl VectorField<1> for Cliff {
 
 #[test]
 fn where_the_field_ends_the_flow_ends() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let mut rosenbrock =
             Rosenbrock::<1>::new(method, Tolerances::equal(1e-6).unwrap(), LIMIT).unwrap();
         let outcome = rosenbrock.flow(&Cliff, (0.0, 2.0), &State::zeros(), None);

@@ -6,10 +6,12 @@ mod trajectories;
 
 use trajectories::Run;
 use twinslip::field::{Jacobian, State, VectorField};
-use twinslip::integrate::{Control, Integrator, MAX_STEPS, Method, Rosenbrock, Step, Tolerances};
+use twinslip::integrate::{
+    Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Tolerances,
+};
 use twinslip::model::{Driven, two_interfaces};
 
-fn integrator<const N: usize>(method: Method, tolerance: f64) -> Rosenbrock<N> {
+fn integrator<const N: usize>(method: RosenbrockMethod, tolerance: f64) -> Rosenbrock<N> {
     Rosenbrock::new(method, Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
 }
 
@@ -70,7 +72,7 @@ fn a_step_is_that_of_the_extended_system() {
     let run = Run::named("A3_K0.14_VH100, t = 2");
     // So loose that each call takes one step of its whole length.
     let tolerances = Tolerances::new(0.5, 1e9).unwrap();
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let mut small = Rosenbrock::<3>::new(method, tolerances, 1).unwrap();
         let mut large = Rosenbrock::<12>::new(method, tolerances, 1).unwrap();
         let start = joined(&run.start, &Jacobian::identity());
@@ -99,14 +101,14 @@ fn a_run_is_that_of_the_extended_system() {
         let run = Run::named(name);
         let t = (0.0, run.end_time);
         let start = joined(&run.start, &Jacobian::identity());
-        let exact = integrator::<12>(Method::Rodas5P, 1e-12)
+        let exact = integrator::<12>(RosenbrockMethod::Rodas5P, 1e-12)
             .flow(&Extended(field(&run)), t, &start, None)
             .unwrap();
         let (_, exact) = parted(&exact);
         for (method, tolerance, allowed) in [
-            (Method::Rodas5P, 1e-10, 1e-7),
-            (Method::Rodas4, 1e-10, 1e-7),
-            (Method::Ros23, 1e-7, 3e-2),
+            (RosenbrockMethod::Rodas5P, 1e-10, 1e-7),
+            (RosenbrockMethod::Rodas4, 1e-10, 1e-7),
+            (RosenbrockMethod::Ros23, 1e-7, 3e-2),
         ] {
             let mut rosenbrock = integrator::<3>(method, tolerance);
             let (y, tangent) = rosenbrock
@@ -124,7 +126,10 @@ fn a_run_is_that_of_the_extended_system() {
 fn a_tangent_is_the_limit_of_differences() {
     let run = Run::named("D_K0.2_VH0.102_torus, t = 2000");
     let t = (0.0, 300.0);
-    for (method, tolerance) in [(Method::Rodas5P, 1e-12), (Method::Rodas4, 1e-11)] {
+    for (method, tolerance) in [
+        (RosenbrockMethod::Rodas5P, 1e-12),
+        (RosenbrockMethod::Rodas4, 1e-11),
+    ] {
         let mut rosenbrock = integrator::<3>(method, tolerance);
         let (_, tangent) = rosenbrock
             .tangent_flow(&*field(&run), t, &run.start)
@@ -151,7 +156,7 @@ fn a_tangent_is_the_limit_of_differences() {
 fn the_determinant_is_that_of_liouville() {
     let run = Run::named("A3_K0.14_VH100, t = 2");
     let field = field(&run);
-    let mut rosenbrock = integrator::<3>(Method::Rodas5P, 1e-11);
+    let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas5P, 1e-11);
     let (_, tangent) = rosenbrock
         .tangent_flow(&*field, (0.0, 0.1), &run.start)
         .unwrap();
@@ -175,9 +180,9 @@ fn the_determinant_is_that_of_liouville() {
 fn backwards_the_tangent_is_the_inverse() {
     let run = Run::named("E1_DR_K0.45, t = 50");
     for (method, tolerance) in [
-        (Method::Rodas5P, 1e-12),
-        (Method::Rodas4, 1e-12),
-        (Method::Ros23, 1e-9),
+        (RosenbrockMethod::Rodas5P, 1e-12),
+        (RosenbrockMethod::Rodas4, 1e-12),
+        (RosenbrockMethod::Ros23, 1e-9),
     ] {
         let mut rosenbrock = integrator::<3>(method, tolerance);
         let field = field(&run);
@@ -200,7 +205,7 @@ fn the_tangent_error_falls_with_the_tolerance() {
     let run = Run::named("A3_K0.14_VH100, t = 2");
     let t = (0.0, run.end_time);
     let tangent = |tolerance| {
-        let mut rosenbrock = integrator::<3>(Method::Rodas5P, tolerance);
+        let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas5P, tolerance);
         rosenbrock
             .tangent_flow(&*field(&run), t, &run.start)
             .unwrap()

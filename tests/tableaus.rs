@@ -5,7 +5,7 @@
 //! where a node with one son contributes beta and a node with several alpha.
 
 use nalgebra::DMatrix;
-use twinslip::integrate::{Method, Tableau};
+use twinslip::integrate::{RosenbrockMethod, Tableau};
 
 /// A rooted tree: the trees that grow from its root.
 #[derive(Clone, Debug, PartialEq)]
@@ -125,7 +125,7 @@ fn there_are_seventeen_trees_up_to_order_five() {
 
 #[test]
 fn every_method_has_its_order_and_no_more() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let b = classical.weights(&tableau.m);
@@ -138,7 +138,7 @@ fn every_method_has_its_order_and_no_more() {
 
 #[test]
 fn every_embedded_method_has_its_order_and_no_more() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let embedded: Vec<f64> = (0..tableau.stages)
@@ -158,7 +158,7 @@ fn every_embedded_method_has_its_order_and_no_more() {
 /// sum_i b_i(theta) Phi_i(t) = theta^order(t) / gamma(t), as polynomials: coefficient by coefficient.
 #[test]
 fn every_continuous_solution_has_its_order() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let powers = powers_of_theta(tableau).map(|of_u| classical.weights(&of_u));
@@ -196,7 +196,7 @@ fn powers_of_theta(tableau: &Tableau) -> [Vec<f64>; 4] {
 /// R(infinity) = 1 - b^T B^-1 1: the stiffest components are damped at once.
 #[test]
 fn every_method_is_damped_at_infinity() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let b = classical.weights(&tableau.m);
@@ -214,7 +214,7 @@ fn every_method_is_damped_at_infinity() {
 /// |R(iy)| <= 1 along the imaginary axis and R analytic to its left: A-stability.
 #[test]
 fn every_method_is_a_stable() {
-    for method in Method::ALL {
+    for method in RosenbrockMethod::ALL {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let b = classical.weights(&tableau.m);
@@ -242,7 +242,7 @@ fn every_method_is_a_stable() {
 /// Rodas5P and RODAS: the last stage is at the end of the step and its weights are those of y1.
 #[test]
 fn the_rodas_methods_are_stiffly_accurate() {
-    for method in [Method::Rodas5P, Method::Rodas4] {
+    for method in [RosenbrockMethod::Rodas5P, RosenbrockMethod::Rodas4] {
         let tableau = method.tableau();
         let classical = Classical::of(tableau);
         let b = classical.weights(&tableau.m);
@@ -258,8 +258,8 @@ fn the_rodas_methods_are_stiffly_accurate() {
 /// The sums alpha_i and gamma_i are printed too, with df/dt; here they check the conversion.
 #[test]
 fn the_row_sums_are_the_printed_ones() {
-    let rodas4 = Classical::of(Method::Rodas4.tableau());
-    let rodas5p = Classical::of(Method::Rodas5P.tableau());
+    let rodas4 = Classical::of(RosenbrockMethod::Rodas4.tableau());
+    let rodas5p = Classical::of(RosenbrockMethod::Rodas5P.tableau());
     let check = |matrix: &DMatrix<f64>, printed: &[f64]| {
         for (row, printed) in matrix.row_iter().zip(printed) {
             assert!((row.iter().sum::<f64>() - printed).abs() < 10.0 * PRINTED);

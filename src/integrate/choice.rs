@@ -1,6 +1,6 @@
 //! From the name of a method to an integrator: the one place that knows them all.
 
-use super::rosenbrock::{Method, Rosenbrock};
+use super::rosenbrock::{Rosenbrock, RosenbrockMethod};
 use super::{Integrator, Tolerances};
 use crate::error::{Error, Result};
 #[cfg(feature = "sundials")]
@@ -10,7 +10,7 @@ use {super::CvodeIntegrator, crate::sundials};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
     /// A Rosenbrock method.
-    Rosenbrock(Method),
+    Rosenbrock(RosenbrockMethod),
     /// CVODES, of SUNDIALS.
     #[cfg(feature = "sundials")]
     Cvode(sundials::Method),
@@ -20,13 +20,23 @@ pub enum Choice {
 const CVODE: [&str; 2] = ["cvode-bdf", "cvode-adams"];
 
 impl Choice {
+    /// Every method of this build.
+    pub fn all() -> Vec<Choice> {
+        let rosenbrock = RosenbrockMethod::ALL.map(Choice::Rosenbrock);
+        #[cfg(feature = "sundials")]
+        let cvode = [sundials::Method::Bdf, sundials::Method::Adams].map(Choice::Cvode);
+        #[cfg(not(feature = "sundials"))]
+        let cvode = [];
+        rosenbrock.into_iter().chain(cvode).collect()
+    }
+
     /// The method of that name; `auto` is Rodas5P, the fastest here that takes stiff scenes too.
     ///
     /// # Errors
     /// [`Error::Input`] for a method that does not exist, or not in this build.
     pub fn named(name: &str) -> Result<Self> {
         match name {
-            "auto" => Ok(Choice::Rosenbrock(Method::default())),
+            "auto" => Ok(Choice::Rosenbrock(RosenbrockMethod::default())),
             "taylor" => Err(Error::Input(format!(
                 "method taylor is not available yet; choose one of {}",
                 available()
@@ -39,12 +49,14 @@ impl Choice {
                 "method {name} needs SUNDIALS, which this build is without; choose one of {}",
                 available()
             ))),
-            _ => Method::named(name).map(Choice::Rosenbrock).map_err(|_| {
-                Error::Input(format!(
-                    "there is no method {name:?}; choose one of {}",
-                    available()
-                ))
-            }),
+            _ => RosenbrockMethod::named(name)
+                .map(Choice::Rosenbrock)
+                .map_err(|_| {
+                    Error::Input(format!(
+                        "there is no method {name:?}; choose one of {}",
+                        available()
+                    ))
+                }),
         }
     }
 
@@ -78,11 +90,13 @@ impl Choice {
     /// Why one would take it, for a reader of `--explain`.
     pub fn reason(self) -> &'static str {
         match self {
-            Choice::Rosenbrock(Method::Rodas5P) => {
+            Choice::Rosenbrock(RosenbrockMethod::Rodas5P) => {
                 "order 5, one factorisation a step and no iteration, stable on stiff scenes"
             }
-            Choice::Rosenbrock(Method::Rodas4) => "order 4, six stages: cheaper steps than rodas5p",
-            Choice::Rosenbrock(Method::Ros23) => {
+            Choice::Rosenbrock(RosenbrockMethod::Rodas4) => {
+                "order 4, six stages: cheaper steps than rodas5p"
+            }
+            Choice::Rosenbrock(RosenbrockMethod::Ros23) => {
                 "order 2, the pair of ode23s, which the paper used: slow at tight tolerances"
             }
             #[cfg(feature = "sundials")]
@@ -99,10 +113,9 @@ impl Choice {
 
 /// The names of the methods in this build.
 pub fn available() -> String {
-    let mut names = vec!["auto"];
-    names.extend(Method::ALL.map(|method| method.tableau().name));
-    if cfg!(feature = "sundials") {
-        names.extend(CVODE);
-    }
-    names.join(", ")
+    let names = Choice::all().into_iter().map(Choice::name);
+    std::iter::once("auto")
+        .chain(names)
+        .collect::<Vec<_>>()
+        .join(", ")
 }

@@ -12,7 +12,7 @@ mod tableau;
 pub use choice::{Choice, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
-pub use rosenbrock::{Method, Rosenbrock};
+pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};

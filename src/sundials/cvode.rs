@@ -332,6 +332,9 @@ impl<const N: usize> Cvode<N> {
             return Err(Error::parameter("time", to, "finite"));
         }
         self.arm_stop_time(to)?;
+        if self.steps()? == 0 {
+            self.set_first_step(problem, to)?;
+        }
         let frame = Frame::new(*problem, self.event_count);
         loop {
             let before = self.steps()?;
@@ -378,6 +381,31 @@ impl<const N: usize> Cvode<N> {
         // SAFETY: a live memory.
         unsafe { check!(CV, &self.messages, CVodeSetStopTime(m, t))? };
         self.armed = Some(self.stop_time);
+        Ok(())
+    }
+
+    /// A first step for fields so fast that CVODES's own choice, never below a hundred spacings of t, would move the state by
+    /// more than its size. Undoing the prediction of such a step leaves rounding in place of the state, and CVODES goes on
+    /// from there with success. Everywhere else the choice stays CVODES's.
+    fn set_first_step(&mut self, problem: &Problem<'_, N>, to: f64) -> Result<()> {
+        /// CVODES's bound from below, in spacings of the larger time.
+        const SHORTEST: f64 = 100.0 * f64::EPSILON;
+        let y = self.state();
+        let f = problem.field.f(&y);
+        let Tolerances { rtol, atol } = self.tolerances;
+        let shortest = SHORTEST * self.start.abs().max(to.abs());
+        let too_long = (0..N).any(|i| shortest * f[i].abs() > y[i].abs() + atol / rtol);
+        let h = if too_long && all_finite(f.as_slice()) {
+            let within = (0..N).map(|i| (atol + rtol * y[i].abs()) / f[i].abs());
+            within
+                .fold(f64::INFINITY, f64::min)
+                .copysign(to - self.start)
+        } else {
+            0.0 // its own choice
+        };
+        let m = self.memory.as_ptr();
+        // SAFETY: a live memory.
+        unsafe { check!(CV, &self.messages, CVodeSetInitStep(m, h))? };
         Ok(())
     }
 

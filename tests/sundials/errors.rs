@@ -218,3 +218,29 @@ fn nothing_is_printed() {
         assert!(!printed.contains(line), "{printed}");
     }
 }
+
+/// dy/dt = -a (e^y - 1) falls from 500 within 1e-214 and then creeps: 1 - e^-y = e^(-a t). CVODES's own first step, a
+/// hundred spacings of t, would wipe out the state, and 0 is an equilibrium: the run would end there, with success.
+#[test]
+fn a_field_too_fast_for_the_first_step_does_not_wipe_out_the_state() {
+    let a = 1e-3;
+    let field = Field(
+        move |y: &State<1>| State::<1>::new(-a * y[0].exp_m1()),
+        move |y: &State<1>| Jacobian::<1>::new(-a * y[0].exp()),
+    );
+    let expected = -(-(-a).exp_m1()).ln();
+    for method in METHODS {
+        for operations in OPERATIONS {
+            let mut cvode = cvode::<1>(method, operations, 1e-8, 1e-8);
+            cvode.start(0.0, &State::<1>::new(500.0)).unwrap();
+            cvode
+                .advance(&Problem::new(&field), 1.0, Mode::Normal)
+                .unwrap();
+            assert!(
+                relative_error(cvode.state().as_slice(), &[expected]) < 1e-5,
+                "{}",
+                cvode.state()
+            );
+        }
+    }
+}

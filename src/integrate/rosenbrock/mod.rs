@@ -28,7 +28,7 @@ use trajectory::Trajectory;
 
 /// The Rosenbrock methods.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub enum Method {
+pub enum RosenbrockMethod {
     /// Rodas5P, order 5(4): mostly the fastest where the error is to be below 1e-4.
     #[default]
     Rodas5P,
@@ -38,16 +38,20 @@ pub enum Method {
     Ros23,
 }
 
-impl Method {
+impl RosenbrockMethod {
     /// All of them.
-    pub const ALL: [Method; 3] = [Method::Rodas5P, Method::Rodas4, Method::Ros23];
+    pub const ALL: [RosenbrockMethod; 3] = [
+        RosenbrockMethod::Rodas5P,
+        RosenbrockMethod::Rodas4,
+        RosenbrockMethod::Ros23,
+    ];
 
     /// The coefficients.
     pub const fn tableau(self) -> &'static Tableau {
         match self {
-            Method::Rodas5P => &RODAS5P,
-            Method::Rodas4 => &RODAS4,
-            Method::Ros23 => &ROS23,
+            RosenbrockMethod::Rodas5P => &RODAS5P,
+            RosenbrockMethod::Rodas4 => &RODAS4,
+            RosenbrockMethod::Ros23 => &ROS23,
         }
     }
 
@@ -85,13 +89,13 @@ impl Scheme for Ros23 {
 /// ```
 /// use twinslip::field::State;
 /// use twinslip::friction::Parameters;
-/// use twinslip::integrate::{Integrator, MAX_STEPS, Method, Rosenbrock, Tolerances};
+/// use twinslip::integrate::{Integrator, MAX_STEPS, RosenbrockMethod, Rosenbrock, Tolerances};
 /// use twinslip::model::{Loading, TwoInterfaces};
 /// # fn main() -> twinslip::Result<()> {
 /// let law = Parameters::heslot_1994().spinodal();
 /// let field = TwoInterfaces { law, loading: Loading::new(1000.0, 0.14)? };
 /// let start = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
-/// let mut rosenbrock = Rosenbrock::new(Method::default(), Tolerances::equal(1e-8)?, MAX_STEPS)?;
+/// let mut rosenbrock = Rosenbrock::new(RosenbrockMethod::default(), Tolerances::equal(1e-8)?, MAX_STEPS)?;
 /// let end = rosenbrock.flow(&field, (0.0, 200.0), &start, None)?;
 /// assert!((end[0] - 8.7802282536803).abs() < 1e-8);
 /// # Ok(())
@@ -99,7 +103,7 @@ impl Scheme for Ros23 {
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rosenbrock<const N: usize> {
-    method: Method,
+    method: RosenbrockMethod,
     tolerances: Tolerances,
     max_steps: usize,
     work: Work,
@@ -110,7 +114,7 @@ impl<const N: usize> Rosenbrock<N> {
     ///
     /// # Errors
     /// [`Error::Parameter`] if `max_steps` is 0 or the tolerances are not those of [`Tolerances::new`].
-    pub fn new(method: Method, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
+    pub fn new(method: RosenbrockMethod, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
         if max_steps == 0 {
             return Err(Error::parameter("max-steps", max_steps, "at least 1"));
         }
@@ -123,7 +127,7 @@ impl<const N: usize> Rosenbrock<N> {
     }
 
     /// The method.
-    pub fn method(&self) -> Method {
+    pub fn method(&self) -> RosenbrockMethod {
         self.method
     }
 
@@ -216,9 +220,9 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         self.work = Work::default();
         check_times(t)?;
         match self.method {
-            Method::Rodas5P => self.flow_by::<Rodas5P>(field, t, y0, observer),
-            Method::Rodas4 => self.flow_by::<Rodas4>(field, t, y0, observer),
-            Method::Ros23 => self.flow_by::<Ros23>(field, t, y0, observer),
+            RosenbrockMethod::Rodas5P => self.flow_by::<Rodas5P>(field, t, y0, observer),
+            RosenbrockMethod::Rodas4 => self.flow_by::<Rodas4>(field, t, y0, observer),
+            RosenbrockMethod::Ros23 => self.flow_by::<Ros23>(field, t, y0, observer),
         }
     }
 
@@ -231,9 +235,9 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         self.work = Work::default();
         check_times(t)?;
         match self.method {
-            Method::Rodas5P => self.tangent_flow_by::<Rodas5P>(field, t, y0),
-            Method::Rodas4 => self.tangent_flow_by::<Rodas4>(field, t, y0),
-            Method::Ros23 => self.tangent_flow_by::<Ros23>(field, t, y0),
+            RosenbrockMethod::Rodas5P => self.tangent_flow_by::<Rodas5P>(field, t, y0),
+            RosenbrockMethod::Rodas4 => self.tangent_flow_by::<Rodas4>(field, t, y0),
+            RosenbrockMethod::Ros23 => self.tangent_flow_by::<Ros23>(field, t, y0),
         }
     }
 
