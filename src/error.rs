@@ -117,7 +117,7 @@ impl Error {
     pub fn parameter(name: impl Into<String>, value: impl ToString, must: &'static str) -> Self {
         Error::Parameter {
             name: name.into(),
-            value: value.to_string(),
+            value: shortest(value.to_string()),
             must,
         }
     }
@@ -128,6 +128,14 @@ impl Error {
             self,
             Error::Parameter { .. } | Error::Input(_) | Error::File { .. }
         )
+    }
+}
+
+/// A number with many zeros is easier to read with an exponent.
+fn shortest(plain: String) -> String {
+    match plain.parse::<f64>() {
+        Ok(x) if plain.len() > 8 => format!("{x:?}"),
+        _ => plain,
     }
 }
 

@@ -70,6 +70,30 @@ proptest! {
     }
 }
 
+/// sinh and cosh by exponentials against the library's, over the whole range and across the seams.
+#[test]
+fn hyperbolic_functions_are_those_of_the_library() {
+    for i in -7200..=7200 {
+        let x = f64::from(i) * 0.1 + 1e-3;
+        let (sinh, cosh) = (Real::sinh(x), Real::cosh(x));
+        if x.abs() < 700.0 {
+            assert!((sinh / f64::sinh(x) - 1.0).abs() < 1e-15, "sinh({x})");
+            assert!((cosh / f64::cosh(x) - 1.0).abs() < 1e-15, "cosh({x})");
+        } else {
+            assert!(sinh == f64::sinh(x) && cosh == f64::cosh(x));
+        }
+        assert!(
+            Real::sinh(-x) == -sinh && Real::cosh(-x) == cosh,
+            "odd and even at {x}"
+        );
+        let back = Real::asinh(sinh);
+        assert!(
+            x.abs() > 700.0 || (back - x).abs() <= 4e-16 * x.abs().max(1.0),
+            "asinh(sinh({x})) = {back}"
+        );
+    }
+}
+
 #[test]
 fn division_by_an_interval_around_zero_certifies_nothing() {
     let q = Interval::constant(1.0) / Interval::new(-1.0, 1.0);

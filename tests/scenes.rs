@@ -129,7 +129,7 @@ fn what_is_wrong_in_a_scene_is_said_with_its_line() {
         (
             format!("{good}rtol = -1e-8"),
             5,
-            "rtol is -0.00000001, but must be greater than 0",
+            "rtol is -1e-8, but must be at least 1e-16",
         ),
         (
             format!("{good}rtol = \"tight\""),

@@ -60,6 +60,9 @@ pub trait Real:
     fn abs(self) -> Self;
 }
 
+/// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.
+const BOTH_EXPONENTIALS: std::ops::Range<f64> = 2.0..700.0;
+
 impl Real for f64 {
     #[inline]
     fn constant(x: f64) -> f64 {
@@ -93,13 +96,24 @@ impl Real for f64 {
     fn sqrt(self) -> f64 {
         self.sqrt()
     }
+    // Where the exponentials do not cancel, one of them serves both functions: several per cent of a whole integration.
     #[inline]
     fn sinh(self) -> f64 {
-        self.sinh()
+        if BOTH_EXPONENTIALS.contains(&f64::abs(self)) {
+            let e = f64::exp(f64::abs(self));
+            (0.5 * e - 0.5 / e).copysign(self)
+        } else {
+            self.sinh()
+        }
     }
     #[inline]
     fn cosh(self) -> f64 {
-        self.cosh()
+        if BOTH_EXPONENTIALS.contains(&f64::abs(self)) {
+            let e = f64::exp(f64::abs(self));
+            0.5 * e + 0.5 / e
+        } else {
+            self.cosh()
+        }
     }
     // The standard library's asinh loses digits for large negative arguments and overflows near the largest numbers.
     #[inline]
