@@ -47,3 +47,7 @@ pub mod output;
 pub mod cli;
 
 pub use error::{Error, Result};
+
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
