@@ -1,7 +1,7 @@
 //! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
-//! a steady maximum of friction appears at V_M (7).
+//! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
 
-use super::Law;
+use super::{Law, Spinodal};
 use crate::number::Real;
 
 /// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -16,49 +16,48 @@ pub struct Bounded {
 }
 
 impl Bounded {
-    // psi / psi_*, with psi_* = L / (L + V* t**) = 1 / (1 + R)
     #[inline]
-    fn relative_state<T: Real>(&self, psi: T) -> T {
-        (T::constant(1.0) + self.r) * psi
+    fn as_limit(&self) -> Spinodal {
+        let Bounded { beta, gamma0, r } = *self;
+        Spinodal {
+            beta,
+            gamma0,
+            r,
+            c: 0.0,
+        }
     }
 }
 
 impl Law for Bounded {
     #[inline]
     fn activation<T: Real>(&self, tau: T) -> T {
-        tau.sinh() * self.gamma0
+        self.as_limit().activation(tau)
     }
 
-    // v = 2 exp(-a_v/a) (psi/psi_*)^(-beta) sinh(tau)  (9)
+    // v = 2 exp(-a_v/a) (psi/psi_*)^(-beta) sinh(tau), psi_* = 1 / (1 + R)  (9)
     #[inline]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        activation / self.relative_state(psi).powf(self.beta)
+        self.as_limit().slip_rate(activation, psi)
     }
 
-    // (6)
+    // tau = asinh{(v/2) exp[(a_v + b ln(psi/psi_*))/a]}  (6)
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        (v * self.relative_state(psi).powf(self.beta) / self.gamma0).asinh()
+        self.as_limit().stress(v, psi)
     }
 
     // dpsi/dt = (1 - psi)/R - |v| psi  (6)
     #[inline]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        (T::constant(1.0) - psi) / self.r - v.abs() * psi
+        self.as_limit().evolution(v, psi)
     }
 
-    // psi_ss = 1 / (1 + R V)
     fn steady_state<T: Real>(&self, v: T) -> T {
-        T::constant(1.0) / (v * self.r + 1.0)
+        self.as_limit().steady_state(v)
     }
 
     // V_M = 1 / (R (beta - 1))  (7)
     fn steady_extrema(&self) -> Vec<f64> {
-        let v_peak = 1.0 / (self.r * (self.beta - 1.0));
-        if v_peak > 0.0 && v_peak.is_finite() {
-            vec![v_peak]
-        } else {
-            Vec::new()
-        }
+        self.as_limit().steady_extrema()
     }
 
     fn bounds_state(&self) -> bool {

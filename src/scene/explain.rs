@@ -1,6 +1,6 @@
 //! A plan in words: what is computed, how, and why the rest is not.
 
-use super::plan::{Dimension, Plan, Sampling, TIGHTER};
+use super::plan::{Dimension, Plan, Sampling};
 use super::units::Quantity;
 use std::fmt::Write;
 
@@ -56,10 +56,10 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line(
         "error estimate",
         if plan.estimate_error {
-            let tighter = plan.tighter();
+            let second = plan.comparison();
             format!(
-                "on: a second run, {TIGHTER} times tighter (rtol {:e}, atol {:e}), at the end only",
-                tighter.rtol, tighter.atol
+                "on: the distance to a second run with rtol {:e}, atol {:e}, at the end only",
+                second.rtol, second.atol
             )
         } else {
             "off: --estimate-error is not given".into()

@@ -149,7 +149,8 @@ pub struct IntegrateOptions {
     /// Count events whose total slip rate exceeds X times V_H [default: 2]
     #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub event_threshold: Option<f64>,
-    /// Estimate the error of the last row by a second run, 100 times more accurate
+    /// Estimate the error of the last row by a second run with 100 times tighter tolerances (10 times looser ones
+    /// below --rtol 1e-12, which bounds the error)
     #[arg(long, help_heading = "Run")]
     pub estimate_error: bool,
     /// By which method.

@@ -16,10 +16,13 @@ const NEAR_SYMMETRIC: f64 = 0.01;
 const EVENT_THRESHOLD: f64 = 2.0;
 /// More rows than this are a slip of the pen.
 const MAX_ROWS: f64 = 1e9;
-/// How much tighter the second run of `--estimate-error` is.
-pub(super) const TIGHTER: f64 = 100.0;
-/// Below this tolerance rounding rules, and a tighter one gains nothing.
+/// How much tighter the second run of `--estimate-error` is: its own error then does not count.
+const TIGHTER: f64 = 100.0;
+/// A tolerance below this gains nothing: rounding rules.
 const TIGHTEST: f64 = 1e-14;
+/// How much looser the second run is where a tighter one can't be had: the distance then is that run's error, and more
+/// than a bound on ours.
+const LOOSER: f64 = 10.0;
 
 /// The system that is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -160,12 +163,17 @@ impl Plan {
         self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture
     }
 
-    /// The tolerances of the second run.
-    pub fn tighter(&self) -> Tolerances {
-        let tighten = |x: f64| (x / TIGHTER).max(TIGHTEST.min(x));
+    /// The tolerances of the second run of `--estimate-error`: tighter, or looser where doubles end.
+    pub fn comparison(&self) -> Tolerances {
+        let Tolerances { rtol, atol } = self.tolerances;
+        let factor = if rtol / TIGHTER >= TIGHTEST {
+            1.0 / TIGHTER
+        } else {
+            LOOSER
+        };
         Tolerances {
-            rtol: tighten(self.tolerances.rtol),
-            atol: tighten(self.tolerances.atol),
+            rtol: rtol * factor,
+            atol: atol * factor,
         }
     }
 }

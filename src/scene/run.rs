@@ -99,7 +99,8 @@ fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorF
     field
 }
 
-/// The distance to a run that is so much more accurate that its own error does not count.
+/// The distance to a second run: one so much more accurate that its own error does not count, or, where doubles end, one so
+/// much less accurate that ours does not.
 fn estimate_error<const N: usize>(
     plan: &Plan,
     field: &dyn Driven<N>,
@@ -108,7 +109,7 @@ fn estimate_error<const N: usize>(
     outcome: &mut Outcome,
     sink: &mut dyn Sink,
 ) -> Result<()> {
-    let tolerances: Tolerances = plan.tighter();
+    let tolerances: Tolerances = plan.comparison();
     let mut integrator = plan.method.integrator::<N>(tolerances, plan.max_steps)?;
     let span = (0.0, plan.until);
     let mut stopped = false;
@@ -133,7 +134,7 @@ fn estimate_error<const N: usize>(
 
 /// Largest relative difference in stress and states: the states by their logarithms.
 fn relative_distance<const N: usize>(y: &State<N>, reference: &State<N>) -> f64 {
-    let stress = ((y[0] - reference[0]) / reference[0]).abs();
+    let stress = (y[0] - reference[0]).abs() / reference[0].abs().max(f64::MIN_POSITIVE);
     (1..N).fold(stress, |largest, i| {
         largest.max((y[i] - reference[i]).exp_m1().abs())
     })
