@@ -31,8 +31,8 @@ pub trait Driven<const N: usize>: VectorField<N> {
     fn parameter_derivative(&self, y: &State<N>, p: Parameter) -> State<N>;
     /// dJ/dp.
     fn parameter_jacobian(&self, y: &State<N>, p: Parameter) -> Jacobian<N>;
-    /// The slip rates of the interfaces, in V*.
-    fn slip_rates(&self, y: &State<N>) -> Vec<f64>;
+    /// The slip rates of both interfaces, in V*; a single one stands in both places.
+    fn slip_rates(&self, y: &State<N>) -> [f64; 2];
 }
 
 /// V_H and K, checked.

@@ -72,7 +72,7 @@ impl<L: Law> Driven<2> for SingleInterface<L> {
         j
     }
 
-    fn slip_rates(&self, y: &State<2>) -> Vec<f64> {
-        vec![self.law.slip_rate(self.law.activation(y[0]), y[1].exp())]
+    fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
+        [self.law.slip_rate(self.law.activation(y[0]), y[1].exp()); 2]
     }
 }

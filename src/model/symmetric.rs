@@ -61,9 +61,7 @@ impl<L: Law> Driven<2> for Symmetric<L> {
         self.equivalent.parameter_jacobian(y, p) * Self::weight(p)
     }
 
-    /// Both, equal.
-    fn slip_rates(&self, y: &State<2>) -> Vec<f64> {
-        let v = self.equivalent.slip_rates(y)[0];
-        vec![v, v]
+    fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
+        self.equivalent.slip_rates(y)
     }
 }

@@ -87,11 +87,8 @@ impl<L: Law> Driven<3> for TwoInterfaces<L> {
         j
     }
 
-    fn slip_rates(&self, y: &State<3>) -> Vec<f64> {
+    fn slip_rates(&self, y: &State<3>) -> [f64; 2] {
         let s = self.law.activation(y[0]);
-        vec![
-            self.law.slip_rate(s, y[1].exp()),
-            self.law.slip_rate(s, y[2].exp()),
-        ]
+        [1, 2].map(|i| self.law.slip_rate(s, y[i].exp()))
     }
 }

@@ -31,17 +31,6 @@ impl Instant {
     }
 }
 
-/// v of both interfaces at a state.
-pub(super) fn slip_rates<const N: usize>(law: &AnyLaw, y: &State<N>) -> [f64; 2] {
-    let s = law.activation(y[0]);
-    let first = law.slip_rate(s, y[1].exp());
-    if N == 2 {
-        [first, first]
-    } else {
-        [first, law.slip_rate(s, y[N - 1].exp())]
-    }
-}
-
 /// One column of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Column {

@@ -4,11 +4,10 @@
 //! It counts if the total slip rate v_1 + v_2 exceeds a threshold in between. An excursion that the run begins or ends in is
 //! none: its onset or its end is not known.
 
-use super::column::{Instant, slip_rates};
+use super::column::Instant;
 use super::plan::Plan;
 use crate::error::Result;
 use crate::field::State;
-use crate::friction::AnyLaw;
 use crate::integrate::Step;
 use crate::model::{Driven, Loading};
 use crate::number::bracketed_root;
@@ -64,7 +63,6 @@ struct Open {
 /// Watches the steps of a run for events.
 pub(super) struct Detector<'a, const N: usize> {
     field: &'a dyn Driven<N>,
-    law: &'a AnyLaw,
     loading: Loading,
     interfaces: usize,
     threshold: f64,
@@ -78,7 +76,6 @@ impl<'a, const N: usize> Detector<'a, N> {
         let loading = plan.loading;
         Detector {
             field,
-            law: &plan.system.law,
             loading,
             interfaces: plan.system.interfaces,
             threshold: threshold * loading.driving,
@@ -155,7 +152,7 @@ impl<'a, const N: usize> Detector<'a, N> {
     fn knot(&self, step: &Step<'_, N>, time: f64) -> Knot {
         let y = at(step, time);
         let curvature = (self.field.jacobian(&y) * self.field.f(&y))[0];
-        let v = slip_rates(self.law, &y);
+        let v = self.field.slip_rates(&y);
         let total = v[..self.interfaces].iter().sum::<f64>();
         Knot {
             time,

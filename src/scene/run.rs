@@ -1,11 +1,10 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
-use super::column::{Column, Instant, fill, slip_rates};
+use super::column::{Column, Instant, fill};
 use super::event::{Detector, Event, at};
 use super::plan::{Dimension, Plan, Sampling};
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::friction::AnyLaw;
 use crate::integrate::{Control, Step, Tolerances, Work};
 use crate::model::{self, Driven};
 
@@ -154,6 +153,7 @@ fn sum(a: Work, b: Work) -> Work {
 /// Sees the steps of a run and makes rows, slips and events of them.
 struct Watch<'a, const N: usize> {
     plan: &'a Plan,
+    field: &'a dyn Driven<N>,
     sink: &'a mut dyn Sink,
     detector: Option<Detector<'a, N>>,
     /// The end of the last step seen.
@@ -174,6 +174,7 @@ impl<'a, const N: usize> Watch<'a, N> {
     ) -> Self {
         Watch {
             plan,
+            field,
             sink,
             detector: plan
                 .events
@@ -199,11 +200,11 @@ impl<'a, const N: usize> Watch<'a, N> {
     }
 
     fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
-        let law = &self.plan.system.law;
+        let field = self.field;
         let before = self.here.slip;
         // Always from the step's beginning, so that a slip does not depend on which rows are asked for. In 2-D the balance
         // K (V_H t - n slip) = tau - tau(0) would do without a quadrature, but loses digits where K is small.
-        let slip = |t: f64| advance(law, step, before, t);
+        let slip = |t: f64| advance(field, step, before, t);
         if let Some(detector) = &mut self.detector {
             detector.see(step, &slip)?;
         }
@@ -298,11 +299,16 @@ impl<'a, const N: usize> Watch<'a, N> {
 }
 
 /// The slips at t, from those at the beginning of the step, by quadrature along the dense output.
-fn advance<const N: usize>(law: &AnyLaw, step: &Step<'_, N>, before: [f64; 2], t: f64) -> [f64; 2] {
+fn advance<const N: usize>(
+    field: &dyn Driven<N>,
+    step: &Step<'_, N>,
+    before: [f64; 2],
+    t: f64,
+) -> [f64; 2] {
     let h = t - step.t0;
     let mut slip = before;
     for (node, weight) in GAUSS {
-        let v = slip_rates(law, &(step.dense)(step.t0 + node * h));
+        let v = field.slip_rates(&(step.dense)(step.t0 + node * h));
         for i in 0..2 {
             slip[i] += weight * h * v[i];
         }
