@@ -14,7 +14,7 @@ pub use eigenvalues::{Stability, Verdict, stability};
 
 use crate::error::Result;
 use crate::friction::{AnyLaw, Law, positive, steady_stress_within, with_law};
-use crate::number::{Interval, Uncertain, enclosing_radius};
+use crate::number::{Interval, Jet, Uncertain, enclosing_radius};
 
 /// Which solver finds the asymmetric steady states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -65,7 +65,8 @@ impl Equilibrium {
             .collect()
     }
 
-    /// The largest residual of (19): |V_H - sum v| / V_H, and |dw/dt| against the rate at which the state is renewed.
+    /// The largest residual of (19): of the balance of the rates, relative to V_H, and of each evolution, relative to the rate
+    /// G_psi at which its state is renewed. Both then are relative errors, of a rate and of a state.
     pub fn residual(&self, law: &impl Law, driving: f64) -> f64 {
         let s = law.activation(self.stress.value);
         let rates: Vec<f64> = self
@@ -74,11 +75,15 @@ impl Equilibrium {
             .map(|&psi| law.slip_rate(s, psi))
             .collect();
         let balance = (driving - rates.iter().sum::<f64>()).abs() / driving;
-        rates
-            .iter()
-            .zip(self.state())
-            .map(|(&v, psi)| (law.evolution(v, psi) / (v * psi)).abs())
-            .fold(balance, f64::max)
+        let evolutions = rates.iter().zip(self.state()).map(|(&v, psi)| {
+            let held = Jet {
+                value: v,
+                gradient: [0.0],
+            };
+            let rate = law.evolution(held, Jet::variable(psi, 0));
+            (rate.value / (rate.gradient[0] * psi)).abs()
+        });
+        evolutions.fold(balance, f64::max)
     }
 
     fn at(law: &impl Law, symmetry: Symmetry, rates: &[(f64, f64)]) -> Self {
