@@ -63,7 +63,7 @@ proptest! {
                 let count = scannable(&states.equilibria, driving);
                 prop_assert!(count >= scan, "{count} states found, a scan shows {scan}");
                 // each tangency makes two: the scan may miss pairs, never a single one
-                prop_assert!((count - scan) % 2 == 0, "{count} states found, a scan shows {scan}");
+                prop_assert!((count - scan).is_multiple_of(2), "{count} states found, a scan shows {scan}");
             }
             for state in &states.equilibria {
                 prop_assert!(state.residual(&law, driving) < 1e-9);

@@ -136,13 +136,13 @@ pub struct Cvode<const N: usize> {
     pub(super) operations: Operations,
     pub(super) tolerances: Tolerances,
     max_steps: usize,
-    start: f64,
-    stop_time: Option<f64>,
+    pub(super) start: f64,
+    pub(super) stop_time: Option<f64>,
     // What CVODES was told, where it still knows: it forgets a stop time when it has reached it.
-    armed: Option<Option<f64>>,
+    pub(super) armed: Option<Option<f64>>,
     pub(super) event_count: usize,
     // Steps in a row that did not change t, and the state at the first of them.
-    stalled: usize,
+    pub(super) stalled: usize,
     standstill: State<N>,
     pub(super) tangents: usize,
     watched: usize,
@@ -291,30 +291,6 @@ impl<const N: usize> Cvode<N> {
         self.stop_time = t;
     }
 
-    /// Begins at `y0`, without sensitivities. Forgets everything before but the settings.
-    ///
-    /// # Errors
-    /// [`Error::NonFinite`] if `y0` or `t0` is not finite.
-    pub fn start(&mut self, t0: f64, y0: &State<N>) -> Result<()> {
-        self.restart(t0, y0)?;
-        self.forget_sensitivities()
-    }
-
-    pub(super) fn restart(&mut self, t0: f64, y0: &State<N>) -> Result<()> {
-        if !(t0.is_finite() && all_finite(y0.as_slice())) {
-            return Err(Error::NonFinite {
-                what: "the initial state",
-                t: t0,
-            });
-        }
-        self.state.set(y0);
-        let m = self.memory.as_ptr();
-        // SAFETY: a live memory and a vector like the one it was given at first.
-        unsafe { check!(CV, &self.messages, CVodeReInit(m, t0, self.state.as_ptr()))? };
-        (self.start, self.stalled, self.tangents, self.armed) = (t0, 0, 0, None);
-        Ok(())
-    }
-
     /// Integrates towards `to`, and says where and why it stopped. The field must be the one of the last calls since
     /// [`Cvode::start`].
     ///
@@ -367,46 +343,6 @@ impl<const N: usize> Cvode<N> {
                 code => return self.arrived(t, code, to, mode),
             }
         }
-    }
-
-    /// Tells CVODES the stop time, if it does not have it. There is no way to unset one before version 6.5: infinity does.
-    fn arm_stop_time(&mut self, to: f64) -> Result<()> {
-        if self.armed == Some(self.stop_time) {
-            return Ok(());
-        }
-        let t = self
-            .stop_time
-            .unwrap_or(f64::INFINITY.copysign(to - self.start));
-        let m = self.memory.as_ptr();
-        // SAFETY: a live memory.
-        unsafe { check!(CV, &self.messages, CVodeSetStopTime(m, t))? };
-        self.armed = Some(self.stop_time);
-        Ok(())
-    }
-
-    /// A first step for fields so fast that CVODES's own choice, never below a hundred spacings of t, would move the state by
-    /// more than its size. Undoing the prediction of such a step leaves rounding in place of the state, and CVODES goes on
-    /// from there with success. Everywhere else the choice stays CVODES's.
-    fn set_first_step(&mut self, problem: &Problem<'_, N>, to: f64) -> Result<()> {
-        /// CVODES's bound from below, in spacings of the larger time.
-        const SHORTEST: f64 = 100.0 * f64::EPSILON;
-        let y = self.state();
-        let f = problem.field.f(&y);
-        let Tolerances { rtol, atol } = self.tolerances;
-        let shortest = SHORTEST * self.start.abs().max(to.abs());
-        let too_long = (0..N).any(|i| shortest * f[i].abs() > y[i].abs() + atol / rtol);
-        let h = if too_long && all_finite(f.as_slice()) {
-            let within = (0..N).map(|i| (atol + rtol * y[i].abs()) / f[i].abs());
-            within
-                .fold(f64::INFINITY, f64::min)
-                .copysign(to - self.start)
-        } else {
-            0.0 // its own choice
-        };
-        let m = self.memory.as_ptr();
-        // SAFETY: a live memory.
-        unsafe { check!(CV, &self.messages, CVodeSetInitStep(m, h))? };
-        Ok(())
     }
 
     /// One stay in C, of at most `steps` steps: the time reached and the flag.

@@ -20,6 +20,7 @@ mod linear_solver;
 mod native;
 mod output;
 mod sensitivity;
+mod start;
 mod vector;
 
 pub use callback::{Events, Forcing, Problem};
