@@ -1,6 +1,7 @@
 //! Panels on a plotters canvas.
 
-use super::scale::{Scale, thinned};
+use super::scale::Scale;
+use super::thin::thinned;
 use super::{FAMILY, FONT, Panel, unrendered};
 use crate::error::Result;
 use plotters::coord::Shift;
@@ -146,7 +147,7 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
             .iter()
             .zip(&series.y)
             .map(|(&a, &b)| (x.at(a), y.at(b)));
-        for piece in thinned(points, per_pixel) {
+        for piece in thinned(points, per_pixel, series.x.is_sorted()) {
             chart
                 .draw_series(LineSeries::new(
                     piece,

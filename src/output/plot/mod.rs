@@ -3,6 +3,7 @@
 
 mod draw;
 mod scale;
+mod thin;
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;

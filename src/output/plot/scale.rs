@@ -1,4 +1,4 @@
-//! The range of an axis, its ticks and their labels; and curves thinned to what the eye can see.
+//! The range of an axis, its ticks and their labels.
 
 use super::Axis;
 
@@ -151,42 +151,6 @@ fn power(n: i64) -> String {
     format!("10{sign}{}", raised.collect::<String>())
 }
 
-/// A curve in pixels without the points that lie within half a pixel of the one before: what remains looks the same.
-/// Breaks where a point can't be drawn.
-pub fn thinned(
-    points: impl Iterator<Item = (f64, f64)>,
-    per_pixel: (f64, f64),
-) -> Vec<Vec<(f64, f64)>> {
-    /// In pixels.
-    const VISIBLE: f64 = 0.35;
-    let mut pieces: Vec<Vec<(f64, f64)>> = vec![Vec::new()];
-    let mut skipped = None;
-    for (x, y) in points {
-        let piece = pieces.last_mut().expect("there is always a last piece");
-        if !(x.is_finite() && y.is_finite()) {
-            piece.extend(skipped.take());
-            if !piece.is_empty() {
-                pieces.push(Vec::new());
-            }
-            continue;
-        }
-        let near = piece.last().is_some_and(|&(x0, y0): &(f64, f64)| {
-            ((x - x0) / per_pixel.0).abs() < VISIBLE && ((y - y0) / per_pixel.1).abs() < VISIBLE
-        });
-        if near {
-            skipped = Some((x, y));
-        } else {
-            piece.push((x, y));
-            skipped = None;
-        }
-    }
-    if let Some(piece) = pieces.last_mut() {
-        piece.extend(skipped);
-    }
-    pieces.retain(|piece| !piece.is_empty());
-    pieces
-}
-
 #[cfg(test)]
 mod test {
     use super::*;
@@ -204,19 +168,5 @@ mod test {
         assert_eq!(scale.label(0.1), "0.10");
         let scale = Scale::new(&Axis::linear("p"), [0.0, 4e7].iter(), 0.0).unwrap();
         assert_eq!(scale.label(2e7), "2·10⁷");
-    }
-
-    #[test]
-    fn thinning_keeps_ends_and_breaks() {
-        let points = [
-            (0.0, 0.0),
-            (0.1, 0.0),
-            (0.2, 0.0),
-            (5.0, 1.0),
-            (6.0, f64::NAN),
-            (7.0, 2.0),
-        ];
-        let pieces = thinned(points.into_iter(), (1.0, 1.0));
-        assert_eq!(pieces, vec![vec![(0.0, 0.0), (5.0, 1.0)], vec![(7.0, 2.0)]]);
     }
 }
