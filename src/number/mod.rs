@@ -2,12 +2,14 @@
 //!
 //! The friction laws are written once, generic over [`Real`]. In `f64` they give values; in [`Jet`] exact derivatives; in
 //! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding;
-//! in [`DoubleDouble`] values of 31 digits.
+//! in [`DoubleDouble`] values of 31 digits. Beside them, [`roots`] are those of polynomials with
+//! coefficients in `f64`.
 
 mod difference;
 mod double_double;
 mod interval;
 mod jet;
+mod polynomial;
 mod root;
 mod uncertain;
 
@@ -15,6 +17,7 @@ pub use difference::Difference;
 pub use double_double::DoubleDouble;
 pub use interval::Interval;
 pub use jet::Jet;
+pub use polynomial::{Crossing, MAX_DEGREE, Root, evaluate, evaluate_derivative, roots};
 pub use root::{bracketed_root, enclosing_radius};
 pub use uncertain::Uncertain;
 
