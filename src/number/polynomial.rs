@@ -94,6 +94,7 @@ pub fn roots(coefficients: &[f64], length: f64, found: &mut Vec<Root>) {
         coefficients,
         length,
         magnitudes,
+        ends_in_zero: end == 0.0,
         turned: backwards && zeros % 2 == 0,
         sign: terms[0].signum(),
         cluster: None,
@@ -201,6 +202,8 @@ struct Search<'a> {
     length: f64,
     /// |c_k h^k|
     magnitudes: Coefficients,
+    /// Whether the end is a root.
+    ends_in_zero: bool,
     /// Whether what rises along the way falls as t grows.
     turned: bool,
     /// The last certain sign.
@@ -265,9 +268,11 @@ impl Search<'_> {
             gap = false;
         }
         let middle = 0.5 * part.from + 0.5 * part.to;
+        // a root at the end would stop the search for another one before it
+        let bracket = !(self.ends_in_zero && part.to == 1.0);
         if !(open || gap) && changes == 0 {
             Verdict::Free
-        } else if !(open || gap) && changes == 1 {
+        } else if !(open || gap) && changes == 1 && bracket {
             Verdict::Crossing { sharp }
         } else if largest <= 4.0 * part.noise * self.magnitude(part.from)
             || part.depth == MAX_DEPTH
@@ -410,6 +415,12 @@ impl Search<'_> {
             Crossing::Downwards
         };
         self.sign = sign;
+        // 0 is not of this step, even where the root underflows
+        let at = if at == 0.0 {
+            f64::from_bits(1).copysign(self.length)
+        } else {
+            at
+        };
         self.found.push(Root { at, crossing });
     }
 }
