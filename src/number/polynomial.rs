@@ -52,9 +52,9 @@ pub fn evaluate_derivative(coefficients: &[f64], order: usize, t: f64) -> (f64, 
 /// Appends the real roots of sum_k c_k t^k between 0 and `length` to `found`, in the order in which they are met from 0.
 ///
 /// The interval is half open: a root at exactly 0 belongs to the step before, one at exactly `length`, which may be
-/// negative, to this one. Signs at the ends are those of c_0 and of [`evaluate`] at `length`, however small: in steps where
-/// c_0 has the sign that the step before ended with, no crossing is lost or found twice. An extremum that touches zero
-/// belongs to the step in whose half-open interval it lies.
+/// negative, to this one. Signs at the ends are those of c_0 and of [`evaluate`] at `length`, however small, and where these
+/// are 0 those of the next derivative that is not: in steps that begin with the sign that the step before ended with, no
+/// crossing is lost or found twice. An extremum that touches zero belongs to the step in whose half-open interval it lies.
 ///
 /// With u = 2^-53, n the degree and A(t) = sum_k |c_k t^k|, the roots are those of a polynomial that differs from this one
 /// by at most E(t) = (6 (n + 1) + 3 n d) u A(t), where d is the number of halvings that the closest roots take (some 20). So
@@ -101,7 +101,7 @@ pub fn roots(coefficients: &[f64], length: f64, found: &mut Vec<Root>) {
         found,
     };
     let mut control = bernstein(&terms, degree);
-    let (before_end, after_end) = search.signs_around_end(&terms, end);
+    let (before_end, after_end) = search.signs_around_end(end);
     control[degree] = if end == 0.0 {
         before_end * f64::MIN_POSITIVE
     } else {
@@ -125,6 +125,9 @@ const MAX_DEPTH: usize = 100;
 
 /// Where to divide: in the middle, unless a root is there.
 const DIVISIONS: [f64; 3] = [0.5, 0.4375, 0.5625];
+
+/// By how much the ends of a bracket must exceed the error, so that no neighbour of it is [`Verdict::Noise`].
+const FIRM: f64 = 8.0;
 
 type Coefficients = [f64; MAX_DEGREE + 1];
 
@@ -255,6 +258,8 @@ impl Search<'_> {
         let (mut sign, mut changes, mut largest) = (0.0, 0, 0.0_f64);
         // uncertain coefficients between two of the same sign, or at an end, leave open what happens there
         let (mut gap, mut sharp, mut open) = (false, true, false);
+        // a root at the end would stop the search for another one before it
+        let mut bracket = !(self.ends_in_zero && part.to == 1.0);
         for (i, &x) in part.control[..=n].iter().enumerate() {
             largest = largest.max(x.abs());
             let end = (i == 0 && part.from == 0.0) || (i == n && part.to == 1.0);
@@ -262,14 +267,13 @@ impl Search<'_> {
                 (gap, sharp) = (true, false);
                 continue;
             }
+            bracket &= end || (0 < i && i < n) || x.abs() > FIRM * uncertain;
             open |= gap && sign != -x.signum();
             changes += usize::from(sign == -x.signum());
             sign = x.signum();
             gap = false;
         }
         let middle = 0.5 * part.from + 0.5 * part.to;
-        // a root at the end would stop the search for another one before it
-        let bracket = !(self.ends_in_zero && part.to == 1.0);
         if !(open || gap) && changes == 0 {
             Verdict::Free
         } else if !(open || gap) && changes == 1 && bracket {
@@ -309,7 +313,8 @@ impl Search<'_> {
             let roundings = if ratio == 0.5 { 1.0 } else { 3.0 };
             let noise = part.noise + roundings * n as f64 * UNIT;
             tried += 1;
-            if right[0].abs() > noise * self.magnitude(at) || tried == DIVISIONS.len() {
+            if right[0].abs() > 2.0 * FIRM * noise * self.magnitude(at) || tried == DIVISIONS.len()
+            {
                 let depth = part.depth + 1;
                 let side = |control, from, to| Part {
                     control,
@@ -323,24 +328,19 @@ impl Search<'_> {
         }
     }
 
-    /// The signs just before and just after the end: where the polynomial vanishes there, those of its first derivative
-    /// that does not.
-    fn signs_around_end(&self, terms: &Coefficients, end: f64) -> (f64, f64) {
+    /// The signs just before and just after the end, in the order of the way.
+    fn signs_around_end(&self, end: f64) -> (f64, f64) {
         if end != 0.0 {
             return (end.signum(), end.signum());
         }
-        let n = self.coefficients.len() - 1;
-        let (mut shifted, mut bound) = (*terms, self.magnitudes);
-        let noise = 6.0 * (n + 1) as f64 * UNIT;
-        // Taylor coefficients at 1, by repeated synthetic division
-        for j in 0..=n {
-            for k in (j..n).rev() {
-                shifted[k] += shifted[k + 1];
-                bound[k] += bound[k + 1];
-            }
-            if j > 0 && shifted[j].abs() > noise * bound[j] {
-                let after = shifted[j].signum();
-                return (if j % 2 == 0 { after } else { -after }, after);
+        let along = self.length.signum();
+        let mut direction = 1.0;
+        for order in 1..self.coefficients.len() {
+            direction *= along;
+            let (slope, _) = evaluate_derivative(self.coefficients, order, self.length);
+            if slope != 0.0 {
+                let after = (slope * direction).signum();
+                return (if order % 2 == 0 { after } else { -after }, after);
             }
         }
         (self.sign, self.sign)
