@@ -2,9 +2,10 @@
 #![allow(missing_docs)]
 
 use proptest::prelude::*;
-use twinslip::number::Crossing::{Downwards, Touching, Upwards};
-use twinslip::number::{
-    Crossing, DoubleDouble, MAX_DEGREE, Root, evaluate, evaluate_derivative, roots,
+use twinslip::number::DoubleDouble;
+use twinslip::number::polynomial::Crossing::{Downwards, Touching, Upwards};
+use twinslip::number::polynomial::{
+    Crossing, MAX_DEGREE, Root, evaluate, evaluate_derivative, roots,
 };
 
 fn found(coefficients: &[f64], length: f64) -> Vec<Root> {
@@ -334,8 +335,11 @@ fn nothing_is_allocated() {
     assert_eq!(found.len(), 4);
 }
 
-/// Real roots in (0, 1), some of them with a close neighbour, others outside, pairs that are not real, and a factor.
-fn construction() -> impl Strategy<Value = (Vec<f64>, Vec<f64>, Vec<(f64, f64)>, f64)> {
+/// Real roots in (0, 1), others outside, pairs a +- i b, and a factor.
+type Construction = (Vec<f64>, Vec<f64>, Vec<(f64, f64)>, f64);
+
+/// Polynomials of degree up to 24, some with close neighbours among the roots in (0, 1).
+fn construction() -> impl Strategy<Value = Construction> {
     let inside = (
         0.001..0.9_f64,
         prop_oneof![Just(None), (-6.0..-1.1_f64).prop_map(Some)],

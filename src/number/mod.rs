@@ -2,14 +2,13 @@
 //!
 //! The friction laws are written once, generic over [`Real`]. In `f64` they give values; in [`Jet`] exact derivatives; in
 //! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding;
-//! in [`DoubleDouble`] values of 31 digits. Beside them, [`roots`] are those of polynomials with
-//! coefficients in `f64`.
+//! in [`DoubleDouble`] values of 31 digits. [`polynomial`] has the real roots of Taylor polynomials.
 
 mod difference;
 mod double_double;
 mod interval;
 mod jet;
-mod polynomial;
+pub mod polynomial;
 mod root;
 mod uncertain;
 
@@ -17,7 +16,6 @@ pub use difference::Difference;
 pub use double_double::DoubleDouble;
 pub use interval::Interval;
 pub use jet::Jet;
-pub use polynomial::{Crossing, MAX_DEGREE, Root, evaluate, evaluate_derivative, roots};
 pub use root::{bracketed_root, enclosing_radius};
 pub use uncertain::Uncertain;
 

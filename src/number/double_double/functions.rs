@@ -148,7 +148,9 @@ impl Real for DoubleDouble {
     }
 
     fn exp(self) -> Self {
-        if !(self.hi.abs() < 750.0) {
+        // beyond, and for NaN, the double says it all: 0 or infinity
+        let moderate = self.hi.abs() < 750.0;
+        if !moderate {
             return DoubleDouble::from(self.hi.exp());
         }
         let (k, s) = exp_parts(self);
@@ -157,7 +159,8 @@ impl Real for DoubleDouble {
 
     fn exp_m1(self) -> Self {
         // beyond, one of the two terms is nothing beside the other
-        if !(self.hi.abs() < 80.0) {
+        let moderate = self.hi.abs() < 80.0;
+        if !moderate {
             return self.exp() - 1.0;
         }
         let (k, s) = exp_parts(self);
