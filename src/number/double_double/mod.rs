@@ -49,7 +49,8 @@ fn split(a: f64) -> (f64, f64) {
 
 /// a b and the rounding error, exactly (Dekker), if neither overflows nor underflows.
 ///
-/// Without the instruction a fused multiplication is a call of the library, slower than the splitting.
+/// Without the instruction a fused multiplication is a call of the library: no gain in products (8 against 9 ns), a loss in
+/// quotients and logarithms (65 against 52 ns, 500 against 300 ns), and very slow on processors that lack it.
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;

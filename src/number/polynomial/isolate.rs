@@ -176,11 +176,12 @@ impl Search<'_> {
             let ratio = DIVISIONS[tried];
             let at = part.from + ratio * width;
             let (mut left, mut right) = (part.control, part.control);
-            for (j, corner) in left[..=n].iter_mut().enumerate().skip(1) {
-                for i in 0..=n - j {
-                    right[i] = (1.0 - ratio) * right[i] + ratio * right[i + 1];
-                }
+            for (j, corner) in left[..=n].iter_mut().enumerate() {
                 *corner = right[0];
+                let row = &mut right[..=n - j];
+                for i in 1..row.len() {
+                    row[i - 1] = (1.0 - ratio) * row[i - 1] + ratio * row[i];
+                }
             }
             // a mean of two rounds once, any other three times
             let roundings = if ratio == 0.5 { 1.0 } else { 3.0 };

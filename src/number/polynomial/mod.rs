@@ -141,9 +141,10 @@ fn bernstein(terms: &Coefficients, degree: usize) -> Coefficients {
         binomial = binomial * (degree + 1 - k) as f64 / k as f64;
         *c /= binomial;
     }
+    let row = &mut control[..=degree];
     for k in 1..=degree {
         for i in (k..=degree).rev() {
-            control[i] += control[i - 1];
+            row[i] += row[i - 1];
         }
     }
     control
