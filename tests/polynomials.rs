@@ -187,6 +187,23 @@ fn multiple_roots_cross_or_touch() {
     }
 }
 
+/// Beside a root the polynomial stays small for long: that is no second root.
+#[test]
+fn a_multiple_root_is_one() {
+    let (first, second) = (0.10799836613582948, 0.3142192540308226);
+    let mut all = vec![
+        -2.2075090866577542,
+        -2.6254901393146066,
+        -1.7228165503955277,
+    ];
+    all.extend([first, first, first, second, second, second]);
+    near(
+        &found(&with_roots(&all, 1.0), 1.0),
+        &[(first, Downwards), (second, Upwards)],
+        1e-9,
+    );
+}
+
 #[test]
 fn pairs_part_where_rounding_lets_them() {
     for exponent in 3..=12 {

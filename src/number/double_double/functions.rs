@@ -103,8 +103,8 @@ fn exp_parts(x: DoubleDouble) -> (i32, DoubleDouble) {
     (k as i32, exp_m1_near_zero(reduced))
 }
 
-/// ln(1 + t) for -0.3 < t < 0.42, by one step of Newton's method from the double's, with the term of second order. The
-/// residual (1 + t) e^-y - 1 is formed without the 1, to be accurate near 0.
+/// ln(1 + t) for -0.3 < t < 0.42, by one step of Newton's method from the double's. The residual (1 + t) e^-y - 1 is formed
+/// without the 1, to be accurate near 0.
 fn ln_1p_near_zero(t: DoubleDouble) -> DoubleDouble {
     if t.hi.abs() < LINEAR {
         return t;
@@ -112,7 +112,7 @@ fn ln_1p_near_zero(t: DoubleDouble) -> DoubleDouble {
     let y = t.hi.ln_1p();
     let e = exp_m1_near_zero(DoubleDouble::from(-y));
     let residual = t + (e + t * e);
-    residual + -0.5 * residual.hi * residual.hi + y
+    residual + y
 }
 
 /// k and m with x = 2^k m, m between 0.7 and 1.5, for finite x > 0.
