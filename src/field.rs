@@ -44,4 +44,7 @@ pub trait VectorField<const N: usize>: Send + Sync {
 pub trait Analytic<const N: usize> {
     /// A solution, to be started.
     fn solution(&self) -> Box<dyn Solution<N> + '_>;
+
+    /// A solution in 31 digits, to be started.
+    fn reference(&self) -> Box<dyn Solution<N> + '_>;
 }

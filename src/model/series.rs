@@ -5,10 +5,13 @@
 
 use super::{Loading, stress_rate};
 use crate::friction::Law;
+use crate::number::DoubleDouble;
 use crate::series::{
-    Accuracy, Both, Element, Expansion, Formula, Order, Pair, Rates, Series, Solution, Stepper,
-    value,
+    Accuracy, Both, Element, Expansion, Formula, Order, REFERENCE_ORDER, Rates, Series, Solution,
+    Stepper, value,
 };
+#[cfg(target_arch = "x86_64")]
+use {crate::series::Pair, pulp::x86::V3};
 
 /// Both interfaces in the lanes of E, variables (tau, psi).
 #[derive(Debug, Clone, Copy)]
@@ -48,120 +51,155 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 }
 
+type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
+type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
+type ReferenceStepper<L> =
+    Stepper<Both<DoubleDouble>, Interfaces<Both<DoubleDouble>, L>, 2, { REFERENCE_ORDER + 1 }>;
+
+/// A solution in N = 2 or 3 dimensions: in the best arithmetic of this processor, or in 31 digits.
+pub(super) enum Track<L> {
+    #[cfg(target_arch = "x86_64")]
+    Pair(V3, PairStepper<L>),
+    Plain(PlainStepper<L>),
+    Reference(ReferenceStepper<L>),
+}
+
+/// The same expression for every variant, `$s` its stepper.
+macro_rules! each {
+    ($track:expr, $s:ident => $body:expr) => {
+        match $track {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(_, $s) => $body,
+            Track::Plain($s) => $body,
+            Track::Reference($s) => $body,
+        }
+    };
+}
+
+impl<L: Law> Track<L> {
+    pub fn new(law: L, loading: &Loading) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V3::try_new() {
+            let zero = Pair::new(simd, [0.0; 2]);
+            return Track::Pair(simd, stepper(law, loading, zero));
+        }
+        Track::Plain(stepper(law, loading, Both([0.0; 2])))
+    }
+
+    pub fn reference(law: L, loading: &Loading) -> Self {
+        Track::Reference(stepper(law, loading, Both([DoubleDouble::ZERO; 2])))
+    }
+}
+
+fn stepper<E: Element, L: Law, const ROOM: usize>(
+    law: L,
+    loading: &Loading,
+    zero: E,
+) -> Stepper<E, Interfaces<E, L>, 2, ROOM> {
+    let formula = Interfaces {
+        law,
+        driving: zero.like(loading.driving),
+        stiffness: zero.like(loading.stiffness),
+    };
+    Stepper::new(formula, zero)
+}
+
+/// A step of the pair, to be compiled for the processor's vector instructions.
+#[cfg(target_arch = "x86_64")]
+struct PairStep<'a, L> {
+    stepper: &'a mut PairStepper<L>,
+    accuracy: &'a Accuracy,
+    limit: f64,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<L: Law> pulp::NullaryFnOnce for PairStep<'_, L> {
+    type Output = f64;
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let limit = self.stepper.state()[0].like(self.limit);
+        self.stepper.advance(self.accuracy, limit).first()
+    }
+}
+
+impl<L: Law, const N: usize> Solution<N> for Track<L> {
+    fn start(&mut self, y: &[f64; N]) {
+        let log_states = [y[1], y[N - 1]];
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(simd, stepper) => {
+                let tau = Pair::new(*simd, [y[0]; 2]);
+                stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
+            }
+            Track::Plain(stepper) => {
+                stepper.start([Both([y[0]; 2]), Both(log_states.map(f64::exp))]);
+            }
+            Track::Reference(stepper) => {
+                let log_states = log_states.map(DoubleDouble::from);
+                let tau = Both([DoubleDouble::from(y[0]); 2]);
+                stepper.start([tau, Both(log_states).exp()]);
+            }
+        }
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(simd, stepper) => {
+                let limit = limit.hi();
+                let step = PairStep {
+                    stepper,
+                    accuracy,
+                    limit,
+                };
+                DoubleDouble::from(simd.vectorize(step))
+            }
+            Track::Plain(stepper) => {
+                DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())
+            }
+            Track::Reference(stepper) => stepper.advance(accuracy, Both([limit; 2])).0[0],
+        }
+    }
+
+    fn state(&self) -> [f64; N] {
+        let x = each!(self, s => s.state().map(Element::interfaces));
+        let log_state = match self {
+            Track::Reference(s) => s.state()[1].ln().interfaces(),
+            _ => x[1].map(f64::ln),
+        };
+        chart(x[0][0], log_state)
+    }
+
+    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
+        into.order = order;
+        into.unit = each!(self, s => s.unit().first());
+        into.chart = logarithms;
+        for j in 0..=order {
+            let [tau, psi] = each!(self, s => [0, 1].map(|i| s.coefficient(i, j).interfaces()));
+            for (series, x) in into.variables.iter_mut().zip(chart::<N>(tau[0], psi)) {
+                series[j] = x;
+            }
+        }
+        for j in 0..order {
+            let v = each!(self, s => s.watched(0, j).map(Element::interfaces));
+            let v = v.unwrap_or([0.0; 2]);
+            into.slip_rates[0][j] = v[0];
+            into.slip_rates[1][j] = v[1];
+        }
+    }
+}
+
+/// (tau, x_1, x_2), or (tau, x_1) where both are equal.
+fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
+    let mut all = [tau; N];
+    all[1..].copy_from_slice(&x[..N - 1]);
+    all
+}
+
 /// From (tau, psi) to (tau, ln psi).
 fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     for psi in &mut x[1..] {
         *psi = psi.max(f64::MIN_POSITIVE).ln();
     }
     x
-}
-
-/// A solution in N = 2 or 3 dimensions.
-pub(super) enum Track<L> {
-    Plain(Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>),
-    #[cfg(target_arch = "x86_64")]
-    Vector(pulp::x86::V3, Stepper<Pair, Interfaces<Pair, L>, 2>),
-}
-
-impl<L: Law> Track<L> {
-    pub fn new(law: L, loading: &Loading) -> Self {
-        #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = pulp::x86::V3::try_new() {
-            let all = |x: f64| Pair::new(simd, [x; 2]);
-            let formula = Interfaces {
-                law,
-                driving: all(loading.driving),
-                stiffness: all(loading.stiffness),
-            };
-            return Track::Vector(simd, Stepper::new(formula, all(0.0)));
-        }
-        let all = |x: f64| Both([x; 2]);
-        let formula = Interfaces {
-            law,
-            driving: all(loading.driving),
-            stiffness: all(loading.stiffness),
-        };
-        Track::Plain(Stepper::new(formula, all(0.0)))
-    }
-}
-
-struct Step<'a, L> {
-    solution: &'a mut Stepper<Pair, Interfaces<Pair, L>, 2>,
-    accuracy: &'a Accuracy,
-    limit: f64,
-}
-
-impl<L: Law> pulp::NullaryFnOnce for Step<'_, L> {
-    type Output = f64;
-    #[inline(always)]
-    fn call(self) -> f64 {
-        let limit = self.solution.state()[0].like(self.limit);
-        self.solution.advance(self.accuracy, limit).first()
-    }
-}
-
-impl<L: Law, const N: usize> Solution<N> for Track<L> {
-    fn start(&mut self, y: &[f64; N]) {
-        let (tau, psi) = (y[0], [y[1].exp(), y[N - 1].exp()]);
-        match self {
-            Track::Plain(solution) => solution.start([Both([tau; 2]), Both(psi)]),
-            Track::Vector(simd, solution) => {
-                solution.start([Pair::new(*simd, [tau; 2]), Pair::new(*simd, psi)])
-            }
-        }
-    }
-
-    fn advance(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
-        match self {
-            Track::Plain(solution) => solution.advance(accuracy, Both([limit; 2])).first(),
-            Track::Vector(simd, solution) => simd.vectorize(Step {
-                solution,
-                accuracy,
-                limit,
-            }),
-        }
-    }
-
-    fn state(&self) -> [f64; N] {
-        let (tau, psi) = match self {
-            Track::Plain(solution) => (solution.state()[0].first(), solution.state()[1].0),
-            Track::Vector(_, solution) => {
-                (solution.state()[0].first(), solution.state()[1].lanes())
-            }
-        };
-        let mut y = [tau; N];
-        for i in 1..N {
-            y[i] = psi[i - 1].ln();
-        }
-        y
-    }
-
-    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
-        into.order = order;
-        into.unit = match self {
-            Track::Plain(s) => s.unit().first(),
-            Track::Vector(_, s) => s.unit().first(),
-        };
-        into.chart = logarithms;
-        for j in 0..=order {
-            let (tau, psi) = match self {
-                Track::Plain(s) => (s.coefficient(0, j).first(), s.coefficient(1, j).0),
-                Track::Vector(_, s) => (s.coefficient(0, j).first(), s.coefficient(1, j).lanes()),
-            };
-            into.variables[0][j] = tau;
-            for i in 1..N {
-                into.variables[i][j] = psi[i - 1];
-            }
-            if j < order {
-                let v = match self {
-                    Track::Plain(s) => s.watched(0, j).map(|x| x.0),
-                    Track::Vector(_, s) => s.watched(0, j).map(Pair::lanes),
-                };
-                if let Some(v) = v {
-                    into.slip_rates[0][j] = v[0];
-                    into.slip_rates[1][j] = v[1];
-                }
-            }
-        }
-    }
 }

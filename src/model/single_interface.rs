@@ -71,6 +71,10 @@ impl<L: Law> Analytic<2> for SingleInterface<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
         Box::new(Track::new(self.law, &self.as_pair()))
     }
+
+    fn reference(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::reference(self.law, &self.as_pair()))
+    }
 }
 
 impl<L: Law> Driven<2> for SingleInterface<L> {

@@ -62,6 +62,13 @@ impl<L: Law> Analytic<2> for Symmetric<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
         Box::new(Track::new(self.equivalent.law, &self.equivalent.as_pair()))
     }
+
+    fn reference(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::reference(
+            self.equivalent.law,
+            &self.equivalent.as_pair(),
+        ))
+    }
 }
 
 impl<L: Law> Driven<2> for Symmetric<L> {

@@ -80,6 +80,10 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
     fn solution(&self) -> Box<dyn Solution<3> + '_> {
         Box::new(Track::new(self.law, &self.loading))
     }
+
+    fn reference(&self) -> Box<dyn Solution<3> + '_> {
+        Box::new(Track::reference(self.law, &self.loading))
+    }
 }
 
 impl<L: Law> Driven<3> for TwoInterfaces<L> {

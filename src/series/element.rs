@@ -1,5 +1,6 @@
 //! What the coefficients of a series are: one number, or one in each of several lanes.
 
+use crate::number::{DoubleDouble, Real};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -18,8 +19,10 @@ pub trait Element:
 {
     /// The number x in every lane. (A method of a value, since what the processor can do is known from values alone.)
     fn like(self, x: f64) -> Self;
-    /// The exact sum x + y of two numbers in every lane, as far as the element can hold it.
-    fn like_sum(self, x: f64, y: f64) -> Self;
+    /// The same for a number of 31 digits, as many of them as the element holds.
+    fn like_exact(self, x: DoubleDouble) -> Self {
+        self.like(x.hi())
+    }
     /// self a + b, fused where the processor does that.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// |self|
@@ -54,6 +57,10 @@ pub trait Element:
     fn all_finite(self) -> bool;
     /// The number in the first lane.
     fn first(self) -> f64;
+    /// The numbers of both interfaces, where they are lanes; else the first lane twice.
+    fn interfaces(self) -> [f64; 2] {
+        [self.first(); 2]
+    }
     /// The sum over the interfaces that are lanes of this element.
     fn over_interfaces(self) -> Self {
         self
@@ -90,10 +97,6 @@ impl Element for f64 {
     #[inline(always)]
     fn like(self, x: f64) -> f64 {
         x
-    }
-    #[inline(always)]
-    fn like_sum(self, x: f64, y: f64) -> f64 {
-        x + y
     }
     // Unfused: in a binary for any x86-64 the fused one is a call of the library.
     #[inline(always)]
@@ -138,7 +141,6 @@ impl Element for f64 {
     }
     #[inline(always)]
     fn sinh_cosh(self) -> (f64, f64) {
-        use crate::number::Real;
         (Real::sinh(self), Real::cosh(self))
     }
     #[inline(always)]
@@ -156,5 +158,59 @@ impl Element for f64 {
     #[inline(always)]
     fn first(self) -> f64 {
         self
+    }
+}
+
+impl Element for DoubleDouble {
+    fn like(self, x: f64) -> Self {
+        DoubleDouble::from(x)
+    }
+    fn like_exact(self, x: DoubleDouble) -> Self {
+        x
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    fn abs(self) -> Self {
+        Real::abs(self)
+    }
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    fn sign(self) -> Self {
+        DoubleDouble::from(1_f64.copysign(self.hi()))
+    }
+    fn rough_log2(self) -> Self {
+        DoubleDouble::from(rough_log2(self.hi()))
+    }
+    fn rough_exp2(self) -> Self {
+        DoubleDouble::from(rough_exp2(self.hi()))
+    }
+    fn exp(self) -> Self {
+        Real::exp(self)
+    }
+    fn ln(self) -> Self {
+        Real::ln(self)
+    }
+    fn powf(self, p: f64) -> Self {
+        Real::powf(self, p)
+    }
+    fn sinh_cosh(self) -> (Self, Self) {
+        (Real::sinh(self), Real::cosh(self))
+    }
+    fn if_negative(self, a: Self, b: Self) -> Self {
+        if self.hi() < 0.0 { a } else { b }
+    }
+    fn all_positive(self) -> bool {
+        self.hi() > 0.0 && self.is_finite()
+    }
+    fn all_finite(self) -> bool {
+        self.is_finite()
+    }
+    fn first(self) -> f64 {
+        self.hi()
     }
 }

@@ -1,14 +1,13 @@
 //! A differential equation as a formula, and the series of its solution.
 
-use super::MAX_ORDER;
 use super::element::Element;
 use super::tape::{At, Order, Running, Series, Tape};
 use std::cell::Cell;
 
 /// Rows that a formula may take, its variables included.
 pub(super) const ROWS: usize = 40;
-/// Coefficients of all rows of a formula, of which each has room for [`MAX_ORDER`] and zero.
-pub(super) type Memory<E> = [E; ROWS * (MAX_ORDER + 1)];
+/// Coefficients of all rows of a formula, of which each has the same room.
+pub(super) type Memory<E, const ROOM: usize> = [[E; ROOM]; ROWS];
 /// Quantities of a formula, other than its variables, whose series are kept too.
 pub(super) const WATCHED: usize = 2;
 
@@ -69,12 +68,13 @@ fn level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
 pub(super) fn first_level<E: Element, F: Formula<E, C>, const C: usize>(
     formula: &F,
     memory: &[Cell<E>],
+    room: usize,
     unit: E,
 ) {
-    level(formula, memory, At::<0>, unit);
+    level(formula, memory, Running { room, index: 0 }, unit);
 }
 
-/// The series, in that unit of time, of the solution whose first coefficients stand in the memory, to an order of 12, 16 or [`MAX_ORDER`].
+/// The series, in that unit of time, of the solution whose first coefficients stand in the memory, to an order of 12, 16 or [`super::MAX_ORDER`].
 ///
 /// Every order is compiled by itself: with it a constant, all sums are unrolled and all places in the memory known.
 #[inline(always)]
@@ -101,16 +101,16 @@ pub(super) fn expand<E: Element, F: Formula<E, C>, const C: usize>(
     levels!(16 17 18; 19)
 }
 
-/// The same to any order, on rows with room for one coefficient more than that: smaller code that takes longer.
+/// The same to any even order below the room of a row, in loops.
 pub(super) fn expand_running<E: Element, F: Formula<E, C>, const C: usize>(
     formula: &F,
     memory: &[Cell<E>],
+    room: usize,
     order: usize,
     unit: E,
 ) -> [Option<usize>; WATCHED] {
     let mut watched = [None; WATCHED];
     for index in 0..order {
-        let room = order + 1;
         watched = level(formula, memory, Running { room, index }, unit);
     }
     watched

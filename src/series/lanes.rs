@@ -109,10 +109,6 @@ macro_rules! lanes {
                 self.with($unit.$splat(x))
             }
             #[inline(always)]
-            fn like_sum(self, x: f64, y: f64) -> Self {
-                self.like(x + y)
-            }
-            #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
                 let $f = self.simd;
                 self.with($fma.$fused(self.lanes, a.lanes, b.lanes))
@@ -194,6 +190,10 @@ macro_rules! lanes {
         }
     };
     (@interfaces Pair) => {
+        #[inline(always)]
+        fn interfaces(self) -> [f64; 2] {
+            self.lanes()
+        }
         #[inline(always)]
         fn over_interfaces(self) -> Self {
             let [x, y] = self.lanes();

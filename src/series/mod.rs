@@ -20,6 +20,8 @@ mod real;
 mod stepper;
 mod tape;
 
+use crate::number::DoubleDouble;
+use crate::number::polynomial::evaluate;
 pub use element::Element;
 pub use formula::{Formula, Rates};
 #[cfg(target_arch = "x86_64")]
@@ -31,10 +33,13 @@ pub use tape::{Order, Series, value};
 /// The highest order of the unrolled series.
 pub const MAX_ORDER: usize = 20;
 
+/// The order of the series in double-double arithmetic, run in loops.
+pub const REFERENCE_ORDER: usize = 32;
+
 /// The order of a step, and what it may err by.
 #[derive(Debug, Clone, Copy)]
 pub struct Accuracy {
-    /// 12, 16 or [`MAX_ORDER`].
+    /// 12, 16 or [`MAX_ORDER`]; [`REFERENCE_ORDER`] in double-double arithmetic.
     pub order: usize,
     /// Relative and absolute tolerance.
     pub tolerances: (f64, f64),
@@ -46,7 +51,7 @@ pub trait Solution<const N: usize> {
     fn start(&mut self, y: &[f64; N]);
     /// Goes on by the step that the accuracy asks for, at most `limit` (negative: back in time), and returns it. Not a number
     /// if there is no step; the state then stays.
-    fn advance(&mut self, accuracy: &Accuracy, limit: f64) -> f64;
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
     /// The state reached.
     fn state(&self) -> [f64; N];
     /// The series at the beginning of the last step.
@@ -61,9 +66,9 @@ pub struct Expansion<const N: usize> {
     /// The order to which the variables are known.
     pub order: usize,
     /// The coefficients of tau and psi, or of whatever the field's variables are.
-    pub variables: [[f64; MAX_ORDER + 1]; N],
+    pub variables: [[f64; REFERENCE_ORDER + 1]; N],
     /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
-    pub slip_rates: [[f64; MAX_ORDER + 1]; 2],
+    pub slip_rates: [[f64; REFERENCE_ORDER + 1]; 2],
     /// From these variables to the state that the field is integrated in.
     pub chart: fn([f64; N]) -> [f64; N],
 }
@@ -74,8 +79,8 @@ impl<const N: usize> Expansion<N> {
         Expansion {
             unit: 1.0,
             order: 0,
-            variables: [[0.0; MAX_ORDER + 1]; N],
-            slip_rates: [[0.0; MAX_ORDER + 1]; 2],
+            variables: [[0.0; REFERENCE_ORDER + 1]; N],
+            slip_rates: [[0.0; REFERENCE_ORDER + 1]; 2],
             chart: |x| x,
         }
     }
@@ -85,7 +90,7 @@ impl<const N: usize> Expansion<N> {
         let s = time / self.unit;
         let mut x = [0.0; N];
         for (x, series) in x.iter_mut().zip(&self.variables) {
-            *x = horner(&series[..=self.order], s);
+            *x = evaluate(&series[..=self.order], s);
         }
         (self.chart)(x)
     }
@@ -108,8 +113,4 @@ impl<const N: usize> Default for Expansion<N> {
     fn default() -> Self {
         Self::new()
     }
-}
-
-fn horner(coefficients: &[f64], s: f64) -> f64 {
-    coefficients.iter().rev().fold(0.0, |sum, c| sum * s + c)
 }

@@ -1,6 +1,7 @@
 //! Both interfaces in ordinary numbers: for processors without the vector instructions, and for any kind of number.
 
 use super::element::Element;
+use crate::number::DoubleDouble;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Both interfaces under one stress.
@@ -46,7 +47,7 @@ macro_rules! functions {
 impl<T: Element> Element for Both<T> {
     functions! {
         like(x: f64);
-        like_sum(x: f64, y: f64);
+        like_exact(x: DoubleDouble);
         abs();
         sign();
         exp();
@@ -93,6 +94,10 @@ impl<T: Element> Element for Both<T> {
     #[inline(always)]
     fn all_finite(self) -> bool {
         self.0[0].all_finite() && self.0[1].all_finite()
+    }
+    #[inline(always)]
+    fn interfaces(self) -> [f64; 2] {
+        [self.0[0].first(), self.0[1].first()]
     }
     #[inline(always)]
     fn over_interfaces(self) -> Self {

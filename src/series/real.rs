@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::tape::{Kind, Order, Series, exact, literal, row, value};
-use crate::number::Real;
+use crate::number::{DoubleDouble, Real};
 use Kind::{Exact, Literal, Row, Value};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -12,7 +12,7 @@ impl<E: Element, O: Order> Neg for Series<'_, E, O> {
     fn neg(self) -> Self {
         match self.kind() {
             Literal(x) => literal(-x),
-            Exact(x, y) => exact(-x, -y),
+            Exact(x) => exact(-x),
             Value(x) => value(-x),
             Row(a) => row(a.mapped(-a.newest())),
         }
@@ -30,25 +30,14 @@ impl<E: Element, O: Order> Add for Series<'_, E, O> {
                 // What is exactly zero costs nothing.
                 (Row(a), Row(b)) => row(a.mapped(a.newest() + b.newest())),
                 (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.plus(x)),
-                (Row(a), Exact(x, y)) | (Exact(x, y), Row(a)) => {
-                    row(a.plus(a.newest().like_sum(x, y)))
-                }
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => row(a.plus(a.newest().like_exact(x))),
                 (Value(x), Value(y)) => value(x + y),
-                (Value(x), Exact(y, z)) | (Exact(y, z), Value(x)) => value(x + x.like_sum(y, z)),
-                (Exact(x, y), Exact(z, w)) => exact_sum(x, y + w, z),
+                (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x + x.like_exact(y)),
+                (Exact(x), Exact(y)) => exact(x + y),
                 _ => unreachable!("released"),
             },
         }
     }
-}
-
-/// (x + z) + y
-#[inline(always)]
-fn exact_sum<'t, E, O>(x: f64, y: f64, z: f64) -> Series<'t, E, O> {
-    let sum = x + z;
-    let x_part = sum - z;
-    let error = (x - x_part) + (z - (sum - x_part));
-    exact(sum, error + y)
 }
 
 impl<E: Element, O: Order> Sub for Series<'_, E, O> {
@@ -64,10 +53,10 @@ impl<E: Element, O: Order> Sub for Series<'_, E, O> {
                     let x = if a.order() == 0 { x } else { x.like(0.0) };
                     row(a.mapped(x - a.newest()))
                 }
-                (Exact(x, y), Row(a)) => {
+                (Exact(x), Row(a)) => {
                     let new = a.newest();
                     row(a.mapped(if a.order() == 0 {
-                        new.like_sum(x, y) - new
+                        new.like_exact(x) - new
                     } else {
                         -new
                     }))
@@ -83,7 +72,7 @@ impl<E: Element, O: Order> Mul for Series<'_, E, O> {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         match (self.kind(), other.kind()) {
-            (Literal(0.0), _) | (_, Literal(0.0)) => exact(0.0, 0.0),
+            (Literal(0.0), _) | (_, Literal(0.0)) => literal(0.0),
             (Literal(1.0), _) => other,
             (_, Literal(1.0)) => self,
             (Literal(-1.0), _) => -other,
@@ -91,13 +80,13 @@ impl<E: Element, O: Order> Mul for Series<'_, E, O> {
             (a, b) => match (a.released(), b.released()) {
                 (Row(a), Row(b)) => row(a.product(b)),
                 (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.mapped(a.newest() * x)),
-                (Row(a), Exact(x, y)) | (Exact(x, y), Row(a)) => {
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => {
                     let new = a.newest();
-                    row(a.mapped(new * new.like_sum(x, y)))
+                    row(a.mapped(new * new.like_exact(x)))
                 }
                 (Value(x), Value(y)) => value(x * y),
-                (Value(x), Exact(y, z)) | (Exact(y, z), Value(x)) => value(x * x.like_sum(y, z)),
-                (Exact(x, y), Exact(z, w)) => exact((x + y) * (z + w), 0.0),
+                (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x * x.like_exact(y)),
+                (Exact(x), Exact(y)) => exact(x * y),
                 _ => unreachable!("released"),
             },
         }
@@ -109,23 +98,23 @@ impl<E: Element, O: Order> Div for Series<'_, E, O> {
     #[inline(always)]
     fn div(self, other: Self) -> Self {
         match (self.kind(), other.kind()) {
-            (Literal(0.0), _) => exact(0.0, 0.0),
+            (Literal(0.0), _) => literal(0.0),
             (a, b) => match (a.released(), b.released()) {
                 (Row(a), Row(b)) => row(a.quotient(b)),
                 (Value(x), Row(b)) => row(b.constant_series(x).quotient(b)),
-                (Exact(x, y), Row(b)) => {
-                    let x = b.newest().like_sum(x, y);
+                (Exact(x), Row(b)) => {
+                    let x = b.newest().like_exact(x);
                     row(b.constant_series(x).quotient(b))
                 }
                 (Row(a), Value(x)) => row(a.mapped(a.newest() / x)),
-                (Row(a), Exact(x, y)) => {
+                (Row(a), Exact(x)) => {
                     let new = a.newest();
-                    row(a.mapped(new / new.like_sum(x, y)))
+                    row(a.mapped(new / new.like_exact(x)))
                 }
                 (Value(x), Value(y)) => value(x / y),
-                (Value(x), Exact(y, z)) => value(x / x.like_sum(y, z)),
-                (Exact(x, y), Value(z)) => value(z.like_sum(x, y) / z),
-                (Exact(x, y), Exact(z, w)) => exact((x + y) / (z + w), 0.0),
+                (Value(x), Exact(y)) => value(x / x.like_exact(y)),
+                (Exact(x), Value(y)) => value(y.like_exact(x) / y),
+                (Exact(x), Exact(y)) => exact(x / y),
                 _ => unreachable!("released"),
             },
         }
@@ -137,7 +126,7 @@ impl<E: Element, O: Order> Add<f64> for Series<'_, E, O> {
     #[inline(always)]
     fn add(self, x: f64) -> Self {
         match self.kind().released() {
-            Exact(y, z) => exact_sum(y, z, x),
+            Exact(y) => exact(y + x),
             Value(y) => value(y + y.like(x)),
             Literal(_) => unreachable!("released"),
             Row(a) => row(a.plus(a.newest().like(x))),
@@ -158,7 +147,7 @@ impl<E: Element, O: Order> Mul<f64> for Series<'_, E, O> {
     #[inline(always)]
     fn mul(self, x: f64) -> Self {
         match self.kind().released() {
-            Exact(y, z) => exact((y + z) * x, 0.0),
+            Exact(y) => exact(y * x),
             Value(y) => value(y * y.like(x)),
             Literal(_) => unreachable!("released"),
             Row(a) => row(a.mapped(a.newest() * a.newest().like(x))),
@@ -171,7 +160,7 @@ impl<E: Element, O: Order> Div<f64> for Series<'_, E, O> {
     #[inline(always)]
     fn div(self, x: f64) -> Self {
         match self.kind().released() {
-            Exact(y, z) => exact((y + z) / x, 0.0),
+            Exact(y) => exact(y / x),
             Value(y) => value(y / y.like(x)),
             Literal(_) => unreachable!("released"),
             Row(a) => row(a.mapped(a.newest() / a.newest().like(x))),
@@ -186,8 +175,11 @@ macro_rules! functions {
             #[inline(always)]
             fn $name(self) -> Self {
                 match self.kind() {
-                    Literal($x) => exact($of_constant, 0.0),
-                    Exact(x, y) => { let $x = x + y; exact($of_constant, 0.0) }
+                    Literal(x) => {
+                        let $x = DoubleDouble::from(x);
+                        exact($of_constant)
+                    }
+                    Exact($x) => exact($of_constant),
                     Value($x) => value($of_constant),
                     Row($a) => row($of_row),
                 }
@@ -205,7 +197,8 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
     #[inline(always)]
     fn leading(self) -> f64 {
         match self.kind() {
-            Literal(x) | Exact(x, _) => x,
+            Literal(x) => x,
+            Exact(x) => x.hi(),
             Value(x) => x.first(),
             Row(a) => a.get(0).first(),
         }
@@ -222,9 +215,9 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
     #[inline(always)]
     fn powf(self, p: f64) -> Self {
         match self.kind() {
-            Literal(x) => exact(x.powf(p), 0.0),
-            Exact(x, y) => exact((x + y).powf(p), 0.0),
-            Value(x) => value(x.powf(p)),
+            Literal(x) => exact(Real::powf(DoubleDouble::from(x), p)),
+            Exact(x) => exact(Real::powf(x, p)),
+            Value(x) => value(Element::powf(x, p)),
             Row(a) => row(a.power(p)),
         }
     }

@@ -1,7 +1,7 @@
 //! One step after the other along a solution, each by the Taylor series at its beginning.
 
 use super::element::Element;
-use super::formula::{Formula, Memory, ROWS, WATCHED, expand, first_level};
+use super::formula::{Formula, Memory, ROWS, WATCHED, expand, expand_running, first_level};
 use super::{Accuracy, MAX_ORDER};
 use std::cell::Cell;
 
@@ -13,9 +13,12 @@ const HALVINGS: usize = 60;
 const BISECTIONS: usize = 64;
 
 /// A solution of a formula on its way, in every lane of E.
-pub struct Stepper<E, F, const C: usize> {
+///
+/// With room for [`MAX_ORDER`] and one coefficients the series are compiled order by order; with any other room, which is
+/// for elements whose arithmetic takes longer anyway, they are made in loops.
+pub struct Stepper<E, F, const C: usize, const ROOM: usize = { MAX_ORDER + 1 }> {
     formula: F,
-    memory: Box<Memory<E>>,
+    memory: Box<Memory<E, ROOM>>,
     watched: [Option<usize>; WATCHED],
     /// The state at the end of the last step, and what rounding took from it.
     x: [E; C],
@@ -26,13 +29,13 @@ pub struct Stepper<E, F, const C: usize> {
     next_unit: E,
 }
 
-impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
+impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E, F, C, ROOM> {
     /// To be started; `any` is any element.
     pub fn new(formula: F, any: E) -> Self {
         let (zero, one) = (any.like(0.0), any.like(1.0));
         Stepper {
             formula,
-            memory: Box::new([zero; ROWS * (MAX_ORDER + 1)]),
+            memory: Box::new([[zero; ROOM]; ROWS]),
             watched: [None; WATCHED],
             x: [zero; C],
             lost: [zero; C],
@@ -49,7 +52,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         self.lost = [zero; C];
         self.next_unit = zero.like(1.0);
         self.load();
-        first_level(&self.formula, cells(&mut self.memory), self.next_unit);
+        first_level(&self.formula, cells(&mut self.memory), ROOM, self.next_unit);
         // The time in which the state would change by its own size.
         let mut rate = zero;
         let mut c = 0;
@@ -76,12 +79,12 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     /// The j-th coefficient of the i-th variable in the last step's series.
     #[inline(always)]
     pub fn coefficient(&self, i: usize, j: usize) -> E {
-        self.memory[i * (MAX_ORDER + 1) + j]
+        self.memory[i][j]
     }
 
     /// The j-th coefficient of the i-th quantity watched, j below the order; `None` for a constant.
     pub fn watched(&self, i: usize, j: usize) -> Option<E> {
-        self.watched[i].map(|row| self.memory[row * (MAX_ORDER + 1) + j])
+        self.watched[i].map(|row| self.memory[row][j])
     }
 
     /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved
@@ -91,7 +94,12 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         self.unit = self.next_unit;
         self.load();
         let unit = self.unit;
-        self.watched = expand(&self.formula, cells(&mut self.memory), accuracy.order, unit);
+        let memory = cells(&mut self.memory);
+        self.watched = if ROOM == MAX_ORDER + 1 {
+            expand(&self.formula, memory, accuracy.order, unit)
+        } else {
+            expand_running(&self.formula, memory, ROOM, accuracy.order, unit)
+        };
         let limit = limit / unit;
         // From here on time is counted in units.
         let mut h = Element::min(self.longest(accuracy), limit.abs()) * limit.sign();
@@ -122,7 +130,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     fn load(&mut self) {
         let mut c = 0;
         while c < C {
-            self.memory[c * (MAX_ORDER + 1)] = self.x[c];
+            self.memory[c][0] = self.x[c];
             c += 1;
         }
     }
@@ -194,7 +202,6 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
 }
 
 #[inline(always)]
-fn cells<E>(memory: &mut Memory<E>) -> &[Cell<E>] {
-    let slice: &mut [E] = memory;
-    Cell::from_mut(slice).as_slice_of_cells()
+fn cells<E, const ROOM: usize>(memory: &mut Memory<E, ROOM>) -> &[Cell<E>] {
+    Cell::from_mut(memory.as_flattened_mut()).as_slice_of_cells()
 }

@@ -7,6 +7,7 @@
 //! order a constant everything but the recurrences folds away: no handle, no counter is left in the machine code.
 
 use super::element::Element;
+use crate::number::DoubleDouble;
 use std::cell::Cell;
 use std::fmt;
 
@@ -276,7 +277,8 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         }
         let weighted = slopes.inner_product(self);
         let plain = self.get(k).mul_add(y.get(0), y.inner_product(self));
-        let weighted = weighted * (a0.like_sum(1.0, p) * self.one_over_order());
+        let weighted =
+            weighted * (a0.like_exact(DoubleDouble::new(1.0, p)) * self.one_over_order());
         let new = (plain * a0.like(p) - weighted) * slopes.get(0);
         slopes.put(new * new.like(k as f64));
         y.put(new)
@@ -307,7 +309,7 @@ pub struct Series<'t, E, O> {
     tape: Option<&'t Tape<'t, E, O>>,
     row: usize,
     value: Option<E>,
-    exact: (f64, f64),
+    exact: DoubleDouble,
     literal: bool,
 }
 
@@ -315,8 +317,8 @@ pub struct Series<'t, E, O> {
 pub(super) enum Kind<'t, E, O> {
     /// A constant in the program's text: what it is the compiler knows.
     Literal(f64),
-    /// A constant that is the sum of two doubles.
-    Exact(f64, f64),
+    /// A constant of 31 digits.
+    Exact(DoubleDouble),
     /// A constant.
     Value(E),
     /// A series on a tape.
@@ -330,7 +332,7 @@ impl<E, O> Kind<'_, E, O> {
     #[inline(always)]
     pub(super) fn released(self) -> Self {
         match self {
-            Kind::Literal(x) => Exact(x, 0.0),
+            Kind::Literal(x) => Exact(DoubleDouble::from(x)),
             other => other,
         }
     }
@@ -355,12 +357,12 @@ impl<E: fmt::Debug, O> fmt::Debug for Series<'_, E, O> {
 }
 
 #[inline(always)]
-pub(super) fn exact<'t, E, O>(x: f64, y: f64) -> Series<'t, E, O> {
+pub(super) fn exact<'t, E, O>(x: DoubleDouble) -> Series<'t, E, O> {
     Series {
         tape: None,
         row: 0,
         value: None,
-        exact: (x, y),
+        exact: x,
         literal: false,
     }
 }
@@ -370,7 +372,7 @@ pub(super) fn literal<'t, E, O>(x: f64) -> Series<'t, E, O> {
         tape: None,
         row: 0,
         value: None,
-        exact: (x, 0.0),
+        exact: DoubleDouble::from(x),
         literal: true,
     }
 }
@@ -381,7 +383,7 @@ pub fn value<'t, E, O>(x: E) -> Series<'t, E, O> {
         tape: None,
         row: 0,
         value: Some(x),
-        exact: (0.0, 0.0),
+        exact: DoubleDouble::ZERO,
         literal: false,
     }
 }
@@ -391,7 +393,7 @@ pub(super) fn row<'t, E, O>(x: Row<'t, E, O>) -> Series<'t, E, O> {
         tape: Some(x.tape),
         row: x.row,
         value: None,
-        exact: (0.0, 0.0),
+        exact: DoubleDouble::ZERO,
         literal: false,
     }
 }
@@ -407,9 +409,9 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
         } else if let Some(x) = self.value {
             Value(x)
         } else if self.literal {
-            Kind::Literal(self.exact.0)
+            Kind::Literal(self.exact.hi())
         } else {
-            Exact(self.exact.0, self.exact.1)
+            Exact(self.exact)
         }
     }
 
@@ -418,7 +420,7 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
     pub fn newest(self, like: E, order: O) -> E {
         let constant = |x: E| if order.index() == 0 { x } else { x.like(0.0) };
         match self.kind() {
-            Exact(x, y) => constant(like.like_sum(x, y)),
+            Exact(x) => constant(like.like_exact(x)),
             Value(x) => constant(x),
             Kind::Literal(x) => constant(like.like(x)),
             Kind::Row(row) => row.newest(),

@@ -10,7 +10,8 @@
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
-use crate::series::{Accuracy, Expansion, Solution};
+use crate::number::DoubleDouble;
+use crate::series::{Accuracy, Expansion, REFERENCE_ORDER, Solution};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -32,9 +33,17 @@ use crate::series::{Accuracy, Expansion, Solution};
 /// ```
 #[derive(Debug, Clone)]
 pub struct Taylor {
+    arithmetic: Arithmetic,
     accuracy: Accuracy,
     max_steps: usize,
     work: Work,
+}
+
+/// What the series are made in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Arithmetic {
+    Double,
+    DoubleDouble,
 }
 
 /// The order with which a tolerance is reached in the least time.
@@ -66,9 +75,29 @@ impl Taylor {
             tolerances: (rtol, atol),
         };
         Ok(Taylor {
+            arithmetic: Arithmetic::Double,
             accuracy,
             max_steps,
             work: Work::default(),
+        })
+    }
+
+    /// The same in double-double arithmetic, with some 28 digits in a step: what the others are measured by. It solves the
+    /// problem whose parameters and start are the given doubles, exactly. At most `max_steps` steps in a flow.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for no steps.
+    pub fn reference(max_steps: usize) -> Result<Self> {
+        /// Tolerances of a step. Rounding stays below.
+        const FINE: f64 = 1e-29;
+        let fine = Self::new(Tolerances::equal(1e-16)?, max_steps)?;
+        Ok(Taylor {
+            arithmetic: Arithmetic::DoubleDouble,
+            accuracy: Accuracy {
+                order: REFERENCE_ORDER,
+                tolerances: (FINE, FINE),
+            },
+            ..fine
         })
     }
 
@@ -86,15 +115,15 @@ impl Taylor {
         while let Some(remaining) = clock.remaining() {
             if self.work.steps == self.max_steps {
                 return Err(Error::TooManySteps {
-                    t: clock.now,
+                    t: clock.now.hi(),
                     end: t.1,
                     limit: self.max_steps,
                 });
             }
             let h = solution.advance(&self.accuracy, remaining);
-            let before = clock.now;
+            let before = clock.now.hi();
             if !clock.tick(h, remaining) {
-                let h = if h.is_finite() { h } else { 0.0 };
+                let h = if h.is_finite() { h.hi() } else { 0.0 };
                 let here = State::from(solution.state());
                 return Err(step_underflow(field, before, h, &here));
             }
@@ -108,7 +137,7 @@ impl Taylor {
                 let control = observer(&Step {
                     t0: before,
                     y0: &y,
-                    t1: clock.now,
+                    t1: clock.now.hi(),
                     y1: &end,
                     dense: &dense,
                     series: Some(&expansion),
@@ -125,7 +154,10 @@ impl Taylor {
 
 impl<const N: usize> Integrator<N> for Taylor {
     fn name(&self) -> &'static str {
-        "taylor"
+        match self.arithmetic {
+            Arithmetic::Double => "taylor",
+            Arithmetic::DoubleDouble => "reference",
+        }
     }
 
     fn flow(
@@ -146,7 +178,10 @@ impl<const N: usize> Integrator<N> for Taylor {
         if t.0 == t.1 {
             return Ok(*y0);
         }
-        let mut solution = analytic.solution();
+        let mut solution = match self.arithmetic {
+            Arithmetic::Double => analytic.solution(),
+            Arithmetic::DoubleDouble => analytic.reference(),
+        };
         solution.start(&y0.data.0[0]);
         self.walk(field, t, y0, &mut *solution, observer)?;
         Ok(State::from(solution.state()))
@@ -173,43 +208,36 @@ fn analytic<const N: usize>(field: &dyn VectorField<N>) -> Result<&dyn Analytic<
     field.analytic().ok_or(Error::NotAnalytic)
 }
 
-/// Time, with what rounding takes from it: the steps are a thousand times shorter than the run, and stress and state can
-/// change a thousand times faster than time.
+/// Time in 31 digits: stress and state can change ten thousand times faster than time.
 #[derive(Debug, Clone, Copy)]
 struct Clock {
-    now: f64,
-    lost: f64,
+    now: DoubleDouble,
     end: f64,
 }
 
 impl Clock {
     fn new((now, end): (f64, f64)) -> Self {
-        Clock {
-            now,
-            lost: 0.0,
-            end,
-        }
+        let now = DoubleDouble::from(now);
+        Clock { now, end }
     }
 
     /// The time to the end; `None` there.
-    fn remaining(&self) -> Option<f64> {
-        let remaining = (self.end - self.now) - self.lost;
-        (self.now != self.end && remaining != 0.0).then_some(remaining)
+    fn remaining(&self) -> Option<DoubleDouble> {
+        let remaining = DoubleDouble::from(self.end) - self.now;
+        (remaining.hi() != 0.0).then_some(remaining)
     }
 
     /// Goes on by h, or says that time can't.
-    fn tick(&mut self, h: f64, remaining: f64) -> bool {
-        if h == remaining {
-            self.now = self.end;
+    fn tick(&mut self, h: DoubleDouble, remaining: DoubleDouble) -> bool {
+        if h.hi() == remaining.hi() {
+            self.now = DoubleDouble::from(self.end);
             return true;
         }
-        let step = h + self.lost;
-        let next = self.now + step;
+        let next = self.now + h;
         // Nor is a step that is no number any progress.
-        if next.is_nan() || next == self.now {
+        if !next.is_finite() || next.hi() == self.now.hi() {
             return false;
         }
-        self.lost = step - (next - self.now);
         self.now = next;
         true
     }
