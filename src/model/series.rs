@@ -8,7 +8,7 @@ use crate::friction::Law;
 use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Both, Element, Expansion, Formula, Order, REFERENCE_ORDER, Rates, Series, Solution,
-    Stepper, value,
+    Stepper, WATCHED, value,
 };
 #[cfg(target_arch = "x86_64")]
 use {crate::series::Pair, pulp::x86::V3};
@@ -34,7 +34,7 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
                 stress_rate(loading, v.over_interfaces()),
                 self.law.evolution(v, psi),
             ],
-            watched: [v, v],
+            watched: [v; WATCHED],
         }
     }
 

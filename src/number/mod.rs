@@ -58,6 +58,11 @@ pub trait Real:
     fn sinh(self) -> Self;
     /// hyperbolic cosine
     fn cosh(self) -> Self;
+    /// sinh and cosh, which share their work
+    #[inline(always)]
+    fn sinh_cosh(self) -> (Self, Self) {
+        (self.sinh(), self.cosh())
+    }
     /// inverse of the hyperbolic sine
     fn asinh(self) -> Self;
     /// absolute value

@@ -47,6 +47,8 @@ pub trait Element:
     fn sinh_cosh(self) -> (Self, Self);
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
+    /// a in the lanes where self is zero, else b.
+    fn if_zero(self, a: Self, b: Self) -> Self;
     /// Whether every lane is positive and finite.
     fn all_positive(self) -> bool;
     /// Whether no lane is negative.
@@ -148,6 +150,10 @@ impl Element for f64 {
         if self < 0.0 { a } else { b }
     }
     #[inline(always)]
+    fn if_zero(self, a: f64, b: f64) -> f64 {
+        if self == 0.0 { a } else { b }
+    }
+    #[inline(always)]
     fn all_positive(self) -> bool {
         self > 0.0 && self < f64::INFINITY
     }
@@ -203,6 +209,9 @@ impl Element for DoubleDouble {
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }
+    }
+    fn if_zero(self, a: Self, b: Self) -> Self {
+        if self.hi() == 0.0 { a } else { b }
     }
     fn all_positive(self) -> bool {
         self.hi() > 0.0 && self.is_finite()

@@ -167,6 +167,16 @@ macro_rules! lanes {
                 Self::new(self.simd, x)
             }
             #[inline(always)]
+            fn if_zero(self, a: Self, b: Self) -> Self {
+                let (mut x, a, b) = (self.lanes(), a.lanes(), b.lanes());
+                let mut i = 0;
+                while i < $n {
+                    x[i] = if x[i] == 0.0 { a[i] } else { b[i] };
+                    i += 1;
+                }
+                Self::new(self.simd, x)
+            }
+            #[inline(always)]
             fn all_positive(self) -> bool {
                 let mut all = true;
                 for x in self.lanes() {

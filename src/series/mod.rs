@@ -23,7 +23,7 @@ mod tape;
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
 pub use element::Element;
-pub use formula::{Formula, Rates};
+pub use formula::{Formula, Rates, WATCHED};
 #[cfg(target_arch = "x86_64")]
 pub use lanes::{Eight, Four, Pair};
 pub use plain::Both;

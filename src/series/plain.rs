@@ -79,6 +79,13 @@ impl<T: Element> Element for Both<T> {
         ])
     }
     #[inline(always)]
+    fn if_zero(self, a: Self, b: Self) -> Self {
+        Both([
+            self.0[0].if_zero(a.0[0], b.0[0]),
+            self.0[1].if_zero(a.0[1], b.0[1]),
+        ])
+    }
+    #[inline(always)]
     fn sinh_cosh(self) -> (Self, Self) {
         let ((s1, c1), (s2, c2)) = (self.0[0].sinh_cosh(), self.0[1].sinh_cosh());
         (Both([s1, s2]), Both([c1, c2]))

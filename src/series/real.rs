@@ -125,10 +125,10 @@ impl<E: Element, O: Order> Add<f64> for Series<'_, E, O> {
     type Output = Self;
     #[inline(always)]
     fn add(self, x: f64) -> Self {
-        match self.kind().released() {
+        match self.kind() {
+            Literal(y) => exact(DoubleDouble::of_finite(y, x)),
             Exact(y) => exact(y + x),
             Value(y) => value(y + y.like(x)),
-            Literal(_) => unreachable!("released"),
             Row(a) => row(a.plus(a.newest().like(x))),
         }
     }
@@ -210,6 +210,17 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         sinh: |x| Element::sinh_cosh(x).0, |a| a.hyperbolic().0;
         cosh: |x| Element::sinh_cosh(x).1, |a| a.hyperbolic().1;
         abs: |x| Element::abs(x), |a| a.mapped(a.newest() * a.get(0).sign());
+    }
+
+    #[inline(always)]
+    fn sinh_cosh(self) -> (Self, Self) {
+        match self.kind().released() {
+            Row(a) => {
+                let (sinh, cosh) = a.hyperbolic();
+                (row(sinh), row(cosh))
+            }
+            _ => (self.sinh(), self.cosh()),
+        }
     }
 
     #[inline(always)]

@@ -278,7 +278,7 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let weighted = slopes.inner_product(self);
         let plain = self.get(k).mul_add(y.get(0), y.inner_product(self));
         let weighted =
-            weighted * (a0.like_exact(DoubleDouble::new(1.0, p)) * self.one_over_order());
+            weighted * (a0.like_exact(DoubleDouble::of_finite(1.0, p)) * self.one_over_order());
         let new = (plain * a0.like(p) - weighted) * slopes.get(0);
         slopes.put(new * new.like(k as f64));
         y.put(new)
