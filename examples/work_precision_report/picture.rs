@@ -19,7 +19,7 @@ const FRAME: [f64; 4] = [62.0, 34.0, 388.0, 282.0];
 const STRIP: f64 = 66.0;
 const COLUMNS: usize = 3;
 const TEXT: f64 = 13.0;
-/// Errors beyond these are drawn on the frame.
+/// Decades of errors. A point with no digit right is left out.
 const ERRORS: (f64, f64) = (-16.0, 0.0);
 
 const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
@@ -27,23 +27,31 @@ static FONT: &[u8] = include_bytes!("../../assets/font/plot.ttf");
 const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(224, 224, 224);
 
-/// Colour (Okabe and Ito) and corners of the mark of each method; `auto` is a ring around whatever it chose.
-const LOOKS: [(&str, RGBColor, usize); 7] = [
-    ("taylor", RGBColor(213, 94, 0), 0),
-    ("rodas5p", RGBColor(0, 114, 178), 4),
-    ("rodas4", RGBColor(86, 180, 233), 3),
-    ("rosenbrock23", RGBColor(0, 158, 115), 5),
-    ("cvode-bdf", RGBColor(230, 159, 0), 6),
-    ("cvode-adams", RGBColor(204, 121, 167), 8),
-    ("auto", RGBColor(0, 0, 0), RING),
-];
-const RING: usize = 99;
+/// The mark of a point.
+#[derive(Clone, Copy, PartialEq)]
+enum Mark {
+    Disc,
+    Ring,
+    Polygon(usize),
+    Square,
+}
 
-fn look(method: &str) -> (RGBColor, usize) {
+/// Colour (Okabe and Ito) and mark of each method; `auto` is a ring around whatever it chose.
+const LOOKS: [(&str, RGBColor, Mark); 7] = [
+    ("taylor", RGBColor(213, 94, 0), Mark::Disc),
+    ("rodas5p", RGBColor(0, 114, 178), Mark::Polygon(4)),
+    ("rodas4", RGBColor(86, 180, 233), Mark::Polygon(3)),
+    ("rosenbrock23", RGBColor(0, 158, 115), Mark::Polygon(5)),
+    ("cvode-bdf", RGBColor(230, 159, 0), Mark::Polygon(6)),
+    ("cvode-adams", RGBColor(204, 121, 167), Mark::Square),
+    ("auto", RGBColor(0, 0, 0), Mark::Ring),
+];
+
+fn look(method: &str) -> (RGBColor, Mark) {
     LOOKS
         .iter()
         .find(|(name, ..)| *name == method)
-        .map_or((INK, 0), |&(_, colour, corners)| (colour, corners))
+        .map_or((INK, Mark::Disc), |&(_, colour, mark)| (colour, mark))
 }
 
 fn px(x: f64) -> i32 {
@@ -70,29 +78,26 @@ fn line(canvas: &Canvas<'_>, points: &[(f64, f64)], colour: RGBColor, width: f64
     Ok(())
 }
 
-/// A mark: a disc, a ring or a polygon.
-fn mark(
-    canvas: &Canvas<'_>,
-    (x, y): (f64, f64),
-    (colour, corners): (RGBColor, usize),
-) -> Answer<()> {
-    match corners {
-        0 => canvas.draw(&Circle::new((px(x), px(y)), px(3.6), colour.filled()))?,
-        RING => {
+fn mark(canvas: &Canvas<'_>, (x, y): (f64, f64), (colour, mark): (RGBColor, Mark)) -> Answer<()> {
+    let (corners, first) = match mark {
+        Mark::Disc => {
+            canvas.draw(&Circle::new((px(x), px(y)), px(3.6), colour.filled()))?;
+            return Ok(());
+        }
+        Mark::Ring => {
             let style = colour.stroke_width(px(1.2) as u32);
             canvas.draw(&Circle::new((px(x), px(y)), px(5.6), style))?;
+            return Ok(());
         }
-        _ => {
-            let corner = |i: usize| {
-                let turn = (i as f64 + 0.5 * (corners % 2) as f64 / corners as f64)
-                    / corners as f64
-                    * std::f64::consts::TAU;
-                (px(x + 4.3 * turn.sin()), px(y - 4.3 * turn.cos()))
-            };
-            let points: Vec<(i32, i32)> = (0..corners).map(corner).collect();
-            canvas.draw(&Polygon::new(points, colour.filled()))?;
-        }
-    }
+        Mark::Polygon(corners) => (corners, 0.0),
+        Mark::Square => (4, 0.5),
+    };
+    let corner = |i: usize| {
+        let turn = (i as f64 + first) / corners as f64 * std::f64::consts::TAU;
+        (px(x + 4.3 * turn.sin()), px(y - 4.3 * turn.cos()))
+    };
+    let points: Vec<(i32, i32)> = (0..corners).map(corner).collect();
+    canvas.draw(&Polygon::new(points, colour.filled()))?;
     Ok(())
 }
 
@@ -118,7 +123,7 @@ pub fn svg(title: &str, titles: &[(String, String)], rows: &[Row]) -> Answer<Str
         let left = (HPos::Left, VPos::Center);
         text(&canvas, title, (FRAME[0], 20.0), left, INK)?;
         for (i, method) in methods.iter().enumerate() {
-            let (colour, _) = look(method);
+            let colour = look(method).0;
             let x = FRAME[0] + 112.0 * i as f64;
             line(&canvas, &[(x, 46.0), (x + 20.0, 46.0)], colour, 1.4)?;
             mark(&canvas, (x + 10.0, 46.0), look(method))?;
@@ -219,18 +224,16 @@ fn panel(
             .iter()
             .filter(|row| row.method == *method)
             .filter_map(|row| row.point())
-            .map(|(error, time)| {
-                let error = error.log10().clamp(ERRORS.0, ERRORS.1);
-                (x(time.log10()), y(error))
-            })
+            .filter(|point| point.0.log10() <= ERRORS.1)
+            .map(|(error, time)| (x(time.log10()), y(error.log10().max(ERRORS.0))))
             .collect();
-        let (colour, corners) = look(method);
+        let (colour, shape) = look(method);
         // What auto chose has a line of its own already.
-        if corners != RING {
+        if shape != Mark::Ring {
             line(canvas, &points, colour, 1.4)?;
         }
         for &point in &points {
-            mark(canvas, point, (colour, corners))?;
+            mark(canvas, point, (colour, shape))?;
         }
     }
     Ok(())
