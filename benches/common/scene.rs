@@ -21,6 +21,11 @@ pub const SCENES: [&str; 9] = [
     "fig03a",
 ];
 
+/// Scenes whose cycles have a tangent flow worth having, when a cycle begins there and how long it is, to some per cent: any
+/// time near it is as hard.
+pub const CYCLES: [(&str, f64, f64); 2] =
+    [("relaxation-10", 32.0, 3.13), ("asymmetric", 4000.0, 460.0)];
+
 /// What a scene file may hold here.
 #[derive(Parser)]
 enum Program {

@@ -12,7 +12,7 @@ mod measure;
 
 use common::exact::{exact_end, exact_tangent};
 use common::results::{Row, merge};
-use common::scene::{Problem, SCENES, state_error};
+use common::scene::{CYCLES, Problem, SCENES, state_error};
 use criterion::{Criterion, criterion_group, criterion_main};
 use measure::{Task, group, methods};
 use std::hint::black_box;
@@ -20,11 +20,6 @@ use std::path::{Path, PathBuf};
 
 const TOLERANCES: [f64; 7] = [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14];
 const DECADES: [f64; 7] = [1e-4, 1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10];
-
-/// Scenes whose cycles have a tangent flow worth having, when a cycle begins there and how long it is, to some per cent: any
-/// time near it is as hard.
-const CYCLES: [(&str, f64, f64); 2] =
-    [("relaxation-10", 32.0, 3.13), ("asymmetric", 4000.0, 460.0)];
 
 fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
