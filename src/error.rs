@@ -96,6 +96,11 @@ pub enum Error {
         /// Where.
         t: f64,
     },
+    /// The field has no formula that power series could run on.
+    #[error(
+        "this field is not written for power series, which the method taylor needs; choose another method"
+    )]
+    NotAnalytic,
     /// An iteration stopped before its tolerance.
     #[error(
         "{what} did not converge: residual {residual:e} after {iterations} iterations, {tolerance:e} was asked for"

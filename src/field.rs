@@ -3,6 +3,7 @@
 //! The trait is object-safe on purpose: static and dynamic dispatch take the same time on these systems, and an integrator
 //! then is compiled once per dimension and not once per law.
 
+use crate::series::Solution;
 use nalgebra::{SMatrix, SVector};
 
 /// A point of the phase space.
@@ -32,4 +33,18 @@ pub trait VectorField<const N: usize>: Send + Sync {
 
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
+
+    /// The field in power series, where it can be written so: what a Taylor integrator steps with.
+    fn analytic(&self) -> Option<&dyn Analytic<N>> {
+        None
+    }
+}
+
+/// A field whose solutions are made as power series in time.
+pub trait Analytic<const N: usize> {
+    /// A solution, to be started.
+    fn solution(&self) -> Box<dyn Solution<N> + '_>;
+
+    /// A solution in 31 digits, to be started.
+    fn reference(&self) -> Box<dyn Solution<N> + '_>;
 }

@@ -25,6 +25,8 @@ pub mod error;
 
 pub mod number;
 
+pub mod series;
+
 pub mod friction;
 
 pub mod field;

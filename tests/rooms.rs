@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("number", &[]),
+    ("series", &["number"]),
     ("friction", &["number"]),
-    ("field", &[]),
-    ("model", &["friction", "field", "number"]),
+    ("field", &["series"]),
+    ("model", &["friction", "field", "series", "number"]),
     ("contract", &[]),
     ("sundials", &["field", "contract"]),
-    ("integrate", &["field", "contract", "sundials"]),
+    ("integrate", &["field", "series", "contract", "sundials"]),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
         "scene",

@@ -16,7 +16,7 @@ pub struct Bounded {
 }
 
 impl Bounded {
-    #[inline]
+    #[inline(always)]
     fn as_limit(&self) -> Spinodal {
         let Bounded { beta, gamma0, r } = *self;
         Spinodal {
@@ -29,13 +29,13 @@ impl Bounded {
 }
 
 impl Law for Bounded {
-    #[inline]
+    #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.as_limit().activation(tau)
     }
 
     // v = 2 exp(-a_v/a) (psi/psi_*)^(-beta) sinh(tau), psi_* = 1 / (1 + R)  (9)
-    #[inline]
+    #[inline(always)]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         self.as_limit().slip_rate(activation, psi)
     }
@@ -46,7 +46,7 @@ impl Law for Bounded {
     }
 
     // dpsi/dt = (1 - psi)/R - |v| psi  (6)
-    #[inline]
+    #[inline(always)]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
         self.as_limit().evolution(v, psi)
     }

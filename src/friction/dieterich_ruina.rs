@@ -14,13 +14,13 @@ pub struct DieterichRuina {
 
 impl Law for DieterichRuina {
     // exp(-a_v/a) = gamma0 / 2
-    #[inline]
+    #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.exp() * (0.5 * self.gamma0)
     }
 
     // v = exp(-a_v/a) psi^(-beta) exp(tau)  (8)
-    #[inline]
+    #[inline(always)]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         activation * psi.powf(-self.beta)
     }
@@ -31,7 +31,7 @@ impl Law for DieterichRuina {
     }
 
     // dpsi/dt = 1 - v psi  (4)
-    #[inline]
+    #[inline(always)]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
         T::constant(1.0) - v * psi
     }

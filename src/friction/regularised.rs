@@ -13,12 +13,12 @@ pub struct RegularisedAgeing {
 }
 
 impl Law for RegularisedAgeing {
-    #[inline]
+    #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0
     }
 
-    #[inline]
+    #[inline(always)]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         activation * psi.powf(-self.beta)
     }
@@ -29,7 +29,7 @@ impl Law for RegularisedAgeing {
     }
 
     // dpsi/dt = 1 - |v| psi
-    #[inline]
+    #[inline(always)]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
         T::constant(1.0) - v.abs() * psi
     }

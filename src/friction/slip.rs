@@ -24,12 +24,12 @@ impl Slip {
 }
 
 impl Law for Slip {
-    #[inline]
+    #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.direct_effect().activation(tau)
     }
 
-    #[inline]
+    #[inline(always)]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         self.direct_effect().slip_rate(activation, psi)
     }
@@ -39,7 +39,7 @@ impl Law for Slip {
     }
 
     // dpsi/dt = -v psi ln(v psi)
-    #[inline]
+    #[inline(always)]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
         let x = v * psi;
         -(x * x.ln())

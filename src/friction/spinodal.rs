@@ -19,20 +19,20 @@ pub struct Spinodal {
 
 impl Spinodal {
     // c + (1+R) psi
-    #[inline]
+    #[inline(always)]
     fn strength<T: Real>(&self, psi: T) -> T {
         (T::constant(1.0) + self.r) * psi + self.c
     }
 }
 
 impl Law for Spinodal {
-    #[inline]
+    #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0
     }
 
     // v = gamma0 sinh(tau) / [c + (1+R) psi]^beta, from (35)
-    #[inline]
+    #[inline(always)]
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         activation / self.strength(psi).powf(self.beta)
     }
@@ -43,7 +43,7 @@ impl Law for Spinodal {
     }
 
     // dpsi/dt = (1 - psi)/R - |v| psi  (35)
-    #[inline]
+    #[inline(always)]
     fn evolution<T: Real>(&self, v: T, psi: T) -> T {
         (T::constant(1.0) - psi) / self.r - v.abs() * psi
     }

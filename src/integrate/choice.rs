@@ -1,6 +1,7 @@
 //! From the name of a method to an integrator: the one place that knows them all.
 
 use super::rosenbrock::{Rosenbrock, RosenbrockMethod};
+use super::taylor::Taylor;
 use super::{Integrator, Tolerances};
 use crate::error::{Error, Result};
 #[cfg(feature = "sundials")]
@@ -9,6 +10,8 @@ use {super::CvodeIntegrator, crate::sundials};
 /// A method that this build can run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
+    /// The Taylor method.
+    Taylor,
     /// A Rosenbrock method.
     Rosenbrock(RosenbrockMethod),
     /// CVODES, of SUNDIALS.
@@ -27,7 +30,8 @@ impl Choice {
         let cvode = [sundials::Method::Bdf, sundials::Method::Adams].map(Choice::Cvode);
         #[cfg(not(feature = "sundials"))]
         let cvode = [];
-        rosenbrock.into_iter().chain(cvode).collect()
+        let taylor = std::iter::once(Choice::Taylor);
+        taylor.chain(rosenbrock).chain(cvode).collect()
     }
 
     /// The method of that name; `auto` is Rodas5P, the fastest here that takes stiff scenes too.
@@ -37,10 +41,7 @@ impl Choice {
     pub fn named(name: &str) -> Result<Self> {
         match name {
             "auto" => Ok(Choice::Rosenbrock(RosenbrockMethod::default())),
-            "taylor" => Err(Error::Input(format!(
-                "method taylor is not available yet; choose one of {}",
-                available()
-            ))),
+            "taylor" => Ok(Choice::Taylor),
             #[cfg(feature = "sundials")]
             "cvode-bdf" => Ok(Choice::Cvode(sundials::Method::Bdf)),
             #[cfg(feature = "sundials")]
@@ -70,6 +71,7 @@ impl Choice {
         max_steps: usize,
     ) -> Result<Box<dyn Integrator<N>>> {
         Ok(match self {
+            Choice::Taylor => Box::new(Taylor::new(tolerances, max_steps)?),
             Choice::Rosenbrock(method) => Box::new(Rosenbrock::new(method, tolerances, max_steps)?),
             #[cfg(feature = "sundials")]
             Choice::Cvode(method) => Box::new(CvodeIntegrator::new(method, tolerances, max_steps)?),
@@ -79,6 +81,7 @@ impl Choice {
     /// The method's own name.
     pub fn name(self) -> &'static str {
         match self {
+            Choice::Taylor => "taylor",
             Choice::Rosenbrock(method) => method.tableau().name,
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::Method::Bdf) => CVODE[0],
@@ -90,6 +93,9 @@ impl Choice {
     /// Why one would take it, for a reader of `--explain`.
     pub fn reason(self) -> &'static str {
         match self {
+            Choice::Taylor => {
+                "power series of order 12 to 20: by far the fastest along stick-slip cycles, slow where damping is strong"
+            }
             Choice::Rosenbrock(RosenbrockMethod::Rodas5P) => {
                 "order 5, one factorisation a step and no iteration, stable on stiff scenes"
             }

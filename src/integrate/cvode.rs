@@ -117,6 +117,7 @@ impl<const N: usize> CvodeIntegrator<N> {
                 t1,
                 y1: &y1,
                 dense: &dense,
+                series: None,
             })?;
             if let Some(error) = objection.take() {
                 return Err(error);
@@ -201,6 +202,7 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
                 t1: t.1,
                 y1: &y1,
                 dense: &dense,
+                series: None,
             })?;
         }
         Ok(y1)

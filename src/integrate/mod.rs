@@ -8,16 +8,19 @@ mod choice;
 mod cvode;
 mod rosenbrock;
 mod tableau;
+mod taylor;
 
 pub use choice::{Choice, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
+pub use taylor::Taylor;
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
+use crate::series::Expansion;
 
 /// One accepted step, as an observer sees it.
 pub struct Step<'a, const N: usize> {
@@ -31,6 +34,8 @@ pub struct Step<'a, const N: usize> {
     pub y1: &'a State<N>,
     /// The continuous solution on `t0..=t1`; evaluated only when called.
     pub dense: &'a dyn Fn(f64) -> State<N>,
+    /// The series at `t0`, of methods that step by one.
+    pub series: Option<&'a Expansion<N>>,
 }
 
 /// Whether to go on after a step.

@@ -4,6 +4,7 @@
 
 mod response;
 pub mod scales;
+mod series;
 mod single_interface;
 mod symmetric;
 mod two_interfaces;
@@ -15,6 +16,7 @@ pub use two_interfaces::TwoInterfaces;
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::friction::{AnyLaw, positive, with_law};
+use std::ops::{Mul, Sub};
 
 /// The two control parameters of the paper.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -53,6 +55,15 @@ impl Loading {
             stiffness: positive("stiffness", stiffness)?,
         })
     }
+}
+
+/// dtau/dt = K (V_H - v), from (V_H, K) and the slip rate of the whole slab  (11), (19)
+#[inline(always)]
+fn stress_rate<T: Sub<Output = T> + Mul<Output = T>>(
+    (driving, stiffness): (T, T),
+    slip_rate: T,
+) -> T {
+    stiffness * (driving - slip_rate)
 }
 
 /// Two interfaces (19) with a law chosen at run time, compiled for that law.

@@ -1,9 +1,11 @@
 //! One interface, equation (11).
 
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::{Driven, Loading, Parameter};
-use crate::field::{Jacobian, State, VectorField};
+use super::series::Track;
+use super::{Driven, Loading, Parameter, stress_rate};
+use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
+use crate::series::Solution;
 
 /// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,6 +17,14 @@ pub struct SingleInterface<L> {
 }
 
 impl<L: Law> SingleInterface<L> {
+    /// The loading under which two equal interfaces move as this one: K (V_H - v) = K/2 (2 V_H - 2 v).
+    pub(super) fn as_pair(&self) -> Loading {
+        Loading {
+            driving: 2.0 * self.loading.driving,
+            stiffness: 0.5 * self.loading.stiffness,
+        }
+    }
+
     #[inline]
     fn slopes(&self, y: &State<2>) -> Response<super::response::Slope> {
         let [tau, w] = slope_variables(y[0], y[1]);
@@ -26,7 +36,7 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
     fn f(&self, y: &State<2>) -> State<2> {
         let one = Response::new(&self.law, self.law.activation(y[0]), y[1]);
         State::<2>::new(
-            self.loading.stiffness * (self.loading.driving - one.v),
+            stress_rate((self.loading.driving, self.loading.stiffness), one.v),
             one.g,
         )
     }
@@ -50,6 +60,20 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
             -self.loading.stiffness * bilinear(&one.v, a, b),
             bilinear(&one.g, a, b),
         )
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<2>> {
+        Some(self)
+    }
+}
+
+impl<L: Law> Analytic<2> for SingleInterface<L> {
+    fn solution(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::new(self.law, &self.as_pair()))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::reference(self.law, &self.as_pair()))
     }
 }
 

@@ -4,9 +4,11 @@
 //! interfaces behave as one that is driven half as fast by a spring twice as stiff, 2 K (V_H/2 - v) = K (V_H - 2 v), so the
 //! formulas of [`SingleInterface`] serve.
 
+use super::series::Track;
 use super::{Driven, Loading, Parameter, SingleInterface};
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
+use crate::series::Solution;
 
 /// dtau/dt = K (V_H - 2 v), dw/dt = g(v, w): (19) with w_1 = w_2, in the state (tau, w).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -49,6 +51,23 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
 
     fn second_derivative(&self, y: &State<2>, a: &State<2>, b: &State<2>) -> State<2> {
         self.equivalent.second_derivative(y, a, b)
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<2>> {
+        Some(self)
+    }
+}
+
+impl<L: Law> Analytic<2> for Symmetric<L> {
+    fn solution(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::new(self.equivalent.law, &self.equivalent.as_pair()))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::reference(
+            self.equivalent.law,
+            &self.equivalent.as_pair(),
+        ))
     }
 }
 

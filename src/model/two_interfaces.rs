@@ -1,9 +1,11 @@
 //! Two interfaces under one stress, equation (19).
 
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::{Driven, Loading, Parameter};
-use crate::field::{Jacobian, State, VectorField};
+use super::series::Track;
+use super::{Driven, Loading, Parameter, stress_rate};
+use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
+use crate::series::Solution;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,7 +22,10 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
         let first = Response::new(&self.law, s, y[1]);
         let second = Response::new(&self.law, s, y[2]);
         State::<3>::new(
-            self.loading.stiffness * (self.loading.driving - first.v - second.v),
+            stress_rate(
+                (self.loading.driving, self.loading.stiffness),
+                first.v + second.v,
+            ),
             first.g,
             second.g,
         )
@@ -52,6 +57,10 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
             bilinear(&second.g, a2, b2),
         )
     }
+
+    fn analytic(&self) -> Option<&dyn Analytic<3>> {
+        Some(self)
+    }
 }
 
 impl<L: Law> TwoInterfaces<L> {
@@ -64,6 +73,16 @@ impl<L: Law> TwoInterfaces<L> {
             Response::new(&self.law, s, first),
             Response::new(&self.law, s, second),
         ]
+    }
+}
+
+impl<L: Law> Analytic<3> for TwoInterfaces<L> {
+    fn solution(&self) -> Box<dyn Solution<3> + '_> {
+        Box::new(Track::new(self.law, &self.loading))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<3> + '_> {
+        Box::new(Track::reference(self.law, &self.loading))
     }
 }
 

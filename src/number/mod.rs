@@ -1,15 +1,19 @@
 //! What a formula is written in.
 //!
 //! The friction laws are written once, generic over [`Real`]. In `f64` they give values; in [`Jet`] exact derivatives; in
-//! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding.
+//! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding;
+//! in [`DoubleDouble`] values of 31 digits. [`polynomial`] has the real roots of Taylor polynomials.
 
 mod difference;
+mod double_double;
 mod interval;
 mod jet;
+pub mod polynomial;
 mod root;
 mod uncertain;
 
 pub use difference::Difference;
+pub use double_double::DoubleDouble;
 pub use interval::Interval;
 pub use jet::Jet;
 pub use root::{bracketed_root, enclosing_radius};

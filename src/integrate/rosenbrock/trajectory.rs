@@ -89,6 +89,7 @@ impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
             t1,
             y1: &self.next,
             dense: &dense,
+            series: None,
         })
     }
 }

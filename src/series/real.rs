@@ -1,0 +1,242 @@
+//! The arithmetic of [`Series`], so that any formula can be evaluated in them.
+
+use super::element::Element;
+use super::tape::{Kind, Order, Series, exact, literal, row, value};
+use crate::number::{DoubleDouble, Real};
+use Kind::{Exact, Literal, Row, Value};
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+impl<E: Element, O: Order> Neg for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        match self.kind() {
+            Literal(x) => literal(-x),
+            Exact(x) => exact(-x),
+            Value(x) => value(-x),
+            Row(a) => row(a.mapped(-a.newest())),
+        }
+    }
+}
+
+impl<E: Element, O: Order> Add for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        match (self.kind(), other.kind()) {
+            (Literal(0.0), _) => other,
+            (_, Literal(0.0)) => self,
+            (a, b) => match (a.released(), b.released()) {
+                // What is exactly zero costs nothing.
+                (Row(a), Row(b)) => row(a.mapped(a.newest() + b.newest())),
+                (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.plus(x)),
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => row(a.plus(a.newest().like_exact(x))),
+                (Value(x), Value(y)) => value(x + y),
+                (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x + x.like_exact(y)),
+                (Exact(x), Exact(y)) => exact(x + y),
+                _ => unreachable!("released"),
+            },
+        }
+    }
+}
+
+impl<E: Element, O: Order> Sub for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        match (self.kind(), other.kind()) {
+            (_, Literal(0.0)) => self,
+            (a, b) => match (a.released(), b.released()) {
+                (Row(a), Row(b)) => row(a.mapped(a.newest() - b.newest())),
+                (Row(_), _) => self + -other,
+                (Value(x), Row(a)) => {
+                    let x = if a.order() == 0 { x } else { x.like(0.0) };
+                    row(a.mapped(x - a.newest()))
+                }
+                (Exact(x), Row(a)) => {
+                    let new = a.newest();
+                    row(a.mapped(if a.order() == 0 {
+                        new.like_exact(x) - new
+                    } else {
+                        -new
+                    }))
+                }
+                (_, _) => self + -other,
+            },
+        }
+    }
+}
+
+impl<E: Element, O: Order> Mul for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        match (self.kind(), other.kind()) {
+            (Literal(0.0), _) | (_, Literal(0.0)) => literal(0.0),
+            (Literal(1.0), _) => other,
+            (_, Literal(1.0)) => self,
+            (Literal(-1.0), _) => -other,
+            (_, Literal(-1.0)) => -self,
+            (a, b) => match (a.released(), b.released()) {
+                (Row(a), Row(b)) => row(a.product(b)),
+                (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.mapped(a.newest() * x)),
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => {
+                    let new = a.newest();
+                    row(a.mapped(new * new.like_exact(x)))
+                }
+                (Value(x), Value(y)) => value(x * y),
+                (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x * x.like_exact(y)),
+                (Exact(x), Exact(y)) => exact(x * y),
+                _ => unreachable!("released"),
+            },
+        }
+    }
+}
+
+impl<E: Element, O: Order> Div for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        match (self.kind(), other.kind()) {
+            (Literal(0.0), _) => literal(0.0),
+            (a, b) => match (a.released(), b.released()) {
+                (Row(a), Row(b)) => row(a.quotient(b)),
+                (Value(x), Row(b)) => row(b.constant_series(x).quotient(b)),
+                (Exact(x), Row(b)) => {
+                    let x = b.newest().like_exact(x);
+                    row(b.constant_series(x).quotient(b))
+                }
+                (Row(a), Value(x)) => row(a.mapped(a.newest() / x)),
+                (Row(a), Exact(x)) => {
+                    let new = a.newest();
+                    row(a.mapped(new / new.like_exact(x)))
+                }
+                (Value(x), Value(y)) => value(x / y),
+                (Value(x), Exact(y)) => value(x / x.like_exact(y)),
+                (Exact(x), Value(y)) => value(y.like_exact(x) / y),
+                (Exact(x), Exact(y)) => exact(x / y),
+                _ => unreachable!("released"),
+            },
+        }
+    }
+}
+
+impl<E: Element, O: Order> Add<f64> for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, x: f64) -> Self {
+        match self.kind().released() {
+            Exact(y) => exact(y + x),
+            Value(y) => value(y + y.like(x)),
+            Literal(_) => unreachable!("released"),
+            Row(a) => row(a.plus(a.newest().like(x))),
+        }
+    }
+}
+
+impl<E: Element, O: Order> Sub<f64> for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, x: f64) -> Self {
+        self + -x
+    }
+}
+
+impl<E: Element, O: Order> Mul<f64> for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn mul(self, x: f64) -> Self {
+        match self.kind().released() {
+            Exact(y) => exact(y * x),
+            Value(y) => value(y * y.like(x)),
+            Literal(_) => unreachable!("released"),
+            Row(a) => row(a.mapped(a.newest() * a.newest().like(x))),
+        }
+    }
+}
+
+impl<E: Element, O: Order> Div<f64> for Series<'_, E, O> {
+    type Output = Self;
+    #[inline(always)]
+    fn div(self, x: f64) -> Self {
+        match self.kind().released() {
+            Exact(y) => exact(y / x),
+            Value(y) => value(y / y.like(x)),
+            Literal(_) => unreachable!("released"),
+            Row(a) => row(a.mapped(a.newest() / a.newest().like(x))),
+        }
+    }
+}
+
+/// A function of a series: that of a number on constants, that of a row on rows.
+macro_rules! functions {
+    ($($name:ident: |$x:ident| $of_constant:expr, |$a:ident| $of_row:expr;)*) => {
+        $(
+            #[inline(always)]
+            fn $name(self) -> Self {
+                match self.kind() {
+                    Literal(x) => {
+                        let $x = DoubleDouble::from(x);
+                        exact($of_constant)
+                    }
+                    Exact($x) => exact($of_constant),
+                    Value($x) => value($of_constant),
+                    Row($a) => row($of_row),
+                }
+            }
+        )*
+    };
+}
+
+impl<E: Element, O: Order> Real for Series<'_, E, O> {
+    #[inline(always)]
+    fn constant(x: f64) -> Self {
+        literal(x)
+    }
+
+    #[inline(always)]
+    fn leading(self) -> f64 {
+        match self.kind() {
+            Literal(x) => x,
+            Exact(x) => x.hi(),
+            Value(x) => x.first(),
+            Row(a) => a.get(0).first(),
+        }
+    }
+
+    functions! {
+        exp: |x| Element::exp(x), |a| a.exponential();
+        ln: |x| Element::ln(x), |a| a.logarithm();
+        sinh: |x| Element::sinh_cosh(x).0, |a| a.hyperbolic().0;
+        cosh: |x| Element::sinh_cosh(x).1, |a| a.hyperbolic().1;
+        abs: |x| Element::abs(x), |a| a.mapped(a.newest() * a.get(0).sign());
+    }
+
+    #[inline(always)]
+    fn powf(self, p: f64) -> Self {
+        match self.kind() {
+            Literal(x) => exact(Real::powf(DoubleDouble::from(x), p)),
+            Exact(x) => exact(Real::powf(x, p)),
+            Value(x) => value(Element::powf(x, p)),
+            Row(a) => row(a.power(p)),
+        }
+    }
+
+    // The others are made of these; near 0 they cancel, as the laws' own formulas never do.
+    #[inline(always)]
+    fn exp_m1(self) -> Self {
+        self.exp() - 1.0
+    }
+    #[inline(always)]
+    fn ln_1p(self) -> Self {
+        (self + 1.0).ln()
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.powf(0.5)
+    }
+    #[inline(always)]
+    fn asinh(self) -> Self {
+        (self + (self * self + 1.0).sqrt()).ln()
+    }
+}

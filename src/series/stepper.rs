@@ -1,0 +1,207 @@
+//! One step after the other along a solution, each by the Taylor series at its beginning.
+
+use super::element::Element;
+use super::formula::{Formula, Memory, ROWS, WATCHED, expand, expand_running, first_level};
+use super::{Accuracy, MAX_ORDER};
+use std::cell::Cell;
+
+/// Part of the estimated step that is taken.
+const SAFETY: f64 = 0.95;
+/// Times that a step is halved because it leads where the formula has no meaning.
+const HALVINGS: usize = 60;
+/// Bisections of a step: enough for the last bit.
+const BISECTIONS: usize = 64;
+
+/// A solution of a formula on its way, in every lane of E.
+///
+/// With room for [`MAX_ORDER`] and one coefficients the series are compiled order by order; with any other room, which is
+/// for elements whose arithmetic takes longer anyway, they are made in loops.
+pub struct Stepper<E, F, const C: usize, const ROOM: usize = { MAX_ORDER + 1 }> {
+    formula: F,
+    memory: Box<Memory<E, ROOM>>,
+    watched: [Option<usize>; WATCHED],
+    /// The state at the end of the last step, and what rounding took from it.
+    x: [E; C],
+    lost: [E; C],
+    /// The unit of time of the series, and of the next one. The coefficients neither overflow nor vanish if it is near the
+    /// step.
+    unit: E,
+    next_unit: E,
+}
+
+impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E, F, C, ROOM> {
+    /// To be started; `any` is any element.
+    pub fn new(formula: F, any: E) -> Self {
+        let (zero, one) = (any.like(0.0), any.like(1.0));
+        Stepper {
+            formula,
+            memory: Box::new([[zero; ROOM]; ROWS]),
+            watched: [None; WATCHED],
+            x: [zero; C],
+            lost: [zero; C],
+            unit: one,
+            next_unit: one,
+        }
+    }
+
+    /// Begins at x.
+    #[inline(always)]
+    pub fn start(&mut self, x: [E; C]) {
+        let zero = x[0].like(0.0);
+        self.x = x;
+        self.lost = [zero; C];
+        self.next_unit = zero.like(1.0);
+        self.load();
+        first_level(&self.formula, cells(&mut self.memory), ROOM, self.next_unit);
+        // The time in which the state would change by its own size.
+        let mut rate = zero;
+        let mut c = 0;
+        while c < C {
+            let size = Element::max(x[c].abs(), zero.like(f64::MIN_POSITIVE));
+            rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
+            c += 1;
+        }
+        let rate = rate.largest_over_interfaces();
+        let slowest = zero.like(f64::MIN_POSITIVE);
+        self.next_unit = zero.like(1.0) / Element::max(rate, slowest);
+    }
+
+    /// The state reached.
+    pub fn state(&self) -> &[E; C] {
+        &self.x
+    }
+
+    /// The unit of time of the last step's series.
+    pub fn unit(&self) -> E {
+        self.unit
+    }
+
+    /// The j-th coefficient of the i-th variable in the last step's series.
+    #[inline(always)]
+    pub fn coefficient(&self, i: usize, j: usize) -> E {
+        self.memory[i][j]
+    }
+
+    /// The j-th coefficient of the i-th quantity watched, j below the order; `None` for a constant.
+    pub fn watched(&self, i: usize, j: usize) -> Option<E> {
+        self.watched[i].map(|row| self.memory[row][j])
+    }
+
+    /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved
+    /// in a lane where that is not a number: there is no step then.
+    #[inline(always)]
+    pub fn advance(&mut self, accuracy: &Accuracy, limit: E) -> E {
+        self.unit = self.next_unit;
+        self.load();
+        let unit = self.unit;
+        let memory = cells(&mut self.memory);
+        self.watched = if ROOM == MAX_ORDER + 1 {
+            expand(&self.formula, memory, accuracy.order, unit)
+        } else {
+            expand_running(&self.formula, memory, ROOM, accuracy.order, unit)
+        };
+        let limit = limit / unit;
+        // From here on time is counted in units.
+        let mut h = Element::min(self.longest(accuracy), limit.abs()) * limit.sign();
+        let (mut tried, mut cut) = (0, false);
+        loop {
+            let (x, lost) = self.evaluate(accuracy.order, h);
+            if self.formula.allows(&x) {
+                let crossed = F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative());
+                if crossed && !cut {
+                    cut = true;
+                    h = self.up_to_kink(accuracy.order, h);
+                    continue;
+                }
+                self.x = x;
+                self.lost = lost;
+                self.next_unit = (h * unit).abs();
+                return h * unit;
+            }
+            tried += 1;
+            if tried > HALVINGS {
+                return h.like(f64::NAN);
+            }
+            h = h * h.like(0.5);
+        }
+    }
+
+    #[inline(always)]
+    fn load(&mut self) {
+        let mut c = 0;
+        while c < C {
+            self.memory[c][0] = self.x[c];
+            c += 1;
+        }
+    }
+
+    /// The step at which the last two terms of the series reach what may err (Jorba & Zou 2005, section 3.2, in the norm that
+    /// the tolerances make).
+    #[inline(always)]
+    fn longest(&self, accuracy: &Accuracy) -> E {
+        let order = accuracy.order;
+        let units = self.formula.units(&self.x, accuracy.tolerances);
+        let zero = units[0].like(0.0);
+        let (mut before, mut last) = (zero, zero);
+        let mut c = 0;
+        while c < C {
+            let one_over = zero.like(1.0) / units[c];
+            before = Element::max(before, (self.coefficient(c, order - 1) * one_over).abs());
+            last = Element::max(last, (self.coefficient(c, order) * one_over).abs());
+            c += 1;
+        }
+        let before =
+            before.largest_over_interfaces().rough_log2() * zero.like(-1.0 / (order - 1) as f64);
+        let last = last.largest_over_interfaces().rough_log2() * zero.like(-1.0 / order as f64);
+        zero.like(SAFETY) * Element::min(before, last).rough_exp2()
+    }
+
+    /// The step h, cut just behind the zero of the variable in whose zeros the formula has a kink: a series does not reach
+    /// beyond. By bisection, for it happens once in a run.
+    #[cold]
+    fn up_to_kink(&self, order: usize, h: E) -> E {
+        let Some(c) = F::KINK else { return h };
+        let start = self.x[c];
+        let zero = h.like(0.0);
+        let crosses = self.evaluate(order, h).0[c] * start;
+        let (mut near, mut far) = (crosses.if_negative(zero, h), h);
+        for _ in 0..BISECTIONS {
+            let middle = (near + far) * h.like(0.5);
+            let sign = self.evaluate(order, middle).0[c] * start;
+            near = sign.if_negative(near, middle);
+            far = sign.if_negative(middle, far);
+        }
+        far
+    }
+
+    /// The state after h units, and what rounding took from it.
+    #[inline(always)]
+    fn evaluate(&self, order: usize, h: E) -> ([E; C], [E; C]) {
+        let (mut x, mut lost) = (self.x, self.lost);
+        let squared = h * h;
+        let mut c = 0;
+        while c < C {
+            // Even and odd terms apart: two short chains instead of a long one. All orders are even.
+            let mut even = self.coefficient(c, order);
+            let mut odd = self.coefficient(c, order - 1);
+            let mut j = order - 2;
+            while j > 0 {
+                even = even.mul_add(squared, self.coefficient(c, j));
+                odd = odd.mul_add(squared, self.coefficient(c, j - 1));
+                j -= 2;
+            }
+            let change = even.mul_add(squared, odd.mul_add(h, self.lost[c]));
+            let start = self.x[c];
+            let sum = start + change;
+            x[c] = sum;
+            lost[c] = change - (sum - start);
+            c += 1;
+        }
+        (x, lost)
+    }
+}
+
+#[inline(always)]
+fn cells<E, const ROOM: usize>(memory: &mut Memory<E, ROOM>) -> &[Cell<E>] {
+    Cell::from_mut(memory.as_flattened_mut()).as_slice_of_cells()
+}
