@@ -33,6 +33,7 @@ enum Program {
 }
 
 /// A run of two interfaces.
+#[derive(Clone)]
 pub struct Problem {
     /// The file's name without `.toml`.
     pub name: String,
@@ -65,6 +66,14 @@ impl Problem {
             loading: plan.loading,
             start: State::<3>::new(tau, w1, w2),
             until: plan.until,
+        }
+    }
+
+    /// The same with another end.
+    pub fn until(&self, until: f64) -> Self {
+        Problem {
+            until,
+            ..self.clone()
         }
     }
 

@@ -80,15 +80,19 @@ fn cvode_against_rosenbrock(criterion: &mut Criterion) {
 
 fn tangents(criterion: &mut Criterion) {
     for (scene, begin, period) in CYCLES {
-        let mut problem = Problem::load(root(), scene);
-        problem.until = begin;
-        let start = exact_end(&problem);
-        let exact = exact_tangent(&problem, &start, period);
+        let problem = Problem::load(root(), scene);
+        let problem = Problem {
+            start: exact_end(&problem.until(begin)),
+            ..problem.until(period)
+        };
+        let exact = exact_tangent(&problem);
         let field = problem.field();
         let task = Task {
             scene,
             tolerances: &TOLERANCES,
-            run: &|integrator| integrator.tangent_flow(&*field, (0.0, period), black_box(&start)),
+            run: &|integrator| {
+                integrator.tangent_flow(&*field, (0.0, period), black_box(&problem.start))
+            },
             error: &|(_, m)| (m - exact).amax() / exact.amax(),
         };
         let rows = group(criterion, "tangent", &methods(), &task);

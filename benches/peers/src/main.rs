@@ -25,7 +25,7 @@ use twinslip::field::{Jacobian, State};
 
 const TOLERANCES: [f64; 8] = [1e-3, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14, 1e-15];
 /// A run that takes longer is not repeated, nor are tighter tolerances tried.
-const LIMIT: f64 = 0.5;
+const LIMIT: f64 = 1.0;
 /// Runs are repeated until they take this long together,
 const SHARE: f64 = 0.3;
 /// or so many times.
@@ -170,11 +170,12 @@ fn tangent(
     begin: f64,
     period: f64,
 ) -> Vec<Row> {
-    let mut problem = Problem::load(root, scene);
-    problem.until = begin;
-    problem.start = exact_end(&problem);
-    problem.until = period;
-    let exact = exact_tangent(&problem, &problem.start, period);
+    let problem = Problem::load(root, scene);
+    let problem = Problem {
+        start: exact_end(&problem.until(begin)),
+        ..problem.until(period)
+    };
+    let exact = exact_tangent(&problem);
     let mut peers = ours::all(&problem);
     peers.extend(children::c(&problem, program, true));
     peers.extend(children::python(root, &problem, true));
