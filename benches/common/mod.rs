@@ -6,6 +6,7 @@
 )]
 
 pub mod exact;
+pub mod methods;
 pub mod reach;
 pub mod results;
 pub mod scene;

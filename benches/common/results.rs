@@ -100,6 +100,9 @@ pub fn merge(path: &Path, new: &[Row]) -> io::Result<()> {
     let mut rows = read(path)?;
     rows.retain(|row| !replaced(row));
     rows.extend_from_slice(new);
+    if let Some(folder) = path.parent() {
+        std::fs::create_dir_all(folder)?;
+    }
     let mut writer = csv::Writer::from_path(path)?;
     for row in &rows {
         writer.serialize(row)?;

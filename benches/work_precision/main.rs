@@ -11,10 +11,11 @@ mod common;
 mod measure;
 
 use common::exact::{exact_end, exact_tangent};
+use common::methods::methods;
 use common::results::{Row, merge};
 use common::scene::{CYCLES, Problem, SCENES, state_error};
 use criterion::{Criterion, criterion_group, criterion_main};
-use measure::{Task, group, methods};
+use measure::{Task, group};
 use std::hint::black_box;
 use std::path::{Path, PathBuf};
 

@@ -30,17 +30,6 @@ fn timed<A>(run: impl FnOnce() -> A) -> (A, Duration) {
     (answer, cpu_time() - begin)
 }
 
-/// The methods of this build by their names, `auto` last.
-pub fn methods() -> Vec<(String, Choice)> {
-    let mut methods: Vec<(String, Choice)> = Choice::all()
-        .into_iter()
-        .map(|choice| (choice.name().to_owned(), choice))
-        .filter(|(name, _)| name != "auto")
-        .collect();
-    methods.push(("auto".into(), Choice::named("auto").expect("it exists")));
-    methods
-}
-
 /// What is timed, and how an answer is judged.
 pub struct Task<'a, A> {
     /// The scene's name in the results.

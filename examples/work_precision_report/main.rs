@@ -1,5 +1,5 @@
-//! Tables and pictures of what the benchmarks measured: `benches/results/*.csv` become `summary.md` and one picture, SVG and
-//! PNG, per file. Run `cargo bench --bench work_precision` first, or `benches/report`, which does both.
+//! Tables and pictures of what the benchmarks measured: `benches/results/*.csv` become `summary.md` and one SVG each, with
+//! `--png` a PNG too. Run `cargo bench --bench work_precision` first, or `benches/report`, which does both.
 
 #[path = "../../benches/common/mod.rs"]
 mod common;
@@ -50,18 +50,19 @@ fn main() -> Result<(), Box<dyn Error>> {
             })
             .collect();
         let svg = picture::svg(what, &titles, &rows)?;
-        let png = picture::png(&svg)?;
-        for (end, bytes) in [("svg", svg.as_bytes()), ("png", &png)] {
-            let path = folder.join(format!("{name}.{end}"));
-            write_whole(&path, bytes)?;
-            println!("{}", path.display());
+        write(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
+        if std::env::args().any(|argument| argument == "--png") {
+            write(&folder.join(format!("{name}.png")), &picture::png(&svg)?)?;
         }
         // Peers ran the flows only.
         let peers = if name == "tangent" { &[] } else { &peers[..] };
         text += &summary::tables(what, &titles, &rows, peers);
     }
-    let path = folder.join("summary.md");
-    write_whole(&path, text.as_bytes())?;
+    write(&folder.join("summary.md"), text.as_bytes())
+}
+
+fn write(path: &Path, bytes: &[u8]) -> Result<(), Box<dyn Error>> {
+    write_whole(path, bytes)?;
     println!("{}", path.display());
     Ok(())
 }

@@ -1,5 +1,6 @@
 //! twinslip's own methods.
 
+use crate::common::methods::methods;
 use crate::common::scene::Problem;
 use crate::peer::{Answer, Peer, Question, timed};
 use twinslip::field::State;
@@ -15,20 +16,18 @@ pub struct Ours {
     until: f64,
 }
 
-/// Every method of the build but `auto`, which is one of them in each scene.
+/// Every method of the build, and `auto`.
 pub fn all(problem: &Problem) -> Vec<Box<dyn Peer>> {
-    let ours = |choice: Choice| -> Box<dyn Peer> {
+    let ours = |(name, choice)| -> Box<dyn Peer> {
         Box::new(Ours {
-            name: format!("twinslip {}", choice.name()),
+            name: format!("twinslip {name}"),
             choice,
             field: problem.field(),
             start: problem.start,
             until: problem.until,
         })
     };
-    let mut choices = Choice::all();
-    choices.retain(|choice| choice.name() != "auto");
-    choices.into_iter().map(ours).collect()
+    methods().into_iter().map(ours).collect()
     // Batches of runs, beside heyoka's, belong here.
 }
 
