@@ -19,8 +19,10 @@ const FRAME: [f64; 4] = [62.0, 34.0, 388.0, 282.0];
 const STRIP: f64 = 66.0;
 const COLUMNS: usize = 3;
 const TEXT: f64 = 13.0;
-/// Decades of errors. A point with no digit right is left out.
+/// Decades of errors.
 const ERRORS: (f64, f64) = (-16.0, 0.0);
+/// From this error on no digit is right: such points are not drawn.
+const WRONG: f64 = 0.5;
 
 const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 static FONT: &[u8] = include_bytes!("../../assets/font/plot.ttf");
@@ -144,9 +146,14 @@ pub fn svg(title: &str, titles: &[(String, String)], rows: &[Row]) -> Answer<Str
     Ok(picture.replacen(&fine, &shown, 1))
 }
 
+/// (error, time) of a row that is drawn.
+fn drawn(row: &Row) -> Option<(f64, f64)> {
+    row.point().filter(|&(error, _)| error < WRONG)
+}
+
 /// Powers of ten around all times: the same for all panels, so that scenes can be compared.
 fn decades(rows: &[Row]) -> (f64, f64) {
-    let times = || rows.iter().filter_map(|row| row.seconds).map(f64::log10);
+    let times = || rows.iter().filter_map(drawn).map(|point| point.1.log10());
     let (lo, hi) = (
         times().fold(f64::INFINITY, f64::min),
         times().fold(f64::NEG_INFINITY, f64::max),
@@ -223,8 +230,7 @@ fn panel(
         let points: Vec<(f64, f64)> = rows
             .iter()
             .filter(|row| row.method == *method)
-            .filter_map(|row| row.point())
-            .filter(|point| point.0.log10() <= ERRORS.1)
+            .filter_map(|row| drawn(row))
             .map(|(error, time)| (x(time.log10()), y(error.log10().max(ERRORS.0))))
             .collect();
         let (colour, shape) = look(method);
