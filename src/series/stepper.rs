@@ -76,33 +76,51 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         self.unit
     }
 
-    /// The j-th coefficient of the i-th variable in the last step's series.
     #[inline(always)]
-    pub fn coefficient(&self, i: usize, j: usize) -> E {
+    fn coefficient(&self, i: usize, j: usize) -> E {
         self.memory[i][j]
     }
 
-    /// The j-th coefficient of the i-th quantity watched, j below the order; `None` for a constant.
-    pub fn watched(&self, i: usize, j: usize) -> Option<E> {
-        self.watched[i].map(|row| self.memory[row][j])
+    /// The series of the i-th variable.
+    #[inline(always)]
+    pub fn series(&self, i: usize) -> &[E] {
+        &self.memory[i]
+    }
+
+    /// The series of the i-th quantity watched, without its last coefficient; `None` for a constant.
+    #[inline(always)]
+    pub fn watched_series(&self, i: usize) -> Option<&[E]> {
+        self.watched[i].map(|row| &self.memory[row][..])
     }
 
     /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved
     /// in a lane where that is not a number: there is no step then.
     #[inline(always)]
     pub fn advance(&mut self, accuracy: &Accuracy, limit: E) -> E {
+        self.expand(accuracy);
+        let h = self.longest(accuracy);
+        self.advance_by(accuracy, h, limit)
+    }
+
+    /// Makes the series at the state reached.
+    #[inline(always)]
+    pub fn expand(&mut self, accuracy: &Accuracy) {
         self.unit = self.next_unit;
         self.load();
-        let unit = self.unit;
         let memory = cells(&mut self.memory);
         self.watched = if ROOM == MAX_ORDER + 1 {
-            expand(&self.formula, memory, accuracy.order, unit)
+            expand(&self.formula, memory, accuracy.order, self.unit)
         } else {
-            expand_running(&self.formula, memory, ROOM, accuracy.order, unit)
+            expand_running(&self.formula, memory, ROOM, accuracy.order, self.unit)
         };
-        let limit = limit / unit;
-        // From here on time is counted in units.
-        let mut h = Element::min(self.longest(accuracy), limit.abs()) * limit.sign();
+    }
+
+    /// Goes on by h, counted in units of the series, at most `limit`, and returns the time that this took.
+    #[inline(always)]
+    pub fn advance_by(&mut self, accuracy: &Accuracy, h: E, limit: E) -> E {
+        let unit = self.unit;
+        let in_units = limit / unit;
+        let mut h = Element::min(h, in_units.abs()) * limit.sign();
         let (mut tried, mut cut) = (0, false);
         loop {
             let (x, lost) = self.evaluate(accuracy.order, h);
@@ -115,8 +133,9 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
                 }
                 self.x = x;
                 self.lost = lost;
-                self.next_unit = (h * unit).abs();
-                return h * unit;
+                let time = (in_units - h).if_zero(limit, h * unit);
+                self.next_unit = time.abs();
+                return time;
             }
             tried += 1;
             if tried > HALVINGS {
@@ -135,10 +154,10 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         }
     }
 
-    /// The step at which the last two terms of the series reach what may err (Jorba & Zou 2005, section 3.2, in the norm that
+    /// The step, in units of the series, at which the last two terms of the series reach what may err (Jorba & Zou 2005, section 3.2, in the norm that
     /// the tolerances make).
     #[inline(always)]
-    fn longest(&self, accuracy: &Accuracy) -> E {
+    pub fn longest(&self, accuracy: &Accuracy) -> E {
         let order = accuracy.order;
         let units = self.formula.units(&self.x, accuracy.tolerances);
         let zero = units[0].like(0.0);
@@ -163,20 +182,30 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         let Some(c) = F::KINK else { return h };
         let start = self.x[c];
         let zero = h.like(0.0);
-        let crosses = self.evaluate(order, h).0[c] * start;
+        let crosses = self.sum(order, h).0[c] * start;
         let (mut near, mut far) = (crosses.if_negative(zero, h), h);
         for _ in 0..BISECTIONS {
             let middle = (near + far) * h.like(0.5);
-            let sign = self.evaluate(order, middle).0[c] * start;
+            let sign = self.sum(order, middle).0[c] * start;
             near = sign.if_negative(near, middle);
             far = sign.if_negative(middle, far);
         }
         far
     }
 
-    /// The state after h units, and what rounding took from it.
+    /// The state after h units, and what rounding took from it. With the order a constant the sums are unrolled.
     #[inline(always)]
     fn evaluate(&self, order: usize, h: E) -> ([E; C], [E; C]) {
+        match order {
+            12 => self.sum(12, h),
+            16 => self.sum(16, h),
+            20 => self.sum(20, h),
+            _ => self.sum(order, h),
+        }
+    }
+
+    #[inline(always)]
+    fn sum(&self, order: usize, h: E) -> ([E; C], [E; C]) {
         let (mut x, mut lost) = (self.x, self.lost);
         let squared = h * h;
         let mut c = 0;

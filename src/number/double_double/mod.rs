@@ -78,6 +78,13 @@ impl DoubleDouble {
         Self::normalised(sum, error)
     }
 
+    /// The same for doubles whose sum is finite: without the question whether it is.
+    #[inline(always)]
+    pub(crate) fn of_finite(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_sum(a, b);
+        DoubleDouble { hi, lo }
+    }
+
     /// The double next to it.
     #[inline(always)]
     pub fn hi(self) -> f64 {
