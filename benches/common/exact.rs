@@ -2,9 +2,7 @@
 
 use super::scene::Problem;
 use twinslip::field::{Jacobian, State};
-use twinslip::integrate::{
-    Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Taylor, Tolerances,
-};
+use twinslip::integrate::{Integrator, MAX_STEPS, Taylor};
 
 fn reference() -> Taylor {
     Taylor::reference(MAX_STEPS).expect("checked")
@@ -18,12 +16,11 @@ pub fn exact_end(problem: &Problem) -> State<3> {
         .unwrap_or_else(|error| panic!("the reference of {}: {error}", problem.name))
 }
 
-/// The tangent flow from the start to the end of a scene. TODO: that of the reference, once it has one.
+/// The tangent flow from the start to the end of a scene.
 pub fn exact_tangent(problem: &Problem) -> Jacobian<3> {
-    let tolerances = Tolerances::equal(1e-13).expect("checked");
     let t = (0.0, problem.until);
-    Rosenbrock::new(RosenbrockMethod::Rodas5P, tolerances, MAX_STEPS)
-        .and_then(|mut rodas| rodas.tangent_flow(&*problem.field(), t, &problem.start))
+    reference()
+        .tangent_flow(&*problem.field(), t, &problem.start)
         .unwrap_or_else(|error| panic!("the reference of {}: {error}", problem.name))
         .1
 }
