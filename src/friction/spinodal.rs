@@ -26,6 +26,12 @@ impl Spinodal {
 }
 
 impl Law for Spinodal {
+    type Core = Spinodal;
+
+    fn core(&self) -> Spinodal {
+        *self
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0

@@ -7,6 +7,7 @@ pub mod scales;
 mod series;
 mod single_interface;
 mod symmetric;
+mod tangent;
 mod two_interfaces;
 
 pub use single_interface::SingleInterface;

@@ -208,6 +208,6 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn abs(self) -> Self {
-        if self.leading() < 0.0 { -self } else { self }
+        self.chain(self.value.abs(), self.value.sign())
     }
 }

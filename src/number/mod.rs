@@ -67,6 +67,11 @@ pub trait Real:
     fn asinh(self) -> Self;
     /// absolute value
     fn abs(self) -> Self;
+    /// one, with this number's sign
+    #[inline(always)]
+    fn sign(self) -> Self {
+        Self::constant(1_f64.copysign(self.leading()))
+    }
 }
 
 /// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.

@@ -23,6 +23,10 @@ pub trait Element:
     fn like_exact(self, x: DoubleDouble) -> Self {
         self.like(x.hi())
     }
+    /// The first lane, with all its digits.
+    fn to_exact(self) -> DoubleDouble {
+        DoubleDouble::from(self.first())
+    }
     /// self a + b, fused where the processor does that.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// |self|
@@ -57,8 +61,16 @@ pub trait Element:
     }
     /// Whether every lane is finite.
     fn all_finite(self) -> bool;
+    /// How many lanes there are.
+    const LANES: usize;
     /// The number in the first lane.
     fn first(self) -> f64;
+    /// The number in a lane.
+    fn lane(self, i: usize) -> f64;
+    /// The same with another number in a lane.
+    fn with_lane(self, i: usize, x: f64) -> Self;
+    /// The largest number in any lane; not those that are no numbers.
+    fn largest_lane(self) -> f64;
     /// The numbers of both interfaces, where they are lanes; else the first lane twice.
     fn interfaces(self) -> [f64; 2] {
         [self.first(); 2]
@@ -96,6 +108,19 @@ pub(super) fn rough_exp2(x: f64) -> f64 {
 }
 
 impl Element for f64 {
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self
+    }
     #[inline(always)]
     fn like(self, x: f64) -> f64 {
         x
@@ -168,11 +193,27 @@ impl Element for f64 {
 }
 
 impl Element for DoubleDouble {
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self.hi()
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        DoubleDouble::from(x)
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self.hi()
+    }
     fn like(self, x: f64) -> Self {
         DoubleDouble::from(x)
     }
     fn like_exact(self, x: DoubleDouble) -> Self {
         x
+    }
+    fn to_exact(self) -> DoubleDouble {
+        self
     }
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b

@@ -9,7 +9,7 @@ pub(super) const ROWS: usize = 40;
 /// Coefficients of all rows of a formula, of which each has the same room.
 pub(super) type Memory<E, const ROOM: usize> = [[E; ROOM]; ROWS];
 /// Quantities of a formula, other than its variables, whose series are kept too.
-pub const WATCHED: usize = 4;
+pub const WATCHED: usize = 5;
 
 /// What a formula gives at one order.
 pub struct Rates<'t, E, O, const C: usize> {
@@ -60,8 +60,8 @@ fn level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
         memory[c * order.room() + next].set(rate * unit_over_next);
         c += 1;
     }
-    let [a, b, c, d] = rates.watched;
-    [a.row(), b.row(), c.row(), d.row()]
+    let [a, b, c, d, e] = rates.watched;
+    [a.row(), b.row(), c.row(), d.row(), e.row()]
 }
 
 /// The first level alone: the rates at the first coefficients, in that unit of time.

@@ -2,7 +2,9 @@
 //!
 //! The types hold a token of what the processor can do, which cannot be had without asking it: their arithmetic is safe.
 
+use super::columns::Spread;
 use super::element::{Element, rough_exp2, rough_log2};
+use super::plain::Both;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128d, __m256d, __m512d};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -103,6 +105,27 @@ macro_rules! lanes {
         }
 
         impl Element for $name {
+            const LANES: usize = $n;
+            #[inline(always)]
+            fn lane(self, i: usize) -> f64 {
+                self.lanes()[i]
+            }
+            #[inline(always)]
+            fn with_lane(self, i: usize, x: f64) -> Self {
+                let mut lanes = self.lanes();
+                lanes[i] = x;
+                Self::new(self.simd, lanes)
+            }
+            #[inline(always)]
+            fn largest_lane(self) -> f64 {
+                let mut largest = f64::NEG_INFINITY;
+                for x in self.lanes() {
+                    if x > largest {
+                        largest = x;
+                    }
+                }
+                largest
+            }
             #[inline(always)]
             fn like(self, x: f64) -> Self {
                 let $s = self.simd;
@@ -221,3 +244,17 @@ macro_rules! lanes {
 lanes!(Pair, __m128d, V3, 2, |s| s.sse2, _mm_add_pd _mm_sub_pd _mm_mul_pd _mm_div_pd, _mm_fmadd_pd: |f| f.fma, _mm_set1_pd _mm_max_pd _mm_min_pd);
 lanes!(Four, __m256d, V3, 4, |s| s.avx, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd, _mm256_fmadd_pd: |f| f.fma, _mm256_set1_pd _mm256_max_pd _mm256_min_pd);
 lanes!(Eight, __m512d, V4, 8, |s| s.avx512f, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd, _mm512_fmadd_pd: |f| f.avx512f, _mm512_set1_pd _mm512_max_pd _mm512_min_pd);
+
+impl Spread<Four> for Pair {
+    #[inline(always)]
+    fn spread(self, interface: usize, any: Four) -> Four {
+        any.like(self.lanes()[interface])
+    }
+}
+
+impl Spread<Both<Four>> for Pair {
+    #[inline(always)]
+    fn spread(self, interface: usize, any: Both<Four>) -> Both<Four> {
+        any.like(self.lanes()[interface])
+    }
+}

@@ -11,6 +11,7 @@
 //! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods. Experimental Mathematics 14, 99-117.
 
+mod columns;
 mod element;
 mod event;
 mod formula;
@@ -23,6 +24,7 @@ mod tape;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
+pub use columns::{Columns, Linearisation, Spread};
 pub use element::Element;
 pub use event::{Passage, Section, Zeros};
 pub use formula::{Formula, Rates, WATCHED};
@@ -58,6 +60,27 @@ pub trait Solution<const N: usize> {
     fn state(&self) -> [f64; N];
     /// The series at the beginning of the last step.
     fn expansion(&self, order: usize, into: &mut Expansion<N>);
+}
+
+/// A solution with its derivatives in its start and in the parameters, on its way. Started with y, those in y are the identity
+/// and those in parameters zero; every step has all of them within the accuracy.
+pub trait Tangent<const N: usize>: Solution<N> {
+    /// The derivatives of the state reached.
+    fn derivatives(&self) -> Derivatives<N>;
+}
+
+/// Derivatives of a state in its start and in the parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives<const N: usize> {
+    /// In the j-th component of the start: column j.
+    pub start: [[f64; N]; N],
+    /// In V_H.
+    pub driving: [f64; N],
+    /// In K.
+    pub stiffness: [f64; N],
+    /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
+    /// it knows nothing.
+    pub log_determinant: f64,
 }
 
 /// The series of a solution at the beginning of a step, in the variables that it is made in.

@@ -99,18 +99,18 @@ impl<E: Element, O: Order> Div for Series<'_, E, O> {
     fn div(self, other: Self) -> Self {
         match (self.kind(), other.kind()) {
             (Literal(0.0), _) => literal(0.0),
+            (a, Row(b)) => {
+                let a = match a.released() {
+                    Row(a) => a,
+                    Value(x) => b.constant_series(x),
+                    Exact(x) => b.constant_series(b.newest().like_exact(x)),
+                    Literal(_) => unreachable!("released"),
+                };
+                row(a.quotient(b))
+            }
             (a, b) => match (a.released(), b.released()) {
-                (Row(a), Row(b)) => row(a.quotient(b)),
-                (Value(x), Row(b)) => row(b.constant_series(x).quotient(b)),
-                (Exact(x), Row(b)) => {
-                    let x = b.newest().like_exact(x);
-                    row(b.constant_series(x).quotient(b))
-                }
                 (Row(a), Value(x)) => row(a.mapped(a.newest() / x)),
-                (Row(a), Exact(x)) => {
-                    let new = a.newest();
-                    row(a.mapped(new / new.like_exact(x)))
-                }
+                (Row(a), Exact(x)) => row(a.mapped(a.newest() / a.newest().like_exact(x))),
                 (Value(x), Value(y)) => value(x / y),
                 (Value(x), Exact(y)) => value(x / x.like_exact(y)),
                 (Exact(x), Value(y)) => value(y.like_exact(x) / y),
@@ -230,6 +230,14 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
             Exact(x) => exact(Real::powf(x, p)),
             Value(x) => value(Element::powf(x, p)),
             Row(a) => row(a.power(p)),
+        }
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Self {
+        match self.kind() {
+            Row(a) => value(a.get(0).sign()),
+            _ => literal(1_f64.copysign(self.leading())),
         }
     }
 

@@ -76,15 +76,21 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         self.unit
     }
 
-    /// The j-th coefficient of the i-th variable in the last step's series.
     #[inline(always)]
-    pub fn coefficient(&self, i: usize, j: usize) -> E {
+    fn coefficient(&self, i: usize, j: usize) -> E {
         self.memory[i][j]
     }
 
-    /// The j-th coefficient of the i-th quantity watched, j below the order; `None` for a constant.
-    pub fn watched(&self, i: usize, j: usize) -> Option<E> {
-        self.watched[i].map(|row| self.memory[row][j])
+    /// The series of the i-th variable.
+    #[inline(always)]
+    pub fn series(&self, i: usize) -> &[E] {
+        &self.memory[i]
+    }
+
+    /// The series of the i-th quantity watched, without its last coefficient; `None` for a constant.
+    #[inline(always)]
+    pub fn watched_series(&self, i: usize) -> Option<&[E]> {
+        self.watched[i].map(|row| &self.memory[row][..])
     }
 
     /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved

@@ -13,6 +13,8 @@ use std::fmt;
 
 /// The order at which a formula is evaluated.
 pub trait Order: Copy {
+    /// Whether the order is known to the compiler, and all sums to be unrolled.
+    const UNROLLED: bool;
     /// Coefficients that a row has room for.
     fn room(self) -> usize;
     /// k
@@ -24,6 +26,7 @@ pub trait Order: Copy {
 pub struct At<const K: usize>;
 
 impl<const K: usize> Order for At<K> {
+    const UNROLLED: bool = true;
     #[inline(always)]
     fn room(self) -> usize {
         super::MAX_ORDER + 1
@@ -44,6 +47,7 @@ pub struct Running {
 }
 
 impl Order for Running {
+    const UNROLLED: bool = false;
     #[inline(always)]
     fn room(self) -> usize {
         self.room
@@ -111,7 +115,7 @@ impl<E, O> Clone for Row<'_, E, O> {
 }
 impl<E, O> Copy for Row<'_, E, O> {}
 
-impl<E: Element, O: Order> Row<'_, E, O> {
+impl<'t, E: Element, O: Order> Row<'t, E, O> {
     /// A new row on the same tape.
     #[inline(always)]
     fn another(self) -> Self {
@@ -128,6 +132,13 @@ impl<E: Element, O: Order> Row<'_, E, O> {
     #[inline(always)]
     pub(super) fn get(self, j: usize) -> E {
         self.tape.get(self.row, j)
+    }
+
+    /// The row.
+    #[inline(always)]
+    fn coefficients(self) -> &'t [Cell<E>] {
+        let room = self.tape.order.room();
+        &self.tape.memory[self.row * room..][..room]
     }
 
     /// The newest coefficient.
@@ -155,6 +166,20 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let k = self.order();
         let zero = self.get(0).like(0.0);
         let (mut left, mut right) = (zero, zero);
+        if !O::UNROLLED {
+            let (a, b) = (&self.coefficients()[..k], &other.coefficients()[..k]);
+            let (mut i, mut j) = (1, k.saturating_sub(1));
+            while i + 1 < k {
+                left = a[i].get().mul_add(b[j].get(), left);
+                right = a[i + 1].get().mul_add(b[j - 1].get(), right);
+                i += 2;
+                j -= 2;
+            }
+            if i < k {
+                left = a[i].get().mul_add(b[j].get(), left);
+            }
+            return left + right;
+        }
         let mut i = k / 2;
         while i >= 1 {
             left = self.get(i).mul_add(other.get(k - i), left);

@@ -11,7 +11,7 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflo
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
-use crate::series::{Accuracy, Expansion, REFERENCE_ORDER, Solution};
+use crate::series::{Accuracy, Derivatives, Expansion, REFERENCE_ORDER, Solution};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -101,6 +101,28 @@ impl Taylor {
         })
     }
 
+    /// The state at `t.1` and its derivatives in `y0`, and with `parameters` those in V_H and K, which are zero otherwise. The
+    /// integral of the trace of the Jacobian comes along.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`].
+    pub fn derivatives<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        parameters: bool,
+    ) -> Result<(State<N>, Derivatives<N>)> {
+        self.work = Work::default();
+        let analytic = analytic(field)?;
+        let mut tangent = match self.arithmetic {
+            Arithmetic::Double => analytic.tangent(parameters),
+            Arithmetic::DoubleDouble => analytic.reference_tangent(),
+        };
+        let end = self.walk(field, t, y0, &mut *tangent, None)?;
+        Ok((end, tangent.derivatives()))
+    }
+
     fn walk<const N: usize>(
         &mut self,
         field: &dyn VectorField<N>,
@@ -108,7 +130,14 @@ impl Taylor {
         y0: &State<N>,
         solution: &mut dyn Solution<N>,
         mut observer: Option<Observer<'_, N>>,
-    ) -> Result<()> {
+    ) -> Result<State<N>> {
+        if !field.f(y0).iter().all(|x| x.is_finite()) {
+            return Err(Error::NonFinite {
+                what: "the right-hand side",
+                t: t.0,
+            });
+        }
+        solution.start(&y0.data.0[0]);
         let mut expansion = Expansion::new();
         let mut clock = Clock::new(t);
         let mut y = *y0;
@@ -149,7 +178,12 @@ impl Taylor {
                 }
             }
         }
-        Ok(())
+        // Without a step not even the logarithm of an exponential shall come between.
+        Ok(if self.work.steps == 0 {
+            *y0
+        } else {
+            State::from(solution.state())
+        })
     }
 }
 
@@ -170,33 +204,21 @@ impl<const N: usize> Integrator<N> for Taylor {
     ) -> Result<State<N>> {
         self.work = Work::default();
         let analytic = analytic(field)?;
-        if !field.f(y0).iter().all(|x| x.is_finite()) {
-            return Err(Error::NonFinite {
-                what: "the right-hand side",
-                t: t.0,
-            });
-        }
-        if t.0 == t.1 {
-            return Ok(*y0);
-        }
         let mut solution = match self.arithmetic {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        solution.start(&y0.data.0[0]);
-        self.walk(field, t, y0, &mut *solution, observer)?;
-        Ok(State::from(solution.state()))
+        self.walk(field, t, y0, &mut *solution, observer)
     }
 
     fn tangent_flow(
         &mut self,
         field: &dyn VectorField<N>,
-        _t: (f64, f64),
+        t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        self.work = Work::default();
-        analytic(field)?;
-        Ok((*y0, Jacobian::identity()))
+        let (end, derivatives) = self.derivatives(field, t, y0, false)?;
+        Ok((end, Jacobian::from(derivatives.start)))
     }
 
     fn work(&self) -> Work {
