@@ -19,7 +19,14 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
         "scene",
-        &["integrate", "model", "friction", "number", "field"],
+        &[
+            "integrate",
+            "model",
+            "series",
+            "friction",
+            "number",
+            "field",
+        ],
     ),
     ("output", &[]),
     (

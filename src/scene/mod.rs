@@ -32,6 +32,7 @@ mod file;
 mod options;
 mod plan;
 mod run;
+mod slip;
 mod system;
 mod units;
 

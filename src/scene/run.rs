@@ -1,22 +1,14 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
 use super::column::{Column, Instant, fill};
-use super::event::{Detector, Event, at};
+use super::event::{Detector, Event};
 use super::plan::{Dimension, Plan, Sampling};
+use super::slip::{Slips, at, slips};
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Step, Tolerances, Work};
 use crate::model::{self, Driven};
-
-/// Nodes and weights of the Gauss-Legendre quadrature with five points on (0, 1): exact to degree 9, more than the dense
-/// output has.
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
+use crate::number::DoubleDouble;
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
 const PICTURED: usize = 4;
@@ -158,6 +150,8 @@ struct Watch<'a, const N: usize> {
     detector: Option<Detector<'a, N>>,
     /// The end of the last step seen.
     here: Instant,
+    /// The slips there, in all digits.
+    slips: Slips,
     row: Vec<f64>,
     pictured: Vec<Column>,
     /// Rows at fixed times made so far.
@@ -180,6 +174,7 @@ impl<'a, const N: usize> Watch<'a, N> {
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
             here: Instant::new(0.0, y0, [0.0; 2]),
+            slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
             pictured: Column::pictured(plan.system.interfaces),
             sampled: 0,
@@ -201,18 +196,19 @@ impl<'a, const N: usize> Watch<'a, N> {
 
     fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
         let field = self.field;
-        let before = self.here.slip;
-        // Always from the step's beginning, so that a slip does not depend on which rows are asked for. In 2-D the balance
-        // K (V_H t - n slip) = tau - tau(0) would do without a quadrature, but loses digits where K is small.
-        let slip = |t: f64| advance(field, step, before, t);
+        let before = self.slips;
         if let Some(detector) = &mut self.detector {
-            detector.see(step, &slip)?;
+            detector.see(step, &before)?;
         }
         let needs_slip = self.plan.needs_slip();
-        let instant = |t: f64| {
-            let slip = if needs_slip { slip(t) } else { before };
-            Instant::new(t, &at(step, t), slip)
+        let slip = |t: f64| {
+            if needs_slip {
+                slips(field, step, &before, t)
+            } else {
+                before
+            }
         };
+        let instant = |t: f64| Instant::new(t, &at(step, t), slip(t).map(DoubleDouble::hi));
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
             self.emit(&instant(t));
             self.sampled += 1;
@@ -220,10 +216,11 @@ impl<'a, const N: usize> Watch<'a, N> {
         if self.plan.picture {
             for part in 1..=PICTURED {
                 let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&Instant::new(t, &at(step, t), before));
+                self.draw(&Instant::new(t, &at(step, t), [0.0; 2]));
             }
         }
-        self.here = instant(step.t1);
+        self.slips = slip(step.t1);
+        self.here = Instant::new(step.t1, step.y1, self.slips.map(DoubleDouble::hi));
         if self.plan.sampling == Sampling::EveryStep {
             let here = self.here;
             self.emit(&here);
@@ -288,7 +285,7 @@ impl<'a, const N: usize> Watch<'a, N> {
         fill(&mut self.row, &plan.columns, &plan.system, &self.here);
         Outcome {
             last: known.then_some(self.row),
-            events: self.detector.map_or_else(Vec::new, |d| d.events),
+            events: self.detector.map_or_else(Vec::new, Detector::into_events),
             work: Work::default(),
             error_estimate: None,
             estimate_failure: None,
@@ -296,22 +293,4 @@ impl<'a, const N: usize> Watch<'a, N> {
             stopped: self.stopped,
         }
     }
-}
-
-/// The slips at t, from those at the beginning of the step, by quadrature along the dense output.
-fn advance<const N: usize>(
-    field: &dyn Driven<N>,
-    step: &Step<'_, N>,
-    before: [f64; 2],
-    t: f64,
-) -> [f64; 2] {
-    let h = t - step.t0;
-    let mut slip = before;
-    for (node, weight) in GAUSS {
-        let v = field.slip_rates(&(step.dense)(step.t0 + node * h));
-        for i in 0..2 {
-            slip[i] += weight * h * v[i];
-        }
-    }
-    slip
 }

@@ -13,6 +13,7 @@
 
 mod columns;
 mod element;
+mod event;
 mod formula;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
@@ -25,6 +26,7 @@ use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
 pub use columns::{Columns, Linearisation, Spread};
 pub use element::Element;
+pub use event::{Passage, Section, Zeros};
 pub use formula::{Formula, Rates, WATCHED};
 #[cfg(target_arch = "x86_64")]
 pub use lanes::{Eight, Four, Pair};
@@ -84,6 +86,10 @@ pub struct Derivatives<const N: usize> {
 /// The series of a solution at the beginning of a step, in the variables that it is made in.
 #[derive(Debug, Clone)]
 pub struct Expansion<const N: usize> {
+    /// The time of the beginning, in 31 digits: stress and state can change ten thousand times faster than time.
+    pub begin: DoubleDouble,
+    /// The time from the beginning of the step to its end.
+    pub length: f64,
     /// The unit of time.
     pub unit: f64,
     /// The order to which the variables are known.
@@ -100,6 +106,8 @@ impl<const N: usize> Expansion<N> {
     /// Of nothing yet.
     pub fn new() -> Self {
         Expansion {
+            begin: DoubleDouble::ZERO,
+            length: 0.0,
             unit: 1.0,
             order: 0,
             variables: [[0.0; REFERENCE_ORDER + 1]; N],
@@ -108,9 +116,18 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
+    /// The time from the beginning of the step to a time of the solution, to all digits of the difference.
+    pub fn since_begin(&self, time: f64) -> f64 {
+        (DoubleDouble::from(time) - self.begin).hi()
+    }
+
     /// The state at a time after the beginning of the step.
     pub fn state(&self, time: f64) -> [f64; N] {
-        let s = time / self.unit;
+        self.state_at(time / self.unit)
+    }
+
+    /// The state after s units.
+    fn state_at(&self, s: f64) -> [f64; N] {
         let mut x = [0.0; N];
         for (x, series) in x.iter_mut().zip(&self.variables) {
             *x = evaluate(&series[..=self.order], s);

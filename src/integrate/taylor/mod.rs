@@ -150,7 +150,7 @@ impl Taylor {
                 });
             }
             let h = solution.advance(&self.accuracy, remaining);
-            let before = clock.now.hi();
+            let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
                 let here = State::from(solution.state());
@@ -161,8 +161,9 @@ impl Taylor {
             self.work.rhs += self.accuracy.order;
             if let Some(observer) = &mut observer {
                 solution.expansion(self.accuracy.order, &mut expansion);
+                (expansion.begin, expansion.length) = (begin, h.hi());
                 let end = State::from(solution.state());
-                let dense = |time: f64| State::from(expansion.state(time - before));
+                let dense = |time: f64| State::from(expansion.state(expansion.since_begin(time)));
                 let control = observer(&Step {
                     t0: before,
                     y0: &y,
