@@ -14,6 +14,7 @@ pub struct DieterichRuina {
 
 impl Law for DieterichRuina {
     type Core = DieterichRuina;
+    const UNROLLED: bool = true;
 
     fn core(&self) -> DieterichRuina {
         *self

@@ -36,6 +36,9 @@ pub trait Law: Copy + Debug + Send + Sync {
     /// these only.
     type Core: Law;
 
+    /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
+    const UNROLLED: bool = false;
+
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 

@@ -27,6 +27,7 @@ impl Spinodal {
 
 impl Law for Spinodal {
     type Core = Spinodal;
+    const UNROLLED: bool = true;
 
     fn core(&self) -> Spinodal {
         *self

@@ -7,8 +7,8 @@ use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::DoubleDouble;
 use crate::series::{
-    Accuracy, Both, Element, Expansion, Formula, MAX_ORDER, Order, REFERENCE_ORDER, Rates, Series,
-    Solution, Stepper, WATCHED, value,
+    Accuracy, Both, Element, Expansion, Formula, Order, REFERENCE_ORDER, Rates, Series, Solution,
+    Stepper, WATCHED, value,
 };
 #[cfg(target_arch = "x86_64")]
 use {crate::series::Pair, pulp::x86::V3};
@@ -22,6 +22,7 @@ pub(super) struct Interfaces<E, L> {
 }
 
 impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
@@ -52,15 +53,8 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 }
 
-/// Where there are vector instructions, the code that does without is kept small: in loops.
-const PLAIN_ROOM: usize = if cfg!(target_arch = "x86_64") {
-    MAX_ORDER + 2
-} else {
-    MAX_ORDER + 1
-};
-
 type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
-type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2, PLAIN_ROOM>;
+type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
 type ReferenceStepper<L> =
     Stepper<Both<DoubleDouble>, Interfaces<Both<DoubleDouble>, L>, 2, { REFERENCE_ORDER + 1 }>;
 

@@ -59,9 +59,6 @@ impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
     }
 }
 
-/// Room for the series, which are made in loops: unrolled they would be half as fast again, and take minutes to compile.
-const ROOM: usize = MAX_ORDER + 2;
-
 /// How code is compiled: for the processor at hand, or for any.
 trait Shell: Copy {
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output;
@@ -115,17 +112,17 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
         let four = Four::new(simd, [0.0; 4]);
         return if parameters {
             let any = Both([four; 2]);
-            Box::new(Track::<_, _, _, _, ROOM>::new(
+            Box::new(Track::<_, _, _, _, { MAX_ORDER + 1 }>::new(
                 simd, law, loading, weights, pair, any,
             ))
         } else {
-            Box::new(Track::<_, _, _, _, ROOM>::new(
+            Box::new(Track::<_, _, _, _, { MAX_ORDER + 1 }>::new(
                 simd, law, loading, weights, pair, four,
             ))
         };
     }
     let any = Both([Both([Both([0.0; 2]); 2]); 2]);
-    Box::new(Track::<_, _, _, _, ROOM>::new(
+    Box::new(Track::<_, _, _, _, { MAX_ORDER + 1 }>::new(
         AnyProcessor,
         law,
         loading,

@@ -68,6 +68,8 @@ pub trait Element:
     fn all_finite(self) -> bool;
     /// How many lanes there are.
     const LANES: usize;
+    /// Whether series of these are worth the time that it takes to compile them order by order.
+    const UNROLLED: bool = false;
     /// The number in the first lane.
     fn first(self) -> f64;
     /// The number in a lane.
@@ -114,6 +116,7 @@ pub(super) fn rough_exp2(x: f64) -> f64 {
 
 impl Element for f64 {
     const LANES: usize = 1;
+    const UNROLLED: bool = true;
     #[inline(always)]
     fn lane(self, _: usize) -> f64 {
         self

@@ -21,6 +21,10 @@ pub struct Rates<'t, E, O, const C: usize> {
 
 /// dx/dt = f(x) in C variables.
 pub trait Formula<E: Element, const C: usize>: Copy {
+    /// Whether the series are compiled order by order, and not made in loops. They then take half the time, and seconds to
+    /// minutes to compile.
+    const UNROLLED: bool = false;
+
     /// The variable at whose zeros the formula is not smooth, if there is one.
     const KINK: Option<usize> = None;
 

@@ -14,8 +14,7 @@ const BISECTIONS: usize = 64;
 
 /// A solution of a formula on its way, in every lane of E.
 ///
-/// With room for [`MAX_ORDER`] and one coefficients the series are compiled order by order; with any other room, which is
-/// for elements whose arithmetic takes longer anyway, they are made in loops.
+/// A formula that says so is compiled order by order, on rows with room for [`MAX_ORDER`] and one coefficients.
 pub struct Stepper<E, F, const C: usize, const ROOM: usize = { MAX_ORDER + 1 }> {
     formula: F,
     memory: Box<Memory<E, ROOM>>,
@@ -120,7 +119,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         // A copy, which the compiler sees that no coefficient written changes.
         let formula = self.formula;
         let memory = cells(&mut self.memory);
-        self.watched = if ROOM == MAX_ORDER + 1 {
+        self.watched = if F::UNROLLED && ROOM == MAX_ORDER + 1 {
             expand(&formula, memory, accuracy.order, self.unit)
         } else {
             expand_running(&formula, memory, ROOM, accuracy.order, self.unit)
