@@ -3,6 +3,7 @@
 //! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
@@ -10,6 +11,7 @@ mod rosenbrock;
 mod tableau;
 mod taylor;
 
+pub use auto::Auto;
 pub use choice::{Choice, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;

@@ -201,8 +201,8 @@ pub(super) fn copy<E: Element, F: Formula<E, 2>, const N: usize, const ROOM: usi
     let Some(v) = stepper.watched_series(0) else {
         return;
     };
-    for j in 0..order {
-        let [first, second] = v[j].interfaces();
+    for (j, v) in v[..order].iter().enumerate() {
+        let [first, second] = v.interfaces();
         into.slip_rates[0][j] = first;
         into.slip_rates[1][j] = second;
     }

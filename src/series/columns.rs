@@ -4,7 +4,7 @@
 //! entry, and their solutions, the columns, share it: they stand in lanes. The sums run in loops, as there the work is in the
 //! lanes.
 
-use super::element::Element;
+use super::element::{Element, rough_exp2, rough_log2};
 use super::plain::Both;
 use super::{Accuracy, REFERENCE_ORDER};
 
@@ -116,22 +116,18 @@ impl<X: Element> Columns<X> {
         let any = self.x[0];
         let one = any.like(1.0);
         let of_psi = [one / psi.spread(0, any), one / psi.spread(1, any)];
-        let size = |x: &[X; 3]| {
-            let [tau, psi1, psi2] = *x;
-            let states = Element::max((psi1 * of_psi[0]).abs(), (psi2 * of_psi[1]).abs());
-            Element::max(tau.abs(), states)
-        };
         let mut largest = any.like(f64::MIN_POSITIVE);
-        for x in &self.series[..=order] {
-            largest = Element::max(largest, size(x));
+        let mut k = 0;
+        while k <= order {
+            largest = Element::max(largest, size(&self.series[k], of_psi));
+            k += 1;
         }
-        let tolerable = largest * any.like(accuracy.tolerances.0);
-        let exponent = |k: usize| {
-            let ratio = size(&self.series[k]) / tolerable;
-            let most = ratio.largest_lane().max(f64::MIN_POSITIVE);
-            -most.log2() / k as f64
-        };
-        exponent(order - 1).min(exponent(order)).exp2()
+        let per_tolerable = one / (largest * any.like(accuracy.tolerances.0));
+        let before = size(&self.series[order - 1], of_psi) * per_tolerable;
+        let last = size(&self.series[order], of_psi) * per_tolerable;
+        let before = -rough_log2(before.largest_lane()) / (order - 1) as f64;
+        let last = -rough_log2(last.largest_lane()) / order as f64;
+        rough_exp2(before.min(last))
     }
 
     /// Goes on by h, counted in units of the series.
@@ -150,4 +146,11 @@ impl<X: Element> Columns<X> {
         }
         self.x = sum;
     }
+}
+
+/// The largest of a column: of tau, and of psi by its logarithm.
+#[inline(always)]
+fn size<X: Element>(x: &[X; 3], per_psi: [X; 2]) -> X {
+    let states = Element::max((x[1] * per_psi[0]).abs(), (x[2] * per_psi[1]).abs());
+    Element::max(x[0].abs(), states)
 }

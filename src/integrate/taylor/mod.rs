@@ -39,6 +39,9 @@ pub struct Taylor {
     work: Work,
 }
 
+/// Whether to halt after a step of this length, at the state that a call gives.
+type Halt<'a, const N: usize> = &'a mut dyn FnMut(f64, &dyn Fn() -> State<N>) -> bool;
+
 /// What the series are made in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Arithmetic {
@@ -119,8 +122,27 @@ impl Taylor {
             Arithmetic::Double => analytic.tangent(parameters),
             Arithmetic::DoubleDouble => analytic.reference_tangent(),
         };
-        let end = self.walk(field, t, y0, &mut *tangent, None)?;
+        let (end, _) = self.walk(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
         Ok((end, tangent.derivatives()))
+    }
+
+    /// The flow up to the step after which `halt` says so, and the time then.
+    pub(super) fn flow_until<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        observer: Option<Observer<'_, N>>,
+        halt: Halt<'_, N>,
+    ) -> Result<(State<N>, f64)> {
+        self.work = Work::default();
+        let mut solution = analytic(field)?.solution();
+        self.walk(field, t, y0, &mut *solution, observer, halt)
+    }
+
+    /// Another bound on steps.
+    pub(super) fn set_max_steps(&mut self, max_steps: usize) {
+        self.max_steps = max_steps;
     }
 
     fn walk<const N: usize>(
@@ -130,7 +152,8 @@ impl Taylor {
         y0: &State<N>,
         solution: &mut dyn Solution<N>,
         mut observer: Option<Observer<'_, N>>,
-    ) -> Result<State<N>> {
+        halt: Halt<'_, N>,
+    ) -> Result<(State<N>, f64)> {
         if !field.f(y0).iter().all(|x| x.is_finite()) {
             return Err(Error::NonFinite {
                 what: "the right-hand side",
@@ -177,13 +200,17 @@ impl Taylor {
                     break;
                 }
             }
+            if halt(h.hi(), &|| State::from(solution.state())) {
+                break;
+            }
         }
         // Without a step not even the logarithm of an exponential shall come between.
-        Ok(if self.work.steps == 0 {
+        let end = if self.work.steps == 0 {
             *y0
         } else {
             State::from(solution.state())
-        })
+        };
+        Ok((end, clock.now.hi()))
     }
 }
 
@@ -208,7 +235,8 @@ impl<const N: usize> Integrator<N> for Taylor {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        self.walk(field, t, y0, &mut *solution, observer)
+        let end = self.walk(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
+        Ok(end.0)
     }
 
     fn tangent_flow(
