@@ -87,7 +87,7 @@ fn assert_zeros(roots: &[f64], scale: f64, cuts: &[f64]) {
 #[test]
 fn a_zero_at_a_joint_is_found_once() {
     for scale in [1.0, -1.0, 1e-9] {
-        for roots in [vec![0.3], vec![0.3, 0.7], vec![0.1, 0.3, 0.31, 0.7]] {
+        for roots in [vec![0.3_f64], vec![0.3, 0.7], vec![0.1, 0.3, 0.31, 0.7]] {
             for root in &roots {
                 for joint in [*root, root.next_up(), root.next_down()] {
                     assert_zeros(&roots, scale, &[0.0, joint, 1.0]);
