@@ -15,7 +15,12 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("model", &["friction", "field", "series", "number"]),
     ("contract", &[]),
     ("sundials", &["field", "contract"]),
-    ("integrate", &["field", "series", "contract", "sundials"]),
+    (
+        "integrate",
+        &[
+            "model", "friction", "field", "series", "number", "contract", "sundials",
+        ],
+    ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
         "scene",

@@ -100,7 +100,7 @@ impl<const N: usize> Auto<N> {
             } else {
                 self.explicit(field, (now, t.1), &y, left, wait, &mut relay)
             };
-            self.work = sum(self.work, self.last_work(implicit));
+            self.work += self.last_work(implicit);
             y = end.map_err(|error| self.whole(error, t.1))?;
             finished(Stretch {
                 implicit,
@@ -215,9 +215,11 @@ impl<const N: usize> Auto<N> {
     }
 }
 
+type Seen<'o, const N: usize> = dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o;
+
 /// Hands steps on to the observer, and keeps how far the run has come.
 struct Relay<'a, 'o, const N: usize> {
-    observer: Option<&'a mut (dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o)>,
+    observer: Option<&'a mut Seen<'o, N>>,
     reached: &'a mut f64,
     stopped: &'a mut bool,
 }
@@ -268,7 +270,7 @@ impl<const N: usize> Integrator<N> for Auto<N> {
             } else {
                 self.taylor.tangent_flow(field, stretch.t, &y)?
             };
-            work = sum(work, self.last_work(stretch.implicit));
+            work += self.last_work(stretch.implicit);
             y = end;
             tangent = part * tangent;
         }
@@ -278,17 +280,6 @@ impl<const N: usize> Integrator<N> for Auto<N> {
 
     fn work(&self) -> Work {
         self.work
-    }
-}
-
-fn sum(a: Work, b: Work) -> Work {
-    Work {
-        steps: a.steps + b.steps,
-        rejected: a.rejected + b.rejected,
-        rhs: a.rhs + b.rhs,
-        jacobians: a.jacobians + b.jacobians,
-        factorisations: a.factorisations + b.factorisations,
-        nonlinear: a.nonlinear + b.nonlinear,
     }
 }
 

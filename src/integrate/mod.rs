@@ -17,7 +17,7 @@ pub use choice::{Choice, HasSeries, available};
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
-pub use taylor::Taylor;
+pub use taylor::{Batch, BatchObserver, BatchRun, Taylor};
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::{Error, Result};

@@ -46,8 +46,9 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 
     #[inline(always)]
-    fn allows(&self, x: &[E; 2]) -> bool {
-        x[0].all_finite() && x[1].all_positive()
+    fn allows(&self, [tau, psi]: &[E; 2]) -> E {
+        // psi, and no number where tau is not finite.
+        tau.mul_add(tau.like(0.0), *psi)
     }
 }
 
@@ -216,7 +217,7 @@ pub(super) fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
 }
 
 /// From (tau, psi) to (tau, ln psi).
-fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+pub(super) fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     for psi in &mut x[1..] {
         *psi = psi.max(f64::MIN_POSITIVE).ln();
     }

@@ -19,6 +19,7 @@ use {
 };
 
 /// The interfaces, with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
+#[derive(Clone, Copy)]
 struct Linearised<E, L>(Interfaces<E, L>);
 
 impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
@@ -53,7 +54,7 @@ impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
     }
 
     #[inline(always)]
-    fn allows(&self, x: &[E; 2]) -> bool {
+    fn allows(&self, x: &[E; 2]) -> E {
         self.0.allows(x)
     }
 }

@@ -1,5 +1,6 @@
 //! A plan in words: what is computed, how, and why the rest is not.
 
+use super::estimate::Companion;
 use super::plan::{Dimension, Plan, Sampling};
 use super::units::Quantity;
 use crate::integrate::HasSeries;
@@ -55,14 +56,16 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line("trajectory", trajectory(plan, keeping));
     line(
         "error estimate",
-        if plan.estimate_error {
-            let second = plan.comparison();
-            format!(
-                "on: the distance to a second run with rtol {:e}, atol {:e}, at the end only",
+        match plan.estimate {
+            Some(Companion::Tighter(second)) => format!(
+                "on: twice the distance to a second run by auto with rtol {:e}, atol {:e}, at the end only",
                 second.rtol, second.atol
-            )
-        } else {
-            "off: --estimate-error is not given".into()
+            ),
+            Some(Companion::Reference) => {
+                "on: the distance to a second run in double-double arithmetic, at the end only"
+                    .into()
+            }
+            None => "off: --estimate-error is not given".into(),
         },
     );
     text

@@ -26,6 +26,7 @@
 //! ```
 
 mod column;
+mod estimate;
 mod event;
 mod explain;
 mod file;

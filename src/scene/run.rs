@@ -1,12 +1,13 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
 use super::column::{Column, Instant, fill};
+use super::estimate::estimate;
 use super::event::{Detector, Event};
 use super::plan::{Dimension, Plan, Sampling};
 use super::slip::{Slips, at, slips};
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::{Control, Step, Tolerances, Work};
+use crate::integrate::{Control, Step, Work};
 use crate::model::{self, Driven};
 use crate::number::DoubleDouble;
 
@@ -32,7 +33,8 @@ pub struct Outcome {
     pub events: Vec<Event>,
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
-    /// Relative global error of the last row, largest of stress and states; `None` where not asked for or not known.
+    /// Estimate of the relative global error of the last row, largest of stress and states, not below it; `None` where not
+    /// asked for or not known.
     pub error_estimate: Option<f64>,
     /// Why the error could not be estimated.
     pub estimate_failure: Option<Error>,
@@ -80,66 +82,22 @@ fn flow<const N: usize>(
     };
     let mut outcome = watch.finish(&end);
     outcome.work = integrator.work();
-    if let (Ok(y), true) = (end, plan.estimate_error && !outcome.stopped) {
-        estimate_error(plan, field, &y0, &y, &mut outcome, sink)?;
+    if let (Ok(y), Some(companion), false) = (end, plan.estimate, outcome.stopped) {
+        estimate(
+            companion,
+            plan,
+            as_field(field),
+            &y0,
+            &y,
+            &mut outcome,
+            sink,
+        )?;
     }
     Ok(outcome)
 }
 
 fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorField<N> {
     field
-}
-
-/// The distance to a second run: one so much more accurate that its own error does not count, or, where doubles end, one so
-/// much less accurate that ours does not.
-fn estimate_error<const N: usize>(
-    plan: &Plan,
-    field: &dyn Driven<N>,
-    y0: &State<N>,
-    end: &State<N>,
-    outcome: &mut Outcome,
-    sink: &mut dyn Sink,
-) -> Result<()> {
-    let tolerances: Tolerances = plan.comparison();
-    let mut integrator = plan.method.integrator::<N>(tolerances, plan.max_steps)?;
-    let span = (0.0, plan.until);
-    let mut stopped = false;
-    let reference = if plan.observed() {
-        let mut observer = |step: &Step<'_, N>| {
-            let control = sink.reached(step.t1 / plan.until);
-            stopped = control == Control::Stop;
-            Ok(control)
-        };
-        integrator.flow(as_field(field), span, y0, Some(&mut observer))
-    } else {
-        integrator.flow(as_field(field), span, y0, None)
-    };
-    outcome.work = sum(outcome.work, integrator.work());
-    match reference {
-        Ok(_) if stopped => outcome.stopped = true,
-        Ok(reference) => outcome.error_estimate = Some(relative_distance(end, &reference)),
-        Err(error) => outcome.estimate_failure = Some(error),
-    }
-    Ok(())
-}
-
-/// Largest relative difference in stress and states: the states by their logarithms.
-fn relative_distance<const N: usize>(y: &State<N>, reference: &State<N>) -> f64 {
-    let stress = (y[0] - reference[0]).abs() / reference[0].abs().max(f64::MIN_POSITIVE);
-    (1..N).fold(stress, |largest, i| {
-        largest.max((y[i] - reference[i]).exp_m1().abs())
-    })
-}
-
-fn sum(a: Work, b: Work) -> Work {
-    Work {
-        steps: a.steps + b.steps,
-        rejected: a.rejected + b.rejected,
-        rhs: a.rhs + b.rhs,
-        jacobians: a.jacobians + b.jacobians,
-        factorisations: a.factorisations + b.factorisations,
-        nonlinear: a.nonlinear + b.nonlinear,
-    }
 }
 
 /// Sees the steps of a run and makes rows, slips and events of them.

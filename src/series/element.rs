@@ -51,6 +51,11 @@ pub trait Element:
     fn sinh_cosh(self) -> (Self, Self);
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
+    /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
+    /// where an element does not say otherwise.
+    fn if_positive(self, a: Self, b: Self) -> Self {
+        if self.all_positive() { a } else { b }
+    }
     /// a in the lanes where self is zero, else b.
     fn if_zero(self, a: Self, b: Self) -> Self;
     /// Whether every lane is positive and finite.

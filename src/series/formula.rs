@@ -20,7 +20,7 @@ pub struct Rates<'t, E, O, const C: usize> {
 }
 
 /// dx/dt = f(x) in C variables.
-pub trait Formula<E: Element, const C: usize> {
+pub trait Formula<E: Element, const C: usize>: Copy {
     /// The variable at whose zeros the formula is not smooth, if there is one.
     const KINK: Option<usize> = None;
 
@@ -30,8 +30,8 @@ pub trait Formula<E: Element, const C: usize> {
     /// What may err by one in a step, from the state and the tolerances: the unit of every variable.
     fn units(&self, x: &[E; C], tolerances: (f64, f64)) -> [E; C];
 
-    /// Whether a state is one that the formula is meant for, in every lane.
-    fn allows(&self, x: &[E; C]) -> bool;
+    /// Positive and finite in the lanes whose state is one that the formula is meant for.
+    fn allows(&self, x: &[E; C]) -> E;
 }
 
 /// The coefficients at the order of the tape, and with them those of the variables at the next, in a unit of time. Returns the rows of what is

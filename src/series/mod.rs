@@ -16,6 +16,8 @@ mod element;
 mod event;
 mod formula;
 #[cfg(target_arch = "x86_64")]
+mod functions;
+#[cfg(target_arch = "x86_64")]
 mod lanes;
 mod plain;
 mod real;

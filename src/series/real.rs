@@ -50,8 +50,8 @@ impl<E: Element, O: Order> Sub for Series<'_, E, O> {
                 (Row(a), Row(b)) => row(a.mapped(a.newest() - b.newest())),
                 (Row(_), _) => self + -other,
                 (Value(x), Row(a)) => {
-                    let x = if a.order() == 0 { x } else { x.like(0.0) };
-                    row(a.mapped(x - a.newest()))
+                    let new = a.newest();
+                    row(a.mapped(if a.order() == 0 { x - new } else { -new }))
                 }
                 (Exact(x), Row(a)) => {
                     let new = a.newest();
@@ -109,8 +109,8 @@ impl<E: Element, O: Order> Div for Series<'_, E, O> {
                 row(a.quotient(b))
             }
             (a, b) => match (a.released(), b.released()) {
-                (Row(a), Value(x)) => row(a.mapped(a.newest() / x)),
-                (Row(a), Exact(x)) => row(a.mapped(a.newest() / a.newest().like_exact(x))),
+                (Row(a), Value(x)) => row(a.over(x)),
+                (Row(a), Exact(x)) => row(a.over(a.newest().like_exact(x))),
                 (Value(x), Value(y)) => value(x / y),
                 (Value(x), Exact(y)) => value(x / x.like_exact(y)),
                 (Exact(x), Value(y)) => value(y.like_exact(x) / y),
@@ -163,7 +163,7 @@ impl<E: Element, O: Order> Div<f64> for Series<'_, E, O> {
             Exact(y) => exact(y / x),
             Value(y) => value(y / y.like(x)),
             Literal(_) => unreachable!("released"),
-            Row(a) => row(a.mapped(a.newest() / a.newest().like(x))),
+            Row(a) => row(a.over(a.newest().like(x))),
         }
     }
 }

@@ -47,23 +47,33 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
     /// Begins at x.
     #[inline(always)]
     pub fn start(&mut self, x: [E; C]) {
-        let zero = x[0].like(0.0);
-        self.x = x;
-        self.lost = [zero; C];
-        self.next_unit = zero.like(1.0);
+        self.start_where(x[0].like(-1.0), x);
+    }
+
+    /// Begins at x in the lanes where `new` is negative; the others stay on their way.
+    #[inline(always)]
+    pub fn start_where(&mut self, new: E, x: [E; C]) {
+        let (zero, one) = (new.like(0.0), new.like(1.0));
+        for c in 0..C {
+            self.x[c] = new.if_negative(x[c], self.x[c]);
+            self.lost[c] = new.if_negative(zero, self.lost[c]);
+        }
         self.load();
-        first_level(&self.formula, cells(&mut self.memory), ROOM, self.next_unit);
+        first_level(&self.formula, cells(&mut self.memory), ROOM, one);
         // The time in which the state would change by its own size.
         let mut rate = zero;
-        let mut c = 0;
-        while c < C {
-            let size = Element::max(x[c].abs(), zero.like(f64::MIN_POSITIVE));
+        for c in 0..C {
+            let size = Element::max(self.x[c].abs(), zero.like(f64::MIN_POSITIVE));
             rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
-            c += 1;
         }
         let rate = rate.largest_over_interfaces();
-        let slowest = zero.like(f64::MIN_POSITIVE);
-        self.next_unit = zero.like(1.0) / Element::max(rate, slowest);
+        let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
+        self.next_unit = new.if_negative(next_unit, self.next_unit);
+    }
+
+    /// The formula, whose constants may change between solutions.
+    pub fn formula_mut(&mut self) -> &mut F {
+        &mut self.formula
     }
 
     /// The state reached.
@@ -107,11 +117,13 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
     pub fn expand(&mut self, accuracy: &Accuracy) {
         self.unit = self.next_unit;
         self.load();
+        // A copy, which the compiler sees that no coefficient written changes.
+        let formula = self.formula;
         let memory = cells(&mut self.memory);
         self.watched = if ROOM == MAX_ORDER + 1 {
-            expand(&self.formula, memory, accuracy.order, self.unit)
+            expand(&formula, memory, accuracy.order, self.unit)
         } else {
-            expand_running(&self.formula, memory, ROOM, accuracy.order, self.unit)
+            expand_running(&formula, memory, ROOM, accuracy.order, self.unit)
         };
     }
 
@@ -121,27 +133,50 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         let unit = self.unit;
         let in_units = limit / unit;
         let mut h = Element::min(h, in_units.abs()) * limit.sign();
-        let (mut tried, mut cut) = (0, false);
+        let (mut x, mut lost) = self.evaluate(accuracy.order, h);
+        let allowed = self.formula.allows(&x).all_positive();
+        if !allowed || F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative()) {
+            h = self.shortened(accuracy.order, h);
+            (x, lost) = self.evaluate(accuracy.order, h);
+            let finite = h.mul_add(h.like(0.0), h.like(1.0));
+            for c in 0..C {
+                x[c] = finite.if_positive(x[c], self.x[c]);
+                lost[c] = finite.if_positive(lost[c], self.lost[c]);
+            }
+        }
+        self.x = x;
+        self.lost = lost;
+        let time = (in_units - h).if_zero(limit, h * unit);
+        self.next_unit = time.abs();
+        time
+    }
+
+    /// A part of the step h that leads where the formula has a meaning, and no further than just behind a kink; every lane's
+    /// own. Not a number where there is none.
+    #[cold]
+    fn shortened(&self, order: usize, h: E) -> E {
+        let h = self.halved(order, h);
+        let Some(c) = F::KINK else { return h };
+        if (self.evaluate(order, h).0[c] * self.x[c]).none_negative() {
+            return h;
+        }
+        self.halved(order, self.up_to_kink(order, h))
+    }
+
+    /// The step h, halved until it leads where the formula has a meaning.
+    #[cold]
+    fn halved(&self, order: usize, mut h: E) -> E {
+        let mut halvings = 0;
         loop {
-            let (x, lost) = self.evaluate(accuracy.order, h);
-            if self.formula.allows(&x) {
-                let crossed = F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative());
-                if crossed && !cut {
-                    cut = true;
-                    h = self.up_to_kink(accuracy.order, h);
-                    continue;
-                }
-                self.x = x;
-                self.lost = lost;
-                let time = (in_units - h).if_zero(limit, h * unit);
-                self.next_unit = time.abs();
-                return time;
+            let allowed = self.formula.allows(&self.evaluate(order, h).0);
+            if allowed.all_positive() {
+                return h;
             }
-            tried += 1;
-            if tried > HALVINGS {
-                return h.like(f64::NAN);
+            if halvings == HALVINGS {
+                return allowed.if_positive(h, h.like(f64::NAN));
             }
-            h = h * h.like(0.5);
+            h = allowed.if_positive(h, h * h.like(0.5));
+            halvings += 1;
         }
     }
 

@@ -191,6 +191,30 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
         left + right
     }
 
+    /// The sums of a_(k-j) f_j and of a_(k-j) g_j over 0 < j < k, likewise: every a_j is read but once.
+    #[inline(always)]
+    fn inner_products(self, f: Self, g: Self) -> (E, E) {
+        let k = self.order();
+        let zero = self.get(0).like(0.0);
+        let (mut left, mut right) = ((zero, zero), (zero, zero));
+        let mut i = k / 2;
+        while i >= 1 {
+            let a = self.get(i);
+            left.0 = a.mul_add(f.get(k - i), left.0);
+            left.1 = a.mul_add(g.get(k - i), left.1);
+            if 2 * i != k {
+                let a = self.get(k - i);
+                right.0 = a.mul_add(f.get(i), right.0);
+                right.1 = a.mul_add(g.get(i), right.1);
+            }
+            i -= 1;
+        }
+        (left.0 + right.0, left.1 + right.1)
+    }
+
+    // In what follows the newest coefficient of the argument, which is known last, enters by one multiplication at the end:
+    // the next order waits for that chain.
+
     /// (a b)_k
     #[inline(always)]
     pub(super) fn product(self, other: Self) -> Self {
@@ -208,17 +232,18 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
     #[inline(always)]
     pub(super) fn quotient(self, other: Self) -> Self {
         let k = self.order();
-        // The first coefficient of this row is 1 / b_0.
+        // The first coefficients of this row are 1 / b_0 and -q_0 / b_0.
         let inverse = other.another();
         let q = self.another();
         if k == 0 {
             let one_over = other.get(0).like(1.0) / other.get(0);
+            let first = self.get(0) / other.get(0);
             inverse.put(one_over);
-            return q.put(self.get(0) / other.get(0));
+            inverse.tape.set(inverse.row, 1, -(first * one_over));
+            return q.put(first);
         }
-        let sum = q.inner_product(other);
-        let sum = other.get(k).mul_add(q.get(0), sum);
-        q.put((self.get(k) - sum) * inverse.get(0))
+        let rest = (self.get(k) - q.inner_product(other)) * inverse.get(0);
+        q.put(other.get(k).mul_add(inverse.get(1), rest))
     }
 
     /// j a_j as a row of its own, whose first coefficient is free.
@@ -248,9 +273,8 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
         if k == 0 {
             return e.put(self.get(0).exp());
         }
-        let sum = slopes.inner_product(e);
-        let sum = slopes.get(k).mul_add(e.get(0), sum);
-        e.put(sum * self.one_over_order())
+        let rest = slopes.inner_product(e) * self.one_over_order();
+        e.put(self.get(k).mul_add(e.get(0), rest))
     }
 
     /// s = sinh a, c = cosh a from s' = c a', c' = s a'.
@@ -263,11 +287,12 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
             let (sinh, cosh) = self.get(0).sinh_cosh();
             return (s.put(sinh), c.put(cosh));
         }
-        let (of_c, of_s) = (slopes.inner_product(c), slopes.inner_product(s));
-        let of_c = slopes.get(k).mul_add(c.get(0), of_c);
-        let of_s = slopes.get(k).mul_add(s.get(0), of_s);
-        let one_over = self.one_over_order();
-        (s.put(of_c * one_over), c.put(of_s * one_over))
+        let (of_c, of_s) = slopes.inner_products(c, s);
+        let (new, one_over) = (self.get(k), self.one_over_order());
+        (
+            s.put(new.mul_add(c.get(0), of_c * one_over)),
+            c.put(new.mul_add(s.get(0), of_s * one_over)),
+        )
     }
 
     /// l = ln a from a l' = a': a_0 k l_k = k a_k - sum of a_(k-j) j l_j over 0 < j < k.
@@ -282,7 +307,9 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
             return l.put(self.get(0).ln());
         }
         let sum = slopes.inner_product(self);
-        let new = (self.get(k) - sum * self.one_over_order()) * slopes.get(0);
+        let one_over = slopes.get(0);
+        let rest = sum * -(self.one_over_order() * one_over);
+        let new = self.get(k).mul_add(one_over, rest);
         slopes.put(new * new.like(k as f64));
         l.put(new)
     }
@@ -300,11 +327,12 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
             slopes.put(a0.like(1.0) / a0);
             return y.put(a0.powf(p));
         }
-        let weighted = slopes.inner_product(self);
-        let plain = self.get(k).mul_add(y.get(0), y.inner_product(self));
-        let weighted =
-            weighted * (a0.like_exact(DoubleDouble::of_finite(1.0, p)) * self.one_over_order());
-        let new = (plain * a0.like(p) - weighted) * slopes.get(0);
+        let (plain, weighted) = self.inner_products(y, slopes);
+        let one_over = slopes.get(0);
+        let p_over = a0.like(p) * one_over;
+        let one_and_p = a0.like_exact(DoubleDouble::of_finite(1.0, p)) * self.one_over_order();
+        let rest = weighted.mul_add(-(one_and_p * one_over), plain * p_over);
+        let new = self.get(k).mul_add(y.get(0) * p_over, rest);
         slopes.put(new * new.like(k as f64));
         y.put(new)
     }
@@ -313,6 +341,16 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
     #[inline(always)]
     pub(super) fn constant_series(self, x: E) -> Self {
         self.mapped(if self.order() == 0 { x } else { x.like(0.0) })
+    }
+
+    /// a / x. Beyond the first coefficient by the inverse, which is the same at all orders: divisions take long.
+    #[inline(always)]
+    pub(super) fn over(self, x: E) -> Self {
+        let new = self.newest();
+        if self.order() == 0 {
+            return self.mapped(new / x);
+        }
+        self.mapped(new * (x.like(1.0) / x))
     }
 
     /// a + x

@@ -13,7 +13,8 @@ const HEAD: &str = "# twinslip and its peers at equal error\n\n\
     One run, one core, all in turn; thread CPU time of one run, median, log-log interpolated at equal global error at the end, \
     never at equal tolerance. In brackets the time over that of the fastest method of twinslip at that error. `-`: not reached \
     at any tolerance, or not within the bound on time; `<=`: even the loosest tolerance errs less. Compile time of heyoka is \
-    left out; `heyoka batch` is the time of one of 8 (AVX-512) or 4 runs made at once, and its error that of the first.\n";
+    left out; the call from Python, some microseconds, is in its times and in those of scipy. `heyoka batch` is the time of \
+    one of 8 (AVX-512) or 4 runs made at once, and its error that of the first.\n";
 
 /// One table per scene.
 pub fn markdown(root: &Path, rows: &[Row]) -> String {

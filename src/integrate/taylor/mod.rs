@@ -7,6 +7,10 @@
 //! Along stick-slip cycles no method here comes near it. On strongly damped stretches its step is held by stability, at some
 //! 7 to 9 over the fastest rate whatever the tolerance: an implicit method is better there.
 
+mod batch;
+
+pub use batch::{Batch, BatchObserver, BatchRun};
+
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
