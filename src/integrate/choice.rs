@@ -22,6 +22,17 @@ pub enum Choice {
     Cvode(sundials::Method),
 }
 
+/// Whether the steps of a method are power series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HasSeries {
+    /// Every step is.
+    Always,
+    /// Those of one of two methods are.
+    Sometimes,
+    /// None is.
+    Never,
+}
+
 /// The names of the CVODES methods, in any build.
 const CVODE: [&str; 2] = ["cvode-bdf", "cvode-adams"];
 
@@ -92,6 +103,15 @@ impl Choice {
             Choice::Cvode(sundials::Method::Bdf) => CVODE[0],
             #[cfg(feature = "sundials")]
             Choice::Cvode(sundials::Method::Adams) => CVODE[1],
+        }
+    }
+
+    /// Which of its steps come with a power series; the observer of any other has the dense output.
+    pub fn series(self) -> HasSeries {
+        match self {
+            Choice::Taylor => HasSeries::Always,
+            Choice::Auto => HasSeries::Sometimes,
+            _ => HasSeries::Never,
         }
     }
 

@@ -12,7 +12,7 @@ mod tableau;
 mod taylor;
 
 pub use auto::Auto;
-pub use choice::{Choice, available};
+pub use choice::{Choice, HasSeries, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};

@@ -3,6 +3,7 @@
 use super::estimate::Companion;
 use super::plan::{Dimension, Plan, Sampling};
 use super::units::Quantity;
+use crate::integrate::HasSeries;
 use std::fmt::Write;
 
 /// What the caller does with the rows, which the plan does not know.
@@ -37,7 +38,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line(
         "slip",
         if plan.needs_slip() {
-            "on: five-point quadrature of the slip rates along every step".into()
+            format!("on: {}", slip(plan.method.series()))
         } else {
             "off: no slip column and no events asked for".into()
         },
@@ -47,9 +48,8 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         plan.events.map_or_else(
             || "off: --events is not given".into(),
             |threshold| {
-                format!(
-                    "on: slip faster than V_H whose peak exceeds {threshold} V_H, by root finding"
-                )
+                let how = location(plan.method.series());
+                format!("on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}")
             },
         ),
     );
@@ -109,6 +109,26 @@ fn dense(plan: &Plan) -> String {
         "off: rows are the ends of steps, and no slip is asked for".into()
     } else {
         format!("on: for {}", why.join(", "))
+    }
+}
+
+fn slip(series: HasSeries) -> &'static str {
+    match series {
+        HasSeries::Always => "the series of the slip rates integrated term by term",
+        HasSeries::Sometimes => {
+            "the series of the slip rates integrated term by term; five-point quadrature along the steps that have none"
+        }
+        HasSeries::Never => "five-point quadrature of the slip rates along every step",
+    }
+}
+
+fn location(series: HasSeries) -> &'static str {
+    match series {
+        HasSeries::Always => "the roots of the series' polynomials",
+        HasSeries::Sometimes => {
+            "the roots of the series' polynomials; root finding on the dense output of the steps that have none"
+        }
+        HasSeries::Never => "root finding on the dense output",
     }
 }
 

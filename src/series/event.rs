@@ -60,11 +60,15 @@ impl Zeros {
         if begins == self.sign {
             roots(coefficients, length, &mut self.found);
         } else {
-            // As if the function were 0 at the joint, on the side where it was: then a crossing that is due comes at once.
+            // As if the function were 0 at the joint, on the side where it was: then a crossing that is due comes at once. Not
+            // so near 0 that a search for it would not end.
+            const NEARLY_ZERO: f64 = f64::EPSILON * f64::EPSILON;
+            let backwards = coefficients.iter().rev();
+            let size = backwards.fold(0.0, |sum, c| sum * length.abs() + c.abs());
             let mut joined = [0.0; REFERENCE_ORDER + 1];
             let joined = &mut joined[..coefficients.len()];
             joined.copy_from_slice(coefficients);
-            joined[0] = self.sign * f64::MIN_POSITIVE;
+            joined[0] = self.sign * (NEARLY_ZERO * size).max(f64::MIN_POSITIVE);
             roots(joined, length, &mut self.found);
         }
         for root in &self.found {
