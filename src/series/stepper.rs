@@ -53,8 +53,8 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
     #[inline(always)]
     pub fn start_where(&mut self, new: E, x: [E; C]) {
         let (zero, one) = (new.like(0.0), new.like(1.0));
-        for c in 0..C {
-            self.x[c] = new.if_negative(x[c], self.x[c]);
+        for (c, x) in x.into_iter().enumerate() {
+            self.x[c] = new.if_negative(x, self.x[c]);
             self.lost[c] = new.if_negative(zero, self.lost[c]);
         }
         self.load();
