@@ -106,7 +106,9 @@ pub(super) fn expand<E: Element, F: Formula<E, C>, const C: usize>(
     levels!(16 17 18; 19)
 }
 
-/// The same to any even order below the room of a row, in loops.
+/// The same to any even order below the room of a row, in loops. Inlined, as all of a step is: what
+/// is not would be compiled for any processor, and call its instructions one by one.
+#[inline(always)]
 pub(super) fn expand_running<E: Element, F: Formula<E, C>, const C: usize>(
     formula: &F,
     memory: &[Cell<E>],
