@@ -1,0 +1,140 @@
+//! Ten thousand cycles: a stable orbit keeps its period and its amplitude, and a symmetric run its symmetry.
+
+use crate::trial::methods;
+use twinslip::field::{State, VectorField};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::{Choice, Control, MAX_STEPS, Step, Tolerances};
+use twinslip::model::{Loading, symmetric, two_interfaces};
+
+/// One cycle: when its stress peaks, the peak, and the trough after it.
+#[derive(Debug, Clone, Copy)]
+struct Peak {
+    time: f64,
+    peak: f64,
+    trough: f64,
+}
+
+/// The state within a step where dtau/dt changes its sign, and when.
+fn turn<const N: usize>(field: &dyn VectorField<N>, step: &Step<'_, N>) -> (f64, State<N>) {
+    let rate = |t: f64| field.f(&(step.dense)(t))[0];
+    let rises = rate(step.t0) > 0.0;
+    let (mut near, mut far) = (step.t0, step.t1);
+    for _ in 0..80 {
+        let middle = near + 0.5 * (far - near);
+        if (rate(middle) > 0.0) == rises {
+            near = middle;
+        } else {
+            far = middle;
+        }
+    }
+    (far, (step.dense)(far))
+}
+
+/// The first `count` cycles from `start`.
+fn cycles<const N: usize>(
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    (method, tolerance): (&str, f64),
+    count: usize,
+) -> Vec<Peak> {
+    let tolerances = Tolerances::equal(tolerance).expect("valid");
+    let method = Choice::named(method).expect("known");
+    let mut integrator = method.integrator(tolerances, MAX_STEPS).expect("valid");
+    let mut found: Vec<Peak> = Vec::new();
+    let mut see = |step: &Step<'_, N>| {
+        let rises = [step.y0, step.y1].map(|y| field.f(y)[0] > 0.0);
+        match (rises, found.last_mut()) {
+            ([true, false], _) => {
+                let (time, y) = turn(field, step);
+                let (peak, trough) = (y[0], f64::NAN);
+                found.push(Peak { time, peak, trough });
+            }
+            ([false, true], Some(last)) => last.trough = turn(field, step).1[0],
+            _ => {}
+        }
+        let done = found.len() == count && found[count - 1].trough.is_finite();
+        Ok(if done {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    };
+    let ended = integrator.flow(field, (0.0, 1e9), start, Some(&mut see));
+    ended.expect("a run that goes on for ever");
+    found
+}
+
+/// By how much, relative to one period and one amplitude, the last cycle differs from the first after `settled` of them.
+fn drift(cycles: &[Peak], settled: usize) -> f64 {
+    let measure = |i: usize| {
+        let (this, next) = (cycles[i], cycles[i + 1]);
+        [next.time - this.time, this.peak - this.trough, this.peak]
+    };
+    let (first, last) = (measure(settled), measure(cycles.len() - 2));
+    println!("period, amplitude, peak: {first:?}, then {last:?}");
+    let apart = |i: usize| (last[i] / first[i] - 1.0).abs();
+    (0..3).map(apart).fold(0.0, f64::max)
+}
+
+fn heslot() -> AnyLaw {
+    AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
+}
+
+fn loading() -> Loading {
+    Loading::new(10.0, 0.14).expect("valid")
+}
+
+/// Cycles until the orbit is reached to the last digit.
+const SETTLED: usize = 100;
+
+#[test]
+fn ten_thousand_cycles_keep_period_and_amplitude() {
+    let field = symmetric(heslot(), loading());
+    let start = State::<2>::new(10.0, 0.1_f64.ln());
+    let taylor = cycles(&*field, &start, ("taylor", 1e-12), SETTLED + 10_000);
+    let off = drift(&taylor, SETTLED);
+    // Times of some 1e5 are known to 1e-11.
+    assert!(off < 1e-10, "{off:e}");
+
+    // Another method finds the same orbit.
+    let other = cycles(&*field, &start, ("rodas5p", 1e-11), SETTLED + 20);
+    assert!(drift(&other, SETTLED) < 1e-9);
+    let period = |c: &[Peak]| c[SETTLED + 1].time - c[SETTLED].time;
+    let off = (period(&other) / period(&taylor) - 1.0).abs();
+    println!("rodas5p's period is off by {off:e}");
+    assert!(off < 1e-8, "{off:e}");
+}
+
+#[test]
+fn ten_thousand_asymmetric_cycles_keep_period_and_amplitude() {
+    let field = two_interfaces(heslot(), loading());
+    let start = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
+    let off = drift(
+        &cycles(&*field, &start, ("taylor", 1e-12), SETTLED + 10_000),
+        SETTLED,
+    );
+    assert!(off < 1e-10, "{off:e}");
+}
+
+#[test]
+fn equal_interfaces_stay_equal_to_the_last_bit() {
+    let field = two_interfaces(heslot(), loading());
+    for psi in [0.5_f64, 0.02, 1e-3] {
+        let start = State::<3>::new(10.0, psi.ln(), psi.ln());
+        for (name, method) in methods() {
+            for tolerance in [1e-5, 1e-8, 1e-11] {
+                let tolerances = Tolerances::equal(tolerance).expect("valid");
+                let mut integrator = method.integrator(tolerances, 200_000).expect("valid");
+                let mut first = None;
+                let mut see = |step: &Step<'_, 3>| {
+                    if step.y1[1] != step.y1[2] && first.is_none() {
+                        first = Some((step.t1, step.y1[1] - step.y1[2]));
+                    }
+                    Ok(Control::Continue)
+                };
+                let ended = integrator.flow(&*field, (0.0, 40.0), &start, Some(&mut see));
+                println!("{name} {tolerance:e}: {first:?}, {:?}", ended.is_ok());
+            }
+        }
+    }
+}
