@@ -50,7 +50,7 @@ fn all_meet(scene: &Scene, tolerance: f64) {
             panic!("{name} at {tolerance:e}: {outcome:?}, {scene:?}");
         };
         assert!(
-            factor <= promised(name),
+            factor <= promised(name).factor,
             "{name} at {tolerance:e}: {factor:e}, {scene:?}"
         );
     }
@@ -63,7 +63,10 @@ fn none_breaks(scene: &Scene, tolerance: f64) -> usize {
         match outcome {
             Outcome::Broken(what) => panic!("{name} at {tolerance:e}: {what}, {scene:?}"),
             Outcome::Measured(factor) => {
-                assert!(factor <= promised(name), "{name}: {factor:e}, {scene:?}");
+                assert!(
+                    factor <= promised(name).factor,
+                    "{name}: {factor:e}, {scene:?}"
+                );
                 ended += 1;
             }
             Outcome::Unmeasured => ended += 1,

@@ -1,4 +1,14 @@
 //! Stress: every method far outside the scenes that anybody would ask for.
+//!
+//! A run either meets its tolerance, up to a factor that is stated for each method ([`trial::PROMISES`]) and relative to the
+//! conditioning of the scene ([`truth`]), or it returns a typed error; never NaN, a panic, a step in the wrong direction, or
+//! more work than allowed. The tests here run a part of the grid; all of it, some minutes, runs with
+//!
+//! ```sh
+//! cargo test --test stress -- --ignored full --nocapture
+//! ```
+//!
+//! which holds it to the same factors and writes `tests/stress/table.md`.
 #![allow(missing_docs)]
 
 mod edges;
@@ -13,7 +23,7 @@ use scene::{Scene, grid};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use tally::Tally;
-use trial::{Trial, methods, run};
+use trial::{Trial, methods, promised, run};
 
 /// Every how many runs one is watched.
 const WATCHED: usize = 5;
@@ -64,15 +74,46 @@ fn count<'a>(scenes: &[Scene], tolerances: impl Fn(usize) -> &'a [f64] + Sync) -
     total.into_inner().expect("no panic above")
 }
 
-#[test]
-#[ignore = "minutes: writes the table"]
-fn full() {
-    let stride: usize = std::env::var("STRIDE").map_or(1, |s| s.parse().unwrap());
-    let scenes: Vec<_> = grid().into_iter().step_by(stride).collect();
-    let tally = count(&scenes, |_| &[1e-3, 1e-6, 1e-9, 1e-12, 1e-14]);
-    std::fs::write("/tmp/stress-table.md", tally.markdown()).unwrap();
-    for fault in tally.faults.iter().take(50) {
+const TOLERANCES: [f64; 6] = [1e-3, 1e-5, 1e-7, 1e-9, 1e-12, 1e-14];
+
+/// No fault, and answers enough: a method that refuses everything would be without a fault.
+fn check(tally: &Tally) {
+    for fault in tally.faults.iter().take(40) {
         println!("{fault}");
     }
     assert!(tally.faults.is_empty(), "{} faults", tally.faults.len());
+    for (method, count) in tally.loose() {
+        let (answered, least) = (count.answered(), promised(method).answers);
+        assert!(
+            answered >= least,
+            "{method} answers {answered:.3} of its runs"
+        );
+    }
+}
+
+#[test]
+fn a_part_of_the_grid_meets_its_tolerances_or_says_why_not() {
+    /// Without a divisor in common with the paces of the grid.
+    const STRIDE: usize = 31;
+    let scenes: Vec<_> = grid().into_iter().step_by(STRIDE).collect();
+    let tally = count(&scenes, |i| {
+        let at = i % TOLERANCES.len();
+        &TOLERANCES[at..=at]
+    });
+    println!("{}", tally.markdown());
+    check(&tally);
+}
+
+#[test]
+#[ignore = "takes minutes and writes the table"]
+fn full() {
+    let tally = count(&grid(), |_| &TOLERANCES);
+    let text = format!(
+        "# Stress\n\nWritten by `cargo test --test stress -- --ignored full`.\n\n{}\n## Long runs\n\n{}",
+        tally.markdown(),
+        long::table()
+    );
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/stress/table.md");
+    std::fs::write(path, text).expect("a writable folder");
+    check(&tally);
 }

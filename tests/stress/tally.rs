@@ -29,6 +29,16 @@ impl Count {
         self.factors.iter().copied().fold(0.0, f64::max)
     }
 
+    /// The part of the runs that has an answer: a state, or a singularity, which is no fault of the method.
+    pub fn answered(&self) -> f64 {
+        let gave_up = ["too many steps", "step too small", "sundials"];
+        let without: usize = gave_up
+            .iter()
+            .filter_map(|kind| self.refused.get(kind))
+            .sum();
+        1.0 - without as f64 / self.runs as f64
+    }
+
     fn median(&self) -> f64 {
         let mut sorted = self.factors.clone();
         sorted.sort_by(f64::total_cmp);
@@ -72,7 +82,7 @@ impl Tally {
                 if factor > worst.0 {
                     *worst = (factor, place());
                 }
-                if factor.is_nan() || factor > promised(method) {
+                if factor.is_nan() || factor > promised(method).factor {
                     self.faults
                         .push(format!("{method}: factor {factor:.3e}, {}", place()));
                 }
@@ -99,15 +109,13 @@ impl Tally {
         }
     }
 
-    /// Of one method at tolerances of these powers of ten, all laws.
-    pub fn of(&self, method: &str, powers: std::ops::RangeInclusive<i32>) -> Count {
-        let mut sum = Count::default();
-        for ((name, _, power), count) in &self.counts {
-            if *name == method && powers.contains(power) {
-                sum.add(count);
-            }
-        }
-        sum
+    /// By method, the runs at tolerances from 1e-7 on.
+    pub fn loose(&self) -> BTreeMap<&'static str, Count> {
+        let mut rows = self.rows(|&(method, _, power)| (power >= -7).then_some(method));
+        rows.remove(&None);
+        rows.into_iter()
+            .filter_map(|(method, count)| Some((method?, count)))
+            .collect()
     }
 
     fn rows<K: Ord + Copy>(
@@ -144,13 +152,13 @@ impl Tally {
                 method,
                 &format!("1e-{power}"),
                 &count,
-                promised(method),
+                promised(method).factor,
             );
         }
         text += "\n| method | law | runs | met | unmeasured | refused | worst factor | median factor | stated |\n";
         text += "|---|---|---|---|---|---|---|---|---|\n";
         for ((method, law), count) in self.rows(|&(method, law, _)| (method, law)) {
-            line(&mut text, method, law, &count, promised(method));
+            line(&mut text, method, law, &count, promised(method).factor);
         }
         text += "\nThe worst of each method:\n\n";
         for (method, (factor, place)) in &self.worst {
