@@ -1,6 +1,7 @@
 //! What is asked of a numerical method, and what it cost.
 
 use crate::error::{Error, Result};
+use std::ops::AddAssign;
 
 /// Local error tolerances: component i may err by `atol + rtol * |y_i|` in a step.
 ///
@@ -50,6 +51,17 @@ pub struct Work {
     pub factorisations: usize,
     /// Nonlinear (Newton) iterations; zero for Rosenbrock methods.
     pub nonlinear: usize,
+}
+
+impl AddAssign for Work {
+    fn add_assign(&mut self, more: Work) {
+        self.steps += more.steps;
+        self.rejected += more.rejected;
+        self.rhs += more.rhs;
+        self.jacobians += more.jacobians;
+        self.factorisations += more.factorisations;
+        self.nonlinear += more.nonlinear;
+    }
 }
 
 /// The bound on steps where the caller names none.

@@ -3,7 +3,7 @@
 //! The trait is object-safe on purpose: static and dynamic dispatch take the same time on these systems, and an integrator
 //! then is compiled once per dimension and not once per law.
 
-use crate::series::Solution;
+use crate::series::{Solution, Tangent};
 use nalgebra::{SMatrix, SVector};
 
 /// A point of the phase space.
@@ -47,4 +47,10 @@ pub trait Analytic<const N: usize> {
 
     /// A solution in 31 digits, to be started.
     fn reference(&self) -> Box<dyn Solution<N> + '_>;
+
+    /// A solution with its derivatives in its start, and in the parameters if asked for, to be started.
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_>;
+
+    /// The same, with all derivatives, in 31 digits.
+    fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_>;
 }

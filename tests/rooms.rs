@@ -15,11 +15,23 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("model", &["friction", "field", "series", "number"]),
     ("contract", &[]),
     ("sundials", &["field", "contract"]),
-    ("integrate", &["field", "series", "contract", "sundials"]),
+    (
+        "integrate",
+        &[
+            "model", "friction", "field", "series", "number", "contract", "sundials",
+        ],
+    ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
         "scene",
-        &["integrate", "model", "friction", "number", "field"],
+        &[
+            "integrate",
+            "model",
+            "series",
+            "friction",
+            "number",
+            "field",
+        ],
     ),
     ("output", &[]),
     (

@@ -8,12 +8,13 @@
 //!
 //! First the table, then criterion on the same work.
 
+mod stock;
+
 use criterion::{Criterion, criterion_group};
 use std::hint::black_box;
-use std::io::{BufRead, BufReader, Write};
-use std::path::PathBuf;
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::path::Path;
 use std::time::{Duration, Instant};
+use stock::{Answer, Clock, Program, Question, Stock};
 use twinslip::field::{Jacobian, State};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Tolerances;
@@ -42,92 +43,28 @@ fn start() -> State<3> {
     State::<3>::new(9.0, w, w + 0.01)
 }
 
-/// One answer: time of a run, steps, state, and tangent if asked for.
-struct Answer {
-    time: Duration,
-    steps: usize,
-    y: State<3>,
-    m: Option<Jacobian<3>>,
-}
-
-/// The C program.
-struct C {
-    child: Child,
-    input: ChildStdin,
-    output: BufReader<ChildStdout>,
-}
+/// The C program on this scene.
+struct C(Stock);
 
 impl C {
     fn new() -> Self {
-        let program = PathBuf::from(env!("CARGO_TARGET_TMPDIR")).join("ffi_overhead_stock");
-        let source = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("benches/ffi_overhead/stock.c");
-        let mut compile = Command::new("cc");
-        compile.args(["-O3", "-o"]).arg(&program).arg(&source);
-        if let Ok(directory) = std::env::var("SUNDIALS_INCLUDE_DIR") {
-            compile.arg(format!("-I{directory}"));
-        }
-        if let Ok(directory) = std::env::var("SUNDIALS_LIBRARY_DIR") {
-            compile.args([format!("-L{directory}"), format!("-Wl,-rpath,{directory}")]);
-        }
-        if sundials::version().starts_with('7') {
-            compile.arg("-lsundials_core");
-        }
-        compile.args([
-            "-lsundials_cvodes",
-            "-lsundials_nvecserial",
-            "-lsundials_sunlinsoldense",
-            "-lsundials_sunmatrixdense",
-            "-lm",
-        ]);
-        let status = compile.status().expect("a C compiler, as `cc`");
-        assert!(status.success(), "{} can't be compiled", source.display());
-
-        let p = Parameters::heslot_1994();
-        let (beta, gamma0) = (p.beta, p.gamma0);
-        let (r, c) = (p.healing_time, p.residual_strength);
-        let y0 = start();
-        let numbers = [STIFFNESS, DRIVING, beta, gamma0, r, c, y0[0], y0[1], y0[2]];
-        let mut child = Command::new(program)
-            .args(numbers.map(|x| format!("{x:e}")))
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the program just compiled");
-        let input = child.stdin.take().expect("piped");
-        let output = BufReader::new(child.stdout.take().expect("piped"));
-        C {
-            child,
-            input,
-            output,
-        }
+        let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+        let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+        let program = Program::compile(root, folder, Clock::Wall);
+        let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
+        let loading = Loading::new(DRIVING, STIFFNESS).expect("positive");
+        C(program
+            .start(law, loading, &start())
+            .expect("a law it knows"))
     }
 
     fn run(&mut self, tangent: bool, repeat: u64) -> Answer {
-        let (what, tolerance, end) = if tangent {
-            ("tangent", TANGENT_TOLERANCE, SHORT)
+        let question = if tangent {
+            Question::new("tangent", TANGENT_TOLERANCE, SHORT, repeat)
         } else {
-            ("state", STATE_TOLERANCE, LONG)
+            Question::new("bdf", STATE_TOLERANCE, LONG, repeat)
         };
-        writeln!(self.input, "{what} {tolerance:e} {end} {repeat}").expect("it listens");
-        let mut line = String::new();
-        self.output.read_line(&mut line).expect("it answers");
-        let numbers: Vec<f64> = line
-            .split_whitespace()
-            .map(|n| n.parse().expect("a number"))
-            .collect();
-        Answer {
-            time: Duration::from_secs_f64(numbers[0]),
-            steps: numbers[1] as usize,
-            y: State::from_column_slice(&numbers[2..5]),
-            m: tangent.then(|| Jacobian::from_column_slice(&numbers[5..14])),
-        }
-    }
-}
-
-impl Drop for C {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        self.0.ask(&question).expect("an answer")
     }
 }
 

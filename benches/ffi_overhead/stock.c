@@ -1,7 +1,8 @@
-/* The two interfaces (19) with law (35) by plain C and stock CVODES: serial vectors, dense direct solver, analytic Jacobian.
+/* The two interfaces (19) by plain C and stock CVODES: serial vectors, dense direct solver, analytic Jacobian.
  *
- * A child of the bench. Reads lines "state RTOL T REPEAT" or "tangent RTOL T REPEAT" and answers each with
- * "SECONDS STEPS Y0 Y1 Y2 [M, 9 numbers by columns]": the time of all repeats together, and the last result. */
+ * A child of the benches. Reads lines "WHAT RTOL T REPEAT", WHAT one of bdf, adams and tangent, and answers each with
+ * "SECONDS STEPS Y0 Y1 Y2 [M, 9 numbers by columns]", the time of all repeats together and the last result, or with what
+ * failed. */
 #include <cvodes/cvodes.h>
 #include <math.h>
 #include <nvector/nvector_serial.h>
@@ -18,14 +19,24 @@
 #else
 #define NO_COMM NULL
 #endif
+/* CLOCK_MONOTONIC, or CLOCK_THREAD_CPUTIME_ID. */
+#ifndef CLOCK
+#define CLOCK CLOCK_MONOTONIC
+#endif
 #define OK(call)                                                  \
   do {                                                            \
     if ((call) < 0) { fprintf(stderr, "%s failed\n", #call); exit(1); } \
   } while (0)
 
+/* v = a(tau) / (c + p psi)^beta, dpsi/dt = h - (q + |v|) psi, with a = gamma0 sinh(tau) if odd, else gamma0/2 exp(tau) */
 typedef struct {
-  double k, v_h, beta, gamma0, r, c;
+  double k, v_h, beta, gamma0, c, p, h, q;
+  int odd;
 } Model;
+
+static double activation(const Model* m, double tau) { return m->gamma0 * (m->odd ? sinh(tau) : 0.5 * exp(tau)); }
+
+static double slope(const Model* m, double tau) { return m->gamma0 * (m->odd ? cosh(tau) : 0.5 * exp(tau)); }
 
 /* v and dw/dt of one interface, with the derivatives of v by s and w, and of dw/dt by w at constant v */
 typedef struct {
@@ -34,17 +45,17 @@ typedef struct {
 
 static Response response(const Model* m, double s, double w) {
   double psi = exp(w);
-  double strength = m->c + (1.0 + m->r) * psi;
+  double strength = m->c + m->p * psi;
   double v = s / pow(strength, m->beta);
-  double heal = 1.0 / (psi * m->r);
-  Response out = {v, heal - 1.0 / m->r - fabs(v), -v * m->beta * (1.0 + m->r) * psi / strength, -heal};
+  double heal = m->h / psi;
+  Response out = {v, heal - m->q - fabs(v), -v * m->beta * m->p * psi / strength, -heal};
   return out;
 }
 
 static int f(double t, N_Vector y, N_Vector dy, void* data) {
   const Model* m = data;
   double *u = N_VGetArrayPointer(y), *out = N_VGetArrayPointer(dy);
-  double s = m->gamma0 * sinh(u[0]);
+  double s = activation(m, u[0]);
   Response a = response(m, s, u[1]), b = response(m, s, u[2]);
   out[0] = m->k * (m->v_h - a.v - b.v);
   out[1] = a.g;
@@ -54,7 +65,7 @@ static int f(double t, N_Vector y, N_Vector dy, void* data) {
 
 /* J by rows */
 static void jacobian(const Model* m, const double* u, double j[9]) {
-  double s = m->gamma0 * sinh(u[0]), ds = m->gamma0 * cosh(u[0]) / s;
+  double s = activation(m, u[0]), ds = slope(m, u[0]) / s;
   Response a = response(m, s, u[1]), b = response(m, s, u[2]);
   double sa = a.v > 0 ? 1.0 : -1.0, sb = b.v > 0 ? 1.0 : -1.0;
   double a_tau = a.v * ds, b_tau = b.v * ds;
@@ -86,7 +97,7 @@ static int sensitivity(int count, double t, N_Vector y, N_Vector dy, N_Vector* s
 
 static double seconds(void) {
   struct timespec now;
-  clock_gettime(CLOCK_MONOTONIC, &now);
+  clock_gettime(CLOCK, &now);
   return now.tv_sec + 1e-9 * now.tv_nsec;
 }
 
@@ -99,11 +110,11 @@ static void start(N_Vector y, N_Vector* s, const double* y0) {
 }
 
 int main(int argc, char** argv) {
-  if (argc != 10) return 2;
-  double x[9];
-  for (int i = 0; i < 9; i++) x[i] = atof(argv[i + 1]);
-  Model m = {x[0], x[1], x[2], x[3], x[4], x[5]};
-  const double* y0 = x + 6;
+  if (argc != 13) return 2;
+  double x[12];
+  for (int i = 0; i < 12; i++) x[i] = atof(argv[i + 1]);
+  Model m = {x[0], x[1], x[2], x[3], x[4], x[5], x[6], x[7], x[8] != 0.0};
+  const double* y0 = x + 9;
 
   SUNContext context;
   OK(SUNContext_Create(NO_COMM, &context));
@@ -112,10 +123,12 @@ int main(int argc, char** argv) {
   start(y, s, y0);
   SUNMatrix a = SUNDenseMatrix(3, 3, context);
   SUNLinearSolver solver = SUNLinSol_Dense(y, a, context);
-  /* One memory without sensitivities and one with. */
-  void* memory[2];
-  for (int i = 0; i < 2; i++) {
-    memory[i] = CVodeCreate(CV_BDF, context);
+  /* One memory for each thing to do. */
+  enum { BDF, ADAMS, TANGENT, COUNT };
+  const char* names[COUNT] = {"bdf", "adams", "tangent"};
+  void* memory[COUNT];
+  for (int i = 0; i < COUNT; i++) {
+    memory[i] = CVodeCreate(i == ADAMS ? CV_ADAMS : CV_BDF, context);
     OK(CVodeInit(memory[i], f, 0.0, y));
     OK(CVodeSetUserData(memory[i], &m));
     OK(CVodeSStolerances(memory[i], 1e-8, 1e-8));
@@ -123,18 +136,22 @@ int main(int argc, char** argv) {
     OK(CVodeSetLinearSolver(memory[i], solver, a));
     OK(CVodeSetJacFn(memory[i], dense_jacobian));
   }
-  OK(CVodeSensInit(memory[1], 3, CV_SIMULTANEOUS, sensitivity, s));
-  OK(CVodeSetSensErrCon(memory[1], SUNTRUE));
+  OK(CVodeSensInit(memory[TANGENT], 3, CV_SIMULTANEOUS, sensitivity, s));
+  OK(CVodeSetSensErrCon(memory[TANGENT], SUNTRUE));
 
   char what[16];
   double rtol, end;
   int repeat;
   while (scanf("%15s %lf %lf %d", what, &rtol, &end, &repeat) == 4) {
-    int tangent = strcmp(what, "tangent") == 0;
-    void* mem = memory[tangent];
+    int chosen = 0;
+    while (chosen < COUNT && strcmp(what, names[chosen]) != 0) chosen++;
+    if (chosen == COUNT) return 2;
+    int tangent = chosen == TANGENT;
+    void* mem = memory[chosen];
     double atol_s[3] = {rtol, rtol, rtol}, t;
+    int flag = 0;
     double begin = seconds();
-    for (int i = 0; i < repeat; i++) {
+    for (int i = 0; i < repeat && flag >= 0; i++) {
       start(y, s, y0);
       OK(CVodeReInit(mem, 0.0, y));
       OK(CVodeSStolerances(mem, rtol, rtol));
@@ -142,10 +159,17 @@ int main(int argc, char** argv) {
         OK(CVodeSensReInit(mem, CV_SIMULTANEOUS, s));
         OK(CVodeSensSStolerances(mem, rtol, atol_s));
       }
-      OK(CVode(mem, end, y, &t, CV_NORMAL));
-      if (tangent) OK(CVodeGetSens(mem, &t, s));
+      flag = CVode(mem, end, y, &t, CV_NORMAL);
+      if (tangent && flag >= 0) OK(CVodeGetSens(mem, &t, s));
     }
     double elapsed = seconds() - begin;
+    if (flag < 0) {
+      char* name = CVodeGetReturnFlagName(flag);
+      printf("CVode returned %s at t = %g\n", name, t);
+      free(name);
+      fflush(stdout);
+      continue;
+    }
     long steps;
     OK(CVodeGetNumSteps(mem, &steps));
     double* u = N_VGetArrayPointer(y);
@@ -155,8 +179,7 @@ int main(int argc, char** argv) {
     printf("\n");
     fflush(stdout);
   }
-  CVodeFree(&memory[0]);
-  CVodeFree(&memory[1]);
+  for (int i = 0; i < COUNT; i++) CVodeFree(&memory[i]);
   SUNLinSolFree(solver);
   SUNMatDestroy(a);
   N_VDestroyVectorArray(s, 3);

@@ -29,6 +29,12 @@ impl Bounded {
 }
 
 impl Law for Bounded {
+    type Core = Spinodal;
+
+    fn core(&self) -> Spinodal {
+        self.as_limit()
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.as_limit().activation(tau)

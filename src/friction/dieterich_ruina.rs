@@ -13,6 +13,13 @@ pub struct DieterichRuina {
 }
 
 impl Law for DieterichRuina {
+    type Core = DieterichRuina;
+    const UNROLLED: bool = true;
+
+    fn core(&self) -> DieterichRuina {
+        *self
+    }
+
     // exp(-a_v/a) = gamma0 / 2
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {

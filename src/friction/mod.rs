@@ -32,6 +32,16 @@ use std::fmt::Debug;
 /// The stress acts through one function of its own, as in any thermally activated process: v = s(tau) / strength(psi).
 /// Interfaces under the same stress share s(tau), which is why it is a formula apart.
 pub trait Law: Copy + Debug + Send + Sync {
+    /// The law whose formulas this one's are: itself, or that of which it is a special case. Machine code is made for each of
+    /// these only.
+    type Core: Law;
+
+    /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
+    const UNROLLED: bool = false;
+
+    /// This law as one of those.
+    fn core(&self) -> Self::Core;
+
     /// s(tau), the activation by the stress. Same sign as the slip rate.
     fn activation<T: Real>(&self, tau: T) -> T;
 
@@ -244,6 +254,10 @@ impl AnyLaw {
 }
 
 impl Law for AnyLaw {
+    type Core = AnyLaw;
+    fn core(&self) -> AnyLaw {
+        *self
+    }
     fn activation<T: Real>(&self, tau: T) -> T {
         with_law!(self, law => law.activation(tau))
     }

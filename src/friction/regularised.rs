@@ -13,6 +13,12 @@ pub struct RegularisedAgeing {
 }
 
 impl Law for RegularisedAgeing {
+    type Core = RegularisedAgeing;
+
+    fn core(&self) -> RegularisedAgeing {
+        *self
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0

@@ -24,6 +24,12 @@ impl Slip {
 }
 
 impl Law for Slip {
+    type Core = Slip;
+
+    fn core(&self) -> Slip {
+        *self
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.direct_effect().activation(tau)

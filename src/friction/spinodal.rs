@@ -26,6 +26,13 @@ impl Spinodal {
 }
 
 impl Law for Spinodal {
+    type Core = Spinodal;
+    const UNROLLED: bool = true;
+
+    fn core(&self) -> Spinodal {
+        *self
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0

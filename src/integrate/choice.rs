@@ -1,5 +1,6 @@
 //! From the name of a method to an integrator: the one place that knows them all.
 
+use super::auto::Auto;
 use super::rosenbrock::{Rosenbrock, RosenbrockMethod};
 use super::taylor::Taylor;
 use super::{Integrator, Tolerances};
@@ -10,6 +11,8 @@ use {super::CvodeIntegrator, crate::sundials};
 /// A method that this build can run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Choice {
+    /// Taylor and Rodas5P, as the run has it.
+    Auto,
     /// The Taylor method.
     Taylor,
     /// A Rosenbrock method.
@@ -19,11 +22,22 @@ pub enum Choice {
     Cvode(sundials::Method),
 }
 
+/// Whether the steps of a method are power series.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HasSeries {
+    /// Every step is.
+    Always,
+    /// Those of one of two methods are.
+    Sometimes,
+    /// None is.
+    Never,
+}
+
 /// The names of the CVODES methods, in any build.
 const CVODE: [&str; 2] = ["cvode-bdf", "cvode-adams"];
 
 impl Choice {
-    /// Every method of this build.
+    /// Every method of this build by itself: all but `auto`.
     pub fn all() -> Vec<Choice> {
         let rosenbrock = RosenbrockMethod::ALL.map(Choice::Rosenbrock);
         #[cfg(feature = "sundials")]
@@ -34,13 +48,13 @@ impl Choice {
         taylor.chain(rosenbrock).chain(cvode).collect()
     }
 
-    /// The method of that name; `auto` is Rodas5P, the fastest here that takes stiff scenes too.
+    /// The method of that name.
     ///
     /// # Errors
     /// [`Error::Input`] for a method that does not exist, or not in this build.
     pub fn named(name: &str) -> Result<Self> {
         match name {
-            "auto" => Ok(Choice::Rosenbrock(RosenbrockMethod::default())),
+            "auto" => Ok(Choice::Auto),
             "taylor" => Ok(Choice::Taylor),
             #[cfg(feature = "sundials")]
             "cvode-bdf" => Ok(Choice::Cvode(sundials::Method::Bdf)),
@@ -71,6 +85,7 @@ impl Choice {
         max_steps: usize,
     ) -> Result<Box<dyn Integrator<N>>> {
         Ok(match self {
+            Choice::Auto => Box::new(Auto::new(tolerances, max_steps)?),
             Choice::Taylor => Box::new(Taylor::new(tolerances, max_steps)?),
             Choice::Rosenbrock(method) => Box::new(Rosenbrock::new(method, tolerances, max_steps)?),
             #[cfg(feature = "sundials")]
@@ -81,6 +96,7 @@ impl Choice {
     /// The method's own name.
     pub fn name(self) -> &'static str {
         match self {
+            Choice::Auto => "auto",
             Choice::Taylor => "taylor",
             Choice::Rosenbrock(method) => method.tableau().name,
             #[cfg(feature = "sundials")]
@@ -90,9 +106,21 @@ impl Choice {
         }
     }
 
+    /// Which of its steps come with a power series; the observer of any other has the dense output.
+    pub fn series(self) -> HasSeries {
+        match self {
+            Choice::Taylor => HasSeries::Always,
+            Choice::Auto => HasSeries::Sometimes,
+            _ => HasSeries::Never,
+        }
+    }
+
     /// Why one would take it, for a reader of `--explain`.
     pub fn reason(self) -> &'static str {
         match self {
+            Choice::Auto => {
+                "taylor, the fastest along stick-slip cycles, and rodas5p for as long as strong damping would hold its steps short"
+            }
             Choice::Taylor => {
                 "power series of order 12 to 20: by far the fastest along stick-slip cycles, slow where damping is strong"
             }

@@ -3,6 +3,7 @@
 //! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
@@ -10,12 +11,13 @@ mod rosenbrock;
 mod tableau;
 mod taylor;
 
-pub use choice::{Choice, available};
+pub use auto::Auto;
+pub use choice::{Choice, HasSeries, available};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
 pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
-pub use taylor::Taylor;
+pub use taylor::{Batch, BatchObserver, BatchRun, Taylor};
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::{Error, Result};

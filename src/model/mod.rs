@@ -7,10 +7,13 @@ pub mod scales;
 mod series;
 mod single_interface;
 mod symmetric;
+mod tangent;
+mod trajectories;
 mod two_interfaces;
 
 pub use single_interface::SingleInterface;
 pub use symmetric::Symmetric;
+pub(crate) use trajectories::{Convoy, MAX_LANES, convoy};
 pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;

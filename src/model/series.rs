@@ -8,7 +8,7 @@ use crate::friction::Law;
 use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Both, Element, Expansion, Formula, Order, REFERENCE_ORDER, Rates, Series, Solution,
-    Stepper, value,
+    Stepper, WATCHED, value,
 };
 #[cfg(target_arch = "x86_64")]
 use {crate::series::Pair, pulp::x86::V3};
@@ -16,12 +16,13 @@ use {crate::series::Pair, pulp::x86::V3};
 /// Both interfaces in the lanes of E, variables (tau, psi).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interfaces<E, L> {
-    law: L,
-    driving: E,
-    stiffness: E,
+    pub law: L,
+    pub driving: E,
+    pub stiffness: E,
 }
 
 impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
@@ -34,7 +35,7 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
                 stress_rate(loading, v.over_interfaces()),
                 self.law.evolution(v, psi),
             ],
-            watched: [v, v],
+            watched: [v; WATCHED],
         }
     }
 
@@ -46,8 +47,9 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 
     #[inline(always)]
-    fn allows(&self, x: &[E; 2]) -> bool {
-        x[0].all_finite() && x[1].all_positive()
+    fn allows(&self, [tau, psi]: &[E; 2]) -> E {
+        // psi, and no number where tau is not finite.
+        tau.mul_add(tau.like(0.0), *psi)
     }
 }
 
@@ -171,33 +173,45 @@ impl<L: Law, const N: usize> Solution<N> for Track<L> {
     }
 
     fn expansion(&self, order: usize, into: &mut Expansion<N>) {
-        into.order = order;
-        into.unit = each!(self, s => s.unit().first());
-        into.chart = logarithms;
-        for j in 0..=order {
-            let [tau, psi] = each!(self, s => [0, 1].map(|i| s.coefficient(i, j).interfaces()));
-            for (series, x) in into.variables.iter_mut().zip(chart::<N>(tau[0], psi)) {
-                series[j] = x;
-            }
+        each!(self, s => copy(s, order, into));
+    }
+}
+
+/// The series of the last step, with the slip rate as what is watched first.
+pub(super) fn copy<E: Element, F: Formula<E, 2>, const N: usize, const ROOM: usize>(
+    stepper: &Stepper<E, F, 2, ROOM>,
+    order: usize,
+    into: &mut Expansion<N>,
+) {
+    into.order = order;
+    into.unit = stepper.unit().first();
+    into.chart = logarithms;
+    let (tau, psi) = (stepper.series(0), stepper.series(1));
+    for j in 0..=order {
+        let x = chart::<N>(tau[j].first(), psi[j].interfaces());
+        for (series, x) in into.variables.iter_mut().zip(x) {
+            series[j] = x;
         }
-        for j in 0..order {
-            let v = each!(self, s => s.watched(0, j).map(Element::interfaces));
-            let v = v.unwrap_or([0.0; 2]);
-            into.slip_rates[0][j] = v[0];
-            into.slip_rates[1][j] = v[1];
-        }
+    }
+    let Some(v) = stepper.watched_series(0) else {
+        return;
+    };
+    for (j, v) in v[..order].iter().enumerate() {
+        let [first, second] = v.interfaces();
+        into.slip_rates[0][j] = first;
+        into.slip_rates[1][j] = second;
     }
 }
 
 /// (tau, x_1, x_2), or (tau, x_1) where both are equal.
-fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
+pub(super) fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
     let mut all = [tau; N];
     all[1..].copy_from_slice(&x[..N - 1]);
     all
 }
 
 /// From (tau, psi) to (tau, ln psi).
-fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+pub(super) fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
     for psi in &mut x[1..] {
         *psi = psi.max(f64::MIN_POSITIVE).ln();
     }

@@ -2,10 +2,11 @@
 
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::Track;
+use super::tangent::{reference_tangent, tangent};
 use super::{Driven, Loading, Parameter, stress_rate};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
-use crate::series::Solution;
+use crate::series::{Solution, Tangent};
 
 /// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,11 +70,19 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
 
 impl<L: Law> Analytic<2> for SingleInterface<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(Track::new(self.law, &self.as_pair()))
+        Box::new(Track::new(self.law.core(), &self.as_pair()))
     }
 
     fn reference(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(Track::reference(self.law, &self.as_pair()))
+        Box::new(Track::reference(self.law.core(), &self.as_pair()))
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
+        tangent(self.law.core(), self.as_pair(), (2.0, 0.5), parameters)
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {
+        reference_tangent(self.law.core(), self.as_pair(), (2.0, 0.5))
     }
 }
 

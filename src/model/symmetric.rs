@@ -5,10 +5,11 @@
 //! formulas of [`SingleInterface`] serve.
 
 use super::series::Track;
+use super::tangent::{reference_tangent, tangent};
 use super::{Driven, Loading, Parameter, SingleInterface};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
-use crate::series::Solution;
+use crate::series::{Solution, Tangent};
 
 /// dtau/dt = K (V_H - 2 v), dw/dt = g(v, w): (19) with w_1 = w_2, in the state (tau, w).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,14 +61,32 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
 
 impl<L: Law> Analytic<2> for Symmetric<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(Track::new(self.equivalent.law, &self.equivalent.as_pair()))
+        Box::new(Track::new(
+            self.equivalent.law.core(),
+            &self.equivalent.as_pair(),
+        ))
     }
 
     fn reference(&self) -> Box<dyn Solution<2> + '_> {
         Box::new(Track::reference(
-            self.equivalent.law,
+            self.equivalent.law.core(),
             &self.equivalent.as_pair(),
         ))
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
+        let Symmetric { equivalent } = self;
+        tangent(
+            equivalent.law.core(),
+            equivalent.as_pair(),
+            (1.0, 1.0),
+            parameters,
+        )
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {
+        let Symmetric { equivalent } = self;
+        reference_tangent(equivalent.law.core(), equivalent.as_pair(), (1.0, 1.0))
     }
 }
 

@@ -2,10 +2,11 @@
 
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::Track;
+use super::tangent::{reference_tangent, tangent};
 use super::{Driven, Loading, Parameter, stress_rate};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
-use crate::series::Solution;
+use crate::series::{Solution, Tangent};
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,11 +79,19 @@ impl<L: Law> TwoInterfaces<L> {
 
 impl<L: Law> Analytic<3> for TwoInterfaces<L> {
     fn solution(&self) -> Box<dyn Solution<3> + '_> {
-        Box::new(Track::new(self.law, &self.loading))
+        Box::new(Track::new(self.law.core(), &self.loading))
     }
 
     fn reference(&self) -> Box<dyn Solution<3> + '_> {
-        Box::new(Track::reference(self.law, &self.loading))
+        Box::new(Track::reference(self.law.core(), &self.loading))
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<3> + '_> {
+        tangent(self.law.core(), self.loading, (1.0, 1.0), parameters)
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {
+        reference_tangent(self.law.core(), self.loading, (1.0, 1.0))
     }
 }
 

@@ -27,7 +27,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// The i-th independent variable.
-    #[inline]
+    #[inline(always)]
     pub fn variable(value: T, i: usize) -> Self {
         let mut gradient = [T::constant(0.0); N];
         gradient[i] = T::constant(1.0);
@@ -35,20 +35,24 @@ impl<T: Real, const N: usize> Jet<T, N> {
     }
 
     /// g(self), from g and dg/dx at the value (chain rule).
-    #[inline]
+    #[inline(always)]
     fn chain(self, g: T, slope: T) -> Self {
         let mut gradient = self.gradient;
-        for d in &mut gradient {
-            *d = slope * *d;
+        let mut i = 0;
+        while i < N {
+            gradient[i] = slope * gradient[i];
+            i += 1;
         }
         Jet { value: g, gradient }
     }
 
-    #[inline]
+    #[inline(always)]
     fn zip(self, other: Self, value: T, rule: impl Fn(T, T) -> T) -> Self {
         let mut gradient = self.gradient;
-        for (d, e) in gradient.iter_mut().zip(other.gradient) {
-            *d = rule(*d, e);
+        let mut i = 0;
+        while i < N {
+            gradient[i] = rule(gradient[i], other.gradient[i]);
+            i += 1;
         }
         Jet { value, gradient }
     }
@@ -56,7 +60,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
 
 impl<T: Real, const N: usize> Neg for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn neg(self) -> Self {
         self.chain(-self.value, T::constant(-1.0))
     }
@@ -64,7 +68,7 @@ impl<T: Real, const N: usize> Neg for Jet<T, N> {
 
 impl<T: Real, const N: usize> Add for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         self.zip(o, self.value + o.value, |d, e| d + e)
     }
@@ -72,7 +76,7 @@ impl<T: Real, const N: usize> Add for Jet<T, N> {
 
 impl<T: Real, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         self.zip(o, self.value - o.value, |d, e| d - e)
     }
@@ -82,7 +86,7 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
     type Output = Self;
     // the product rule
     #[allow(clippy::suspicious_arithmetic_impl)]
-    #[inline]
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
         self.zip(o, self.value * o.value, |d, e| d * o.value + self.value * e)
     }
@@ -92,7 +96,7 @@ impl<T: Real, const N: usize> Div for Jet<T, N> {
     type Output = Self;
     // the quotient rule
     #[allow(clippy::suspicious_arithmetic_impl)]
-    #[inline]
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
         let quotient = self.value / o.value;
         self.zip(o, quotient, |d, e| (d - quotient * e) / o.value)
@@ -101,7 +105,7 @@ impl<T: Real, const N: usize> Div for Jet<T, N> {
 
 impl<T: Real, const N: usize> Add<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn add(self, x: f64) -> Self {
         Jet {
             value: self.value + x,
@@ -112,7 +116,7 @@ impl<T: Real, const N: usize> Add<f64> for Jet<T, N> {
 
 impl<T: Real, const N: usize> Sub<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn sub(self, x: f64) -> Self {
         Jet {
             value: self.value - x,
@@ -123,7 +127,7 @@ impl<T: Real, const N: usize> Sub<f64> for Jet<T, N> {
 
 impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn mul(self, x: f64) -> Self {
         self.chain(self.value * x, T::constant(x))
     }
@@ -131,11 +135,13 @@ impl<T: Real, const N: usize> Mul<f64> for Jet<T, N> {
 
 impl<T: Real, const N: usize> Div<f64> for Jet<T, N> {
     type Output = Self;
-    #[inline]
+    #[inline(always)]
     fn div(self, x: f64) -> Self {
         let mut gradient = self.gradient;
-        for d in &mut gradient {
-            *d = *d / x;
+        let mut i = 0;
+        while i < N {
+            gradient[i] = gradient[i] / x;
+            i += 1;
         }
         Jet {
             value: self.value / x,
@@ -145,61 +151,63 @@ impl<T: Real, const N: usize> Div<f64> for Jet<T, N> {
 }
 
 impl<T: Real, const N: usize> Real for Jet<T, N> {
-    #[inline]
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Jet {
             value: T::constant(x),
             gradient: [T::constant(0.0); N],
         }
     }
-    #[inline]
+    #[inline(always)]
     fn leading(self) -> f64 {
         self.value.leading()
     }
-    #[inline]
+    #[inline(always)]
     fn exp(self) -> Self {
         let e = self.value.exp();
         self.chain(e, e)
     }
-    #[inline]
+    #[inline(always)]
     fn exp_m1(self) -> Self {
         self.chain(self.value.exp_m1(), self.value.exp())
     }
-    #[inline]
+    #[inline(always)]
     fn ln(self) -> Self {
         self.chain(self.value.ln(), T::constant(1.0) / self.value)
     }
-    #[inline]
+    #[inline(always)]
     fn ln_1p(self) -> Self {
         self.chain(self.value.ln_1p(), T::constant(1.0) / (self.value + 1.0))
     }
-    #[inline]
+    #[inline(always)]
     fn powf(self, p: f64) -> Self {
         let power = self.value.powf(p);
         self.chain(power, power / self.value * p)
     }
-    #[inline]
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();
         self.chain(root, T::constant(0.5) / root)
     }
-    #[inline]
+    #[inline(always)]
     fn sinh(self) -> Self {
-        self.chain(self.value.sinh(), self.value.cosh())
+        let (sinh, cosh) = self.value.sinh_cosh();
+        self.chain(sinh, cosh)
     }
-    #[inline]
+    #[inline(always)]
     fn cosh(self) -> Self {
-        self.chain(self.value.cosh(), self.value.sinh())
+        let (sinh, cosh) = self.value.sinh_cosh();
+        self.chain(cosh, sinh)
     }
-    #[inline]
+    #[inline(always)]
     fn asinh(self) -> Self {
         self.chain(
             self.value.asinh(),
             T::constant(1.0) / (self.value * self.value + 1.0).sqrt(),
         )
     }
-    #[inline]
+    #[inline(always)]
     fn abs(self) -> Self {
-        if self.leading() < 0.0 { -self } else { self }
+        self.chain(self.value.abs(), self.value.sign())
     }
 }

@@ -58,10 +58,20 @@ pub trait Real:
     fn sinh(self) -> Self;
     /// hyperbolic cosine
     fn cosh(self) -> Self;
+    /// sinh and cosh, which share their work
+    #[inline(always)]
+    fn sinh_cosh(self) -> (Self, Self) {
+        (self.sinh(), self.cosh())
+    }
     /// inverse of the hyperbolic sine
     fn asinh(self) -> Self;
     /// absolute value
     fn abs(self) -> Self;
+    /// one, with this number's sign
+    #[inline(always)]
+    fn sign(self) -> Self {
+        Self::constant(1_f64.copysign(self.leading()))
+    }
 }
 
 /// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.

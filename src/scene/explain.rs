@@ -1,7 +1,9 @@
 //! A plan in words: what is computed, how, and why the rest is not.
 
+use super::estimate::Companion;
 use super::plan::{Dimension, Plan, Sampling};
 use super::units::Quantity;
+use crate::integrate::HasSeries;
 use std::fmt::Write;
 
 /// What the caller does with the rows, which the plan does not know.
@@ -36,7 +38,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line(
         "slip",
         if plan.needs_slip() {
-            "on: five-point quadrature of the slip rates along every step".into()
+            format!("on: {}", slip(plan.method.series()))
         } else {
             "off: no slip column and no events asked for".into()
         },
@@ -46,23 +48,24 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         plan.events.map_or_else(
             || "off: --events is not given".into(),
             |threshold| {
-                format!(
-                    "on: slip faster than V_H whose peak exceeds {threshold} V_H, by root finding"
-                )
+                let how = location(plan.method.series());
+                format!("on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}")
             },
         ),
     );
     line("trajectory", trajectory(plan, keeping));
     line(
         "error estimate",
-        if plan.estimate_error {
-            let second = plan.comparison();
-            format!(
-                "on: the distance to a second run with rtol {:e}, atol {:e}, at the end only",
+        match plan.estimate {
+            Some(Companion::Tighter(second)) => format!(
+                "on: twice the distance to a second run by auto with rtol {:e}, atol {:e}, at the end only",
                 second.rtol, second.atol
-            )
-        } else {
-            "off: --estimate-error is not given".into()
+            ),
+            Some(Companion::Reference) => {
+                "on: the distance to a second run in double-double arithmetic, at the end only"
+                    .into()
+            }
+            None => "off: --estimate-error is not given".into(),
         },
     );
     text
@@ -106,6 +109,26 @@ fn dense(plan: &Plan) -> String {
         "off: rows are the ends of steps, and no slip is asked for".into()
     } else {
         format!("on: for {}", why.join(", "))
+    }
+}
+
+fn slip(series: HasSeries) -> &'static str {
+    match series {
+        HasSeries::Always => "the series of the slip rates integrated term by term",
+        HasSeries::Sometimes => {
+            "the series of the slip rates integrated term by term; five-point quadrature along the steps that have none"
+        }
+        HasSeries::Never => "five-point quadrature of the slip rates along every step",
+    }
+}
+
+fn location(series: HasSeries) -> &'static str {
+    match series {
+        HasSeries::Always => "the roots of the series' polynomials",
+        HasSeries::Sometimes => {
+            "the roots of the series' polynomials; root finding on the dense output of the steps that have none"
+        }
+        HasSeries::Never => "root finding on the dense output",
     }
 }
 

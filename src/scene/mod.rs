@@ -26,12 +26,14 @@
 //! ```
 
 mod column;
+mod estimate;
 mod event;
 mod explain;
 mod file;
 mod options;
 mod plan;
 mod run;
+mod slip;
 mod system;
 mod units;
 

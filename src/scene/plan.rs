@@ -2,6 +2,7 @@
 //! is not in the plan, and so is not done.
 
 use super::column::Column;
+use super::estimate::Companion;
 use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
 use super::units::Quantity;
@@ -16,14 +17,6 @@ const NEAR_SYMMETRIC: f64 = 0.01;
 const EVENT_THRESHOLD: f64 = 2.0;
 /// More rows than this are a slip of the pen.
 const MAX_ROWS: f64 = 1e9;
-/// How much tighter the second run of `--estimate-error` is: its own error then does not count.
-const TIGHTER: f64 = 100.0;
-/// A tolerance below this gains nothing: rounding rules.
-const TIGHTEST: f64 = 1e-14;
-/// How much looser the second run is where a tighter one can't be had: the distance then is that run's error, and more
-/// than a bound on ours.
-const LOOSER: f64 = 10.0;
-
 /// The system that is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
@@ -79,8 +72,8 @@ pub struct Plan {
     pub events: Option<f64>,
     /// Whether the run is drawn, which takes points between the steps and whatever rows are asked for.
     pub picture: bool,
-    /// Whether a second run estimates the error.
-    pub estimate_error: bool,
+    /// The second run that estimates the error, if one does.
+    pub estimate: Option<Companion>,
     /// The method's name as it was asked for.
     pub asked_method: String,
     /// The method.
@@ -130,7 +123,8 @@ impl Plan {
                 .events
                 .then(|| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
             picture: options.plot.is_some(),
-            estimate_error: options.estimate_error,
+            estimate: (options.estimate_error || options.reference)
+                .then(|| Companion::of(tolerances, options.reference)),
             asked_method: options.numerics.method.clone(),
             method,
             tolerances,
@@ -161,20 +155,6 @@ impl Plan {
     /// Whether anything must be seen between start and end.
     pub fn observed(&self) -> bool {
         self.sampling != Sampling::FinalOnly || self.needs_slip() || self.picture
-    }
-
-    /// The tolerances of the second run of `--estimate-error`: tighter, or looser where doubles end.
-    pub fn comparison(&self) -> Tolerances {
-        let Tolerances { rtol, atol } = self.tolerances;
-        let factor = if rtol / TIGHTER >= TIGHTEST {
-            1.0 / TIGHTER
-        } else {
-            LOOSER
-        };
-        Tolerances {
-            rtol: rtol * factor,
-            atol: atol * factor,
-        }
     }
 }
 

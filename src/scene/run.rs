@@ -1,22 +1,15 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
 use super::column::{Column, Instant, fill};
-use super::event::{Detector, Event, at};
+use super::estimate::estimate;
+use super::event::{Detector, Event};
 use super::plan::{Dimension, Plan, Sampling};
+use super::slip::{Slips, at, slips};
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::{Control, Step, Tolerances, Work};
+use crate::integrate::{Control, Step, Work};
 use crate::model::{self, Driven};
-
-/// Nodes and weights of the Gauss-Legendre quadrature with five points on (0, 1): exact to degree 9, more than the dense
-/// output has.
-const GAUSS: [(f64, f64); 5] = [
-    (0.046_910_077_030_668_004, 0.118_463_442_528_094_54),
-    (0.230_765_344_947_158_45, 0.239_314_335_249_683_23),
-    (0.5, 0.284_444_444_444_444_44),
-    (0.769_234_655_052_841_5, 0.239_314_335_249_683_23),
-    (0.953_089_922_969_332, 0.118_463_442_528_094_54),
-];
+use crate::number::DoubleDouble;
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
 const PICTURED: usize = 4;
@@ -40,7 +33,8 @@ pub struct Outcome {
     pub events: Vec<Event>,
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
-    /// Relative global error of the last row, largest of stress and states; `None` where not asked for or not known.
+    /// Estimate of the relative global error of the last row, largest of stress and states, not below it; `None` where not
+    /// asked for or not known.
     pub error_estimate: Option<f64>,
     /// Why the error could not be estimated.
     pub estimate_failure: Option<Error>,
@@ -88,66 +82,22 @@ fn flow<const N: usize>(
     };
     let mut outcome = watch.finish(&end);
     outcome.work = integrator.work();
-    if let (Ok(y), true) = (end, plan.estimate_error && !outcome.stopped) {
-        estimate_error(plan, field, &y0, &y, &mut outcome, sink)?;
+    if let (Ok(y), Some(companion), false) = (end, plan.estimate, outcome.stopped) {
+        estimate(
+            companion,
+            plan,
+            as_field(field),
+            &y0,
+            &y,
+            &mut outcome,
+            sink,
+        )?;
     }
     Ok(outcome)
 }
 
 fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorField<N> {
     field
-}
-
-/// The distance to a second run: one so much more accurate that its own error does not count, or, where doubles end, one so
-/// much less accurate that ours does not.
-fn estimate_error<const N: usize>(
-    plan: &Plan,
-    field: &dyn Driven<N>,
-    y0: &State<N>,
-    end: &State<N>,
-    outcome: &mut Outcome,
-    sink: &mut dyn Sink,
-) -> Result<()> {
-    let tolerances: Tolerances = plan.comparison();
-    let mut integrator = plan.method.integrator::<N>(tolerances, plan.max_steps)?;
-    let span = (0.0, plan.until);
-    let mut stopped = false;
-    let reference = if plan.observed() {
-        let mut observer = |step: &Step<'_, N>| {
-            let control = sink.reached(step.t1 / plan.until);
-            stopped = control == Control::Stop;
-            Ok(control)
-        };
-        integrator.flow(as_field(field), span, y0, Some(&mut observer))
-    } else {
-        integrator.flow(as_field(field), span, y0, None)
-    };
-    outcome.work = sum(outcome.work, integrator.work());
-    match reference {
-        Ok(_) if stopped => outcome.stopped = true,
-        Ok(reference) => outcome.error_estimate = Some(relative_distance(end, &reference)),
-        Err(error) => outcome.estimate_failure = Some(error),
-    }
-    Ok(())
-}
-
-/// Largest relative difference in stress and states: the states by their logarithms.
-fn relative_distance<const N: usize>(y: &State<N>, reference: &State<N>) -> f64 {
-    let stress = (y[0] - reference[0]).abs() / reference[0].abs().max(f64::MIN_POSITIVE);
-    (1..N).fold(stress, |largest, i| {
-        largest.max((y[i] - reference[i]).exp_m1().abs())
-    })
-}
-
-fn sum(a: Work, b: Work) -> Work {
-    Work {
-        steps: a.steps + b.steps,
-        rejected: a.rejected + b.rejected,
-        rhs: a.rhs + b.rhs,
-        jacobians: a.jacobians + b.jacobians,
-        factorisations: a.factorisations + b.factorisations,
-        nonlinear: a.nonlinear + b.nonlinear,
-    }
 }
 
 /// Sees the steps of a run and makes rows, slips and events of them.
@@ -158,6 +108,8 @@ struct Watch<'a, const N: usize> {
     detector: Option<Detector<'a, N>>,
     /// The end of the last step seen.
     here: Instant,
+    /// The slips there, in all digits.
+    slips: Slips,
     row: Vec<f64>,
     pictured: Vec<Column>,
     /// Rows at fixed times made so far.
@@ -180,6 +132,7 @@ impl<'a, const N: usize> Watch<'a, N> {
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
             here: Instant::new(0.0, y0, [0.0; 2]),
+            slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
             pictured: Column::pictured(plan.system.interfaces),
             sampled: 0,
@@ -201,18 +154,19 @@ impl<'a, const N: usize> Watch<'a, N> {
 
     fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
         let field = self.field;
-        let before = self.here.slip;
-        // Always from the step's beginning, so that a slip does not depend on which rows are asked for. In 2-D the balance
-        // K (V_H t - n slip) = tau - tau(0) would do without a quadrature, but loses digits where K is small.
-        let slip = |t: f64| advance(field, step, before, t);
+        let before = self.slips;
         if let Some(detector) = &mut self.detector {
-            detector.see(step, &slip)?;
+            detector.see(step, &before)?;
         }
         let needs_slip = self.plan.needs_slip();
-        let instant = |t: f64| {
-            let slip = if needs_slip { slip(t) } else { before };
-            Instant::new(t, &at(step, t), slip)
+        let slip = |t: f64| {
+            if needs_slip {
+                slips(field, step, &before, t)
+            } else {
+                before
+            }
         };
+        let instant = |t: f64| Instant::new(t, &at(step, t), slip(t).map(DoubleDouble::hi));
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
             self.emit(&instant(t));
             self.sampled += 1;
@@ -220,10 +174,11 @@ impl<'a, const N: usize> Watch<'a, N> {
         if self.plan.picture {
             for part in 1..=PICTURED {
                 let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&Instant::new(t, &at(step, t), before));
+                self.draw(&Instant::new(t, &at(step, t), [0.0; 2]));
             }
         }
-        self.here = instant(step.t1);
+        self.slips = slip(step.t1);
+        self.here = Instant::new(step.t1, step.y1, self.slips.map(DoubleDouble::hi));
         if self.plan.sampling == Sampling::EveryStep {
             let here = self.here;
             self.emit(&here);
@@ -288,7 +243,7 @@ impl<'a, const N: usize> Watch<'a, N> {
         fill(&mut self.row, &plan.columns, &plan.system, &self.here);
         Outcome {
             last: known.then_some(self.row),
-            events: self.detector.map_or_else(Vec::new, |d| d.events),
+            events: self.detector.map_or_else(Vec::new, Detector::into_events),
             work: Work::default(),
             error_estimate: None,
             estimate_failure: None,
@@ -296,22 +251,4 @@ impl<'a, const N: usize> Watch<'a, N> {
             stopped: self.stopped,
         }
     }
-}
-
-/// The slips at t, from those at the beginning of the step, by quadrature along the dense output.
-fn advance<const N: usize>(
-    field: &dyn Driven<N>,
-    step: &Step<'_, N>,
-    before: [f64; 2],
-    t: f64,
-) -> [f64; 2] {
-    let h = t - step.t0;
-    let mut slip = before;
-    for (node, weight) in GAUSS {
-        let v = field.slip_rates(&(step.dense)(step.t0 + node * h));
-        for i in 0..2 {
-            slip[i] += weight * h * v[i];
-        }
-    }
-    slip
 }

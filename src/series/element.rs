@@ -23,6 +23,10 @@ pub trait Element:
     fn like_exact(self, x: DoubleDouble) -> Self {
         self.like(x.hi())
     }
+    /// The first lane, with all its digits.
+    fn to_exact(self) -> DoubleDouble {
+        DoubleDouble::from(self.first())
+    }
     /// self a + b, fused where the processor does that.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// |self|
@@ -47,6 +51,13 @@ pub trait Element:
     fn sinh_cosh(self) -> (Self, Self);
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
+    /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
+    /// where an element does not say otherwise.
+    fn if_positive(self, a: Self, b: Self) -> Self {
+        if self.all_positive() { a } else { b }
+    }
+    /// a in the lanes where self is zero, else b.
+    fn if_zero(self, a: Self, b: Self) -> Self;
     /// Whether every lane is positive and finite.
     fn all_positive(self) -> bool;
     /// Whether no lane is negative.
@@ -55,8 +66,18 @@ pub trait Element:
     }
     /// Whether every lane is finite.
     fn all_finite(self) -> bool;
+    /// How many lanes there are.
+    const LANES: usize;
+    /// Whether series of these are worth the time that it takes to compile them order by order.
+    const UNROLLED: bool = false;
     /// The number in the first lane.
     fn first(self) -> f64;
+    /// The number in a lane.
+    fn lane(self, i: usize) -> f64;
+    /// The same with another number in a lane.
+    fn with_lane(self, i: usize, x: f64) -> Self;
+    /// The largest number in any lane; not those that are no numbers.
+    fn largest_lane(self) -> f64;
     /// The numbers of both interfaces, where they are lanes; else the first lane twice.
     fn interfaces(self) -> [f64; 2] {
         [self.first(); 2]
@@ -94,6 +115,20 @@ pub(super) fn rough_exp2(x: f64) -> f64 {
 }
 
 impl Element for f64 {
+    const LANES: usize = 1;
+    const UNROLLED: bool = true;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self
+    }
     #[inline(always)]
     fn like(self, x: f64) -> f64 {
         x
@@ -148,6 +183,10 @@ impl Element for f64 {
         if self < 0.0 { a } else { b }
     }
     #[inline(always)]
+    fn if_zero(self, a: f64, b: f64) -> f64 {
+        if self == 0.0 { a } else { b }
+    }
+    #[inline(always)]
     fn all_positive(self) -> bool {
         self > 0.0 && self < f64::INFINITY
     }
@@ -162,11 +201,27 @@ impl Element for f64 {
 }
 
 impl Element for DoubleDouble {
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self.hi()
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        DoubleDouble::from(x)
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self.hi()
+    }
     fn like(self, x: f64) -> Self {
         DoubleDouble::from(x)
     }
     fn like_exact(self, x: DoubleDouble) -> Self {
         x
+    }
+    fn to_exact(self) -> DoubleDouble {
+        self
     }
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
@@ -203,6 +258,9 @@ impl Element for DoubleDouble {
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }
+    }
+    fn if_zero(self, a: Self, b: Self) -> Self {
+        if self.hi() == 0.0 { a } else { b }
     }
     fn all_positive(self) -> bool {
         self.hi() > 0.0 && self.is_finite()

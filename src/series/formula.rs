@@ -9,7 +9,7 @@ pub(super) const ROWS: usize = 40;
 /// Coefficients of all rows of a formula, of which each has the same room.
 pub(super) type Memory<E, const ROOM: usize> = [[E; ROOM]; ROWS];
 /// Quantities of a formula, other than its variables, whose series are kept too.
-pub(super) const WATCHED: usize = 2;
+pub const WATCHED: usize = 5;
 
 /// What a formula gives at one order.
 pub struct Rates<'t, E, O, const C: usize> {
@@ -20,7 +20,11 @@ pub struct Rates<'t, E, O, const C: usize> {
 }
 
 /// dx/dt = f(x) in C variables.
-pub trait Formula<E: Element, const C: usize> {
+pub trait Formula<E: Element, const C: usize>: Copy {
+    /// Whether the series are compiled order by order, and not made in loops. They then take half the time, and seconds to
+    /// minutes to compile.
+    const UNROLLED: bool = false;
+
     /// The variable at whose zeros the formula is not smooth, if there is one.
     const KINK: Option<usize> = None;
 
@@ -30,8 +34,8 @@ pub trait Formula<E: Element, const C: usize> {
     /// What may err by one in a step, from the state and the tolerances: the unit of every variable.
     fn units(&self, x: &[E; C], tolerances: (f64, f64)) -> [E; C];
 
-    /// Whether a state is one that the formula is meant for, in every lane.
-    fn allows(&self, x: &[E; C]) -> bool;
+    /// Positive and finite in the lanes whose state is one that the formula is meant for.
+    fn allows(&self, x: &[E; C]) -> E;
 }
 
 /// The coefficients at the order of the tape, and with them those of the variables at the next, in a unit of time. Returns the rows of what is
@@ -60,7 +64,8 @@ fn level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
         memory[c * order.room() + next].set(rate * unit_over_next);
         c += 1;
     }
-    [rates.watched[0].row(), rates.watched[1].row()]
+    let [a, b, c, d, e] = rates.watched;
+    [a.row(), b.row(), c.row(), d.row(), e.row()]
 }
 
 /// The first level alone: the rates at the first coefficients, in that unit of time.

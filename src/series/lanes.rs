@@ -2,9 +2,13 @@
 //!
 //! The types hold a token of what the processor can do, which cannot be had without asking it: their arithmetic is safe.
 
-use super::element::{Element, rough_exp2, rough_log2};
+use super::columns::Spread;
+use super::element::Element;
+use super::functions::{self, Register};
+use super::plain::Both;
 use pulp::x86::{V3, V4};
-use std::arch::x86_64::{__m128d, __m256d, __m512d};
+use std::arch::x86_64::{__m128d, __m256d, __m512d, _CMP_LT_OQ};
+use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Both interfaces under one stress, in one register.
@@ -47,18 +51,15 @@ macro_rules! lanes {
                 pulp::cast(self.lanes)
             }
 
+            /// These numbers. (As [`Element::like`], where a token is not at hand.)
             #[inline(always)]
-            fn with(self, lanes: $register) -> Self {
-                $name { lanes, ..self }
+            pub fn like_lanes(self, lanes: [f64; $n]) -> Self {
+                Self::new(self.simd, lanes)
             }
 
             #[inline(always)]
-            fn each(self, f: impl Fn(f64) -> f64) -> Self {
-                let mut x = self.lanes();
-                for lane in &mut x {
-                    *lane = f(*lane);
-                }
-                Self::new(self.simd, x)
+            fn with(self, lanes: $register) -> Self {
+                $name { lanes, ..self }
             }
         }
 
@@ -103,6 +104,29 @@ macro_rules! lanes {
         }
 
         impl Element for $name {
+            const LANES: usize = $n;
+            // Processors with room for eight lanes do not take four.
+            const UNROLLED: bool = $n != 4;
+            #[inline(always)]
+            fn lane(self, i: usize) -> f64 {
+                self.lanes()[i]
+            }
+            #[inline(always)]
+            fn with_lane(self, i: usize, x: f64) -> Self {
+                let mut lanes = self.lanes();
+                lanes[i] = x;
+                Self::new(self.simd, lanes)
+            }
+            #[inline(always)]
+            fn largest_lane(self) -> f64 {
+                let mut largest = f64::NEG_INFINITY;
+                for x in self.lanes() {
+                    if x > largest {
+                        largest = x;
+                    }
+                }
+                largest
+            }
             #[inline(always)]
             fn like(self, x: f64) -> Self {
                 let $s = self.simd;
@@ -115,7 +139,7 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn abs(self) -> Self {
-                self.each(f64::abs)
+                self.magnitude()
             }
             #[inline(always)]
             fn max(self, o: Self) -> Self {
@@ -129,58 +153,48 @@ macro_rules! lanes {
             }
             #[inline(always)]
             fn rough_log2(self) -> Self {
-                self.each(rough_log2)
+                functions::rough_log2(self)
             }
             #[inline(always)]
             fn rough_exp2(self) -> Self {
-                self.each(rough_exp2)
+                functions::rough_exp2(self)
             }
             #[inline(always)]
             fn sign(self) -> Self {
-                self.each(|x| 1_f64.copysign(x))
+                self.like(1.0).or(self.sign_bit())
             }
             #[inline(always)]
             fn exp(self) -> Self {
-                self.each(f64::exp)
+                functions::exp(self)
             }
             #[inline(always)]
             fn ln(self) -> Self {
-                self.each(f64::ln)
+                functions::ln(self)
             }
             #[inline(always)]
             fn powf(self, p: f64) -> Self {
-                self.each(|x| x.powf(p))
+                functions::powf(self, p)
             }
             #[inline(always)]
             fn sinh_cosh(self) -> (Self, Self) {
-                let e = Element::exp(self);
-                let half = self.like(0.5);
-                let (up, down) = (e * half, half / e);
-                (up - down, up + down)
+                functions::sinh_cosh(self)
             }
             #[inline(always)]
             fn if_negative(self, a: Self, b: Self) -> Self {
-                let (mut x, a, b) = (self.lanes(), a.lanes(), b.lanes());
-                for i in 0..$n {
-                    x[i] = if x[i] < 0.0 { a[i] } else { b[i] };
-                }
-                Self::new(self.simd, x)
+                self.if_less(self.like(0.0), a, b)
+            }
+            #[inline(always)]
+            fn if_zero(self, a: Self, b: Self) -> Self {
+                // Beside zero the magnitude is no less than the smallest number.
+                self.magnitude().if_less(self.bits(1), a, b)
             }
             #[inline(always)]
             fn all_positive(self) -> bool {
-                let mut all = true;
-                for x in self.lanes() {
-                    all &= x > 0.0 && x < f64::INFINITY;
-                }
-                all
+                self.like(0.0).all_less(self) & self.all_less(self.like(f64::INFINITY))
             }
             #[inline(always)]
             fn all_finite(self) -> bool {
-                let mut all = true;
-                for x in self.lanes() {
-                    all &= x.is_finite();
-                }
-                all
+                self.magnitude().all_less(self.like(f64::INFINITY))
             }
             #[inline(always)]
             fn first(self) -> f64 {
@@ -205,9 +219,118 @@ macro_rules! lanes {
             Element::max(self, Self::new(self.simd, [y, x]))
         }
     };
-    (@interfaces $other:ident) => {};
+    (@interfaces $other:ident) => {
+        #[inline(always)]
+        fn if_positive(self, a: Self, b: Self) -> Self {
+            let below = self.if_less(self.like(f64::INFINITY), a, b);
+            self.like(0.0).if_less(self, below, b)
+        }
+    };
 }
 
 lanes!(Pair, __m128d, V3, 2, |s| s.sse2, _mm_add_pd _mm_sub_pd _mm_mul_pd _mm_div_pd, _mm_fmadd_pd: |f| f.fma, _mm_set1_pd _mm_max_pd _mm_min_pd);
 lanes!(Four, __m256d, V3, 4, |s| s.avx, _mm256_add_pd _mm256_sub_pd _mm256_mul_pd _mm256_div_pd, _mm256_fmadd_pd: |f| f.fma, _mm256_set1_pd _mm256_max_pd _mm256_min_pd);
 lanes!(Eight, __m512d, V4, 8, |s| s.avx512f, _mm512_add_pd _mm512_sub_pd _mm512_mul_pd _mm512_div_pd, _mm512_fmadd_pd: |f| f.avx512f, _mm512_set1_pd _mm512_max_pd _mm512_min_pd);
+
+/// The operations on bits and the choices lane by lane: the instructions follow no one pattern of names.
+macro_rules! register {
+    ($name:ident, |$s:ident| $whole:expr, $plus:ident $minus:ident $left:ident $right:ident, $logic:expr, $and:ident $or:ident,
+     |$x:ident, $y:ident, $a:ident, $b:ident| $choose:expr, $all:expr) => {
+        impl Register for $name {
+            #[inline(always)]
+            fn plus_bits(self, o: Self) -> Self {
+                let $s = self.simd;
+                self.with(pulp::cast(
+                    $whole.$plus(pulp::cast(self.lanes), pulp::cast(o.lanes)),
+                ))
+            }
+            #[inline(always)]
+            fn minus_bits(self, o: Self) -> Self {
+                let $s = self.simd;
+                self.with(pulp::cast(
+                    $whole.$minus(pulp::cast(self.lanes), pulp::cast(o.lanes)),
+                ))
+            }
+            #[inline(always)]
+            fn and(self, o: Self) -> Self {
+                let $s = self.simd;
+                self.with($logic.$and(self.lanes, o.lanes))
+            }
+            #[inline(always)]
+            fn or(self, o: Self) -> Self {
+                let $s = self.simd;
+                self.with($logic.$or(self.lanes, o.lanes))
+            }
+            #[inline(always)]
+            fn into_exponent(self) -> Self {
+                let $s = self.simd;
+                self.with(pulp::cast($whole.$left::<52>(pulp::cast(self.lanes))))
+            }
+            #[inline(always)]
+            fn exponent_bits(self) -> Self {
+                let $s = self.simd;
+                self.with(pulp::cast($whole.$right::<52>(pulp::cast(self.lanes))))
+            }
+            #[inline(always)]
+            fn if_less(self, limit: Self, a: Self, b: Self) -> Self {
+                let $s = self.simd;
+                let ($x, $y, $a, $b) = (self.lanes, limit.lanes, a.lanes, b.lanes);
+                self.with($choose)
+            }
+            #[inline(always)]
+            fn all_less(self, limit: Self) -> bool {
+                let $s = self.simd;
+                let ($x, $y) = (self.lanes, limit.lanes);
+                $all
+            }
+            #[inline(always)]
+            fn mend(self, size: Self, limit: f64, fast: Self, exact: impl Fn(f64) -> f64) -> Self {
+                let mended = mended(self.lanes(), size.lanes(), limit, fast.lanes(), &exact);
+                Self::new(self.simd, mended)
+            }
+        }
+    };
+}
+
+#[cold]
+#[inline(never)]
+fn mended<const N: usize>(
+    x: [f64; N],
+    size: [f64; N],
+    limit: f64,
+    fast: [f64; N],
+    exact: &dyn Fn(f64) -> f64,
+) -> [f64; N] {
+    let mut mended = fast;
+    for i in 0..N {
+        // Nor is a size that is no number below the limit.
+        if !matches!(size[i].partial_cmp(&limit), Some(Ordering::Less)) {
+            mended[i] = exact(x[i]);
+        }
+    }
+    mended
+}
+
+register!(Pair, |s| s.sse2, _mm_add_epi64 _mm_sub_epi64 _mm_slli_epi64 _mm_srli_epi64, s.sse2, _mm_and_pd _mm_or_pd,
+    |x, y, a, b| s.sse4_1._mm_blendv_pd(b, a, s.sse2._mm_cmplt_pd(x, y)),
+    s.sse2._mm_movemask_pd(s.sse2._mm_cmplt_pd(x, y)) == 3);
+register!(Four, |s| s.avx2, _mm256_add_epi64 _mm256_sub_epi64 _mm256_slli_epi64 _mm256_srli_epi64, s.avx, _mm256_and_pd _mm256_or_pd,
+    |x, y, a, b| s.avx._mm256_blendv_pd(b, a, s.avx._mm256_cmp_pd::<_CMP_LT_OQ>(x, y)),
+    s.avx._mm256_movemask_pd(s.avx._mm256_cmp_pd::<_CMP_LT_OQ>(x, y)) == 15);
+register!(Eight, |s| s.avx512f, _mm512_add_epi64 _mm512_sub_epi64 _mm512_slli_epi64 _mm512_srli_epi64, s.avx512dq, _mm512_and_pd _mm512_or_pd,
+    |x, y, a, b| s.avx512f._mm512_mask_blend_pd(s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y), b, a),
+    s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y) == 255);
+
+impl Spread<Four> for Pair {
+    #[inline(always)]
+    fn spread(self, interface: usize, any: Four) -> Four {
+        any.like(self.lanes()[interface])
+    }
+}
+
+impl Spread<Both<Four>> for Pair {
+    #[inline(always)]
+    fn spread(self, interface: usize, any: Both<Four>) -> Both<Four> {
+        any.like(self.lanes()[interface])
+    }
+}

@@ -11,8 +11,12 @@
 //! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods. Experimental Mathematics 14, 99-117.
 
+mod columns;
 mod element;
+mod event;
 mod formula;
+#[cfg(target_arch = "x86_64")]
+mod functions;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod plain;
@@ -22,8 +26,10 @@ mod tape;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
+pub use columns::{Columns, Linearisation, Spread};
 pub use element::Element;
-pub use formula::{Formula, Rates};
+pub use event::{Passage, Section, Zeros};
+pub use formula::{Formula, Rates, WATCHED};
 #[cfg(target_arch = "x86_64")]
 pub use lanes::{Eight, Four, Pair};
 pub use plain::Both;
@@ -58,9 +64,34 @@ pub trait Solution<const N: usize> {
     fn expansion(&self, order: usize, into: &mut Expansion<N>);
 }
 
+/// A solution with its derivatives in its start and in the parameters, on its way. Started with y, those in y are the identity
+/// and those in parameters zero; every step has all of them within the accuracy.
+pub trait Tangent<const N: usize>: Solution<N> {
+    /// The derivatives of the state reached.
+    fn derivatives(&self) -> Derivatives<N>;
+}
+
+/// Derivatives of a state in its start and in the parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives<const N: usize> {
+    /// In the j-th component of the start: column j.
+    pub start: [[f64; N]; N],
+    /// In V_H.
+    pub driving: [f64; N],
+    /// In K.
+    pub stiffness: [f64; N],
+    /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
+    /// it knows nothing.
+    pub log_determinant: f64,
+}
+
 /// The series of a solution at the beginning of a step, in the variables that it is made in.
 #[derive(Debug, Clone)]
 pub struct Expansion<const N: usize> {
+    /// The time of the beginning, in 31 digits: stress and state can change ten thousand times faster than time.
+    pub begin: DoubleDouble,
+    /// The time from the beginning of the step to its end.
+    pub length: f64,
     /// The unit of time.
     pub unit: f64,
     /// The order to which the variables are known.
@@ -77,6 +108,8 @@ impl<const N: usize> Expansion<N> {
     /// Of nothing yet.
     pub fn new() -> Self {
         Expansion {
+            begin: DoubleDouble::ZERO,
+            length: 0.0,
             unit: 1.0,
             order: 0,
             variables: [[0.0; REFERENCE_ORDER + 1]; N],
@@ -85,9 +118,18 @@ impl<const N: usize> Expansion<N> {
         }
     }
 
+    /// The time from the beginning of the step to a time of the solution, to all digits of the difference.
+    pub fn since_begin(&self, time: f64) -> f64 {
+        (DoubleDouble::from(time) - self.begin).hi()
+    }
+
     /// The state at a time after the beginning of the step.
     pub fn state(&self, time: f64) -> [f64; N] {
-        let s = time / self.unit;
+        self.state_at(time / self.unit)
+    }
+
+    /// The state after s units.
+    fn state_at(&self, s: f64) -> [f64; N] {
         let mut x = [0.0; N];
         for (x, series) in x.iter_mut().zip(&self.variables) {
             *x = evaluate(&series[..=self.order], s);

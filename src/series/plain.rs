@@ -4,7 +4,7 @@ use super::element::Element;
 use crate::number::DoubleDouble;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Both interfaces under one stress.
+/// Both interfaces under one stress, or twice as many lanes.
 #[derive(Debug, Clone, Copy)]
 pub struct Both<T>(pub [T; 2]);
 
@@ -45,6 +45,27 @@ macro_rules! functions {
 }
 
 impl<T: Element> Element for Both<T> {
+    const LANES: usize = 2 * T::LANES;
+    // Where there are vector instructions this is for the few processors without them.
+    const UNROLLED: bool = T::UNROLLED && cfg!(not(target_arch = "x86_64"));
+    #[inline(always)]
+    fn to_exact(self) -> DoubleDouble {
+        self.0[0].to_exact()
+    }
+    #[inline(always)]
+    fn lane(self, i: usize) -> f64 {
+        self.0[i / T::LANES].lane(i % T::LANES)
+    }
+    #[inline(always)]
+    fn with_lane(self, i: usize, x: f64) -> Self {
+        let mut all = self.0;
+        all[i / T::LANES] = all[i / T::LANES].with_lane(i % T::LANES, x);
+        Both(all)
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self.0[0].largest_lane().max(self.0[1].largest_lane())
+    }
     functions! {
         like(x: f64);
         like_exact(x: DoubleDouble);
@@ -76,6 +97,13 @@ impl<T: Element> Element for Both<T> {
         Both([
             self.0[0].if_negative(a.0[0], b.0[0]),
             self.0[1].if_negative(a.0[1], b.0[1]),
+        ])
+    }
+    #[inline(always)]
+    fn if_zero(self, a: Self, b: Self) -> Self {
+        Both([
+            self.0[0].if_zero(a.0[0], b.0[0]),
+            self.0[1].if_zero(a.0[1], b.0[1]),
         ])
     }
     #[inline(always)]

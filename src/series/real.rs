@@ -50,8 +50,8 @@ impl<E: Element, O: Order> Sub for Series<'_, E, O> {
                 (Row(a), Row(b)) => row(a.mapped(a.newest() - b.newest())),
                 (Row(_), _) => self + -other,
                 (Value(x), Row(a)) => {
-                    let x = if a.order() == 0 { x } else { x.like(0.0) };
-                    row(a.mapped(x - a.newest()))
+                    let new = a.newest();
+                    row(a.mapped(if a.order() == 0 { x - new } else { -new }))
                 }
                 (Exact(x), Row(a)) => {
                     let new = a.newest();
@@ -99,18 +99,18 @@ impl<E: Element, O: Order> Div for Series<'_, E, O> {
     fn div(self, other: Self) -> Self {
         match (self.kind(), other.kind()) {
             (Literal(0.0), _) => literal(0.0),
+            (a, Row(b)) => {
+                let a = match a.released() {
+                    Row(a) => a,
+                    Value(x) => b.constant_series(x),
+                    Exact(x) => b.constant_series(b.newest().like_exact(x)),
+                    Literal(_) => unreachable!("released"),
+                };
+                row(a.quotient(b))
+            }
             (a, b) => match (a.released(), b.released()) {
-                (Row(a), Row(b)) => row(a.quotient(b)),
-                (Value(x), Row(b)) => row(b.constant_series(x).quotient(b)),
-                (Exact(x), Row(b)) => {
-                    let x = b.newest().like_exact(x);
-                    row(b.constant_series(x).quotient(b))
-                }
-                (Row(a), Value(x)) => row(a.mapped(a.newest() / x)),
-                (Row(a), Exact(x)) => {
-                    let new = a.newest();
-                    row(a.mapped(new / new.like_exact(x)))
-                }
+                (Row(a), Value(x)) => row(a.over(x)),
+                (Row(a), Exact(x)) => row(a.over(a.newest().like_exact(x))),
                 (Value(x), Value(y)) => value(x / y),
                 (Value(x), Exact(y)) => value(x / x.like_exact(y)),
                 (Exact(x), Value(y)) => value(y.like_exact(x) / y),
@@ -125,10 +125,10 @@ impl<E: Element, O: Order> Add<f64> for Series<'_, E, O> {
     type Output = Self;
     #[inline(always)]
     fn add(self, x: f64) -> Self {
-        match self.kind().released() {
+        match self.kind() {
+            Literal(y) => exact(DoubleDouble::of_finite(y, x)),
             Exact(y) => exact(y + x),
             Value(y) => value(y + y.like(x)),
-            Literal(_) => unreachable!("released"),
             Row(a) => row(a.plus(a.newest().like(x))),
         }
     }
@@ -163,7 +163,7 @@ impl<E: Element, O: Order> Div<f64> for Series<'_, E, O> {
             Exact(y) => exact(y / x),
             Value(y) => value(y / y.like(x)),
             Literal(_) => unreachable!("released"),
-            Row(a) => row(a.mapped(a.newest() / a.newest().like(x))),
+            Row(a) => row(a.over(a.newest().like(x))),
         }
     }
 }
@@ -213,12 +213,31 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
     }
 
     #[inline(always)]
+    fn sinh_cosh(self) -> (Self, Self) {
+        match self.kind().released() {
+            Row(a) => {
+                let (sinh, cosh) = a.hyperbolic();
+                (row(sinh), row(cosh))
+            }
+            _ => (self.sinh(), self.cosh()),
+        }
+    }
+
+    #[inline(always)]
     fn powf(self, p: f64) -> Self {
         match self.kind() {
             Literal(x) => exact(Real::powf(DoubleDouble::from(x), p)),
             Exact(x) => exact(Real::powf(x, p)),
             Value(x) => value(Element::powf(x, p)),
             Row(a) => row(a.power(p)),
+        }
+    }
+
+    #[inline(always)]
+    fn sign(self) -> Self {
+        match self.kind() {
+            Row(a) => value(a.get(0).sign()),
+            _ => literal(1_f64.copysign(self.leading())),
         }
     }
 

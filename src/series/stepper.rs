@@ -14,8 +14,7 @@ const BISECTIONS: usize = 64;
 
 /// A solution of a formula on its way, in every lane of E.
 ///
-/// With room for [`MAX_ORDER`] and one coefficients the series are compiled order by order; with any other room, which is
-/// for elements whose arithmetic takes longer anyway, they are made in loops.
+/// A formula that says so is compiled order by order, on rows with room for [`MAX_ORDER`] and one coefficients.
 pub struct Stepper<E, F, const C: usize, const ROOM: usize = { MAX_ORDER + 1 }> {
     formula: F,
     memory: Box<Memory<E, ROOM>>,
@@ -47,23 +46,33 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
     /// Begins at x.
     #[inline(always)]
     pub fn start(&mut self, x: [E; C]) {
-        let zero = x[0].like(0.0);
-        self.x = x;
-        self.lost = [zero; C];
-        self.next_unit = zero.like(1.0);
+        self.start_where(x[0].like(-1.0), x);
+    }
+
+    /// Begins at x in the lanes where `new` is negative; the others stay on their way.
+    #[inline(always)]
+    pub fn start_where(&mut self, new: E, x: [E; C]) {
+        let (zero, one) = (new.like(0.0), new.like(1.0));
+        for (c, x) in x.into_iter().enumerate() {
+            self.x[c] = new.if_negative(x, self.x[c]);
+            self.lost[c] = new.if_negative(zero, self.lost[c]);
+        }
         self.load();
-        first_level(&self.formula, cells(&mut self.memory), ROOM, self.next_unit);
+        first_level(&self.formula, cells(&mut self.memory), ROOM, one);
         // The time in which the state would change by its own size.
         let mut rate = zero;
-        let mut c = 0;
-        while c < C {
-            let size = Element::max(x[c].abs(), zero.like(f64::MIN_POSITIVE));
+        for c in 0..C {
+            let size = Element::max(self.x[c].abs(), zero.like(f64::MIN_POSITIVE));
             rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
-            c += 1;
         }
         let rate = rate.largest_over_interfaces();
-        let slowest = zero.like(f64::MIN_POSITIVE);
-        self.next_unit = zero.like(1.0) / Element::max(rate, slowest);
+        let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
+        self.next_unit = new.if_negative(next_unit, self.next_unit);
+    }
+
+    /// The formula, whose constants may change between solutions.
+    pub fn formula_mut(&mut self) -> &mut F {
+        &mut self.formula
     }
 
     /// The state reached.
@@ -76,53 +85,97 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         self.unit
     }
 
-    /// The j-th coefficient of the i-th variable in the last step's series.
     #[inline(always)]
-    pub fn coefficient(&self, i: usize, j: usize) -> E {
+    fn coefficient(&self, i: usize, j: usize) -> E {
         self.memory[i][j]
     }
 
-    /// The j-th coefficient of the i-th quantity watched, j below the order; `None` for a constant.
-    pub fn watched(&self, i: usize, j: usize) -> Option<E> {
-        self.watched[i].map(|row| self.memory[row][j])
+    /// The series of the i-th variable.
+    #[inline(always)]
+    pub fn series(&self, i: usize) -> &[E] {
+        &self.memory[i]
+    }
+
+    /// The series of the i-th quantity watched, without its last coefficient; `None` for a constant.
+    #[inline(always)]
+    pub fn watched_series(&self, i: usize) -> Option<&[E]> {
+        self.watched[i].map(|row| &self.memory[row][..])
     }
 
     /// Goes on by the step that the accuracy asks for, at most `limit`, in every lane, and returns it. The state is not moved
     /// in a lane where that is not a number: there is no step then.
     #[inline(always)]
     pub fn advance(&mut self, accuracy: &Accuracy, limit: E) -> E {
+        self.expand(accuracy);
+        let h = self.longest(accuracy);
+        self.advance_by(accuracy, h, limit)
+    }
+
+    /// Makes the series at the state reached.
+    #[inline(always)]
+    pub fn expand(&mut self, accuracy: &Accuracy) {
         self.unit = self.next_unit;
         self.load();
-        let unit = self.unit;
+        // A copy, which the compiler sees that no coefficient written changes.
+        let formula = self.formula;
         let memory = cells(&mut self.memory);
-        self.watched = if ROOM == MAX_ORDER + 1 {
-            expand(&self.formula, memory, accuracy.order, unit)
+        self.watched = if F::UNROLLED && ROOM == MAX_ORDER + 1 {
+            expand(&formula, memory, accuracy.order, self.unit)
         } else {
-            expand_running(&self.formula, memory, ROOM, accuracy.order, unit)
+            expand_running(&formula, memory, ROOM, accuracy.order, self.unit)
         };
-        let limit = limit / unit;
-        // From here on time is counted in units.
-        let mut h = Element::min(self.longest(accuracy), limit.abs()) * limit.sign();
-        let (mut tried, mut cut) = (0, false);
+    }
+
+    /// Goes on by h, counted in units of the series, at most `limit`, and returns the time that this took.
+    #[inline(always)]
+    pub fn advance_by(&mut self, accuracy: &Accuracy, h: E, limit: E) -> E {
+        let unit = self.unit;
+        let in_units = limit / unit;
+        let mut h = Element::min(h, in_units.abs()) * limit.sign();
+        let (mut x, mut lost) = self.evaluate(accuracy.order, h);
+        let allowed = self.formula.allows(&x).all_positive();
+        if !allowed || F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative()) {
+            h = self.shortened(accuracy.order, h);
+            (x, lost) = self.evaluate(accuracy.order, h);
+            let finite = h.mul_add(h.like(0.0), h.like(1.0));
+            for c in 0..C {
+                x[c] = finite.if_positive(x[c], self.x[c]);
+                lost[c] = finite.if_positive(lost[c], self.lost[c]);
+            }
+        }
+        self.x = x;
+        self.lost = lost;
+        let time = (in_units - h).if_zero(limit, h * unit);
+        self.next_unit = time.abs();
+        time
+    }
+
+    /// A part of the step h that leads where the formula has a meaning, and no further than just behind a kink; every lane's
+    /// own. Not a number where there is none.
+    #[cold]
+    fn shortened(&self, order: usize, h: E) -> E {
+        let h = self.halved(order, h);
+        let Some(c) = F::KINK else { return h };
+        if (self.evaluate(order, h).0[c] * self.x[c]).none_negative() {
+            return h;
+        }
+        self.halved(order, self.up_to_kink(order, h))
+    }
+
+    /// The step h, halved until it leads where the formula has a meaning.
+    #[cold]
+    fn halved(&self, order: usize, mut h: E) -> E {
+        let mut halvings = 0;
         loop {
-            let (x, lost) = self.evaluate(accuracy.order, h);
-            if self.formula.allows(&x) {
-                let crossed = F::KINK.is_some_and(|c| !(x[c] * self.x[c]).none_negative());
-                if crossed && !cut {
-                    cut = true;
-                    h = self.up_to_kink(accuracy.order, h);
-                    continue;
-                }
-                self.x = x;
-                self.lost = lost;
-                self.next_unit = (h * unit).abs();
-                return h * unit;
+            let allowed = self.formula.allows(&self.evaluate(order, h).0);
+            if allowed.all_positive() {
+                return h;
             }
-            tried += 1;
-            if tried > HALVINGS {
-                return h.like(f64::NAN);
+            if halvings == HALVINGS {
+                return allowed.if_positive(h, h.like(f64::NAN));
             }
-            h = h * h.like(0.5);
+            h = allowed.if_positive(h, h * h.like(0.5));
+            halvings += 1;
         }
     }
 
@@ -135,10 +188,10 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         }
     }
 
-    /// The step at which the last two terms of the series reach what may err (Jorba & Zou 2005, section 3.2, in the norm that
+    /// The step, in units of the series, at which the last two terms of the series reach what may err (Jorba & Zou 2005, section 3.2, in the norm that
     /// the tolerances make).
     #[inline(always)]
-    fn longest(&self, accuracy: &Accuracy) -> E {
+    pub fn longest(&self, accuracy: &Accuracy) -> E {
         let order = accuracy.order;
         let units = self.formula.units(&self.x, accuracy.tolerances);
         let zero = units[0].like(0.0);
@@ -163,20 +216,30 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         let Some(c) = F::KINK else { return h };
         let start = self.x[c];
         let zero = h.like(0.0);
-        let crosses = self.evaluate(order, h).0[c] * start;
+        let crosses = self.sum(order, h).0[c] * start;
         let (mut near, mut far) = (crosses.if_negative(zero, h), h);
         for _ in 0..BISECTIONS {
             let middle = (near + far) * h.like(0.5);
-            let sign = self.evaluate(order, middle).0[c] * start;
+            let sign = self.sum(order, middle).0[c] * start;
             near = sign.if_negative(near, middle);
             far = sign.if_negative(middle, far);
         }
         far
     }
 
-    /// The state after h units, and what rounding took from it.
+    /// The state after h units, and what rounding took from it. With the order a constant the sums are unrolled.
     #[inline(always)]
     fn evaluate(&self, order: usize, h: E) -> ([E; C], [E; C]) {
+        match order {
+            12 => self.sum(12, h),
+            16 => self.sum(16, h),
+            20 => self.sum(20, h),
+            _ => self.sum(order, h),
+        }
+    }
+
+    #[inline(always)]
+    fn sum(&self, order: usize, h: E) -> ([E; C], [E; C]) {
         let (mut x, mut lost) = (self.x, self.lost);
         let squared = h * h;
         let mut c = 0;

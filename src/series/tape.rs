@@ -13,6 +13,8 @@ use std::fmt;
 
 /// The order at which a formula is evaluated.
 pub trait Order: Copy {
+    /// Whether the order is known to the compiler, and all sums to be unrolled.
+    const UNROLLED: bool;
     /// Coefficients that a row has room for.
     fn room(self) -> usize;
     /// k
@@ -24,6 +26,7 @@ pub trait Order: Copy {
 pub struct At<const K: usize>;
 
 impl<const K: usize> Order for At<K> {
+    const UNROLLED: bool = true;
     #[inline(always)]
     fn room(self) -> usize {
         super::MAX_ORDER + 1
@@ -44,6 +47,7 @@ pub struct Running {
 }
 
 impl Order for Running {
+    const UNROLLED: bool = false;
     #[inline(always)]
     fn room(self) -> usize {
         self.room
@@ -111,7 +115,7 @@ impl<E, O> Clone for Row<'_, E, O> {
 }
 impl<E, O> Copy for Row<'_, E, O> {}
 
-impl<E: Element, O: Order> Row<'_, E, O> {
+impl<'t, E: Element, O: Order> Row<'t, E, O> {
     /// A new row on the same tape.
     #[inline(always)]
     fn another(self) -> Self {
@@ -128,6 +132,13 @@ impl<E: Element, O: Order> Row<'_, E, O> {
     #[inline(always)]
     pub(super) fn get(self, j: usize) -> E {
         self.tape.get(self.row, j)
+    }
+
+    /// The row.
+    #[inline(always)]
+    fn coefficients(self) -> &'t [Cell<E>] {
+        let room = self.tape.order.room();
+        &self.tape.memory[self.row * room..][..room]
     }
 
     /// The newest coefficient.
@@ -155,6 +166,20 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let k = self.order();
         let zero = self.get(0).like(0.0);
         let (mut left, mut right) = (zero, zero);
+        if !O::UNROLLED {
+            let (a, b) = (&self.coefficients()[..k], &other.coefficients()[..k]);
+            let (mut i, mut j) = (1, k.saturating_sub(1));
+            while i + 1 < k {
+                left = a[i].get().mul_add(b[j].get(), left);
+                right = a[i + 1].get().mul_add(b[j - 1].get(), right);
+                i += 2;
+                j -= 2;
+            }
+            if i < k {
+                left = a[i].get().mul_add(b[j].get(), left);
+            }
+            return left + right;
+        }
         let mut i = k / 2;
         while i >= 1 {
             left = self.get(i).mul_add(other.get(k - i), left);
@@ -165,6 +190,30 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         }
         left + right
     }
+
+    /// The sums of a_(k-j) f_j and of a_(k-j) g_j over 0 < j < k, likewise: every a_j is read but once.
+    #[inline(always)]
+    fn inner_products(self, f: Self, g: Self) -> (E, E) {
+        let k = self.order();
+        let zero = self.get(0).like(0.0);
+        let (mut left, mut right) = ((zero, zero), (zero, zero));
+        let mut i = k / 2;
+        while i >= 1 {
+            let a = self.get(i);
+            left.0 = a.mul_add(f.get(k - i), left.0);
+            left.1 = a.mul_add(g.get(k - i), left.1);
+            if 2 * i != k {
+                let a = self.get(k - i);
+                right.0 = a.mul_add(f.get(i), right.0);
+                right.1 = a.mul_add(g.get(i), right.1);
+            }
+            i -= 1;
+        }
+        (left.0 + right.0, left.1 + right.1)
+    }
+
+    // In what follows the newest coefficient of the argument, which is known last, enters by one multiplication at the end:
+    // the next order waits for that chain.
 
     /// (a b)_k
     #[inline(always)]
@@ -183,17 +232,18 @@ impl<E: Element, O: Order> Row<'_, E, O> {
     #[inline(always)]
     pub(super) fn quotient(self, other: Self) -> Self {
         let k = self.order();
-        // The first coefficient of this row is 1 / b_0.
+        // The first coefficients of this row are 1 / b_0 and -q_0 / b_0.
         let inverse = other.another();
         let q = self.another();
         if k == 0 {
             let one_over = other.get(0).like(1.0) / other.get(0);
+            let first = self.get(0) / other.get(0);
             inverse.put(one_over);
-            return q.put(self.get(0) / other.get(0));
+            inverse.tape.set(inverse.row, 1, -(first * one_over));
+            return q.put(first);
         }
-        let sum = q.inner_product(other);
-        let sum = other.get(k).mul_add(q.get(0), sum);
-        q.put((self.get(k) - sum) * inverse.get(0))
+        let rest = (self.get(k) - q.inner_product(other)) * inverse.get(0);
+        q.put(other.get(k).mul_add(inverse.get(1), rest))
     }
 
     /// j a_j as a row of its own, whose first coefficient is free.
@@ -223,9 +273,8 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         if k == 0 {
             return e.put(self.get(0).exp());
         }
-        let sum = slopes.inner_product(e);
-        let sum = slopes.get(k).mul_add(e.get(0), sum);
-        e.put(sum * self.one_over_order())
+        let rest = slopes.inner_product(e) * self.one_over_order();
+        e.put(self.get(k).mul_add(e.get(0), rest))
     }
 
     /// s = sinh a, c = cosh a from s' = c a', c' = s a'.
@@ -238,11 +287,12 @@ impl<E: Element, O: Order> Row<'_, E, O> {
             let (sinh, cosh) = self.get(0).sinh_cosh();
             return (s.put(sinh), c.put(cosh));
         }
-        let (of_c, of_s) = (slopes.inner_product(c), slopes.inner_product(s));
-        let of_c = slopes.get(k).mul_add(c.get(0), of_c);
-        let of_s = slopes.get(k).mul_add(s.get(0), of_s);
-        let one_over = self.one_over_order();
-        (s.put(of_c * one_over), c.put(of_s * one_over))
+        let (of_c, of_s) = slopes.inner_products(c, s);
+        let (new, one_over) = (self.get(k), self.one_over_order());
+        (
+            s.put(new.mul_add(c.get(0), of_c * one_over)),
+            c.put(new.mul_add(s.get(0), of_s * one_over)),
+        )
     }
 
     /// l = ln a from a l' = a': a_0 k l_k = k a_k - sum of a_(k-j) j l_j over 0 < j < k.
@@ -257,7 +307,9 @@ impl<E: Element, O: Order> Row<'_, E, O> {
             return l.put(self.get(0).ln());
         }
         let sum = slopes.inner_product(self);
-        let new = (self.get(k) - sum * self.one_over_order()) * slopes.get(0);
+        let one_over = slopes.get(0);
+        let rest = sum * -(self.one_over_order() * one_over);
+        let new = self.get(k).mul_add(one_over, rest);
         slopes.put(new * new.like(k as f64));
         l.put(new)
     }
@@ -275,11 +327,12 @@ impl<E: Element, O: Order> Row<'_, E, O> {
             slopes.put(a0.like(1.0) / a0);
             return y.put(a0.powf(p));
         }
-        let weighted = slopes.inner_product(self);
-        let plain = self.get(k).mul_add(y.get(0), y.inner_product(self));
-        let weighted =
-            weighted * (a0.like_exact(DoubleDouble::new(1.0, p)) * self.one_over_order());
-        let new = (plain * a0.like(p) - weighted) * slopes.get(0);
+        let (plain, weighted) = self.inner_products(y, slopes);
+        let one_over = slopes.get(0);
+        let p_over = a0.like(p) * one_over;
+        let one_and_p = a0.like_exact(DoubleDouble::of_finite(1.0, p)) * self.one_over_order();
+        let rest = weighted.mul_add(-(one_and_p * one_over), plain * p_over);
+        let new = self.get(k).mul_add(y.get(0) * p_over, rest);
         slopes.put(new * new.like(k as f64));
         y.put(new)
     }
@@ -288,6 +341,16 @@ impl<E: Element, O: Order> Row<'_, E, O> {
     #[inline(always)]
     pub(super) fn constant_series(self, x: E) -> Self {
         self.mapped(if self.order() == 0 { x } else { x.like(0.0) })
+    }
+
+    /// a / x. Beyond the first coefficient by the inverse, which is the same at all orders: divisions take long.
+    #[inline(always)]
+    pub(super) fn over(self, x: E) -> Self {
+        let new = self.newest();
+        if self.order() == 0 {
+            return self.mapped(new / x);
+        }
+        self.mapped(new * (x.like(1.0) / x))
     }
 
     /// a + x

@@ -126,6 +126,11 @@ impl<const N: usize> Rosenbrock<N> {
         })
     }
 
+    /// Another bound on steps.
+    pub(super) fn set_max_steps(&mut self, max_steps: usize) {
+        self.max_steps = max_steps;
+    }
+
     /// The method.
     pub fn method(&self) -> RosenbrockMethod {
         self.method

@@ -7,11 +7,15 @@
 //! Along stick-slip cycles no method here comes near it. On strongly damped stretches its step is held by stability, at some
 //! 7 to 9 over the fastest rate whatever the tolerance: an implicit method is better there.
 
+mod batch;
+
+pub use batch::{Batch, BatchObserver, BatchRun};
+
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
-use crate::series::{Accuracy, Expansion, REFERENCE_ORDER, Solution};
+use crate::series::{Accuracy, Derivatives, Expansion, REFERENCE_ORDER, Solution};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -38,6 +42,9 @@ pub struct Taylor {
     max_steps: usize,
     work: Work,
 }
+
+/// Whether to halt after a step of this length, at the state that a call gives.
+type Halt<'a, const N: usize> = &'a mut dyn FnMut(f64, &dyn Fn() -> State<N>) -> bool;
 
 /// What the series are made in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -101,6 +108,47 @@ impl Taylor {
         })
     }
 
+    /// The state at `t.1` and its derivatives in `y0`, and with `parameters` those in V_H and K, which are zero otherwise. The
+    /// integral of the trace of the Jacobian comes along.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`].
+    pub fn derivatives<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        parameters: bool,
+    ) -> Result<(State<N>, Derivatives<N>)> {
+        self.work = Work::default();
+        let analytic = analytic(field)?;
+        let mut tangent = match self.arithmetic {
+            Arithmetic::Double => analytic.tangent(parameters),
+            Arithmetic::DoubleDouble => analytic.reference_tangent(),
+        };
+        let (end, _) = self.walk(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
+        Ok((end, tangent.derivatives()))
+    }
+
+    /// The flow up to the step after which `halt` says so, and the time then.
+    pub(super) fn flow_until<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        observer: Option<Observer<'_, N>>,
+        halt: Halt<'_, N>,
+    ) -> Result<(State<N>, f64)> {
+        self.work = Work::default();
+        let mut solution = analytic(field)?.solution();
+        self.walk(field, t, y0, &mut *solution, observer, halt)
+    }
+
+    /// Another bound on steps.
+    pub(super) fn set_max_steps(&mut self, max_steps: usize) {
+        self.max_steps = max_steps;
+    }
+
     fn walk<const N: usize>(
         &mut self,
         field: &dyn VectorField<N>,
@@ -108,7 +156,15 @@ impl Taylor {
         y0: &State<N>,
         solution: &mut dyn Solution<N>,
         mut observer: Option<Observer<'_, N>>,
-    ) -> Result<()> {
+        halt: Halt<'_, N>,
+    ) -> Result<(State<N>, f64)> {
+        if !field.f(y0).iter().all(|x| x.is_finite()) {
+            return Err(Error::NonFinite {
+                what: "the right-hand side",
+                t: t.0,
+            });
+        }
+        solution.start(&y0.data.0[0]);
         let mut expansion = Expansion::new();
         let mut clock = Clock::new(t);
         let mut y = *y0;
@@ -121,7 +177,7 @@ impl Taylor {
                 });
             }
             let h = solution.advance(&self.accuracy, remaining);
-            let before = clock.now.hi();
+            let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
                 let here = State::from(solution.state());
@@ -132,8 +188,9 @@ impl Taylor {
             self.work.rhs += self.accuracy.order;
             if let Some(observer) = &mut observer {
                 solution.expansion(self.accuracy.order, &mut expansion);
+                (expansion.begin, expansion.length) = (begin, h.hi());
                 let end = State::from(solution.state());
-                let dense = |time: f64| State::from(expansion.state(time - before));
+                let dense = |time: f64| State::from(expansion.state(expansion.since_begin(time)));
                 let control = observer(&Step {
                     t0: before,
                     y0: &y,
@@ -147,8 +204,17 @@ impl Taylor {
                     break;
                 }
             }
+            if halt(h.hi(), &|| State::from(solution.state())) {
+                break;
+            }
         }
-        Ok(())
+        // Without a step not even the logarithm of an exponential shall come between.
+        let end = if self.work.steps == 0 {
+            *y0
+        } else {
+            State::from(solution.state())
+        };
+        Ok((end, clock.now.hi()))
     }
 }
 
@@ -169,33 +235,22 @@ impl<const N: usize> Integrator<N> for Taylor {
     ) -> Result<State<N>> {
         self.work = Work::default();
         let analytic = analytic(field)?;
-        if !field.f(y0).iter().all(|x| x.is_finite()) {
-            return Err(Error::NonFinite {
-                what: "the right-hand side",
-                t: t.0,
-            });
-        }
-        if t.0 == t.1 {
-            return Ok(*y0);
-        }
         let mut solution = match self.arithmetic {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        solution.start(&y0.data.0[0]);
-        self.walk(field, t, y0, &mut *solution, observer)?;
-        Ok(State::from(solution.state()))
+        let end = self.walk(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
+        Ok(end.0)
     }
 
     fn tangent_flow(
         &mut self,
         field: &dyn VectorField<N>,
-        _t: (f64, f64),
+        t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        self.work = Work::default();
-        analytic(field)?;
-        Ok((*y0, Jacobian::identity()))
+        let (end, derivatives) = self.derivatives(field, t, y0, false)?;
+        Ok((end, Jacobian::from(derivatives.start)))
     }
 
     fn work(&self) -> Work {

@@ -78,6 +78,13 @@ impl DoubleDouble {
         Self::normalised(sum, error)
     }
 
+    /// The same for doubles whose sum is finite: without the question whether it is.
+    #[inline(always)]
+    pub(crate) fn of_finite(a: f64, b: f64) -> Self {
+        let (hi, lo) = two_sum(a, b);
+        DoubleDouble { hi, lo }
+    }
+
     /// The double next to it.
     #[inline(always)]
     pub fn hi(self) -> f64 {
@@ -176,10 +183,11 @@ impl Neg for DoubleDouble {
     }
 }
 
+// Not inlined: formulas hold hundreds of these, and a call costs little beside the work.
 impl Add for DoubleDouble {
     type Output = Self;
     // relative error 3 u^2, u = 2^-53, however much cancels
-    #[inline(always)]
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         let (sum, error) = two_sum(self.hi, o.hi);
         let (low_sum, low_error) = two_sum(self.lo, o.lo);
@@ -190,7 +198,7 @@ impl Add for DoubleDouble {
 
 impl Sub for DoubleDouble {
     type Output = Self;
-    #[inline(always)]
+    #[inline(never)]
     fn sub(self, o: Self) -> Self {
         self + -o
     }
@@ -199,7 +207,7 @@ impl Sub for DoubleDouble {
 impl Mul for DoubleDouble {
     type Output = Self;
     // relative error 4 u^2
-    #[inline(always)]
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         let (product, error) = two_product(self.hi, o.hi);
         let cross = self.hi * o.lo + self.lo * o.hi;
@@ -215,7 +223,7 @@ impl Mul for DoubleDouble {
 impl Div for DoubleDouble {
     type Output = Self;
     // long division: two digits of 53 bits each, and a third that rounds
-    #[inline(always)]
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         let first = self.hi / o.hi;
         let remainder = self - o * first;
@@ -233,7 +241,7 @@ impl Div for DoubleDouble {
 impl Add<f64> for DoubleDouble {
     type Output = Self;
     // relative error 2 u^2
-    #[inline(always)]
+    #[inline(never)]
     fn add(self, x: f64) -> Self {
         let (sum, error) = two_sum(self.hi, x);
         Self::normalised(sum, error + self.lo)
@@ -251,7 +259,7 @@ impl Sub<f64> for DoubleDouble {
 impl Mul<f64> for DoubleDouble {
     type Output = Self;
     // relative error 2 u^2
-    #[inline(always)]
+    #[inline(never)]
     fn mul(self, x: f64) -> Self {
         let (product, error) = two_product(self.hi, x);
         let result = Self::normalised(product, error + self.lo * x);
@@ -266,7 +274,7 @@ impl Mul<f64> for DoubleDouble {
 impl Div<f64> for DoubleDouble {
     type Output = Self;
     // relative error 3 u^2: what the first digit leaves is a double, but for the low part
-    #[inline(always)]
+    #[inline(never)]
     fn div(self, x: f64) -> Self {
         let first = self.hi / x;
         let (product, error) = two_product(first, x);

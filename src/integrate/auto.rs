@@ -1,0 +1,303 @@
+//! The method that suits the run: Taylor, and Rodas5P for as long as strong damping would hold Taylor's steps short.
+//!
+//! An explicit method's step is bound by h |lambda| for the fastest decaying mode lambda, Taylor's at 7 to 9, whatever the
+//! tolerance. So a run begins with Taylor, and every few steps the dominant mode of the Jacobian is looked at; where h |lambda|
+//! has come to that bound in a decaying mode, Rodas5P is tried. It stays while its steps are longer by more than what they
+//! cost more, and hands back to Taylor otherwise. A try that did not pay makes the next one wait twice as long.
+//!
+//! CVODE is never chosen: in no scene of the benchmarks is it ahead of Rodas5P at equal error.
+
+use super::rosenbrock::{Rosenbrock, RosenbrockMethod};
+use super::taylor::Taylor;
+use super::{Control, Integrator, Observer, Step, Tolerances, Work};
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State, VectorField};
+
+/// Steps of Taylor from one look at the Jacobian to the next.
+const TAYLOR_LOOKS: usize = 16;
+/// Steps of Rodas5P from one look at the Jacobian to the next.
+const RODAS_LOOKS: usize = 4;
+/// h |lambda| from which on Taylor's step counts as held by stability.
+const HELD: f64 = 4.0;
+/// h |lambda| that Rodas5P has to keep: at less Taylor, with a third of the time a step, is ahead.
+const PAYS: f64 = 20.0;
+/// Steps of Rodas5P, which begins with short ones, before it is judged.
+const TRIAL: usize = 12;
+/// Longest wait for the next try, in looks.
+const PATIENCE: usize = 1 << 12;
+
+/// A stretch of a run.
+#[derive(Debug, Clone, Copy)]
+struct Stretch {
+    implicit: bool,
+    t: (f64, f64),
+}
+
+/// An integrator that switches between Taylor and Rodas5P along the run.
+///
+/// ```
+/// use twinslip::field::State;
+/// use twinslip::friction::Parameters;
+/// use twinslip::integrate::{Auto, Integrator, MAX_STEPS, Tolerances};
+/// use twinslip::model::{Loading, TwoInterfaces};
+/// # fn main() -> twinslip::Result<()> {
+/// let law = Parameters::heslot_1994().spinodal();
+/// let field = TwoInterfaces { law, loading: Loading::new(1000.0, 0.14)? };
+/// let y0 = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
+/// let mut auto = Auto::new(Tolerances::equal(1e-8)?, MAX_STEPS)?;
+/// let y = auto.flow(&field, (0.0, 200.0), &y0, None)?;
+/// assert!((y[0] - 8.78022825).abs() < 1e-6);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone)]
+pub struct Auto<const N: usize> {
+    taylor: Taylor,
+    rodas: Rosenbrock<N>,
+    max_steps: usize,
+    work: Work,
+}
+
+impl<const N: usize> Auto<N> {
+    /// At most `max_steps` steps in a flow.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for tolerances outside their domain or no steps.
+    pub fn new(tolerances: Tolerances, max_steps: usize) -> Result<Self> {
+        Ok(Auto {
+            taylor: Taylor::new(tolerances, max_steps)?,
+            rodas: Rosenbrock::new(RosenbrockMethod::Rodas5P, tolerances, max_steps)?,
+            max_steps,
+            work: Work::default(),
+        })
+    }
+
+    /// The flow, stretch by stretch, each handed to `finished`.
+    fn stretches(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        mut observer: Option<Observer<'_, N>>,
+        finished: &mut dyn FnMut(Stretch),
+    ) -> Result<State<N>> {
+        self.work = Work::default();
+        let (mut now, mut y) = (t.0, *y0);
+        let mut implicit = field.analytic().is_none();
+        let (mut wait, mut stopped) = (0, false);
+        loop {
+            let mut reached = now;
+            let mut relay = Relay {
+                observer: observer.as_deref_mut(),
+                reached: &mut reached,
+                stopped: &mut stopped,
+            };
+            let steps = self.work.steps;
+            let left = self.max_steps - steps;
+            let end = if implicit {
+                let fixed = field.analytic().is_none();
+                self.implicit(field, (now, t.1), &y, left, fixed, &mut relay)
+            } else {
+                self.explicit(field, (now, t.1), &y, left, wait, &mut relay)
+            };
+            self.work += self.last_work(implicit);
+            y = end.map_err(|error| self.whole(error, t.1))?;
+            finished(Stretch {
+                implicit,
+                t: (now, reached),
+            });
+            now = reached;
+            if stopped || now == t.1 {
+                return Ok(y);
+            }
+            if implicit {
+                let paid = self.work.steps - steps > 2 * TRIAL;
+                wait = if paid {
+                    0
+                } else {
+                    (2 * wait).clamp(1, PATIENCE)
+                };
+            }
+            implicit = !implicit;
+            if self.work.steps >= self.max_steps {
+                return Err(Error::TooManySteps {
+                    t: now,
+                    end: t.1,
+                    limit: self.max_steps,
+                });
+            }
+        }
+    }
+
+    /// Taylor until its step is held by stability.
+    fn explicit(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y: &State<N>,
+        left: usize,
+        wait: usize,
+        relay: &mut Relay<'_, '_, N>,
+    ) -> Result<State<N>> {
+        self.taylor.set_max_steps(left);
+        let (mut steps, mut wait) = (0, wait);
+        let mut held = |h: f64, state: &dyn Fn() -> State<N>| {
+            steps += 1;
+            if steps % TAYLOR_LOOKS != 0 {
+                return false;
+            }
+            if wait > 0 {
+                wait -= 1;
+                return false;
+            }
+            let (rate, decays) = dominant_mode(&field.jacobian(&state()));
+            decays && h.abs() * rate > HELD
+        };
+        let (end, reached) = match &relay.observer {
+            None => self.taylor.flow_until(field, t, y, None, &mut held)?,
+            Some(_) => {
+                let mut observer = |step: &Step<'_, N>| relay.see(step);
+                self.taylor
+                    .flow_until(field, t, y, Some(&mut observer), &mut held)?
+            }
+        };
+        *relay.reached = reached;
+        Ok(end)
+    }
+
+    /// Rodas5P until its steps no longer pay; to the end if there is no other choice.
+    fn implicit(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y: &State<N>,
+        left: usize,
+        fixed: bool,
+        relay: &mut Relay<'_, '_, N>,
+    ) -> Result<State<N>> {
+        self.rodas.set_max_steps(left);
+        let mut steps = 0;
+        let mut observer = |step: &Step<'_, N>| {
+            let control = relay.see(step)?;
+            steps += 1;
+            if control == Control::Stop || fixed || steps < TRIAL || steps % RODAS_LOOKS != 0 {
+                return Ok(control);
+            }
+            let (rate, decays) = dominant_mode(&field.jacobian(step.y1));
+            let pays = decays && (step.t1 - step.t0).abs() * rate > PAYS;
+            Ok(if pays {
+                Control::Continue
+            } else {
+                Control::Stop
+            })
+        };
+        self.rodas.flow(field, t, y, Some(&mut observer))
+    }
+
+    fn last_work(&self, implicit: bool) -> Work {
+        if implicit {
+            Integrator::<N>::work(&self.rodas)
+        } else {
+            Integrator::<N>::work(&self.taylor)
+        }
+    }
+
+    /// The error of a stretch as one of the whole run.
+    fn whole(&self, error: Error, end: f64) -> Error {
+        match error {
+            Error::TooManySteps { t, .. } => Error::TooManySteps {
+                t,
+                end,
+                limit: self.max_steps,
+            },
+            other => other,
+        }
+    }
+}
+
+type Seen<'o, const N: usize> = dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o;
+
+/// Hands steps on to the observer, and keeps how far the run has come.
+struct Relay<'a, 'o, const N: usize> {
+    observer: Option<&'a mut Seen<'o, N>>,
+    reached: &'a mut f64,
+    stopped: &'a mut bool,
+}
+
+impl<const N: usize> Relay<'_, '_, N> {
+    fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
+        *self.reached = step.t1;
+        let Some(observer) = &mut self.observer else {
+            return Ok(Control::Continue);
+        };
+        let control = observer(step)?;
+        *self.stopped = control == Control::Stop;
+        Ok(control)
+    }
+}
+
+impl<const N: usize> Integrator<N> for Auto<N> {
+    fn name(&self) -> &'static str {
+        "auto"
+    }
+
+    fn flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        observer: Option<Observer<'_, N>>,
+    ) -> Result<State<N>> {
+        self.stretches(field, t, y0, observer, &mut |_| ())
+    }
+
+    /// The state's run finds the stretches; the tangents of each follow, and are multiplied.
+    fn tangent_flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(State<N>, Jacobian<N>)> {
+        let mut stretches = Vec::new();
+        self.stretches(field, t, y0, None, &mut |stretch| stretches.push(stretch))?;
+        let mut work = self.work;
+        let (mut y, mut tangent) = (*y0, Jacobian::identity());
+        self.taylor.set_max_steps(self.max_steps);
+        self.rodas.set_max_steps(self.max_steps);
+        for stretch in stretches {
+            let (end, part) = if stretch.implicit {
+                self.rodas.tangent_flow(field, stretch.t, &y)?
+            } else {
+                self.taylor.tangent_flow(field, stretch.t, &y)?
+            };
+            work += self.last_work(stretch.implicit);
+            y = end;
+            tangent = part * tangent;
+        }
+        self.work = work;
+        Ok((y, tangent))
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+/// |lambda| of the fastest mode, roughly, and whether it decays: by powers of the Jacobian.
+fn dominant_mode<const N: usize>(jacobian: &Jacobian<N>) -> (f64, bool) {
+    const POWERS: usize = 4;
+    // No mode of these systems is orthogonal to it.
+    let mut v = State::<N>::from_fn(|i, _| 1.0 / (1.0 + i as f64));
+    let (mut rate, mut decays) = (0.0, false);
+    for _ in 0..POWERS {
+        let next = jacobian * v;
+        let size = next.amax();
+        if !(size.is_finite() && size > 0.0) {
+            return (rate, decays);
+        }
+        rate = size / v.amax();
+        decays = next.dot(&v) < 0.0;
+        v = next / size;
+    }
+    (rate, decays)
+}

@@ -1,0 +1,156 @@
+//! Tangents: solutions of the equations linearised along a solution, in power series.
+//!
+//! With the Jacobian's entries as series along the solution the linearised equations need one product of series for each
+//! entry, and their solutions, the columns, share it: they stand in lanes. The sums run in loops, as there the work is in the
+//! lanes.
+
+use super::element::{Element, rough_exp2, rough_log2};
+use super::plain::Both;
+use super::{Accuracy, REFERENCE_ORDER};
+
+/// What one interface's coefficients give to all lanes of X.
+pub trait Spread<X>: Element {
+    /// The coefficient of an interface, in every lane.
+    fn spread(self, interface: usize, any: X) -> X;
+}
+
+impl<T: Element> Spread<Both<Both<T>>> for Both<T> {
+    #[inline(always)]
+    fn spread(self, interface: usize, _: Both<Both<T>>) -> Both<Both<T>> {
+        let x = self.0[interface];
+        Both([Both([x, x]); 2])
+    }
+}
+
+impl<T: Element> Spread<Both<Both<Both<T>>>> for Both<T> {
+    #[inline(always)]
+    fn spread(self, interface: usize, any: Both<Both<Both<T>>>) -> Both<Both<Both<T>>> {
+        Both([self.spread(interface, any.0[0]); 2])
+    }
+}
+
+/// The series along a solution that its linearised equations need; the lanes of E are the interfaces.
+pub struct Linearisation<'a, E> {
+    /// dv/dtau, dv/dpsi, dg/dtau, dg/dpsi of v and dpsi/dt = g.
+    pub entries: [&'a [E]; 4],
+    /// tau itself.
+    pub stress: &'a [E],
+    /// K.
+    pub stiffness: E,
+    /// The unit of time.
+    pub unit: E,
+}
+
+/// The columns, in the lanes of X, each a perturbation of (tau, psi_1, psi_2).
+pub struct Columns<X> {
+    /// At the beginning of the next step.
+    x: [X; 3],
+    /// The series, in the order of the powers.
+    series: Box<[[X; 3]; REFERENCE_ORDER + 1]>,
+    /// One in the lane of the derivative in V_H, and in that in K; zero elsewhere.
+    driving: X,
+    stiffness: X,
+}
+
+impl<X: Element> Columns<X> {
+    /// Beginning at x, of which one lane each may be the derivative in V_H and in K.
+    pub fn new(x: [X; 3], driving: X, stiffness: X) -> Self {
+        Columns {
+            x,
+            series: Box::new([x; REFERENCE_ORDER + 1]),
+            driving,
+            stiffness,
+        }
+    }
+
+    /// The columns at the end of the last step.
+    pub fn state(&self) -> &[X; 3] {
+        &self.x
+    }
+
+    /// Makes the series from those of the solution:
+    ///
+    ///   dtau' = K (dV_H - dv_1 - dv_2) + dK tau'/K,  dpsi_i' = dg_i.
+    #[inline(always)]
+    pub fn expand<E: Spread<X>>(&mut self, order: usize, along: &Linearisation<'_, E>) {
+        let any = self.x[0];
+        let zero = any.like(0.0);
+        let [v_tau, v_psi, g_tau, g_psi] = along.entries;
+        let (stiffness, unit) = (along.stiffness.spread(0, any), along.unit.spread(0, any));
+        self.series[0] = self.x;
+        let mut k = 0;
+        while k < order {
+            let (mut slip_rate, mut first, mut second) = (zero, zero, zero);
+            let mut j = 0;
+            while j <= k {
+                let [tau, psi1, psi2] = self.series[k - j];
+                let both = v_tau[j].over_interfaces();
+                slip_rate = both.spread(0, any).mul_add(tau, slip_rate);
+                slip_rate = v_psi[j].spread(0, any).mul_add(psi1, slip_rate);
+                slip_rate = v_psi[j].spread(1, any).mul_add(psi2, slip_rate);
+                first = g_tau[j].spread(0, any).mul_add(tau, first);
+                first = g_psi[j].spread(0, any).mul_add(psi1, first);
+                second = g_tau[j].spread(1, any).mul_add(tau, second);
+                second = g_psi[j].spread(1, any).mul_add(psi2, second);
+                j += 1;
+            }
+            let next = any.like((k + 1) as f64);
+            let share = unit * (any.like(1.0) / next);
+            let mut stress = stiffness * -slip_rate * share;
+            if k == 0 {
+                stress = stress + stiffness * self.driving * share;
+            }
+            // The series of tau holds tau' = K (V_H - v_1 - v_2) already.
+            let of_stiffness = along.stress[k + 1].spread(0, any) / stiffness;
+            stress = of_stiffness.mul_add(self.stiffness, stress);
+            self.series[k + 1] = [stress, first * share, second * share];
+            k += 1;
+        }
+    }
+
+    /// The step, in units of the series, at which the last two terms of every column are below the tolerance, relative to
+    /// its largest term; psi counts by its logarithm.
+    #[inline(always)]
+    pub fn longest<E: Spread<X>>(&self, accuracy: &Accuracy, psi: E) -> f64 {
+        let order = accuracy.order;
+        let any = self.x[0];
+        let one = any.like(1.0);
+        let of_psi = [one / psi.spread(0, any), one / psi.spread(1, any)];
+        let mut largest = any.like(f64::MIN_POSITIVE);
+        let mut k = 0;
+        while k <= order {
+            largest = Element::max(largest, size(&self.series[k], of_psi));
+            k += 1;
+        }
+        let per_tolerable = one / (largest * any.like(accuracy.tolerances.0));
+        let before = size(&self.series[order - 1], of_psi) * per_tolerable;
+        let last = size(&self.series[order], of_psi) * per_tolerable;
+        let before = -rough_log2(before.largest_lane()) / (order - 1) as f64;
+        let last = -rough_log2(last.largest_lane()) / order as f64;
+        rough_exp2(before.min(last))
+    }
+
+    /// Goes on by h, counted in units of the series.
+    #[inline(always)]
+    pub fn advance_by<E: Spread<X>>(&mut self, order: usize, h: E) {
+        let h = h.spread(0, self.x[0]);
+        let mut sum = self.series[order];
+        let mut k = order;
+        while k > 0 {
+            k -= 1;
+            let mut i = 0;
+            while i < 3 {
+                sum[i] = sum[i].mul_add(h, self.series[k][i]);
+                i += 1;
+            }
+        }
+        self.x = sum;
+    }
+}
+
+/// The largest of a column: of tau, and of psi by its logarithm.
+#[inline(always)]
+fn size<X: Element>(x: &[X; 3], per_psi: [X; 2]) -> X {
+    let states = Element::max((x[1] * per_psi[0]).abs(), (x[2] * per_psi[1]).abs());
+    Element::max(x[0].abs(), states)
+}
