@@ -79,10 +79,10 @@ fn none_breaks(scene: &Scene, tolerance: f64) -> usize {
 #[test]
 fn runs_through_the_kink_of_the_slip_rate_meet_their_tolerance() {
     for law in AnyLaw::NAMES {
-        for tau in [-12.0, -5.0, -0.3] {
+        for tau in [-5.0, -2.0, -0.3] {
             // The stress rises by K V_H a unit of time, and faster while the interfaces slip back.
             let crossing = (2.0 - tau) / 1.4;
-            let start = [tau, 0.5_f64.ln(), 0.001_f64.ln()];
+            let start = [tau, 0.9_f64.ln(), 0.1_f64.ln()];
             let scene = scene(law, (10.0, 0.14), start, crossing);
             for tolerance in [1e-4, 1e-6, 1e-8] {
                 all_meet(&scene, tolerance);
@@ -119,7 +119,7 @@ fn starts_at_the_end_of_the_numbers_end_in_a_state_or_a_typed_error() {
 #[test]
 fn the_last_tolerance_is_met_or_refused() {
     for law in AnyLaw::NAMES {
-        let start = [10.0, 0.5_f64.ln(), 0.001_f64.ln()];
+        let start = [10.0, 0.5_f64.ln(), 0.3_f64.ln()];
         let ended = none_breaks(&scene(law, (1.0, 0.14), start, 0.5), 1e-16);
         // The Taylor method has no difficulty there.
         assert!(ended >= 1, "{law}");

@@ -135,8 +135,13 @@ fn ten_thousand_cycles_keep_period_and_amplitude() {
     }
 }
 
+/// Power series treat both interfaces alike, each in its own lane, and so keep them equal to the last bit. A linear solver
+/// eliminates one state before the other: the implicit methods leave the symmetric subspace by the last bit of a step, and
+/// only the system in two dimensions can't.
 #[test]
-fn equal_interfaces_stay_equal_to_the_last_bit() {
+fn equal_interfaces_part_by_no_more_than_rounding() {
+    /// Some spacings of the numbers near ln psi = -7.
+    const ROUNDING: f64 = 1e-14;
     let field = two_interfaces(heslot(), loading());
     for psi in [0.5_f64, 0.02, 1e-3] {
         let start = State::<3>::new(10.0, psi.ln(), psi.ln());
@@ -144,15 +149,18 @@ fn equal_interfaces_stay_equal_to_the_last_bit() {
             for tolerance in [1e-5, 1e-8, 1e-11] {
                 let tolerances = Tolerances::equal(tolerance).expect("valid");
                 let mut integrator = method.integrator(tolerances, 200_000).expect("valid");
-                let mut first = None;
+                let mut parted = 0.0;
                 let mut see = |step: &Step<'_, 3>| {
-                    if step.y1[1] != step.y1[2] && first.is_none() {
-                        first = Some((step.t1, step.y1[1] - step.y1[2]));
+                    if parted == 0.0 {
+                        parted = (step.y1[1] - step.y1[2]).abs();
                     }
                     Ok(Control::Continue)
                 };
-                let ended = integrator.flow(&*field, (0.0, 40.0), &start, Some(&mut see));
-                println!("{name} {tolerance:e}: {first:?}, {:?}", ended.is_ok());
+                integrator
+                    .flow(&*field, (0.0, 40.0), &start, Some(&mut see))
+                    .expect("a run along cycles");
+                let most = if name == "taylor" { 0.0 } else { ROUNDING };
+                assert!(parted <= most, "{name} at {tolerance:e}: {parted:e}");
             }
         }
     }

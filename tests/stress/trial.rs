@@ -37,38 +37,38 @@ pub struct Promise {
 pub const PROMISES: [Promise; 7] = [
     Promise {
         method: "taylor",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 2.0,
+        answers: 0.5,
     },
     Promise {
         method: "auto",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 2.0,
+        answers: 0.5,
     },
     Promise {
         method: "rodas5p",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 1.0,
+        answers: 0.95,
     },
     Promise {
         method: "rodas4",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 1.0,
+        answers: 0.95,
     },
     Promise {
         method: "rosenbrock23",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 2.0,
+        answers: 0.95,
     },
     Promise {
         method: "cvode-bdf",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 100.0,
+        answers: 0.5,
     },
     Promise {
         method: "cvode-adams",
-        factor: 1e9,
-        answers: 0.0,
+        factor: 100.0,
+        answers: 0.5,
     },
 ];
 
