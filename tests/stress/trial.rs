@@ -33,7 +33,8 @@ pub struct Promise {
     pub answers: f64,
 }
 
-/// The factors; the worst that were measured stand in `table.md`.
+/// The factors; the full run writes the worst measured beside them into `table.md`. Measured so far are those of the Rosenbrock
+/// methods, on a part of the grid and against Rodas5P at 1e-13; the others are upper guesses.
 pub const PROMISES: [Promise; 7] = [
     Promise {
         method: "taylor",
@@ -244,7 +245,7 @@ impl Watch {
     fn see<const N: usize>(&mut self, step: &Step<'_, N>) -> Result<Control> {
         let finite = |y: &State<N>| y.iter().all(|x| x.is_finite());
         let (t0, t1) = (step.t0, step.t1);
-        let fault = if !((t1 - t0) * self.direction > 0.0) {
+        let fault = if (t1 - t0) * self.direction <= 0.0 {
             Some(format!("a step from {t0:e} to {t1:e}"))
         } else if self.now.is_some_and(|now| now != t0) {
             Some(format!("a step from {t0:e} after one to {:?}", self.now))
