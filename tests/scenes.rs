@@ -169,7 +169,7 @@ fn what_is_wrong_in_a_scene_is_said_with_its_line() {
             "start must be a list",
         ),
         (
-            format!("{good}method = \"taylor\""),
+            format!("{good}method = \"euler\""),
             5,
             "choose one of auto",
         ),

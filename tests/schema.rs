@@ -131,7 +131,7 @@ fn integrate() {
     let plain = object("integrate --driving 10 --stiffness 0.14 --until 1");
     assert!(plain["result"].get("events").is_none());
     assert!(plain["result"]["final"]["error_estimate"].is_null());
-    assert_eq!(plain["numerics"]["method"], "rodas5p");
+    assert_eq!(plain["numerics"]["method"], "auto");
     assert_eq!(plain["numerics"]["atol"], 1e-8);
 }
 

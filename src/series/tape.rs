@@ -167,18 +167,24 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
         let zero = self.get(0).like(0.0);
         let (mut left, mut right) = (zero, zero);
         if !O::UNROLLED {
+            // Four sums side by side: one or two would wait for each other.
             let (a, b) = (&self.coefficients()[..k], &other.coefficients()[..k]);
+            let (mut third, mut fourth) = (zero, zero);
             let (mut i, mut j) = (1, k.saturating_sub(1));
-            while i + 1 < k {
+            while i + 3 < k {
                 left = a[i].get().mul_add(b[j].get(), left);
                 right = a[i + 1].get().mul_add(b[j - 1].get(), right);
-                i += 2;
-                j -= 2;
+                third = a[i + 2].get().mul_add(b[j - 2].get(), third);
+                fourth = a[i + 3].get().mul_add(b[j - 3].get(), fourth);
+                i += 4;
+                j -= 4;
             }
-            if i < k {
+            while i < k {
                 left = a[i].get().mul_add(b[j].get(), left);
+                i += 1;
+                j -= 1;
             }
-            return left + right;
+            return (left + right) + (third + fourth);
         }
         let mut i = k / 2;
         while i >= 1 {
@@ -194,6 +200,9 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
     /// The sums of a_(k-j) f_j and of a_(k-j) g_j over 0 < j < k, likewise: every a_j is read but once.
     #[inline(always)]
     fn inner_products(self, f: Self, g: Self) -> (E, E) {
+        if !O::UNROLLED {
+            return (self.inner_product(f), self.inner_product(g));
+        }
         let k = self.order();
         let zero = self.get(0).like(0.0);
         let (mut left, mut right) = ((zero, zero), (zero, zero));
