@@ -45,17 +45,22 @@ impl<T: Real, const N: usize> Jet<T, N> {
         }
         Jet { value: g, gradient }
     }
+}
 
-    #[inline(always)]
-    fn zip(self, other: Self, value: T, rule: impl Fn(T, T) -> T) -> Self {
-        let mut gradient = self.gradient;
+/// A jet with this value, its gradient component by component from those of two others. A macro and no function of a closure:
+/// where the compiler is to see through all layers of numbers, it does not see through these.
+macro_rules! zip {
+    ($a:expr, $b:expr, $value:expr, |$d:ident, $e:ident| $rule:expr) => {{
+        let value = $value;
+        let mut gradient = $a.gradient;
         let mut i = 0;
         while i < N {
-            gradient[i] = rule(gradient[i], other.gradient[i]);
+            let ($d, $e) = (gradient[i], $b.gradient[i]);
+            gradient[i] = $rule;
             i += 1;
         }
         Jet { value, gradient }
-    }
+    }};
 }
 
 impl<T: Real, const N: usize> Neg for Jet<T, N> {
@@ -70,7 +75,7 @@ impl<T: Real, const N: usize> Add for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
-        self.zip(o, self.value + o.value, |d, e| d + e)
+        zip!(self, o, self.value + o.value, |d, e| d + e)
     }
 }
 
@@ -78,7 +83,7 @@ impl<T: Real, const N: usize> Sub for Jet<T, N> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
-        self.zip(o, self.value - o.value, |d, e| d - e)
+        zip!(self, o, self.value - o.value, |d, e| d - e)
     }
 }
 
@@ -88,7 +93,8 @@ impl<T: Real, const N: usize> Mul for Jet<T, N> {
     #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline(always)]
     fn mul(self, o: Self) -> Self {
-        self.zip(o, self.value * o.value, |d, e| d * o.value + self.value * e)
+        zip!(self, o, self.value * o.value, |d, e| d * o.value
+            + self.value * e)
     }
 }
 
@@ -99,7 +105,7 @@ impl<T: Real, const N: usize> Div for Jet<T, N> {
     #[inline(always)]
     fn div(self, o: Self) -> Self {
         let quotient = self.value / o.value;
-        self.zip(o, quotient, |d, e| (d - quotient * e) / o.value)
+        zip!(self, o, quotient, |d, e| (d - quotient * e) / o.value)
     }
 }
 

@@ -84,8 +84,8 @@ impl<X: Element> Columns<X> {
             let mut j = 0;
             while j <= k {
                 let [tau, psi1, psi2] = self.series[k - j];
-                let both = v_tau[j].over_interfaces();
-                slip_rate = both.spread(0, any).mul_add(tau, slip_rate);
+                slip_rate = v_tau[j].spread(0, any).mul_add(tau, slip_rate);
+                slip_rate = v_tau[j].spread(1, any).mul_add(tau, slip_rate);
                 slip_rate = v_psi[j].spread(0, any).mul_add(psi1, slip_rate);
                 slip_rate = v_psi[j].spread(1, any).mul_add(psi2, slip_rate);
                 first = g_tau[j].spread(0, any).mul_add(tau, first);

@@ -201,7 +201,29 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
     #[inline(always)]
     fn inner_products(self, f: Self, g: Self) -> (E, E) {
         if !O::UNROLLED {
-            return (self.inner_product(f), self.inner_product(g));
+            let k = self.order();
+            let zero = self.get(0).like(0.0);
+            let (a, f, g) = (
+                &self.coefficients()[..k],
+                &f.coefficients()[..k],
+                &g.coefficients()[..k],
+            );
+            let (mut left, mut right) = ((zero, zero), (zero, zero));
+            let (mut i, mut j) = (1, k.saturating_sub(1));
+            while i + 1 < k {
+                let (x, y) = (a[j].get(), a[j - 1].get());
+                left.0 = x.mul_add(f[i].get(), left.0);
+                left.1 = x.mul_add(g[i].get(), left.1);
+                right.0 = y.mul_add(f[i + 1].get(), right.0);
+                right.1 = y.mul_add(g[i + 1].get(), right.1);
+                i += 2;
+                j -= 2;
+            }
+            if i < k {
+                left.0 = a[j].get().mul_add(f[i].get(), left.0);
+                left.1 = a[j].get().mul_add(g[i].get(), left.1);
+            }
+            return (left.0 + right.0, left.1 + right.1);
         }
         let k = self.order();
         let zero = self.get(0).like(0.0);
