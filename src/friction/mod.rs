@@ -39,6 +39,9 @@ pub trait Law: Copy + Debug + Send + Sync {
     /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
     const UNROLLED: bool = false;
 
+    /// Whether those of several trajectories at once are too, which takes a minute.
+    const UNROLLED_IN_LANES: bool = false;
+
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 

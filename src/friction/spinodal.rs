@@ -28,6 +28,7 @@ impl Spinodal {
 impl Law for Spinodal {
     type Core = Spinodal;
     const UNROLLED: bool = true;
+    const UNROLLED_IN_LANES: bool = true;
 
     fn core(&self) -> Spinodal {
         *self

@@ -18,7 +18,7 @@ struct Trajectories<E, L> {
 }
 
 impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
-    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 

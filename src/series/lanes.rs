@@ -105,8 +105,8 @@ macro_rules! lanes {
 
         impl Element for $name {
             const LANES: usize = $n;
-            // In eight lanes the loops themselves cost little beside the arithmetic, and compiling them minutes.
-            const UNROLLED: bool = $n == 2;
+            // Processors with room for eight lanes do not take four.
+            const UNROLLED: bool = $n != 4;
             #[inline(always)]
             fn lane(self, i: usize) -> f64 {
                 self.lanes()[i]
