@@ -101,6 +101,10 @@ impl<const N: usize> CvodeIntegrator<N> {
         loop {
             let arrival = self.solver.advance(&problem, t.1, Mode::OneStep)?;
             let (t1, y1) = (arrival.t, self.solver.state());
+            // Near a singularity CVODE takes steps that do not move time: they are part of the next one that does.
+            if t1 == t0 && arrival.reason != Reason::StopTime {
+                continue;
+            }
             let solver = &self.solver;
             // An observer's dense output can't fail; what CVODES objects to is raised after it.
             let objection = RefCell::new(None);

@@ -84,7 +84,7 @@ fn loading() -> Loading {
 }
 
 /// Cycles until the orbit is reached to the last digit.
-const SETTLED: usize = 100;
+const SETTLED: usize = 1000;
 
 /// The drift of ten thousand cycles on the symmetric and on the asymmetric orbit, and of a hundred with another method.
 fn drifts() -> [(&'static str, &'static str, f64, usize, f64); 4] {

@@ -43,12 +43,12 @@ pub const PROMISES: [Promise; 7] = [
     },
     Promise {
         method: "auto",
-        factor: 1.0,
+        factor: 3.0,
         answers: 0.6,
     },
     Promise {
         method: "rodas5p",
-        factor: 1.0,
+        factor: 3.0,
         answers: 0.95,
     },
     Promise {
