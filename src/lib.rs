@@ -9,6 +9,7 @@
 //! | [`friction::Law`] | how an interface resists: two formulas, and what follows from them |
 //! | [`field::VectorField`] | what a dynamical system is |
 //! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
+//! | [`series::Formula`] | a differential equation whose solutions are made as power series |
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |

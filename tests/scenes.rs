@@ -168,11 +168,7 @@ fn what_is_wrong_in_a_scene_is_said_with_its_line() {
             5,
             "start must be a list",
         ),
-        (
-            format!("{good}method = \"euler\""),
-            5,
-            "choose one of auto",
-        ),
+        (format!("{good}method = \"euler\""), 5, "choose one of auto"),
         (format!("{good}driving = 3"), 5, "duplicate key"),
         (format!("{good}rtol = "), 5, ""),
         (

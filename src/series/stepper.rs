@@ -9,6 +9,9 @@ use std::cell::Cell;
 const SAFETY: f64 = 0.95;
 /// Times that a step is halved because it leads where the formula has no meaning.
 const HALVINGS: usize = 60;
+/// By which the unit of time is shortened while the coefficients overflow, and how often.
+const SHORTER: f64 = 1.0 / (1u64 << 40) as f64;
+const SHORTER_UNITS: usize = 24;
 /// Bisections of a step: enough for the last bit.
 const BISECTIONS: usize = 64;
 
@@ -118,12 +121,28 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         self.load();
         // A copy, which the compiler sees that no coefficient written changes.
         let formula = self.formula;
-        let memory = cells(&mut self.memory);
-        self.watched = if F::UNROLLED && ROOM == MAX_ORDER + 1 {
-            expand(&formula, memory, accuracy.order, self.unit)
-        } else {
-            expand_running(&formula, memory, ROOM, accuracy.order, self.unit)
-        };
+        let mut tried = 0;
+        loop {
+            let memory = cells(&mut self.memory);
+            self.watched = if F::UNROLLED && ROOM == MAX_ORDER + 1 {
+                expand(&formula, memory, accuracy.order, self.unit)
+            } else {
+                expand_running(&formula, memory, ROOM, accuracy.order, self.unit)
+            };
+            // Zero where all coefficients are finite. Close to a steady state the state changes by its own size in no time
+            // that is near the step; in a shorter unit the coefficients do not overflow.
+            let zero = self.unit.like(0.0);
+            let (mut finite, mut c) = (zero, 0);
+            while c < C {
+                finite = self.coefficient(c, accuracy.order).mul_add(zero, finite);
+                c += 1;
+            }
+            tried += 1;
+            if finite.if_zero(zero, zero.like(-1.0)).none_negative() || tried > SHORTER_UNITS {
+                break;
+            }
+            self.unit = finite.if_zero(self.unit, self.unit * zero.like(SHORTER));
+        }
     }
 
     /// Goes on by h, counted in units of the series, at most `limit`, and returns the time that this took.

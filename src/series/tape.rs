@@ -1,6 +1,6 @@
 //! Power series in time that are made order by order.
 //!
-//! A formula written for any [`Real`] is evaluated once per order on [`Series`]: handles of rows on a tape, the coefficients
+//! A formula written for any [`Real`](crate::number::Real) is evaluated once per order on [`Series`]: handles of rows on a tape, the coefficients
 //! so far. At order k every operation appends the k-th coefficient of its result from its arguments' coefficients 0..=k, by
 //! the recurrence of the operation (Knuth, The Art of Computer Programming 2, section 4.7; Jorba & Zou 2005, proposition 2).
 //! The rows are allocated by a counter that starts anew at each order, so that an operation finds its own row again. With the

@@ -6,7 +6,7 @@
 //! and to a state with its tangent flow.
 //!
 //! At equal error on eight reference runs Rodas5P is ahead of Rodas4 in six, by a factor of 1.5 to 2.4 at 1e-6 and 2 to 4
-//! at 1e-9, and is the default. Rodas4 leads by up to a third on the torus at K = 0.2 down to 1e-7, in a slow relaxation at
+//! at 1e-9, and is the one that [`super::Auto`] takes. Rodas4 leads by up to a third on the torus at K = 0.2 down to 1e-7, in a slow relaxation at
 //! V_H = 50000, and at some places where a per mille will do. The pair of ode23s is for errors of a per cent.
 
 mod control;
