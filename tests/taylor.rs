@@ -68,7 +68,7 @@ fn the_reference_meets_them_to_the_rounding_of_the_start() {
     }
 }
 
-/// Orders 12, 16 and 20: the error follows the tolerance down to rounding.
+/// Orders 12, 16 and 18: the error follows the tolerance down to rounding.
 #[test]
 fn the_error_follows_the_tolerance() {
     let run = Run::named("C_K0.01_VH0.2, t = 7500");

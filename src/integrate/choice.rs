@@ -122,7 +122,7 @@ impl Choice {
                 "taylor, the fastest along stick-slip cycles, and rodas5p for as long as strong damping would hold its steps short"
             }
             Choice::Taylor => {
-                "power series of order 12 to 20: by far the fastest along stick-slip cycles, slow where damping is strong"
+                "power series of order 12 to 18: by far the fastest along stick-slip cycles, slow where damping is strong"
             }
             Choice::Rosenbrock(RosenbrockMethod::Rodas5P) => {
                 "order 5, one factorisation a step and no iteration, stable on stiff scenes"

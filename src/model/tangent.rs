@@ -23,6 +23,7 @@ use {
 struct Linearised<E, L>(Interfaces<E, L>);
 
 impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
     const KINK: Option<usize> = <Interfaces<E, L> as Formula<E, 2>>::KINK;
 
     #[inline(always)]
@@ -173,7 +174,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const ROOM: usize> Track<S, E, 
 
     #[inline(always)]
     fn step(&mut self, accuracy: &Accuracy, limit: E) -> E {
-        self.stepper.expand(accuracy);
+        let longest_of_solution = self.stepper.longest(accuracy);
         let along = Linearisation {
             entries: entries(&self.stepper, &self.constant),
             stress: self.stepper.series(0),
@@ -182,7 +183,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const ROOM: usize> Track<S, E, 
         };
         self.columns.expand(accuracy.order, &along);
         let longest = self.columns.longest(accuracy, self.stepper.state()[1]);
-        let h = Element::min(self.stepper.longest(accuracy), limit.like(longest));
+        let h = Element::min(longest_of_solution, limit.like(longest));
         let taken = self.stepper.advance_by(accuracy, h, limit);
         let h = taken / self.stepper.unit();
         self.columns.advance_by(accuracy.order, h);
@@ -225,7 +226,22 @@ fn entries<'a, E: Element, F: Formula<E, 2>, const ROOM: usize>(
     entries
 }
 
-/// A step, to be compiled for the processor.
+/// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code, and
+/// the same whatever the columns.
+struct Expand<'a, E, L, const ROOM: usize> {
+    stepper: &'a mut Stepper<E, Linearised<E, L>, 2, ROOM>,
+    accuracy: &'a Accuracy,
+}
+
+impl<E: Element, L: Law, const ROOM: usize> NullaryFnOnce for Expand<'_, E, L, ROOM> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        self.stepper.expand(self.accuracy);
+    }
+}
+
+/// A step whose series are made, to be compiled for the processor.
 struct Step<'a, T, E> {
     track: &'a mut T,
     accuracy: &'a Accuracy,
@@ -272,12 +288,16 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize, const ROOM: usi
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let limit = self.stiffness.like_exact(limit);
+        let shell = self.shell;
+        shell.run(Expand {
+            stepper: &mut self.stepper,
+            accuracy,
+        });
         let step = Step {
             track: self,
             accuracy,
             limit,
         };
-        let shell = step.track.shell;
         shell.run(step).to_exact()
     }
 

@@ -1,6 +1,10 @@
 //! Several trajectories of two interfaces at once, one in every lane, each with its own loading.
 
-use super::{Loading, series::logarithms, stress_rate};
+use super::{
+    Loading,
+    series::{logarithms, units},
+    stress_rate,
+};
 use crate::friction::{AnyLaw, Law, with_law};
 use crate::series::{Accuracy, Element, Expansion, Formula, Order, Rates, Series, WATCHED, value};
 #[cfg(target_arch = "x86_64")]
@@ -42,9 +46,8 @@ impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
 
     #[inline(always)]
     fn units(&self, [tau, p, q]: &[E; 3], (rtol, atol): (f64, f64)) -> [E; 3] {
-        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-        let of_psi = tau.like(atol + rtol);
-        [of_tau, *p * of_psi, *q * of_psi]
+        let [of_tau, of_log_psi] = units(*tau, rtol, atol);
+        [of_tau, *p * of_log_psi, *q * of_log_psi]
     }
 
     #[inline(always)]

@@ -20,6 +20,26 @@ pub struct Jet<T, const N: usize> {
     pub gradient: [T; N],
 }
 
+/// The same for every i < N. Few are written one by one: through a loop the compiler does not see what the components are until
+/// it is too late to fold them, and of jets of series all must fold.
+macro_rules! each {
+    ($i:ident => $body:expr) => {{
+        if N > 0 {
+            let $i = 0;
+            $body;
+        }
+        if N > 1 {
+            let $i = 1;
+            $body;
+        }
+        let mut $i = 2;
+        while $i < N {
+            $body;
+            $i += 1;
+        }
+    }};
+}
+
 impl<T: Real, const N: usize> Jet<T, N> {
     /// The N independent variables at a point.
     pub fn variables(at: [T; N]) -> [Self; N] {
@@ -38,11 +58,7 @@ impl<T: Real, const N: usize> Jet<T, N> {
     #[inline(always)]
     fn chain(self, g: T, slope: T) -> Self {
         let mut gradient = self.gradient;
-        let mut i = 0;
-        while i < N {
-            gradient[i] = slope * gradient[i];
-            i += 1;
-        }
+        each!(i => gradient[i] = slope * gradient[i]);
         Jet { value: g, gradient }
     }
 }
@@ -53,12 +69,10 @@ macro_rules! zip {
     ($a:expr, $b:expr, $value:expr, |$d:ident, $e:ident| $rule:expr) => {{
         let value = $value;
         let mut gradient = $a.gradient;
-        let mut i = 0;
-        while i < N {
+        each!(i => {
             let ($d, $e) = (gradient[i], $b.gradient[i]);
             gradient[i] = $rule;
-            i += 1;
-        }
+        });
         Jet { value, gradient }
     }};
 }
@@ -144,11 +158,7 @@ impl<T: Real, const N: usize> Div<f64> for Jet<T, N> {
     #[inline(always)]
     fn div(self, x: f64) -> Self {
         let mut gradient = self.gradient;
-        let mut i = 0;
-        while i < N {
-            gradient[i] = gradient[i] / x;
-            i += 1;
-        }
+        each!(i => gradient[i] = gradient[i] / x);
         Jet {
             value: self.value / x,
             gradient,

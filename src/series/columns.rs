@@ -75,35 +75,42 @@ impl<X: Element> Columns<X> {
     pub fn expand<E: Spread<X>>(&mut self, order: usize, along: &Linearisation<'_, E>) {
         let any = self.x[0];
         let zero = any.like(0.0);
-        let [v_tau, v_psi, g_tau, g_psi] = along.entries;
+        let [v_tau, v_psi, g_tau, g_psi] = along.entries.map(|entry| &entry[..order]);
         let (stiffness, unit) = (along.stiffness.spread(0, any), along.unit.spread(0, any));
+        let of_stiffness = self.stiffness / stiffness;
+        let pull = -(stiffness * unit);
         self.series[0] = self.x;
         let mut k = 0;
         while k < order {
-            let (mut slip_rate, mut first, mut second) = (zero, zero, zero);
+            // One sum for each entry of the Jacobian: they do not wait for each other.
+            let mut sums = [zero; 7];
             let mut j = 0;
+            let columns = &self.series[..=k];
             while j <= k {
-                let [tau, psi1, psi2] = self.series[k - j];
-                slip_rate = v_tau[j].spread(0, any).mul_add(tau, slip_rate);
-                slip_rate = v_tau[j].spread(1, any).mul_add(tau, slip_rate);
-                slip_rate = v_psi[j].spread(0, any).mul_add(psi1, slip_rate);
-                slip_rate = v_psi[j].spread(1, any).mul_add(psi2, slip_rate);
-                first = g_tau[j].spread(0, any).mul_add(tau, first);
-                first = g_psi[j].spread(0, any).mul_add(psi1, first);
-                second = g_tau[j].spread(1, any).mul_add(tau, second);
-                second = g_psi[j].spread(1, any).mul_add(psi2, second);
+                let [tau, psi1, psi2] = columns[k - j];
+                let both = v_tau[j].over_interfaces();
+                sums[0] = both.spread(0, any).mul_add(tau, sums[0]);
+                sums[1] = v_psi[j].spread(0, any).mul_add(psi1, sums[1]);
+                sums[2] = v_psi[j].spread(1, any).mul_add(psi2, sums[2]);
+                sums[3] = g_tau[j].spread(0, any).mul_add(tau, sums[3]);
+                sums[4] = g_psi[j].spread(0, any).mul_add(psi1, sums[4]);
+                sums[5] = g_tau[j].spread(1, any).mul_add(tau, sums[5]);
+                sums[6] = g_psi[j].spread(1, any).mul_add(psi2, sums[6]);
                 j += 1;
             }
-            let next = any.like((k + 1) as f64);
-            let share = unit * (any.like(1.0) / next);
-            let mut stress = stiffness * -slip_rate * share;
+            let one_over = any.like(1.0) / any.like((k + 1) as f64);
+            let mut slip_rate = sums[0] + (sums[1] + sums[2]);
             if k == 0 {
-                stress = stress + stiffness * self.driving * share;
+                slip_rate = slip_rate - self.driving;
             }
             // The series of tau holds tau' = K (V_H - v_1 - v_2) already.
-            let of_stiffness = along.stress[k + 1].spread(0, any) / stiffness;
-            stress = of_stiffness.mul_add(self.stiffness, stress);
-            self.series[k + 1] = [stress, first * share, second * share];
+            let stress = along.stress[k + 1].spread(0, any) * of_stiffness;
+            let share = unit * one_over;
+            self.series[k + 1] = [
+                slip_rate.mul_add(pull * one_over, stress),
+                (sums[3] + sums[4]) * share,
+                (sums[5] + sums[6]) * share,
+            ];
             k += 1;
         }
     }

@@ -1,6 +1,7 @@
 //! What the coefficients of a series are: one number, or one in each of several lanes.
 
 use crate::number::{DoubleDouble, Real};
+use pulp::NullaryFnOnce;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -26,6 +27,11 @@ pub trait Element:
     /// The first lane, with all its digits.
     fn to_exact(self) -> DoubleDouble {
         DoubleDouble::from(self.first())
+    }
+    /// The call, compiled for the processor that the element is made for.
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        f.call()
     }
     /// self a + b, fused where the processor does that.
     fn mul_add(self, a: Self, b: Self) -> Self;

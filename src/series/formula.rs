@@ -1,7 +1,9 @@
 //! A differential equation as a formula, and the series of its solution.
 
 use super::element::Element;
-use super::tape::{At, Order, Running, Series, Tape};
+use super::handle::Series;
+use super::tape::{At, Order, Running, Tape};
+use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
 /// Rows that a formula may take, its variables included.
@@ -49,23 +51,57 @@ fn level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
 ) -> [Option<usize>; WATCHED] {
     let tape = Tape::new(memory, order, C);
     let mut x = [tape.variable(0); C];
-    let mut c = 1;
-    while c < C {
-        x[c] = tape.variable(c);
-        c += 1;
+    // Two or three, one by one: what is in a loop folds too late.
+    assert!(C == 2 || C == 3);
+    x[1] = tape.variable(1);
+    if C == 3 {
+        x[2] = tape.variable(2);
     }
     let rates = formula.rates(x);
     let any = memory[0].get();
     let next = order.index() + 1;
     let unit_over_next = unit * (any.like(1.0) / any.like(next as f64));
-    let mut c = 0;
-    while c < C {
-        let rate = rates.variables[c].newest(any, order);
-        memory[c * order.room() + next].set(rate * unit_over_next);
-        c += 1;
+    memory[next].set(rates.variables[0].times(unit_over_next, order));
+    memory[order.room() + next].set(rates.variables[1].times(unit_over_next, order));
+    if C == 3 {
+        memory[2 * order.room() + next].set(rates.variables[2].times(unit_over_next, order));
     }
     let [a, b, c, d, e] = rates.watched;
     [a.row(), b.row(), c.row(), d.row(), e.row()]
+}
+
+/// One level, as a function of its own for the compiler: the time that it takes for a function grows with the square of
+/// its length.
+struct Level<'a, E, F, O, const C: usize> {
+    formula: &'a F,
+    memory: &'a [Cell<E>],
+    order: O,
+    unit: E,
+}
+
+impl<E: Element, F: Formula<E, C>, O: Order, const C: usize> NullaryFnOnce
+    for Level<'_, E, F, O, C>
+{
+    type Output = [Option<usize>; WATCHED];
+    #[inline(always)]
+    fn call(self) -> Self::Output {
+        level(self.formula, self.memory, self.order, self.unit)
+    }
+}
+
+#[inline(always)]
+fn run_level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
+    formula: &F,
+    memory: &[Cell<E>],
+    order: O,
+    unit: E,
+) -> [Option<usize>; WATCHED] {
+    unit.run(Level {
+        formula,
+        memory,
+        order,
+        unit,
+    })
 }
 
 /// The first level alone: the rates at the first coefficients, in that unit of time.
@@ -91,8 +127,8 @@ pub(super) fn expand<E: Element, F: Formula<E, C>, const C: usize>(
 ) -> [Option<usize>; WATCHED] {
     macro_rules! levels {
         ($($k:literal)*; $last:literal) => {{
-            $( level(formula, memory, At::<$k>, unit); )*
-            level(formula, memory, At::<$last>, unit)
+            $( run_level(formula, memory, At::<$k>, unit); )*
+            run_level(formula, memory, At::<$last>, unit)
         }};
     }
     let watched = levels!(0 1 2 3 4 5 6 7 8 9 10; 11);
@@ -103,7 +139,7 @@ pub(super) fn expand<E: Element, F: Formula<E, C>, const C: usize>(
     if order == 16 {
         return watched;
     }
-    levels!(16 17 18; 19)
+    levels!(16; 17)
 }
 
 /// The same to any even order below the room of a row, in loops. Inlined, as all of a step is: what

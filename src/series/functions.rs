@@ -20,6 +20,8 @@ pub(super) trait Register: Element {
     fn and(self, other: Self) -> Self;
     /// The bits that one of them has.
     fn or(self, other: Self) -> Self;
+    /// The bits that only one of them has.
+    fn xor(self, other: Self) -> Self;
     /// The lowest bits in the place of sign and exponent.
     fn into_exponent(self) -> Self;
     /// Sign and exponent in the place of the lowest bits.

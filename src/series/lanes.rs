@@ -6,6 +6,7 @@ use super::columns::Spread;
 use super::element::Element;
 use super::functions::{self, Register};
 use super::plain::Both;
+use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _CMP_LT_OQ};
 use std::cmp::Ordering;
@@ -99,7 +100,7 @@ macro_rules! lanes {
             type Output = Self;
             #[inline(always)]
             fn neg(self) -> Self {
-                self.like(-0.0) - self
+                self.xor(self.bits(functions::SIGN))
             }
         }
 
@@ -107,6 +108,10 @@ macro_rules! lanes {
             const LANES: usize = $n;
             // Processors with room for eight lanes do not take four.
             const UNROLLED: bool = $n != 4;
+            #[inline(always)]
+            fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+                self.simd.vectorize(f)
+            }
             #[inline(always)]
             fn lane(self, i: usize) -> f64 {
                 self.lanes()[i]
@@ -211,7 +216,7 @@ macro_rules! lanes {
         #[inline(always)]
         fn over_interfaces(self) -> Self {
             let [x, y] = self.lanes();
-            self.like(x + y)
+            self + Self::new(self.simd, [y, x])
         }
         #[inline(always)]
         fn largest_over_interfaces(self) -> Self {
@@ -234,7 +239,7 @@ lanes!(Eight, __m512d, V4, 8, |s| s.avx512f, _mm512_add_pd _mm512_sub_pd _mm512_
 
 /// The operations on bits and the choices lane by lane: the instructions follow no one pattern of names.
 macro_rules! register {
-    ($name:ident, |$s:ident| $whole:expr, $plus:ident $minus:ident $left:ident $right:ident, $logic:expr, $and:ident $or:ident,
+    ($name:ident, |$s:ident| $whole:expr, $plus:ident $minus:ident $left:ident $right:ident, $logic:expr, $and:ident $or:ident $xor:ident,
      |$x:ident, $y:ident, $a:ident, $b:ident| $choose:expr, $all:expr) => {
         impl Register for $name {
             #[inline(always)]
@@ -260,6 +265,11 @@ macro_rules! register {
             fn or(self, o: Self) -> Self {
                 let $s = self.simd;
                 self.with($logic.$or(self.lanes, o.lanes))
+            }
+            #[inline(always)]
+            fn xor(self, o: Self) -> Self {
+                let $s = self.simd;
+                self.with($logic.$xor(self.lanes, o.lanes))
             }
             #[inline(always)]
             fn into_exponent(self) -> Self {
@@ -311,13 +321,13 @@ fn mended<const N: usize>(
     mended
 }
 
-register!(Pair, |s| s.sse2, _mm_add_epi64 _mm_sub_epi64 _mm_slli_epi64 _mm_srli_epi64, s.sse2, _mm_and_pd _mm_or_pd,
+register!(Pair, |s| s.sse2, _mm_add_epi64 _mm_sub_epi64 _mm_slli_epi64 _mm_srli_epi64, s.sse2, _mm_and_pd _mm_or_pd _mm_xor_pd,
     |x, y, a, b| s.sse4_1._mm_blendv_pd(b, a, s.sse2._mm_cmplt_pd(x, y)),
     s.sse2._mm_movemask_pd(s.sse2._mm_cmplt_pd(x, y)) == 3);
-register!(Four, |s| s.avx2, _mm256_add_epi64 _mm256_sub_epi64 _mm256_slli_epi64 _mm256_srli_epi64, s.avx, _mm256_and_pd _mm256_or_pd,
+register!(Four, |s| s.avx2, _mm256_add_epi64 _mm256_sub_epi64 _mm256_slli_epi64 _mm256_srli_epi64, s.avx, _mm256_and_pd _mm256_or_pd _mm256_xor_pd,
     |x, y, a, b| s.avx._mm256_blendv_pd(b, a, s.avx._mm256_cmp_pd::<_CMP_LT_OQ>(x, y)),
     s.avx._mm256_movemask_pd(s.avx._mm256_cmp_pd::<_CMP_LT_OQ>(x, y)) == 15);
-register!(Eight, |s| s.avx512f, _mm512_add_epi64 _mm512_sub_epi64 _mm512_slli_epi64 _mm512_srli_epi64, s.avx512dq, _mm512_and_pd _mm512_or_pd,
+register!(Eight, |s| s.avx512f, _mm512_add_epi64 _mm512_sub_epi64 _mm512_slli_epi64 _mm512_srli_epi64, s.avx512dq, _mm512_and_pd _mm512_or_pd _mm512_xor_pd,
     |x, y, a, b| s.avx512f._mm512_mask_blend_pd(s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y), b, a),
     s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y) == 255);
 

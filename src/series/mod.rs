@@ -17,10 +17,12 @@ mod event;
 mod formula;
 #[cfg(target_arch = "x86_64")]
 mod functions;
+mod handle;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod plain;
 mod real;
+mod recurrences;
 mod stepper;
 mod tape;
 
@@ -30,14 +32,15 @@ pub use columns::{Columns, Linearisation, Spread};
 pub use element::Element;
 pub use event::{Passage, Section, Zeros};
 pub use formula::{Formula, Rates, WATCHED};
+pub use handle::{Series, value};
 #[cfg(target_arch = "x86_64")]
 pub use lanes::{Eight, Four, Pair};
 pub use plain::Both;
 pub use stepper::Stepper;
-pub use tape::{Order, Series, value};
+pub use tape::Order;
 
-/// The highest order of the unrolled series.
-pub const MAX_ORDER: usize = 20;
+/// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
+pub const MAX_ORDER: usize = 18;
 
 /// The order of the series in double-double arithmetic, run in loops.
 pub const REFERENCE_ORDER: usize = 32;

@@ -1,7 +1,8 @@
 //! The arithmetic of [`Series`], so that any formula can be evaluated in them.
 
 use super::element::Element;
-use super::tape::{Kind, Order, Series, exact, literal, row, value};
+use super::handle::{Kind, Series, exact, literal, row, value};
+use super::tape::Order;
 use crate::number::{DoubleDouble, Real};
 use Kind::{Exact, Literal, Row, Value};
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -14,7 +15,7 @@ impl<E: Element, O: Order> Neg for Series<'_, E, O> {
             Literal(x) => literal(-x),
             Exact(x) => exact(-x),
             Value(x) => value(-x),
-            Row(a) => row(a.mapped(-a.newest())),
+            Row(a) => row(a.negative()),
         }
     }
 }
@@ -28,9 +29,9 @@ impl<E: Element, O: Order> Add for Series<'_, E, O> {
             (_, Literal(0.0)) => self,
             (a, b) => match (a.released(), b.released()) {
                 // What is exactly zero costs nothing.
-                (Row(a), Row(b)) => row(a.mapped(a.newest() + b.newest())),
+                (Row(a), Row(b)) => row(a.sum(b)),
                 (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.plus(x)),
-                (Row(a), Exact(x)) | (Exact(x), Row(a)) => row(a.plus(a.newest().like_exact(x))),
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => row(a.plus(a.any().like_exact(x))),
                 (Value(x), Value(y)) => value(x + y),
                 (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x + x.like_exact(y)),
                 (Exact(x), Exact(y)) => exact(x + y),
@@ -47,19 +48,22 @@ impl<E: Element, O: Order> Sub for Series<'_, E, O> {
         match (self.kind(), other.kind()) {
             (_, Literal(0.0)) => self,
             (a, b) => match (a.released(), b.released()) {
-                (Row(a), Row(b)) => row(a.mapped(a.newest() - b.newest())),
+                (Row(a), Row(b)) => row(a.difference(b)),
                 (Row(_), _) => self + -other,
                 (Value(x), Row(a)) => {
-                    let new = a.newest();
-                    row(a.mapped(if a.order() == 0 { x - new } else { -new }))
+                    if a.order() == 0 {
+                        row(a.mapped(x - a.newest()))
+                    } else {
+                        row(a.loose().negative())
+                    }
                 }
                 (Exact(x), Row(a)) => {
-                    let new = a.newest();
-                    row(a.mapped(if a.order() == 0 {
-                        new.like_exact(x) - new
+                    if a.order() == 0 {
+                        let new = a.newest();
+                        row(a.mapped(new.like_exact(x) - new))
                     } else {
-                        -new
-                    }))
+                        row(a.loose().negative())
+                    }
                 }
                 (_, _) => self + -other,
             },
@@ -79,11 +83,8 @@ impl<E: Element, O: Order> Mul for Series<'_, E, O> {
             (_, Literal(-1.0)) => -self,
             (a, b) => match (a.released(), b.released()) {
                 (Row(a), Row(b)) => row(a.product(b)),
-                (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.mapped(a.newest() * x)),
-                (Row(a), Exact(x)) | (Exact(x), Row(a)) => {
-                    let new = a.newest();
-                    row(a.mapped(new * new.like_exact(x)))
-                }
+                (Row(a), Value(x)) | (Value(x), Row(a)) => row(a.scaled(x)),
+                (Row(a), Exact(x)) | (Exact(x), Row(a)) => row(a.scaled(a.any().like_exact(x))),
                 (Value(x), Value(y)) => value(x * y),
                 (Value(x), Exact(y)) | (Exact(y), Value(x)) => value(x * x.like_exact(y)),
                 (Exact(x), Exact(y)) => exact(x * y),
@@ -103,14 +104,14 @@ impl<E: Element, O: Order> Div for Series<'_, E, O> {
                 let a = match a.released() {
                     Row(a) => a,
                     Value(x) => b.constant_series(x),
-                    Exact(x) => b.constant_series(b.newest().like_exact(x)),
+                    Exact(x) => b.constant_series(b.any().like_exact(x)),
                     Literal(_) => unreachable!("released"),
                 };
                 row(a.quotient(b))
             }
             (a, b) => match (a.released(), b.released()) {
                 (Row(a), Value(x)) => row(a.over(x)),
-                (Row(a), Exact(x)) => row(a.over(a.newest().like_exact(x))),
+                (Row(a), Exact(x)) => row(a.over(a.any().like_exact(x))),
                 (Value(x), Value(y)) => value(x / y),
                 (Value(x), Exact(y)) => value(x / x.like_exact(y)),
                 (Exact(x), Value(y)) => value(y.like_exact(x) / y),
@@ -129,7 +130,7 @@ impl<E: Element, O: Order> Add<f64> for Series<'_, E, O> {
             Literal(y) => exact(DoubleDouble::of_finite(y, x)),
             Exact(y) => exact(y + x),
             Value(y) => value(y + y.like(x)),
-            Row(a) => row(a.plus(a.newest().like(x))),
+            Row(a) => row(a.plus(a.any().like(x))),
         }
     }
 }
@@ -150,7 +151,7 @@ impl<E: Element, O: Order> Mul<f64> for Series<'_, E, O> {
             Exact(y) => exact(y * x),
             Value(y) => value(y * y.like(x)),
             Literal(_) => unreachable!("released"),
-            Row(a) => row(a.mapped(a.newest() * a.newest().like(x))),
+            Row(a) => row(a.scaled(a.any().like(x))),
         }
     }
 }
@@ -163,7 +164,7 @@ impl<E: Element, O: Order> Div<f64> for Series<'_, E, O> {
             Exact(y) => exact(y / x),
             Value(y) => value(y / y.like(x)),
             Literal(_) => unreachable!("released"),
-            Row(a) => row(a.over(a.newest().like(x))),
+            Row(a) => row(a.over(a.any().like(x))),
         }
     }
 }
@@ -200,7 +201,7 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
             Literal(x) => x,
             Exact(x) => x.hi(),
             Value(x) => x.first(),
-            Row(a) => a.get(0).first(),
+            Row(a) => a.stored().get(0).first(),
         }
     }
 
@@ -209,7 +210,7 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         ln: |x| Element::ln(x), |a| a.logarithm();
         sinh: |x| Element::sinh_cosh(x).0, |a| a.hyperbolic().0;
         cosh: |x| Element::sinh_cosh(x).1, |a| a.hyperbolic().1;
-        abs: |x| Element::abs(x), |a| a.mapped(a.newest() * a.get(0).sign());
+        abs: |x| Element::abs(x), |a| a.magnitude();
     }
 
     #[inline(always)]
@@ -236,7 +237,7 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
     #[inline(always)]
     fn sign(self) -> Self {
         match self.kind() {
-            Row(a) => value(a.get(0).sign()),
+            Row(a) => value(a.stored().get(0).sign()),
             _ => literal(1_f64.copysign(self.leading())),
         }
     }

@@ -252,7 +252,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         match order {
             12 => self.sum(12, h),
             16 => self.sum(16, h),
-            20 => self.sum(20, h),
+            18 => self.sum(18, h),
             _ => self.sum(order, h),
         }
     }

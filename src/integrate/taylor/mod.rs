@@ -1,6 +1,6 @@
 //! The Taylor method: every step is the power series of the solution at its beginning.
 //!
-//! The order is 12, 16 or 20 by the tolerance, and every step as long as the last terms of its series allow (Jorba & Zou
+//! The order is 12, 16 or 18 by the tolerance, and every step as long as the last terms of its series allow (Jorba & Zou
 //! 2005). The polynomial is the dense output, to the order of the method and at no cost. A step is tried but once: it is
 //! shortened, without another series, only where it would leave the domain of the law.
 //!
@@ -17,7 +17,7 @@ use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
 use crate::series::{Accuracy, Derivatives, Expansion, REFERENCE_ORDER, Solution};
 
-/// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
+/// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and by as much in ln psi, or by `atol + rtol` if that is more.
 ///
 /// ```
 /// use twinslip::field::State;
@@ -63,7 +63,7 @@ fn order(rtol: f64) -> usize {
     } else if rtol > MIDDLE {
         16
     } else {
-        20
+        18
     }
 }
 

@@ -274,7 +274,7 @@ impl Mul<f64> for DoubleDouble {
 impl Div<f64> for DoubleDouble {
     type Output = Self;
     // relative error 3 u^2: what the first digit leaves is a double, but for the low part
-    #[inline(never)]
+    #[inline]
     fn div(self, x: f64) -> Self {
         let first = self.hi / x;
         let (product, error) = two_product(first, x);
