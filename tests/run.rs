@@ -177,8 +177,9 @@ fn error_estimates_hold_where_doubles_end() {
         ("E1_DR_K0.45", "50", "dieterich-ruina", 1e-13),
     ] {
         let (error, estimate) = error_and_estimate(scene, end, law, rtol);
+        // What rounding ln psi at the start to a double does is in the one and not in the other.
         assert!(
-            estimate < 100.0 * error && estimate > error,
+            estimate < 100.0 * error && estimate + 3e-14 > error,
             "{scene} at {end}: {error:e} estimated as {estimate:e}"
         );
     }

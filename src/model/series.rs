@@ -42,8 +42,8 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     #[inline(always)]
     fn units(&self, x: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
         let [tau, psi] = *x;
-        let [of_tau, of_log_psi] = units(tau, rtol, atol);
-        [of_tau, psi * of_log_psi]
+        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+        [of_tau, psi * tau.like(atol + rtol)]
     }
 
     #[inline(always)]
@@ -51,14 +51,6 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
         // psi, and no number where tau is not finite.
         tau.mul_add(tau.like(0.0), *psi)
     }
-}
-
-/// What may err by one in tau, and in ln psi: the same in both where tau is more than one, for the stress follows ln psi as it
-/// follows itself.
-#[inline(always)]
-pub(super) fn units<E: Element>(tau: E, rtol: f64, atol: f64) -> [E; 2] {
-    let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-    [of_tau, Element::max(of_tau, tau.like(atol + rtol))]
 }
 
 type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;

@@ -2,7 +2,7 @@
 
 use super::{
     Loading,
-    series::{logarithms, units},
+    series::logarithms,
     stress_rate,
 };
 use crate::friction::{AnyLaw, Law, with_law};
@@ -46,8 +46,9 @@ impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
 
     #[inline(always)]
     fn units(&self, [tau, p, q]: &[E; 3], (rtol, atol): (f64, f64)) -> [E; 3] {
-        let [of_tau, of_log_psi] = units(*tau, rtol, atol);
-        [of_tau, *p * of_log_psi, *q * of_log_psi]
+        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+        let of_psi = tau.like(atol + rtol);
+        [of_tau, *p * of_psi, *q * of_psi]
     }
 
     #[inline(always)]

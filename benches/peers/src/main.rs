@@ -154,7 +154,7 @@ fn compare(
 fn flow(root: &Path, program: &stock::Program, scene: &str) -> Vec<Row> {
     let problem = Problem::load(root, scene);
     let exact = exact_end(&problem);
-    let mut peers = ours::all(&problem);
+    let mut peers = ours::all(&problem, false);
     peers.extend(children::c(&problem, program, false));
     peers.extend(children::python(root, &problem, false));
     peers.extend(crates::all(&problem));
@@ -176,7 +176,7 @@ fn tangent(
         ..problem.until(period)
     };
     let exact = exact_tangent(&problem);
-    let mut peers = ours::all(&problem);
+    let mut peers = ours::all(&problem, true);
     peers.extend(children::c(&problem, program, true));
     peers.extend(children::python(root, &problem, true));
     let name = format!("{scene}, tangent");

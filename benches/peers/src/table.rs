@@ -8,13 +8,15 @@ use std::path::Path;
 
 const ERRORS: [f64; 5] = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12];
 const OURS: &str = "twinslip ";
+/// How the names of methods end that make many runs at once.
+const MANY: &str = " batch";
 
 const HEAD: &str = "# twinslip and its peers at equal error\n\n\
     One run, one core, all in turn; thread CPU time of one run, median, log-log interpolated at equal global error at the end, \
     never at equal tolerance. In brackets the time over that of the fastest method of twinslip at that error. `-`: not reached \
     at any tolerance, or not within the bound on time; `<=`: even the loosest tolerance errs less. Compile time of heyoka is \
-    left out; the call from Python, some microseconds, is in its times and in those of scipy. `heyoka batch` is the time of \
-    one of 8 (AVX-512) or 4 runs made at once, and its error that of the first.\n";
+    left out; the call from Python, some microseconds, is in its times and in those of scipy. `batch` is the time of \
+    one of 8 (AVX-512) or 4 runs made at once, and its error that of the first; ratios are to the fastest method of one run.\n";
 
 /// One table per scene.
 pub fn markdown(root: &Path, rows: &[Row]) -> String {
@@ -36,7 +38,7 @@ pub fn markdown(root: &Path, rows: &[Row]) -> String {
         let best = ERRORS.map(|error| {
             methods
                 .iter()
-                .filter(|method| method.starts_with(OURS))
+                .filter(|method| method.starts_with(OURS) && !method.ends_with(MANY))
                 .filter_map(|method| time(method, error))
                 .map(|reached| reached.seconds)
                 .reduce(f64::min)

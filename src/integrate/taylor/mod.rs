@@ -17,7 +17,7 @@ use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
 use crate::series::{Accuracy, Derivatives, Expansion, REFERENCE_ORDER, Solution};
 
-/// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and by as much in ln psi, or by `atol + rtol` if that is more.
+/// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
 /// ```
 /// use twinslip::field::State;
