@@ -4,7 +4,7 @@
 //! `tangent/SCENE`, the tangent flow over one cycle; `cvode-against-rosenbrock/SCENE`, the old rivals at every decade. Errors:
 //! the largest relative one of (tau, psi1, psi2) for a state, the largest entry of |M - M*| / max |M*| for a tangent.
 //!
-//! Rows go to `benches/results/*.csv`; `cargo run --release --example work_precision` makes tables and pictures of them.
+//! Rows go to `benches/results/*.csv`; `cargo run --release --example work_precision_report` makes tables and pictures of them.
 
 #[path = "../common/mod.rs"]
 mod common;

@@ -11,8 +11,8 @@ const STOCK: &str = "C cvode-bdf";
 
 pub const HEAD: &str = "# Time to reach an error\n\n\
     Thread CPU time of one run, median, log-log interpolated between tolerances at equal error, not at equal tolerance. `-`: \
-    not reached at any tolerance within the bound on time; `<=`: even the loosest tolerance errs less. In brackets: the time \
-    over that of plain C with stock CVODES (BDF) at the same error, where `benches/peers/run` measured both in turn.\n";
+    not reached at any tolerance within the bound on time; `<=`: even the loosest tolerance errs less. In brackets: how \
+    many times faster than plain C with stock CVODES (BDF) at the same error, where `benches/peers/run` measured both in turn.\n";
 
 /// One table per scene.
 pub fn tables(what: &str, titles: &[(String, String)], rows: &[Row], peers: &[Row]) -> String {
@@ -55,16 +55,19 @@ fn cell(time: Option<Reached>, ratio: Option<f64>) -> String {
         return "-".into();
     };
     let bound = if at_most { "<= " } else { "" };
-    let ratio = ratio.map_or(String::new(), |ratio| format!(" ({ratio:.2})"));
+    let ratio = ratio.map_or(String::new(), |ratio| match ratio {
+        ratio if ratio < 10.0 => format!(" ({ratio:.1})"),
+        ratio => format!(" ({ratio:.0})"),
+    });
     format!("{bound}{}{ratio}", time_text(seconds))
 }
 
-/// Our time over that of plain C, both of the same run of the peers; none where either is only a bound.
+/// The time of plain C over ours, both of the same run of the peers; none where either is only a bound.
 fn ratio(peers: &[Row], scene: &str, method: &str, error: f64) -> Option<f64> {
     let time = |method: &str| {
         time_to_reach(&points(peers, scene, method), error)
             .filter(|reached| !reached.at_most)
             .map(|reached| reached.seconds)
     };
-    Some(time(&format!("twinslip {method}"))? / time(STOCK)?)
+    Some(time(STOCK)? / time(&format!("twinslip {method}"))?)
 }

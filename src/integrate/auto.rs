@@ -17,8 +17,8 @@ use crate::field::{Jacobian, State, VectorField};
 const TAYLOR_LOOKS: usize = 16;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
 const RODAS_LOOKS: usize = 4;
-/// h |lambda| from which on Taylor's step counts as held by stability.
-const HELD: f64 = 5.0;
+/// h |lambda| over the order from which on Taylor's step counts as held by stability, which does so at 0.45.
+const HELD: f64 = 0.35;
 /// h |lambda| that Rodas5P has to keep: at less Taylor, with a third of the time a step, is ahead.
 const PAYS: f64 = 20.0;
 /// Steps of Rodas5P, which begins with short ones, before it is judged.
@@ -140,6 +140,7 @@ impl<const N: usize> Auto<N> {
         relay: &mut Relay<'_, '_, N>,
     ) -> Result<State<N>> {
         self.taylor.set_max_steps(left);
+        let held_from = HELD * self.taylor.order() as f64;
         let (mut steps, mut wait) = (0, wait);
         let mut held = |h: f64, state: &dyn Fn() -> State<N>| {
             steps += 1;
@@ -151,7 +152,7 @@ impl<const N: usize> Auto<N> {
                 return false;
             }
             let (rate, decays) = dominant_mode(&field.jacobian(&state()));
-            decays && h.abs() * rate > HELD
+            decays && h.abs() * rate > held_from
         };
         let (end, reached) = match &relay.observer {
             None => self.taylor.flow_until(field, t, y, None, &mut held)?,

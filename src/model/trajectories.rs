@@ -1,10 +1,6 @@
 //! Several trajectories of two interfaces at once, one in every lane, each with its own loading.
 
-use super::{
-    Loading,
-    series::logarithms,
-    stress_rate,
-};
+use super::{Loading, series::logarithms, stress_rate};
 use crate::friction::{AnyLaw, Law, with_law};
 use crate::series::{Accuracy, Element, Expansion, Formula, Order, Rates, Series, WATCHED, value};
 #[cfg(target_arch = "x86_64")]

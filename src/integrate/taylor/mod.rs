@@ -144,6 +144,11 @@ impl Taylor {
         self.walk(field, t, y0, &mut *solution, observer, halt)
     }
 
+    /// The order of a step.
+    pub(super) fn order(&self) -> usize {
+        self.accuracy.order
+    }
+
     /// Another bound on steps.
     pub(super) fn set_max_steps(&mut self, max_steps: usize) {
         self.max_steps = max_steps;
