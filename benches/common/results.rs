@@ -91,11 +91,13 @@ pub fn read(path: &Path) -> io::Result<Vec<Row>> {
     Ok(rows.collect::<Result<_, _>>()?)
 }
 
-/// Writes rows into a file, in place of the older ones of the same methods in the same scenes: a part can be measured again.
+/// Writes rows into a file, in place of the older ones of the same methods in the same scenes at the same tolerances: a part can
+/// be measured again.
 pub fn merge(path: &Path, new: &[Row]) -> io::Result<()> {
     let replaced = |old: &Row| {
-        new.iter()
-            .any(|row| row.scene == old.scene && row.method == old.method)
+        new.iter().any(|row| {
+            (&row.scene, &row.method, row.tolerance) == (&old.scene, &old.method, old.tolerance)
+        })
     };
     let mut rows = read(path)?;
     rows.retain(|row| !replaced(row));

@@ -57,6 +57,7 @@ pub fn group<A>(
     let mut rows = Vec::new();
     for (method, choice) in methods {
         let mut slow: Option<String> = None;
+        let (before, mut left_out) = (rows.len(), false);
         for &tolerance in task.tolerances {
             let without = |status: String| {
                 println!("{name}/{}/{method}/{tolerance:.0e}: {status}", task.scene);
@@ -108,6 +109,7 @@ pub fn group<A>(
             // The last samples are criterion's, the first ones its warm-up. None: a filter left this one out.
             let measured = samples.split_off(samples.len().saturating_sub(SAMPLES));
             let Some(seconds) = median(measured) else {
+                left_out = true;
                 continue;
             };
             println!(
@@ -124,6 +126,11 @@ pub fn group<A>(
                 rejected: Some(work.rejected),
                 status: OK.into(),
             });
+        }
+        // What a filter leaves out was not tried: older rows of it stand.
+        if left_out {
+            let tried = rows.split_off(before);
+            rows.extend(tried.into_iter().filter(|row| row.seconds.is_some()));
         }
     }
     group.finish();
