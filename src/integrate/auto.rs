@@ -1,7 +1,7 @@
 //! The method that suits the run: Taylor, and Rodas5P for as long as strong damping would hold Taylor's steps short.
 //!
-//! An explicit method's step is bound by h |lambda| for the fastest decaying mode lambda, Taylor's at 7 to 9, whatever the
-//! tolerance. So a run begins with Taylor, and every few steps the dominant mode of the Jacobian is looked at; where h |lambda|
+//! An explicit method's step is bound by h |lambda| for the fastest decaying mode lambda, Taylor's at 0.45 times its
+//! order. So a run begins with Taylor, and every few steps the dominant mode of the Jacobian is looked at; where h |lambda|
 //! has come to that bound in a decaying mode, Rodas5P is tried. It stays while its steps are longer by more than what they
 //! cost more, and hands back to Taylor otherwise. A try that did not pay makes the next one wait twice as long.
 //!

@@ -5,7 +5,7 @@
 //! shortened, without another series, only where it would leave the domain of the law.
 //!
 //! Along stick-slip cycles no method here comes near it. On strongly damped stretches its step is held by stability, at some
-//! 7 to 9 over the fastest rate whatever the tolerance: an implicit method is better there.
+//! 5 to 8 over the fastest rate by the order, whatever the tolerance: an implicit method is better there.
 
 mod batch;
 
