@@ -76,26 +76,16 @@ pub(super) fn exact<'t, E, O>(x: DoubleDouble) -> Series<'t, E, O> {
 #[inline(always)]
 pub(super) fn literal<'t, E, O>(x: f64) -> Series<'t, E, O> {
     Series {
-        tape: None,
-        row: 0,
-        newest: None,
-        factor: None,
-        value: None,
-        exact: DoubleDouble::from(x),
         literal: true,
+        ..exact(DoubleDouble::from(x))
     }
 }
 /// A constant, which may differ from lane to lane.
 #[inline(always)]
 pub fn value<'t, E, O>(x: E) -> Series<'t, E, O> {
     Series {
-        tape: None,
-        row: 0,
-        newest: None,
-        factor: None,
         value: Some(x),
-        exact: DoubleDouble::ZERO,
-        literal: false,
+        ..exact(DoubleDouble::ZERO)
     }
 }
 #[inline(always)]
