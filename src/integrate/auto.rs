@@ -13,7 +13,8 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 
-/// Steps of Taylor from one look at the Jacobian to the next.
+/// Steps of Taylor before the first look at the Jacobian, and from one look to the next.
+const FIRST_LOOK: usize = 6;
 const TAYLOR_LOOKS: usize = 16;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
 const RODAS_LOOKS: usize = 4;
@@ -21,8 +22,10 @@ const RODAS_LOOKS: usize = 4;
 const HELD: f64 = 0.35;
 /// h |lambda| that Rodas5P has to keep: at less Taylor, with a third of the time a step, is ahead.
 const PAYS: f64 = 20.0;
-/// Steps of Rodas5P, which begins with short ones, before it is judged.
+/// Steps of Rodas5P, which begins with short ones, before it is judged by that.
 const TRIAL: usize = 12;
+/// h |lambda| without which a trial ends at its first look: Taylor goes as far.
+const FUTILE: f64 = 4.0;
 /// Longest wait for the next try, in looks.
 const PATIENCE: usize = 1 << 12;
 
@@ -144,7 +147,7 @@ impl<const N: usize> Auto<N> {
         let (mut steps, mut wait) = (0, wait);
         let mut held = |h: f64, state: &dyn Fn() -> State<N>| {
             steps += 1;
-            if steps % TAYLOR_LOOKS != 0 {
+            if steps % TAYLOR_LOOKS != FIRST_LOOK {
                 return false;
             }
             if wait > 0 {
@@ -181,11 +184,12 @@ impl<const N: usize> Auto<N> {
         let mut observer = |step: &Step<'_, N>| {
             let control = relay.see(step)?;
             steps += 1;
-            if control == Control::Stop || fixed || steps < TRIAL || steps % RODAS_LOOKS != 0 {
+            if control == Control::Stop || fixed || steps % RODAS_LOOKS != 0 {
                 return Ok(control);
             }
             let (rate, decays) = dominant_mode(&field.jacobian(step.y1));
-            let pays = decays && (step.t1 - step.t0).abs() * rate > PAYS;
+            let least = if steps < TRIAL { FUTILE } else { PAYS };
+            let pays = decays && (step.t1 - step.t0).abs() * rate > least;
             Ok(if pays {
                 Control::Continue
             } else {

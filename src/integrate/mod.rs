@@ -8,6 +8,7 @@ mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
 mod rosenbrock;
+mod singularity;
 mod tableau;
 mod taylor;
 
@@ -20,9 +21,10 @@ pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
 pub use taylor::{Batch, BatchObserver, BatchRun, Taylor};
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::series::Expansion;
+pub(crate) use singularity::step_underflow;
 
 /// One accepted step, as an observer sees it.
 pub struct Step<'a, const N: usize> {
@@ -80,33 +82,4 @@ pub trait Integrator<const N: usize> {
 
     /// The work of the last call, finished or failed.
     fn work(&self) -> Work;
-}
-
-/// Names the reason for a step that has become too small to change t: a finite-time singularity if the field is so large
-/// there that the state changes visibly within the rounding of t and the speed still grows, else a tolerance that can't be met.
-pub(crate) fn step_underflow<const N: usize>(
-    field: &dyn VectorField<N>,
-    t: f64,
-    h: f64,
-    y: &State<N>,
-) -> Error {
-    /// Relative change of the state within the spacing of the numbers around t from which on t is the singularity to rounding.
-    const VISIBLE: f64 = 1e-4;
-    let f = field.f(y);
-    let rate = f.amax();
-    if !rate.is_finite() {
-        return Error::NonFinite {
-            what: "the right-hand side",
-            t,
-        };
-    }
-    let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
-    // d|f|^2/dt = 2 f . J f, with f scaled: its square may overflow.
-    let direction = f / rate;
-    let accelerates = direction.dot(&(field.jacobian(y) * direction)) * h.signum() > 0.0;
-    if rate * spacing > VISIBLE && accelerates {
-        Error::BlowUp { t, rate }
-    } else {
-        Error::StepTooSmall { t, h }
-    }
 }

@@ -222,10 +222,46 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
             last = Element::max(last, (self.coefficient(c, order) * one_over).abs());
             c += 1;
         }
-        let before =
-            before.largest_over_interfaces().rough_log2() * zero.like(-1.0 / (order - 1) as f64);
-        let last = last.largest_over_interfaces().rough_log2() * zero.like(-1.0 / order as f64);
-        zero.like(SAFETY) * Element::min(before, last).rough_exp2()
+        let before = before.largest_over_interfaces().rough_log2();
+        let last = last.largest_over_interfaces().rough_log2();
+        let log = Element::min(
+            before * zero.like(-1.0 / (order - 1) as f64),
+            last * zero.like(-1.0 / order as f64),
+        );
+        // Where the last term is larger than the one before, that is mostly chance.
+        let log = if (before - last - log).none_negative() {
+            log
+        } else {
+            self.while_terms_fall(order, &units, log)
+        };
+        zero.like(SAFETY) * log.rough_exp2()
+    }
+
+    /// The logarithm of a step, shortened to where the last terms cease to grow.
+    ///
+    /// Small terms bound the rest of the series only where they fall. Those of an exponential of 30 h are small and grow up to
+    /// the thirtieth if its factor is small enough.
+    #[cold]
+    fn while_terms_fall(&self, order: usize, units: &[E; C], log: E) -> E {
+        /// Coefficients below two to this say nothing.
+        const NONE: f64 = -900.0;
+        let zero = log.like(0.0);
+        // By pairs: the terms of an even or odd function vanish in turn.
+        let pair = |j: usize| {
+            let mut largest = zero;
+            for (c, unit) in units.iter().enumerate() {
+                for j in [j - 1, j] {
+                    largest = Element::max(largest, (self.coefficient(c, j) / *unit).abs());
+                }
+            }
+            largest.largest_over_interfaces().rough_log2()
+        };
+        let (first, second, third) = (pair(order - 4), pair(order - 2), pair(order));
+        let two = log + log;
+        let grown = third - second + two;
+        let grow = Element::min(grown, second - first + two);
+        let grow = (first - zero.like(NONE)).if_positive(grow, zero);
+        grow.if_positive(log - grown * zero.like(0.5), log)
     }
 
     /// The step h, cut just behind the zero of the variable in whose zeros the formula has a kink: a series does not reach

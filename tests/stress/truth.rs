@@ -44,8 +44,8 @@ pub enum Truth<const N: usize> {
         uncertainty: f64,
         conditioning: f64,
     },
-    /// No solution beyond this time.
-    Singular { time: f64 },
+    /// No solution beyond this time, of which an error at the start in the units of the tolerance moves this part.
+    Singular { time: f64, conditioning: f64 },
     /// Nothing is known.
     Unknown { time: f64 },
 }
@@ -69,8 +69,20 @@ impl<const N: usize> Truth<N> {
                     return (known, rule(Rule::Reference));
                 }
                 Err(Error::TooManySteps { .. }) => {}
-                Err(Error::BlowUp { t, .. } | Error::NonFinite { t, .. }) => {
-                    return (Truth::Singular { time: t }, Rule::Singular);
+                Err(Error::BlowUp { t, .. }) => {
+                    let conditioning = of_singularity(field, start, time, t);
+                    let singular = Truth::Singular {
+                        time: t,
+                        conditioning,
+                    };
+                    return (singular, Rule::Singular);
+                }
+                Err(Error::NonFinite { t, .. }) => {
+                    let singular = Truth::Singular {
+                        time: t,
+                        conditioning: 1.0,
+                    };
+                    return (singular, Rule::Singular);
                 }
                 Err(_) => {}
             }
@@ -144,6 +156,30 @@ fn agreed<const N: usize>(
     let (first, second) = (end(("rodas5p", 1e-12))?, end(second)?);
     let apart = error(&second, &first);
     (apart < AGREEMENT).then_some((first, apart))
+}
+
+/// How much of its time a singularity moves for an error of one at the start in the units of [`conditioning`]; at least one.
+///
+/// A fall of psi from w = ln psi takes a time like exp(beta w): an error of rtol |w| in w is beta |w| rtol of that time.
+fn of_singularity<const N: usize>(
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    time: f64,
+    singularity: f64,
+) -> f64 {
+    /// Of the unit, small enough to be linear and large enough to be seen.
+    const NUDGE: f64 = 1e-7;
+    let moved = |i: usize| {
+        let mut nudged = *start;
+        nudged[i] += NUDGE * (1.0 + start[i].abs());
+        let mut reference = Taylor::reference(REFERENCE_STEPS).expect("valid");
+        match reference.flow(field, (0.0, time), &nudged, None) {
+            Err(Error::BlowUp { t, .. }) => ((t / singularity - 1.0) / NUDGE).abs(),
+            // The singularity is gone.
+            _ => f64::INFINITY,
+        }
+    };
+    (0..N).map(moved).fold(1.0, f64::max)
 }
 
 /// The largest growth, from any time on the way to the end, of an error that the tolerance lets pass there.

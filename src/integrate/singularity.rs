@@ -1,0 +1,140 @@
+//! What it means when a step has become too small to change t.
+
+use crate::error::Error;
+use crate::field::{State, VectorField};
+use nalgebra::SVector;
+
+/// Spacings of the numbers around t within which a singularity is at t, to rounding.
+const NEAR: f64 = 1e5;
+/// Length of a probing step, relative to the state.
+const PACE: f64 = 1e-3;
+/// Bound on them. From 1 to the largest number there are 710 / `PACE`.
+const PACES: usize = 1_000_000;
+
+/// Names the reason for a step that has become too small to change t: a finite-time singularity if the solution, followed
+/// further, accelerates until it leaves the numbers, and does so within the rounding of t; else a tolerance that can't be met.
+///
+/// A burst that ends, however violent, is none: where beta < 1 the state falls by dozens of decades at once, but stops above
+/// zero.
+pub(crate) fn step_underflow<const N: usize>(
+    field: &dyn VectorField<N>,
+    t: f64,
+    h: f64,
+    y: &State<N>,
+) -> Error {
+    let rate = field.f(y).amax();
+    if !rate.is_finite() {
+        return Error::NonFinite {
+            what: "the right-hand side",
+            t,
+        };
+    }
+    let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
+    match time_to_singularity(field, y, h.signum(), NEAR * spacing) {
+        Some(left) => Error::BlowUp {
+            t: t + left * h.signum(),
+            rate,
+        },
+        None => Error::StepTooSmall { t, h },
+    }
+}
+
+/// The time in which the solution from y leaves the numbers, if it accelerates all the way and that takes no longer than
+/// `most`.
+///
+/// Followed over its own length instead of time, dy/ds = f / |f|, where the length of a change is relative to the state. So
+/// near a singularity nothing is stiff, nothing overflows, and each step of a fixed length adds a time to the sum that is
+/// smaller than the last one.
+fn time_to_singularity<const N: usize>(
+    field: &dyn VectorField<N>,
+    y: &State<N>,
+    direction: f64,
+    most: f64,
+) -> Option<f64> {
+    // The state's change over a unit of its length, and the time that it takes; none where the rate is no number.
+    let pace = |y: &State<N>| -> Option<(State<N>, f64)> {
+        let f = field.f(y);
+        let rate = f.amax();
+        let along = f / rate;
+        let speed: State<N> = SVector::from_fn(|i, _| along[i].abs() / (1.0 + y[i].abs()));
+        let time = 1.0 / (rate * speed.amax());
+        (rate.is_finite() && time > 0.0).then(|| (along * (direction / speed.amax()), time))
+    };
+    let (mut y, mut left) = (*y, 0.0);
+    for _ in 0..PACES {
+        let Some((k1, time)) = pace(&y) else {
+            return Some(left);
+        };
+        let unit = k1 / k1.amax();
+        // d|f|^2/dt = 2 f . J f, with f scaled: its square may overflow.
+        let growth = unit.dot(&(field.jacobian(&y) * unit)) * direction;
+        left += PACE * time;
+        if growth <= 0.0 || !growth.is_finite() || !(left <= most) {
+            // A Jacobian may overflow where the field itself does not yet.
+            return (growth.is_infinite() && growth > 0.0 && left <= most).then_some(left);
+        }
+        // The method of Runge (1895): the solution is only looked at, not computed.
+        let Some((k2, _)) = pace(&(y + k1 * (0.5 * PACE))) else {
+            return Some(left);
+        };
+        if k2.dot(&k1) <= 0.0 {
+            return None;
+        }
+        y += k2 * PACE;
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::field::Jacobian;
+
+    /// dy/dt = a y^p + b.
+    struct Power(f64, i32, f64);
+
+    impl VectorField<1> for Power {
+        fn f(&self, y: &State<1>) -> State<1> {
+            y.map(|y| self.0 * y.powi(self.1) + self.2)
+        }
+        fn jacobian(&self, y: &State<1>) -> Jacobian<1> {
+            y.map(|y| self.0 * f64::from(self.1) * y.powi(self.1 - 1))
+        }
+        fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> {
+            State::zeros()
+        }
+    }
+
+    #[test]
+    fn a_pole_is_found_where_it_is() {
+        // y = 1 / (T - t) and its like, from T - t = 1e-12.
+        let y = State::<1>::new(1e12);
+        let left = time_to_singularity(&Power(1.0, 2, 0.0), &y, 1.0, 1e-9).unwrap();
+        assert!((left / 1e-12 - 1.0).abs() < 0.01, "{left:e}");
+        // Backwards in time the pole lies at the other side.
+        let left = time_to_singularity(&Power(-1.0, 3, 0.0), &State::<1>::new(-1e6), -1.0, 1.0);
+        assert!((left.unwrap() / 0.5e-12 - 1.0).abs() < 0.01, "{left:?}");
+        assert!(time_to_singularity(&Power(1.0, 2, 0.0), &y, -1.0, 1.0).is_none());
+    }
+
+    #[test]
+    fn a_burst_is_no_pole() {
+        // Exponential growth; growth that saturates.
+        assert!(
+            time_to_singularity(&Power(1e20, 1, 0.0), &State::<1>::new(1.0), 1.0, 1e-19).is_none()
+        );
+        struct Logistic;
+        impl VectorField<1> for Logistic {
+            fn f(&self, y: &State<1>) -> State<1> {
+                y.map(|y| y * y * (1e20 - y))
+            }
+            fn jacobian(&self, y: &State<1>) -> Jacobian<1> {
+                y.map(|y| 2e20 * y - 3.0 * y * y)
+            }
+            fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> {
+                State::zeros()
+            }
+        }
+        assert!(time_to_singularity(&Logistic, &State::<1>::new(1.0), 1.0, 1.0).is_none());
+    }
+}
