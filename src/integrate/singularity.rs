@@ -11,6 +11,9 @@ const PACE: f64 = 1e-3;
 /// Bound on them. From 1 to the largest number there are 710 / `PACE`.
 const PACES: usize = 1_000_000;
 
+/// Acceleration that no burst shows which ends within the numbers, if its derivatives have already left them.
+const RUNAWAY: f64 = 1e100;
+
 /// Names the reason for a step that has become too small to change t: a finite-time singularity if the solution, followed
 /// further, accelerates until it leaves the numbers, and does so within the rounding of t; else a tolerance that can't be met.
 ///
@@ -60,6 +63,7 @@ fn time_to_singularity<const N: usize>(
         let time = 1.0 / (rate * speed.amax());
         (rate.is_finite() && time > 0.0).then(|| (along * (direction / speed.amax()), time))
     };
+    let (_, first) = pace(y)?;
     let (mut y, mut left) = (*y, 0.0);
     for _ in 0..PACES {
         let Some((k1, time)) = pace(&y) else {
@@ -69,9 +73,12 @@ fn time_to_singularity<const N: usize>(
         // d|f|^2/dt = 2 f . J f, with f scaled: its square may overflow.
         let growth = unit.dot(&(field.jacobian(&y) * unit)) * direction;
         left += PACE * time;
-        if growth <= 0.0 || !growth.is_finite() || !(left <= most) {
-            // A Jacobian may overflow where the field itself does not yet.
-            return (growth.is_infinite() && growth > 0.0 && left <= most).then_some(left);
+        if !growth.is_finite() {
+            // The derivatives overflow, or make inf * 0, where the field itself does not yet.
+            return (first / time > RUNAWAY && left <= most).then_some(left);
+        }
+        if growth <= 0.0 || left.is_nan() || left > most {
+            return None;
         }
         // The method of Runge (1895): the solution is only looked at, not computed.
         let Some((k2, _)) = pace(&(y + k1 * (0.5 * PACE))) else {
