@@ -182,8 +182,10 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const ROOM: usize> Track<S, E, 
             unit: self.stepper.unit(),
         };
         self.columns.expand(accuracy.order, &along);
-        let longest = self.columns.longest(accuracy, self.stepper.state()[1]);
-        let h = Element::min(longest_of_solution, limit.like(longest));
+        let most = Element::min(longest_of_solution, (limit / self.stepper.unit()).abs());
+        let psi = self.stepper.state()[1];
+        let longest = self.columns.longest(accuracy, psi, most.first());
+        let h = Element::min(most, limit.like(longest));
         let taken = self.stepper.advance_by(accuracy, h, limit);
         let h = taken / self.stepper.unit();
         self.columns.advance_by(accuracy.order, h);

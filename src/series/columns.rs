@@ -115,20 +115,20 @@ impl<X: Element> Columns<X> {
         }
     }
 
-    /// The step, in units of the series, at which the last two terms of every column are below the tolerance, relative to
-    /// its largest term; psi counts by its logarithm.
+    /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the
+    /// tolerance, relative to the column at the step's beginning; psi counts by its logarithm.
     #[inline(always)]
-    pub fn longest<E: Spread<X>>(&self, accuracy: &Accuracy, psi: E) -> f64 {
+    pub fn longest<E: Spread<X>>(&self, accuracy: &Accuracy, psi: E, most: f64) -> f64 {
+        /// Columns are not as small.
+        const NOTHING: f64 = 1e-250;
         let order = accuracy.order;
         let any = self.x[0];
         let one = any.like(1.0);
         let of_psi = [one / psi.spread(0, any), one / psi.spread(1, any)];
-        let mut largest = any.like(f64::MIN_POSITIVE);
-        let mut k = 0;
-        while k <= order {
-            largest = Element::max(largest, size(&self.series[k], of_psi));
-            k += 1;
-        }
+        // Derivatives in parameters begin at zero.
+        let begins = size(&self.series[0], of_psi);
+        let grows = size(&self.series[1], of_psi) * any.like(most);
+        let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
         let per_tolerable = one / (largest * any.like(accuracy.tolerances.0));
         let before = size(&self.series[order - 1], of_psi) * per_tolerable;
         let last = size(&self.series[order], of_psi) * per_tolerable;
