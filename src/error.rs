@@ -115,6 +115,14 @@ pub enum Error {
         /// Residual asked for.
         tolerance: f64,
     },
+    /// Something else was found where a periodic orbit was looked for.
+    #[error("{what}; {hint}")]
+    NoOrbit {
+        /// What happened.
+        what: String,
+        /// What to try.
+        hint: &'static str,
+    },
 }
 
 impl Error {

@@ -2,7 +2,8 @@
 //!
 //! Parallel frictional interfaces divide an elastic slab that is sheared at the velocity V_H; each obeys a rate-and-state
 //! friction law. Putelat, Willis and Dawes (2008) found equilibria, stick-slip cycles, tori and resonances in the three
-//! stiff differential equations (19) that follow. This crate integrates them and solves for their equilibria.
+//! stiff differential equations (19) that follow. This crate integrates them and solves for their equilibria and periodic
+//! orbits.
 //!
 //! | Type | Role |
 //! |---|---|
@@ -13,6 +14,7 @@
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
+//! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
@@ -42,6 +44,8 @@ pub mod sundials;
 pub mod integrate;
 
 pub mod equilibrium;
+
+pub mod orbit;
 
 pub mod scene;
 

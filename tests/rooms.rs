@@ -23,6 +23,18 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
+        "orbit",
+        &[
+            "equilibrium",
+            "integrate",
+            "model",
+            "field",
+            "series",
+            "friction",
+            "number",
+        ],
+    ),
+    (
         "scene",
         &[
             "integrate",
@@ -38,6 +50,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "cli",
         &[
             "scene",
+            "orbit",
             "equilibrium",
             "integrate",
             "sundials",

@@ -224,14 +224,14 @@ fn object(found: &Found, system: &System) -> Value {
     })
 }
 
-fn symmetry(symmetry: Symmetry) -> &'static str {
+pub(super) fn symmetry(symmetry: Symmetry) -> &'static str {
     match symmetry {
         Symmetry::Symmetric => "symmetric",
         Symmetry::Asymmetric => "asymmetric",
     }
 }
 
-fn verdict(verdict: Verdict) -> &'static str {
+pub(super) fn verdict(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Stable => "stable",
         Verdict::Unstable => "unstable",

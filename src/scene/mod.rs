@@ -42,9 +42,10 @@ pub use event::Event;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use options::{
-    EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OutputOptions,
+    EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
+    OutputOptions,
 };
-pub use plan::{Dimension, Plan, Sampling};
+pub use plan::{Dimension, Plan, Sampling, start};
 pub use run::{Outcome, Sink, run};
 pub use system::System;
 pub use units::{Quantity, Units};

@@ -181,6 +181,57 @@ pub struct EquilibriaOptions {
     pub output: OutputOptions,
 }
 
+/// `orbit`: a periodic orbit.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct OrbitOptions {
+    /// What slides.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// symmetric (both interfaces move alike) or asymmetric
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "symmetric",
+        help_heading = "Orbit"
+    )]
+    pub symmetry: String,
+    /// TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit, or near-symmetric[:EPS]; without it the orbit is looked
+    /// for
+    #[arg(
+        long,
+        value_name = "START",
+        allow_hyphen_values = true,
+        help_heading = "Orbit"
+    )]
+    pub start: Option<String>,
+    /// The period, roughly; with it no shorter cycle is taken instead
+    #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
+    pub period_guess: Option<f64>,
+    /// A second method that computes the orbit once more, or none [default: cvode-bdf; rodas5p in a build without SUNDIALS]
+    #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
+    pub crosscheck: Option<String>,
+    /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "auto",
+        help_heading = "Numerics"
+    )]
+    pub method: String,
+    /// Relative local error tolerance [default: 1e-15 of taylor, 1e-11 of the others]
+    #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
+    pub rtol: Option<f64>,
+    /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
+    #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
+    pub atol: Option<f64>,
+    /// Give up an arc after so many steps
+    #[arg(long, value_name = "N", default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
+    pub max_steps: usize,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
 /// A finite number; the domain of each parameter is checked where it has its meaning.
 fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {

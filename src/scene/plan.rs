@@ -190,8 +190,11 @@ fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<S
     Ok(Sampling::Every(interval))
 }
 
-/// tau and ln psi of both interfaces; equal entries stand for one interface too.
-fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
+/// tau and ln psi of both interfaces, as `--start` gives them; equal entries stand for one interface too.
+///
+/// # Errors
+/// [`Error::Input`] and [`Error::Parameter`] for what can't be read or is outside its domain.
+pub fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
     if let Some(rest) = text.strip_prefix("near-symmetric") {
         let asymmetry = match rest.strip_prefix(':') {
             Some(number) => start_number(number, text)?,

@@ -1,0 +1,116 @@
+//! Periodic orbits: one Newton step with its monodromy by each method, and a hundred orbits one after the other.
+//!
+//! `newton-step/ORBIT/METHOD`: a step of multiple shooting on a closed orbit, all tangents and the linear equations, at 1e-12.
+//! `hundred-orbits`: K = 0.14, V_H from 1 to 100, asymmetric, each from the one before, with multipliers: what a
+//! continuation code does for a branch.
+#![allow(missing_docs)]
+
+use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+use std::time::Duration;
+use twinslip::equilibrium::Symmetry;
+use twinslip::field::State;
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
+use twinslip::model::Loading;
+use twinslip::orbit::{Accuracy, Polygon, Query, Slab, Tracer, close, find, floquet};
+
+fn slab(driving: f64, stiffness: f64) -> Slab {
+    Slab {
+        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+        interfaces: 2,
+        loading: Loading::new(driving, stiffness).expect("positive"),
+    }
+}
+
+/// The asymmetric orbit, closed to rounding.
+fn polygon(slab: &Slab) -> Polygon<3> {
+    let query = Query {
+        symmetry: Symmetry::Asymmetric,
+        start: None,
+        period_guess: None,
+    };
+    let orbit = find(slab, &query, &Accuracy::of(Choice::Taylor))
+        .expect("an orbit")
+        .orbit;
+    let nodes = orbit.nodes.iter().map(|x| State::<3>::from_fn(|i, _| x[i]));
+    Polygon {
+        nodes: nodes.collect(),
+        durations: orbit.durations,
+    }
+}
+
+fn tracer(name: &str, tolerance: f64) -> Tracer<3> {
+    let choice = Choice::named(name).expect("a method of this build");
+    let tolerances = Tolerances::equal(tolerance).expect("valid");
+    Tracer::new(choice, tolerances, MAX_STEPS).expect("valid")
+}
+
+fn newton_step(criterion: &mut Criterion) {
+    let mut methods = vec!["taylor", "rodas5p", "rodas4"];
+    if cfg!(feature = "sundials") {
+        methods.extend(["cvode-bdf", "cvode-adams"]);
+    }
+    for (name, driving, stiffness) in [("relaxation-1", 1.0, 0.14), ("small-stiffness", 0.2, 0.05)]
+    {
+        let slab = slab(driving, stiffness);
+        let field = slab.whole();
+        let mut group = criterion.benchmark_group(format!("newton-step/{name}"));
+        group
+            .sample_size(10)
+            .measurement_time(Duration::from_secs(2));
+        for method in &methods {
+            let mut tracer = tracer(method, 1e-12);
+            // Closed by the method itself: what is timed then is one iteration.
+            let closed = close(&mut tracer, &*field, polygon(&slab))
+                .expect("an orbit")
+                .polygon;
+            group.bench_function(BenchmarkId::from_parameter(method), |bencher| {
+                bencher.iter(|| {
+                    let closed = close(&mut tracer, &*field, black_box(closed.clone()));
+                    closed.expect("an orbit").iterations
+                });
+            });
+        }
+    }
+}
+
+fn hundred_orbits(criterion: &mut Criterion) {
+    let velocities: Vec<f64> = (0..100)
+        .map(|i| 100.0_f64.powf(f64::from(i) / 99.0))
+        .collect();
+    let first = polygon(&slab(1.0, 0.14));
+    let mut group = criterion.benchmark_group("hundred-orbits");
+    group
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(3));
+    group.bench_function("taylor", |bencher| {
+        bencher.iter(|| {
+            let mut tracer = tracer("taylor", 1e-12);
+            let mut polygon = first.clone();
+            let mut last = 1.0;
+            let mut unstable = 0;
+            for &driving in black_box(&velocities) {
+                let slab = slab(driving, 0.14);
+                let field = slab.whole();
+                // K V_H T hardly changes.
+                polygon
+                    .durations
+                    .iter_mut()
+                    .for_each(|t| *t *= last / driving);
+                last = driving;
+                let closed = close(&mut tracer, &*field, polygon).expect("an orbit");
+                let multipliers = floquet(&closed, &|x| field.f(x));
+                unstable += usize::from(multipliers.multipliers[0].ln_abs.value > 0.0);
+                polygon = closed
+                    .polygon
+                    .meshed(&mut tracer, &*field)
+                    .expect("the same orbit");
+            }
+            unstable
+        });
+    });
+}
+
+criterion_group!(benches, newton_step, hundred_orbits);
+criterion_main!(benches);

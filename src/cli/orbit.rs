@@ -1,0 +1,414 @@
+//! `twinslip orbit`.
+
+use super::equilibria::{symmetry as symmetry_name, verdict as verdict_name};
+use super::report::{self, Report, unit_names};
+use super::{Ending, written};
+use crate::equilibrium::{Symmetry, Verdict};
+use crate::error::{Error, Result};
+use crate::friction::positive;
+use crate::integrate::{Choice, Tolerances};
+use crate::number::Uncertain;
+use crate::orbit::{
+    Accuracy, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
+};
+use crate::output::{self, Cell, Format};
+use crate::scene::{OrbitOptions, Quantity, System, start};
+use serde_json::{Value, json};
+
+pub const EXAMPLE: &str = "Example, the three orbits that coexist at K = 0.05 and V_H = 0.2, the last one unstable:
+  twinslip orbit --driving 0.2 --stiffness 0.05
+  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric
+  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480";
+
+/// What is to be done, checked.
+struct Plan {
+    system: System,
+    slab: Slab,
+    query: Query,
+    accuracy: Accuracy,
+    /// The second method.
+    second: Option<Accuracy>,
+}
+
+impl Plan {
+    fn new(options: &OrbitOptions) -> Result<Self> {
+        let system = System::new(&options.model)?;
+        let loading = system.loading()?;
+        let symmetry = match options.symmetry.as_str() {
+            "symmetric" => Symmetry::Symmetric,
+            "asymmetric" => Symmetry::Asymmetric,
+            other => {
+                return Err(Error::parameter(
+                    "symmetry",
+                    other,
+                    "symmetric or asymmetric",
+                ));
+            }
+        };
+        let start = options
+            .start
+            .as_deref()
+            .map(|text| start(text, &system, &loading))
+            .transpose()?;
+        let period_guess = options
+            .period_guess
+            .map(|t| {
+                Ok(system
+                    .units
+                    .inward(Quantity::Time, positive("period-guess", t)?))
+            })
+            .transpose()?;
+        let mut accuracy = Accuracy::of(Choice::named(&options.method)?);
+        if options.max_steps == 0 {
+            return Err(Error::parameter("max-steps", 0, "at least 1"));
+        }
+        accuracy.max_steps = options.max_steps;
+        if let Some(rtol) = options.rtol {
+            accuracy.tolerances = Tolerances::new(rtol, options.atol.unwrap_or(rtol))?;
+        } else if let Some(atol) = options.atol {
+            accuracy.tolerances = Tolerances::new(accuracy.tolerances.rtol, atol)?;
+        }
+        Ok(Plan {
+            slab: Slab {
+                law: system.law,
+                interfaces: system.interfaces,
+                loading,
+            },
+            query: Query {
+                symmetry,
+                start,
+                period_guess,
+            },
+            second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            accuracy,
+            system,
+        })
+    }
+
+    fn explain(&self) {
+        let interfaces = self.slab.interfaces;
+        let dimension = if self.query.symmetry == Symmetry::Symmetric {
+            2
+        } else {
+            3
+        };
+        eprintln!("plan of this command");
+        eprintln!(
+            "  dimension         {dimension}{}",
+            match (dimension, interfaces) {
+                (2, 2) => ": both interfaces move alike; the multiplier across is a quadrature",
+                _ => "",
+            }
+        );
+        eprintln!(
+            "  guess             {}",
+            match (self.query.start, self.query.period_guess) {
+                (Some(_), Some(_)) => "the start, over the period given",
+                (Some(_), None) => "the returns of the start, else what it settles on",
+                _ => "what runs settle on, else the branch from the nearest Hopf point",
+            }
+        );
+        eprintln!(
+            "  method            {}, tangents on, multiple shooting; rtol {:e}",
+            method_name(self.accuracy.method),
+            self.accuracy.tolerances.rtol
+        );
+        eprintln!(
+            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser"
+        );
+        match &self.second {
+            Some(second) => eprintln!(
+                "  crosscheck        {}, from nodes cut to three digits; rtol {:e}",
+                second.method.name(),
+                second.tolerances.rtol
+            ),
+            None => eprintln!("  crosscheck        off: --crosscheck none"),
+        }
+        eprintln!("  dense output      on, for the extremes alone");
+    }
+}
+
+fn method_name(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Auto => Choice::Taylor.name(),
+        other => other.name(),
+    }
+}
+
+/// The method of the crosscheck: another one than the first.
+fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
+    #[cfg(feature = "sundials")]
+    const DEFAULT: &str = "cvode-bdf";
+    #[cfg(not(feature = "sundials"))]
+    const DEFAULT: &str = "rodas5p";
+    let name = match name {
+        Some("none") => return Ok(None),
+        Some(name) => name,
+        None if method_name(first) == DEFAULT => Choice::Taylor.name(),
+        None => DEFAULT,
+    };
+    let method = Choice::named(name)?;
+    if method_name(method) == method_name(first) {
+        return Err(Error::Input(format!(
+            "--crosscheck {name} is the method itself; choose an unlike one, or none"
+        )));
+    }
+    Ok(Some(Accuracy {
+        checked: false,
+        ..Accuracy::of(method)
+    }))
+}
+
+pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
+    let plan = Plan::new(options)?;
+    let report = Report::new(&options.output, words, &[])?;
+    if options.output.explain {
+        plan.explain();
+    }
+    let Found { orbit, others } = find(&plan.slab, &plan.query, &plan.accuracy)?;
+    let mut trouble = None;
+    let checked = plan.second.as_ref().and_then(|second| {
+        crosscheck(&plan.slab, &orbit, second)
+            .map_err(|error| trouble = Some((second.method.name(), error)))
+            .ok()
+    });
+    if let Some((name, error)) = &trouble {
+        report.say(format!("the crosscheck by {name} failed: {error}"));
+    }
+    let ending = write(&plan, &report, &orbit, &others, checked.as_ref())?;
+    report.say(summary(&orbit, checked.as_ref(), &plan.system));
+    if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
+        return Ok(Ending::Undecided);
+    }
+    Ok(ending)
+}
+
+fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> String {
+    let unit = system.units.name(Quantity::Time);
+    let period = system.units.outward_uncertain(Quantity::Time, orbit.period);
+    let mut text = format!(
+        "period {} ± {:.1e} {unit}, {}; {} nodes, {} iterations, {} steps",
+        period.value,
+        period.uncertainty,
+        verdict_name(orbit.verdict()),
+        orbit.nodes.len(),
+        orbit.iterations,
+        orbit.work.steps
+    );
+    if let Some(Crosscheck {
+        orbit: second,
+        period_difference,
+        ..
+    }) = checked
+    {
+        let relative = period_difference / orbit.period.value;
+        text += &format!(
+            "; {} finds a period {relative:.1e} off, relatively",
+            second.method
+        );
+    }
+    text
+}
+
+fn write(
+    plan: &Plan,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    others: &[Orbit],
+    checked: Option<&Crosscheck>,
+) -> Result<Ending> {
+    let numerics = json!({
+        "method": orbit.method,
+        "rtol": plan.accuracy.tolerances.rtol,
+        "atol": plan.accuracy.tolerances.atol,
+        "max_steps": plan.accuracy.max_steps,
+        "crosscheck": plan.second.map(|second| second.method.name()),
+    });
+    let system = &plan.system;
+    if report.format == Format::Json {
+        let mut main = object(orbit, system);
+        main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, system));
+        let rest: Vec<Value> = others.iter().map(|other| object(other, system)).collect();
+        let result = json!({"orbit": main, "others": rest});
+        let mut work = report::work(&orbit.work);
+        work["nodes"] = json!(orbit.nodes.len());
+        work["iterations"] = json!(orbit.iterations);
+        let bytes = report.envelope(system, numerics, result, work, None);
+        return written(report.place.write(&bytes), &report.place);
+    }
+    let table = report.format == Format::Table;
+    let columns = columns(system, table);
+    let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
+    let units = unit_names(&system.units, columns.iter().map(|(_, quantity)| *quantity));
+    let remarks = report.remarks(system, &numerics);
+    let stream = report.place.stream()?;
+    let all = report
+        .rows(stream, &remarks, &names, &units)
+        .and_then(|mut writer| {
+            std::iter::once(orbit)
+                .chain(others)
+                .try_for_each(|one| writer.row(&cells(one, system, table)))
+        });
+    written(all, &report.place)
+}
+
+/// The columns of CSV; a table has room for what is looked at first.
+fn columns(system: &System, table: bool) -> Vec<(String, Quantity)> {
+    let mut columns: Vec<(String, Quantity)> = Vec::new();
+    let mut add = |name: &str, quantity, with_uncertainty: bool| {
+        columns.push((name.to_owned(), quantity));
+        if with_uncertainty && !table {
+            columns.push((format!("{name}_uncertainty"), quantity));
+        }
+    };
+    add("symmetry", Quantity::Number, false);
+    add("period", Quantity::Time, true);
+    add("stress_min", Quantity::Stress, true);
+    add("stress_max", Quantity::Stress, true);
+    add("slip_rate_max", Quantity::SlipRate, false);
+    add("state_min", Quantity::State, false);
+    for i in 1..=system.interfaces {
+        add(&format!("ln_abs_multiplier_{i}"), Quantity::Number, true);
+        add(&format!("angle_over_pi_{i}"), Quantity::Number, false);
+        if !table {
+            add(&format!("kind_{i}"), Quantity::Number, false);
+        }
+    }
+    add("verdict", Quantity::Number, false);
+    if !table {
+        add("stress", Quantity::Stress, false);
+        for i in 1..=system.interfaces {
+            add(&format!("log_state_{i}"), Quantity::LogState, false);
+        }
+        add("trivial_defect", Quantity::Number, false);
+        add("liouville_defect", Quantity::Number, false);
+    }
+    columns
+}
+
+fn cells(orbit: &Orbit, system: &System, table: bool) -> Vec<Cell> {
+    let units = &system.units;
+    let mut cells = vec![Cell::from(symmetry_name(orbit.symmetry))];
+    let mut add = |quantity, x: Uncertain| {
+        let x = units.outward_uncertain(quantity, x);
+        cells.push(x.value.into());
+        if !table {
+            cells.push(x.uncertainty.into());
+        }
+    };
+    add(Quantity::Time, orbit.period);
+    add(Quantity::Stress, orbit.stress_min);
+    add(Quantity::Stress, orbit.stress_max);
+    cells.push(
+        units
+            .outward(Quantity::SlipRate, orbit.slip_rate_max)
+            .into(),
+    );
+    cells.push(units.outward(Quantity::State, orbit.state_min).into());
+    for multiplier in &orbit.floquet.multipliers {
+        cells.push(multiplier.ln_abs.value.into());
+        if !table {
+            cells.push(multiplier.ln_abs.uncertainty.into());
+        }
+        cells.push(angle(multiplier).into());
+        if !table {
+            cells.push(Cell::from(kind(multiplier.kind)));
+        }
+    }
+    cells.push(Cell::from(verdict_name(orbit.verdict())));
+    if !table {
+        let point = outward_point(orbit, system);
+        cells.extend(point.into_iter().map(Cell::Number));
+        cells.push(orbit.floquet.trivial_defect.into());
+        cells.push(orbit.floquet.liouville_defect.into());
+    }
+    cells
+}
+
+/// tau and ln psi of each interface in the user's units.
+fn outward_point(orbit: &Orbit, system: &System) -> Vec<f64> {
+    let quantity = |i| {
+        if i == 0 {
+            Quantity::Stress
+        } else {
+            Quantity::LogState
+        }
+    };
+    let point = orbit.point.iter().enumerate();
+    let mut point: Vec<f64> = point
+        .map(|(i, &x)| system.units.outward(quantity(i), x))
+        .collect();
+    // Where both interfaces move alike they share a state.
+    while point.len() < system.interfaces + 1 {
+        point.push(point[1]);
+    }
+    point
+}
+
+fn object(orbit: &Orbit, system: &System) -> Value {
+    let units = &system.units;
+    let mut multipliers = vec![[1.0, 0.0]];
+    let mut below = 1.0;
+    for multiplier in &orbit.floquet.multipliers {
+        let mu = multiplier.value();
+        let conjugate = multiplier.kind == Kind::Complex && below < 0.0;
+        multipliers.push([mu.re, if conjugate { -mu.im } else { mu.im }]);
+        below = -below;
+    }
+    let logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
+    json!({
+        "symmetry": symmetry_name(orbit.symmetry),
+        "period": report::uncertain(units, Quantity::Time, orbit.period),
+        "point": outward_point(orbit, system),
+        "point_uncertainty": orbit.point_uncertainty,
+        "stress_min": report::uncertain(units, Quantity::Stress, orbit.stress_min),
+        "stress_max": report::uncertain(units, Quantity::Stress, orbit.stress_max),
+        "slip_rate_max": units.outward(Quantity::SlipRate, orbit.slip_rate_max),
+        "state_min": units.outward(Quantity::State, orbit.state_min),
+        "multipliers": multipliers,
+        "log_multipliers": logs,
+        "trivial_defect": orbit.floquet.trivial_defect,
+        "liouville_defect": orbit.floquet.liouville_defect,
+        "verdict": verdict_name(orbit.verdict()),
+        "method": orbit.method,
+    })
+}
+
+fn logarithm(multiplier: &Multiplier) -> Value {
+    let Uncertain { value, uncertainty } = multiplier.ln_abs;
+    let known = multiplier.kind != Kind::BelowFloor;
+    json!({
+        "ln_abs": known.then(|| output::uncertain((value, uncertainty))),
+        "ln_abs_at_most": (!known).then_some(value),
+        "angle_over_pi": angle(multiplier),
+        "kind": kind(multiplier.kind),
+    })
+}
+
+fn angle(multiplier: &Multiplier) -> Option<f64> {
+    (multiplier.kind != Kind::BelowFloor).then_some(multiplier.angle_over_pi)
+}
+
+fn kind(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Real => "real",
+        Kind::Complex => "complex",
+        Kind::BelowFloor => "below floor",
+    }
+}
+
+fn comparison(checked: &Crosscheck, system: &System) -> Value {
+    let second = object(&checked.orbit, system);
+    let difference = system
+        .units
+        .outward(Quantity::Time, checked.period_difference);
+    json!({
+        "method": checked.orbit.method,
+        "period_difference": difference,
+        "ln_abs_difference": checked.ln_abs_difference,
+        "period": second["period"],
+        "log_multipliers": second["log_multipliers"],
+        "verdict": second["verdict"],
+        "steps": checked.orbit.work.steps,
+    })
+}

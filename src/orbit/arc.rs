@@ -1,0 +1,180 @@
+//! Pieces of trajectories with their derivatives, by any of the methods.
+
+use crate::error::Result;
+use crate::field::{Jacobian, State, VectorField};
+use crate::integrate::{Choice, Integrator, MAX_STEPS, Taylor, Tolerances, Work};
+
+/// A piece of a trajectory, from a start that the caller knows.
+#[derive(Debug, Clone, Copy)]
+pub struct Arc<const N: usize> {
+    /// The state at its end.
+    pub end: State<N>,
+    /// The derivative of the end in the start.
+    pub tangent: Jacobian<N>,
+    /// The derivatives of the end in V_H and K; zero from methods that make none, and where not asked for.
+    pub parameters: [State<N>; 2],
+    /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
+    pub log_determinant: Option<f64>,
+    /// Bound on what the method errs by at the end, in units of 1 + |y|: steps times tolerance and rounding.
+    pub error: f64,
+}
+
+impl<const N: usize> Arc<N> {
+    /// ln |det| of the tangent: by the trace if the method has it, else by the tangent.
+    pub fn volume(&self) -> f64 {
+        self.log_determinant
+            .unwrap_or_else(|| self.tangent_volume())
+    }
+
+    /// The logarithm of the digits that the tangent's determinant loses to its rounding: of |M|^N / |det M|.
+    pub fn loss(&self) -> f64 {
+        (N as f64 * self.tangent.norm().ln() - self.volume()).max(0.0)
+    }
+
+    /// ln |det| of the tangent, by the tangent.
+    pub fn tangent_volume(&self) -> f64 {
+        log_determinant(self.tangent)
+    }
+}
+
+/// ln |det m|, by elimination with the largest pivots.
+fn log_determinant<const N: usize>(mut m: Jacobian<N>) -> f64 {
+    let mut log = 0.0;
+    for j in 0..N {
+        let pivot = (j..N).max_by(|&a, &b| m[(a, j)].abs().total_cmp(&m[(b, j)].abs()));
+        m.swap_rows(j, pivot.unwrap_or(j));
+        log += m[(j, j)].abs().ln();
+        for i in j + 1..N {
+            let part = m[(i, j)] / m[(j, j)];
+            for l in j..N {
+                m[(i, l)] -= part * m[(j, l)];
+            }
+        }
+    }
+    log
+}
+
+/// What makes arcs.
+pub struct Tracer<const N: usize> {
+    method: Method<N>,
+    name: &'static str,
+    /// What a step may err by, relative.
+    step_error: f64,
+    work: Work,
+}
+
+enum Method<const N: usize> {
+    Taylor(Taylor),
+    Other(Box<dyn Integrator<N>>),
+}
+
+/// Rounding in a step, relative: of the sums, of the constants and of the change to logarithms.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+
+impl<const N: usize> Tracer<N> {
+    /// By this method, with at most so many steps in an arc. `auto` traces with Taylor: a periodic orbit is no place for
+    /// strong damping.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for tolerances outside their domain or no steps.
+    pub fn new(choice: Choice, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
+        let (method, name) = match choice {
+            Choice::Auto | Choice::Taylor => (
+                Method::Taylor(Taylor::new(tolerances, max_steps)?),
+                Choice::Taylor.name(),
+            ),
+            other => (
+                Method::Other(other.integrator(tolerances, max_steps)?),
+                other.name(),
+            ),
+        };
+        Ok(Tracer {
+            method,
+            name,
+            step_error: tolerances.rtol + tolerances.atol + ROUNDING,
+            work: Work::default(),
+        })
+    }
+
+    /// The method's name.
+    pub fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// All work so far.
+    pub fn work(&self) -> Work {
+        self.work
+    }
+
+    /// What a step may err by, in units of 1 + |y|.
+    pub fn step_error(&self) -> f64 {
+        self.step_error
+    }
+
+    /// By Taylor's method with this tolerance.
+    pub(super) fn taylor(tolerance: f64) -> Result<Self> {
+        Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, MAX_STEPS)
+    }
+
+    /// The arc of this duration from `start`, with the derivatives in the parameters where asked for.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`].
+    pub fn arc(
+        &mut self,
+        field: &dyn VectorField<N>,
+        start: &State<N>,
+        duration: f64,
+        parameters: bool,
+    ) -> Result<Arc<N>> {
+        let span = (0.0, duration);
+        let (end, tangent, in_parameters, log_determinant, work) = match &mut self.method {
+            Method::Taylor(taylor) => {
+                let (end, d) = taylor.derivatives(field, span, start, parameters)?;
+                let in_parameters = [d.driving.into(), d.stiffness.into()];
+                let work = Integrator::<N>::work(taylor);
+                let log_determinant = Some(d.log_determinant);
+                (end, d.start.into(), in_parameters, log_determinant, work)
+            }
+            Method::Other(integrator) => {
+                let (end, tangent) = integrator.tangent_flow(field, span, start)?;
+                let work = integrator.work();
+                (end, tangent, [State::zeros(); 2], None, work)
+            }
+        };
+        self.work += work;
+        Ok(Arc {
+            end,
+            tangent,
+            parameters: in_parameters,
+            log_determinant,
+            error: self.step_error * work.steps.max(1) as f64,
+        })
+    }
+
+    /// The flow alone.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`].
+    pub fn flow(
+        &mut self,
+        field: &dyn VectorField<N>,
+        start: &State<N>,
+        duration: f64,
+        observer: Option<crate::integrate::Observer<'_, N>>,
+    ) -> Result<State<N>> {
+        let span = (0.0, duration);
+        let (end, work) = match &mut self.method {
+            Method::Taylor(taylor) => {
+                let end = taylor.flow(field, span, start, observer)?;
+                (end, Integrator::<N>::work(taylor))
+            }
+            Method::Other(integrator) => {
+                let end = integrator.flow(field, span, start, observer)?;
+                (end, integrator.work())
+            }
+        };
+        self.work += work;
+        Ok(end)
+    }
+}

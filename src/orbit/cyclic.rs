@@ -1,0 +1,137 @@
+//! Cyclic two-point systems: u_{k+1} = P_k u_k + r_k around a circle of nodes.
+//!
+//! Eliminated node by node with Householder reflections, which keep what grows and what decays around the circle apart; a
+//! product of all P_k would mix them. The elimination is that of structured orthogonal factorisation: Wright, S. J. (1992).
+//! Stable parallel algorithms for two-point boundary value problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
+
+use crate::field::{Jacobian, State};
+
+/// A pivot below this part of the largest is zero.
+const SINGULAR: f64 = 1e-14;
+
+/// The rows that a node's elimination leaves behind: `diagonal` (upper triangular) times u_k plus `first` u_0 plus `next`
+/// u_{k+1} equals the right-hand side.
+#[derive(Debug, Clone, Copy)]
+struct Rows<const N: usize> {
+    diagonal: Jacobian<N>,
+    first: Jacobian<N>,
+    next: Jacobian<N>,
+    right: State<N>,
+}
+
+/// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
+pub(super) fn solve<const N: usize>(
+    maps: &[Jacobian<N>],
+    right: &[State<N>],
+) -> Option<Vec<State<N>>> {
+    let nodes = maps.len();
+    // e u_0 + f u_k = c, at first from k = 1.
+    let mut e = -maps[0];
+    let mut f = Jacobian::<N>::identity();
+    let mut c = right[0];
+    let mut left = Vec::with_capacity(nodes);
+    for k in 1..nodes {
+        let mut stacked = Stacked {
+            pivot: [f, -maps[k]],
+            first: [e, Jacobian::zeros()],
+            next: [Jacobian::zeros(), Jacobian::identity()],
+            right: [c, right[k]],
+        };
+        stacked.triangulate();
+        left.push(Rows {
+            diagonal: stacked.pivot[0],
+            first: stacked.first[0],
+            next: stacked.next[0],
+            right: stacked.right[0],
+        });
+        (e, f, c) = (stacked.first[1], stacked.next[1], stacked.right[1]);
+    }
+    let mut last = Stacked {
+        pivot: [e + f, Jacobian::zeros()],
+        first: [Jacobian::zeros(); 2],
+        next: [Jacobian::zeros(); 2],
+        right: [c, State::zeros()],
+    };
+    last.triangulate();
+    let [closing, _] = last.pivot;
+    let start = closing.solve_upper_triangular(&last.right[0])?;
+    let mut u = vec![start; nodes];
+    let mut next = start;
+    for (k, rows) in left.iter().enumerate().rev() {
+        let rest = rows.right - rows.first * start - rows.next * next;
+        next = rows.diagonal.solve_upper_triangular(&rest)?;
+        u[k + 1] = next;
+    }
+    // Where one direction is free, rounding alone keeps the last pivot from being zero.
+    let free = closing.diagonal().abs().min() <= SINGULAR * closing.amax();
+    let finite = u.iter().all(|u| u.iter().all(|x| x.is_finite()));
+    (finite && !free).then_some(u)
+}
+
+/// 2N rows in blocks of N.
+struct Stacked<const N: usize> {
+    pivot: [Jacobian<N>; 2],
+    first: [Jacobian<N>; 2],
+    next: [Jacobian<N>; 2],
+    right: [State<N>; 2],
+}
+
+impl<const N: usize> Stacked<N> {
+    /// Makes the pivot's first block upper triangular and its second zero, by reflections of all rows.
+    fn triangulate(&mut self) {
+        for j in 0..N {
+            let mut v = [State::<N>::zeros(); 2];
+            for (b, v) in v.iter_mut().enumerate() {
+                for i in if b == 0 { j } else { 0 }..N {
+                    v[i] = self.pivot[b][(i, j)];
+                }
+            }
+            let length = v[0].norm().hypot(v[1].norm());
+            if length == 0.0 {
+                continue;
+            }
+            let sign = if v[0][j] < 0.0 { -1.0 } else { 1.0 };
+            v[0][j] += sign * length;
+            let squared = v[0].norm_squared() + v[1].norm_squared();
+            for block in [&mut self.pivot, &mut self.first, &mut self.next] {
+                let along = (block[0].tr_mul(&v[0]) + block[1].tr_mul(&v[1])) * (2.0 / squared);
+                for (block, v) in block.iter_mut().zip(&v) {
+                    *block -= v * along.transpose();
+                }
+            }
+            let along = (v[0].dot(&self.right[0]) + v[1].dot(&self.right[1])) * (2.0 / squared);
+            for (right, v) in self.right.iter_mut().zip(&v) {
+                *right -= v * along;
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn growth_and_decay_by_fifty_decades_are_kept_apart() {
+        let turn = nalgebra::Rotation2::new(0.3);
+        let maps: Vec<Jacobian<2>> = (0..40)
+            .map(|_| turn * Jacobian::<2>::new(20.0, 1.0, 0.0, 0.05) * turn.inverse())
+            .collect();
+        let exact: Vec<State<2>> = (0..40)
+            .map(|k| State::<2>::new((k as f64).sin(), (1.7 * k as f64).cos()))
+            .collect();
+        let right: Vec<State<2>> = (0..40)
+            .map(|k| exact[(k + 1) % 40] - maps[k] * exact[k])
+            .collect();
+        let found = solve(&maps, &right).unwrap();
+        for (found, exact) in found.iter().zip(&exact) {
+            assert!((found - exact).amax() < 1e-13);
+        }
+    }
+
+    #[test]
+    fn a_free_direction_is_singular() {
+        let maps = vec![Jacobian::<2>::identity(); 3];
+        assert!(solve(&maps, &[State::<2>::new(1.0, 0.0); 3]).is_none());
+    }
+}

@@ -1,0 +1,101 @@
+//! How far an orbit goes: its least and greatest stress, slip rate and state, on the series along it.
+
+use super::arc::Tracer;
+use super::polygon::Polygon;
+use crate::error::Result;
+use crate::field::{State, VectorField};
+use crate::integrate::Control;
+use crate::number::polynomial::{Crossing, evaluate, roots};
+use crate::series::{REFERENCE_ORDER, Section, Zeros};
+
+/// The extremes over one cycle, and the point where a plane is passed.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Extremes<const N: usize> {
+    pub stress: (f64, f64),
+    pub slip_rate_max: f64,
+    pub state_min: f64,
+    /// Where tau falls through the level asked for.
+    pub passage: Option<State<N>>,
+}
+
+/// Along the polygon's arcs, each from its own node.
+pub(super) fn extremes<const N: usize>(
+    field: &dyn VectorField<N>,
+    polygon: &Polygon<N>,
+    level: f64,
+) -> Result<Extremes<N>> {
+    /// Tolerance of the run.
+    const FINE: f64 = 1e-14;
+    let mut tracer = Tracer::<N>::taylor(FINE)?;
+    let axis = |i: usize| {
+        let mut normal = [0.0; N];
+        normal[i] = 1.0;
+        normal
+    };
+    let plane = Section::Plane {
+        normal: axis(0),
+        offset: level,
+    };
+    let mut all = Extremes {
+        stress: (f64::INFINITY, f64::NEG_INFINITY),
+        slip_rate_max: f64::NEG_INFINITY,
+        state_min: f64::INFINITY,
+        passage: None,
+    };
+    let mut found = Vec::new();
+    let mut turns = Vec::new();
+    // The sign goes on from arc to arc, so that no passage at a node is lost.
+    let mut through = Zeros::default();
+    for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
+        let mut turning = [(); N].map(|()| Zeros::default());
+        all.see(x);
+        tracer.flow(
+            field,
+            x,
+            duration,
+            Some(&mut |step| {
+                all.see(step.y1);
+                let Some(series) = step.series else {
+                    return Ok(Control::Continue);
+                };
+                found.clear();
+                for (i, zeros) in turning.iter_mut().enumerate() {
+                    let section = Section::Extremum { normal: axis(i) };
+                    series.crossings(&section, None, zeros, &mut found);
+                }
+                found.iter().for_each(|turn| all.see(&turn.state.into()));
+                if all.passage.is_none() {
+                    found.clear();
+                    let down = Some(Crossing::Downwards);
+                    series.crossings(&plane, down, &mut through, &mut found);
+                    all.passage = found.first().map(|passage| passage.state.into());
+                }
+                for rates in &series.slip_rates {
+                    let rates = &rates[..series.order];
+                    let mut slope = [0.0; REFERENCE_ORDER];
+                    let slope = &mut slope[..series.order - 1];
+                    for (j, c) in slope.iter_mut().enumerate() {
+                        *c = (j + 1) as f64 * rates[j + 1];
+                    }
+                    turns.clear();
+                    roots(slope, series.length / series.unit, &mut turns);
+                    let inside = turns.iter().map(|root| root.at);
+                    for s in inside.chain([0.0, series.length / series.unit]) {
+                        all.slip_rate_max = all.slip_rate_max.max(evaluate(rates, s));
+                    }
+                }
+                Ok(Control::Continue)
+            }),
+        )?;
+    }
+    Ok(all)
+}
+
+impl<const N: usize> Extremes<N> {
+    fn see(&mut self, y: &State<N>) {
+        self.stress = (self.stress.0.min(y[0]), self.stress.1.max(y[0]));
+        for w in y.iter().skip(1) {
+            self.state_min = self.state_min.min(w.exp());
+        }
+    }
+}

@@ -1,0 +1,304 @@
+//! Finding periodic orbits: from a given point, from settled runs, or along a branch from a Hopf point.
+
+use super::arc::Tracer;
+use super::polygon::Polygon;
+use super::settle::{passages, settle};
+use super::shooting::close;
+use super::slab::Slab;
+use super::solve::{Accuracy, Orbit, orbit, traversals};
+use super::space::{Plane, Space, Whole};
+use super::{branch, no_orbit};
+use crate::equilibrium::{Symmetry, Verdict};
+use crate::error::{Error, Result};
+use crate::field::{State, VectorField};
+use crate::model::Driven;
+
+/// Which orbit is wanted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Query {
+    /// Whether both interfaces move alike; a single one always does.
+    pub symmetry: Symmetry,
+    /// tau and ln psi of both interfaces, at or near the orbit; equal ones for a single interface.
+    pub start: Option<(f64, [f64; 2])>,
+    /// The period, roughly.
+    pub period_guess: Option<f64>,
+}
+
+/// What was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Found {
+    /// The orbit asked for; where several have the symmetry, a stable one.
+    pub orbit: Orbit,
+    /// The others of that symmetry that were met.
+    pub others: Vec<Orbit>,
+}
+
+/// Tolerance with which guesses are made and first closed.
+const ROUGH: f64 = 1e-10;
+/// Tolerance with which cycles are told from ones traversed twice.
+const FINE: f64 = 1e-15;
+/// Periods that differ by less, relatively, are of one orbit.
+const SAME_PERIOD: f64 = 1e-7;
+
+/// The periodic orbit of a slab.
+///
+/// Without a start it is looked for with runs from several starts; where those come to rest, or end on an orbit of the other
+/// symmetry, along the branch of orbits from a Hopf point.
+///
+/// # Errors
+/// [`Error::NoOrbit`] says what was found instead; [`Error::NotConverged`]; those of the flow.
+pub fn find(slab: &Slab, query: &Query, accuracy: &Accuracy) -> Result<Found> {
+    if query.symmetry == Symmetry::Asymmetric && slab.interfaces == 1 {
+        return Err(Error::Input(
+            "a single interface has no asymmetric orbit; ask for the symmetric one".into(),
+        ));
+    }
+    let whole = slab.whole();
+    if query.symmetry == Symmetry::Asymmetric {
+        let space = whole_of(&*whole);
+        let start = query
+            .start
+            .map(|(tau, [w1, w2])| State::<3>::new(tau, w1, w2));
+        let starts = asymmetric_starts(slab);
+        return search(slab, &space, query, accuracy, start, &starts);
+    }
+    let plane = slab.plane();
+    let space = plane_of(slab, &*plane, &*whole);
+    let start = query.start.map(|(tau, [w, _])| State::<2>::new(tau, w));
+    let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
+    let starts = [0.5, 3.0].map(|away| State::<2>::new(tau, w - away));
+    search(slab, &space, query, accuracy, start, &starts)
+}
+
+/// The space of all orbits of two interfaces.
+pub(super) fn whole_of(whole: &dyn Driven<3>) -> Whole<'_> {
+    Whole(whole)
+}
+
+/// The space of symmetric orbits, within that of all where there are two interfaces.
+pub(super) fn plane_of<'a>(
+    slab: &Slab,
+    plane: &'a dyn Driven<2>,
+    whole: &'a dyn Driven<3>,
+) -> Plane<'a> {
+    Plane {
+        plane,
+        whole: (slab.interfaces == 2).then_some(whole as _),
+    }
+}
+
+/// Starts from which asymmetric runs are made: beside the symmetric equilibrium and far from it.
+fn asymmetric_starts(slab: &Slab) -> [State<3>; 3] {
+    let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
+    [
+        State::<3>::new(tau, w, w + 0.3),
+        State::<3>::new(tau + 1.0, w, w - 4.0),
+        State::<3>::new(10.0, 0.5_f64.ln(), 1e-3_f64.ln()),
+    ]
+}
+
+fn search<const N: usize>(
+    slab: &Slab,
+    space: &impl Space<N>,
+    query: &Query,
+    accuracy: &Accuracy,
+    start: Option<State<N>>,
+    starts: &[State<N>],
+) -> Result<Found> {
+    let mut tracer = Tracer::taylor(ROUGH)?;
+    let mut guesses = Guesses {
+        space,
+        wanted: query.symmetry,
+        closed: Vec::new(),
+        otherwise: None,
+    };
+    match (start, query.period_guess) {
+        (Some(start), Some(period)) => guesses.over(period, &mut tracer, &start)?,
+        (Some(start), None) => guesses.near(slab, &mut tracer, &start)?,
+        (None, _) => {
+            for start in starts {
+                guesses.settled(slab, &mut tracer, start);
+            }
+            if guesses.closed.is_empty() {
+                for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
+                    guesses.take(polygon);
+                }
+            }
+        }
+    }
+    if guesses.closed.is_empty() {
+        return Err(guesses.otherwise.unwrap_or_else(|| {
+            no_orbit(
+                "no periodic orbit of this symmetry was met".into(),
+                "give a --start near it, or other --driving and --stiffness",
+            )
+        }));
+    }
+    let mut orbits = Vec::new();
+    let mut fine = Tracer::taylor(FINE)?;
+    for mut polygon in guesses.closed {
+        if query.period_guess.is_none() {
+            // Close to a period doubling only the last digits tell a cycle from one traversed twice.
+            polygon = close(&mut fine, space.field(), polygon)?.polygon;
+            polygon = once_around(&mut fine, space.field(), polygon)?;
+        }
+        orbits.push(orbit(slab, space, accuracy, polygon)?);
+    }
+    let stable = orbits
+        .iter()
+        .position(|orbit| orbit.verdict() == Verdict::Stable);
+    let orbit = orbits.remove(stable.unwrap_or(0));
+    Ok(Found {
+        orbit,
+        others: orbits,
+    })
+}
+
+/// Closed polygons on the way to an answer.
+struct Guesses<'a, S, const N: usize> {
+    space: &'a S,
+    wanted: Symmetry,
+    closed: Vec<Polygon<N>>,
+    /// Why there is none, so far.
+    otherwise: Option<Error>,
+}
+
+impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
+    /// Keeps a closed polygon if it has the symmetry and is new.
+    fn take(&mut self, polygon: Polygon<N>) -> bool {
+        if self.space.symmetry(&polygon) != self.wanted {
+            self.otherwise = Some(no_orbit(
+                format!(
+                    "the search ended on the symmetric orbit, of period {}",
+                    polygon.period()
+                ),
+                "give a --start near an asymmetric one, or ask for --symmetry symmetric",
+            ));
+            return false;
+        }
+        let period = polygon.period();
+        let known = |other: &Polygon<N>| (other.period() / period - 1.0).abs() < SAME_PERIOD;
+        if !self.closed.iter().any(known) {
+            self.closed.push(polygon);
+        }
+        true
+    }
+
+    /// Newton's method on the cycle of a given duration that begins at a point, or some cycles after it: the directions that
+    /// contract have come to rest there.
+    fn over(&mut self, period: f64, tracer: &mut Tracer<N>, start: &State<N>) -> Result<()> {
+        /// Cycles that are waited.
+        const WAITED: usize = 3;
+        let field = self.space.field();
+        let mut begins = vec![*start];
+        for k in 0..=WAITED {
+            match tracer.flow(field, &begins[k], period, None) {
+                Ok(next) => begins.push(next),
+                Err(error) if k == 0 => return Err(error),
+                Err(_) => break,
+            }
+        }
+        let mut cycles: Vec<_> = begins
+            .windows(2)
+            .map(|pair| ((pair[1] - pair[0]).amax(), pair[0]))
+            .collect();
+        cycles.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, begin) in cycles {
+            let closed = Polygon::along(tracer, field, &begin, period)
+                .and_then(|polygon| close(tracer, field, polygon));
+            match closed {
+                Ok(closed) => {
+                    if self.take(closed.polygon) {
+                        return Ok(());
+                    }
+                }
+                Err(error) => {
+                    self.otherwise.get_or_insert(error);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.
+    fn near(&mut self, slab: &Slab, tracer: &mut Tracer<N>, start: &State<N>) -> Result<()> {
+        /// Rough periods that the returns are looked for in; returns; those that a cycle may begin with; cycles tried.
+        const LONG: f64 = 30.0;
+        const RETURNS: usize = 8;
+        const LATER: usize = 4;
+        const TRIED: usize = 6;
+        let field = self.space.field();
+        let length = LONG * slab.rough_period();
+        let run = passages(tracer, field, start, length, start[0], RETURNS);
+        let mut returns = Vec::new();
+        if let Ok(run) = run {
+            // Counted from the start itself if it falls there, else from the first passage.
+            let mut found = run.found.into_iter();
+            let begin = if field.f(start)[0] < 0.0 {
+                Some((0.0, *start))
+            } else {
+                found.next()
+            };
+            // Some returns later the directions that contract have come to rest.
+            let passed: Vec<_> = begin.into_iter().chain(found).collect();
+            for (i, &(time, begin)) in passed.iter().take(LATER).enumerate() {
+                let later = passed[i + 1..].iter();
+                returns.extend(later.map(|(t, y)| ((y - begin).amax(), begin, t - time)));
+            }
+        }
+        returns.retain(|&(_, _, period)| period > 1e-9 * length);
+        returns.sort_by(|a, b| a.0.total_cmp(&b.0));
+        for (_, begin, period) in returns.into_iter().take(TRIED) {
+            let closed = Polygon::along(tracer, field, &begin, period)
+                .and_then(|polygon| close(tracer, field, polygon));
+            match closed {
+                Ok(closed) => {
+                    if self.take(closed.polygon) {
+                        return Ok(());
+                    }
+                }
+                Err(error) => self.otherwise = Some(error),
+            }
+        }
+        self.settled(slab, tracer, start);
+        Ok(())
+    }
+
+    /// What a run from this start settles on.
+    fn settled(&mut self, slab: &Slab, tracer: &mut Tracer<N>, start: &State<N>) {
+        let field = self.space.field();
+        let mut polygons = Vec::new();
+        let run = settle(
+            tracer,
+            field,
+            start,
+            slab.rough_period(),
+            &mut |tracer, polygon| match close(tracer, field, polygon) {
+                Ok(closed) => once_around(tracer, field, closed.polygon)
+                    .map(|polygon| polygons.push(polygon))
+                    .is_ok(),
+                Err(_) => false,
+            },
+        );
+        for polygon in polygons {
+            self.take(polygon);
+        }
+        if let Err(error) = run {
+            self.otherwise.get_or_insert(error);
+        }
+    }
+}
+
+/// The cycle, once around.
+fn once_around<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    mut polygon: Polygon<N>,
+) -> Result<Polygon<N>> {
+    while let Some(times) = traversals(tracer, field, &polygon)? {
+        let part = polygon.period() / f64::from(times);
+        let once = Polygon::along(tracer, field, &polygon.nodes[0], part)?;
+        polygon = close(tracer, field, once)?.polygon;
+    }
+    Ok(polygon)
+}

@@ -1,0 +1,347 @@
+//! Floquet multipliers of a closed polygon, by their logarithms.
+//!
+//! A plain monodromy matrix is noise below 1e-14 of its norm, where relaxation orbits have multipliers of 1e-22 and 1e-75.
+//! So the maps of the arcs are kept apart. Their determinants come from Liouville's theorem, ln det = integral of tr J, a
+//! quadrature beside the tangents; the larger one of two multipliers from the trace of the product with a budget of its own,
+//! and where cancellation leaves nothing of the trace from the growth along its direction; the smaller one from both.
+//!
+//! On a symmetric orbit, which lies in two dimensions, both are quadratures: the integral of the trace there, and that of the
+//! antisymmetric mode, the difference of the traces in three dimensions and in two.
+
+use super::shooting::Closed;
+use crate::equilibrium::Verdict;
+use crate::field::{Jacobian, State};
+use crate::number::Uncertain;
+use nalgebra::Complex;
+
+/// What a multiplier is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// A real number.
+    Real,
+    /// One of a conjugate pair.
+    Complex,
+    /// Too small beside the other one to be told from the noise of the method; `ln_abs` then is a bound.
+    BelowFloor,
+}
+
+/// A nontrivial multiplier.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Multiplier {
+    /// ln |mu|.
+    pub ln_abs: Uncertain,
+    /// arg mu / pi, between 0 and 1: 0 for a positive number, 1 for a negative one.
+    pub angle_over_pi: f64,
+    /// Real, complex, or not known.
+    pub kind: Kind,
+}
+
+impl Multiplier {
+    fn real(ln_abs: f64, uncertainty: f64, negative: bool) -> Self {
+        Multiplier {
+            ln_abs: Uncertain::new(ln_abs, uncertainty),
+            angle_over_pi: if negative { 1.0 } else { 0.0 },
+            kind: Kind::Real,
+        }
+    }
+
+    /// mu itself; zero where its logarithm is below what a double holds.
+    pub fn value(&self) -> Complex<f64> {
+        let size = self.ln_abs.value.exp();
+        match self.kind {
+            Kind::Complex => Complex::from_polar(size, std::f64::consts::PI * self.angle_over_pi),
+            _ if self.angle_over_pi == 1.0 => Complex::new(-size, 0.0),
+            _ => Complex::new(size, 0.0),
+        }
+    }
+}
+
+/// The multipliers of an orbit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Floquet {
+    /// The nontrivial ones, the largest first; of a complex pair the one with positive imaginary part.
+    pub multipliers: Vec<Multiplier>,
+    /// How far the trivial multiplier is from 1.
+    pub trivial_defect: f64,
+    /// Sum of the logarithms of the arcs' determinants minus the integral of the trace; `None` from methods without it.
+    pub liouville_defect: Option<f64>,
+}
+
+impl Floquet {
+    /// Stable if all are certainly less than 1 in absolute value, unstable if one is certainly larger.
+    pub fn verdict(&self) -> Verdict {
+        let mut verdict = Verdict::Stable;
+        for multiplier in &self.multipliers {
+            let Uncertain { value, uncertainty } = multiplier.ln_abs;
+            if multiplier.kind != Kind::BelowFloor && value - uncertainty > 0.0 {
+                return Verdict::Unstable;
+            }
+            let below = value + uncertainty < 0.0;
+            if !below {
+                verdict = Verdict::Undecided;
+            }
+        }
+        verdict
+    }
+
+    /// Widens every uncertainty by what another computation differs, a few times over.
+    pub fn widened_by(&mut self, other: &Floquet) {
+        /// How many times.
+        const MARGIN: f64 = 3.0;
+        for (mine, its) in self.multipliers.iter_mut().zip(&other.multipliers) {
+            if its.kind != Kind::BelowFloor {
+                mine.ln_abs.uncertainty += MARGIN * (mine.ln_abs.value - its.ln_abs.value).abs();
+            }
+        }
+    }
+}
+
+/// Relative error of a tangent in units of that of the state: it loses two digits more at most.
+const TANGENT: f64 = 10.0;
+/// Times around for a direction to settle.
+const TURNS: usize = 30;
+/// Change of a direction once around that counts as settled.
+const SETTLED: f64 = 1e-12;
+
+/// The sums of the logarithms of the determinants: by the best the method has, and its uncertainty; and their defect.
+fn volume<const N: usize>(closed: &Closed<N>) -> (Uncertain, Option<f64>) {
+    let by_matrix = closed.arcs().iter().map(|arc| arc.tangent_volume());
+    let by_matrix: f64 = by_matrix.sum();
+    let by_trace: Option<f64> = closed.arcs().iter().map(|arc| arc.log_determinant).sum();
+    let errors: f64 = closed.arcs().iter().map(|arc| arc.error).sum();
+    match by_trace {
+        Some(volume) => {
+            let scale = closed.arcs().iter().filter_map(|arc| arc.log_determinant);
+            let scale = scale.fold(1.0, |sum, x| sum + x.abs());
+            let uncertain = Uncertain::new(volume, TANGENT * errors + 1e-14 * scale);
+            (uncertain, Some(by_matrix - volume))
+        }
+        None => {
+            // The smallest direction of an arc errs by the norm over it.
+            let loss = closed.arcs().iter().map(|arc| arc.error * arc.loss().exp());
+            (Uncertain::new(by_matrix, TANGENT * loss.sum::<f64>()), None)
+        }
+    }
+}
+
+/// f at the next node over f carried there: the trivial multiplier of every arc, and their product minus 1.
+fn trivial_defect<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> f64 {
+    let nodes = &closed.polygon.nodes;
+    let logs = closed.arcs().iter().enumerate().map(|(k, arc)| {
+        let next = f(&nodes[(k + 1) % nodes.len()]);
+        let carried = arc.tangent * f(&nodes[k]);
+        (next.dot(&carried) / next.norm_squared()).abs().ln()
+    });
+    logs.sum::<f64>().exp_m1().abs()
+}
+
+/// The multipliers of an orbit in the space of its field.
+pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
+    let (volume, liouville_defect) = volume(closed);
+    let multipliers = match N {
+        2 => vec![Multiplier::real(volume.value, volume.uncertainty, false)],
+        3 => pair(closed, volume),
+        _ => unimplemented!("multipliers in {N} dimensions"),
+    };
+    Floquet {
+        multipliers,
+        trivial_defect: trivial_defect(closed, f),
+        liouville_defect,
+    }
+}
+
+/// The multipliers of an orbit in the symmetric subspace: across it, from the arcs of the whole space along its nodes.
+pub fn symmetric_floquet(
+    closed: &Closed<2>,
+    f: &dyn Fn(&State<2>) -> State<2>,
+    across: &[super::arc::Arc<3>],
+) -> Floquet {
+    let (within, within_defect) = volume(closed);
+    let errors: f64 = across.iter().map(|arc| arc.error).sum();
+    // The antisymmetric mode (0, 1, -1) stays one.
+    let by_matrix: f64 = across
+        .iter()
+        .map(|arc| (arc.tangent[(1, 1)] - arc.tangent[(1, 2)]).abs().ln())
+        .sum();
+    let whole: Option<f64> = across.iter().map(|arc| arc.log_determinant).sum();
+    let (value, defect) = match whole {
+        Some(whole) => (
+            whole - within.value,
+            Some(by_matrix - (whole - within.value)),
+        ),
+        None => (by_matrix, None),
+    };
+    let loss = match whole {
+        Some(_) => TANGENT * errors + 1e-14 * value.abs(),
+        None => {
+            let loss = across.iter().map(|arc| {
+                let mode = (arc.tangent[(1, 1)] - arc.tangent[(1, 2)]).abs();
+                arc.error * (arc.tangent.norm() / mode).max(1.0)
+            });
+            TANGENT * loss.sum::<f64>()
+        }
+    };
+    let mut multipliers = vec![
+        Multiplier::real(within.value, within.uncertainty, false),
+        Multiplier::real(value, loss + within.uncertainty, false),
+    ];
+    multipliers.sort_by(|a, b| b.ln_abs.value.total_cmp(&a.ln_abs.value));
+    let larger = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
+    Floquet {
+        multipliers,
+        trivial_defect: trivial_defect(closed, f),
+        liouville_defect: larger(within_defect, defect),
+    }
+}
+
+/// A matrix times e^log.
+#[derive(Debug, Clone, Copy)]
+struct Scaled<const N: usize> {
+    matrix: Jacobian<N>,
+    log: f64,
+}
+
+impl<const N: usize> Scaled<N> {
+    fn identity() -> Self {
+        Scaled {
+            matrix: Jacobian::identity(),
+            log: 0.0,
+        }
+    }
+
+    fn normalised(matrix: Jacobian<N>, log: f64) -> Self {
+        let size = matrix.norm();
+        if size == 0.0 {
+            return Scaled { matrix, log };
+        }
+        Scaled {
+            matrix: matrix / size,
+            log: log + size.ln(),
+        }
+    }
+}
+
+/// Both multipliers of the planes' maps, with the logarithm of their product known.
+fn pair<const N: usize>(closed: &Closed<N>, volume: Uncertain) -> Vec<Multiplier> {
+    let maps = closed.maps();
+    // Of the first k maps, and of those after the k-th.
+    let mut before = vec![Scaled::<N>::identity()];
+    for map in maps {
+        let last = before[before.len() - 1];
+        before.push(Scaled::normalised(map * last.matrix, last.log));
+    }
+    let mut after = vec![Scaled::<N>::identity()];
+    for map in maps.iter().rev() {
+        let last = after[after.len() - 1];
+        after.push(Scaled::normalised(last.matrix * map, last.log));
+    }
+    after.reverse();
+    let product = before[maps.len()];
+    // The trace in units of sqrt(det): both multipliers are real where it is above 2.
+    let half = 0.5 * volume.value;
+    // The matrix's first diagonal element is the dropped direction's, zero.
+    let trace = product.matrix.trace() * (product.log - half).exp();
+    let mut error = trace.abs() * 0.5 * volume.uncertainty;
+    for (k, map) in maps.iter().enumerate() {
+        let log = before[k].log + after[k + 1].log - half;
+        error += log.exp() * map.norm() * TANGENT * closed.arcs()[k].error;
+    }
+    if !(trace.is_finite() && error.is_finite()) || error > 0.5 * trace.abs().max(2.0) {
+        return along_direction(closed, volume);
+    }
+    let uncertain = 0.5 * volume.uncertainty;
+    if trace.abs() - error > 2.0 {
+        // mu = sqrt(det) e^(+-x), tr = 2 cosh x in these units
+        let x = (0.5 * trace.abs()).acosh();
+        let of_x = 0.5 * error / (0.25 * trace * trace - 1.0).sqrt();
+        let negative = trace < 0.0;
+        let budget = uncertain + of_x;
+        return vec![
+            Multiplier::real(half + x, budget, negative),
+            Multiplier::real(half - x, budget, negative),
+        ];
+    }
+    if trace.abs() + error < 2.0 {
+        let angle = (0.5 * trace).acos() / std::f64::consts::PI;
+        let one = Multiplier {
+            ln_abs: Uncertain::new(half, uncertain),
+            angle_over_pi: angle,
+            kind: Kind::Complex,
+        };
+        return vec![one, one];
+    }
+    // Within the error of a double multiplier.
+    let apart = (0.5 * (trace.abs() + error)).max(1.0).acosh();
+    let one = Multiplier::real(half, uncertain + apart, trace < 0.0);
+    vec![one, one]
+}
+
+/// The same where the trace is lost to cancellation: the growth along the direction that dominates, carried around until it
+/// repeats, and along its dual.
+fn along_direction<const N: usize>(closed: &Closed<N>, volume: Uncertain) -> Vec<Multiplier> {
+    let maps = closed.maps();
+    let count = maps.len();
+    let floor = || {
+        let bound = maps.iter().map(|map| map.norm().ln()).sum::<f64>();
+        let bound = bound.min(0.0).max(volume.value);
+        let one = Multiplier {
+            ln_abs: Uncertain::new(bound, 0.0),
+            angle_over_pi: 0.0,
+            kind: Kind::BelowFloor,
+        };
+        vec![one, one]
+    };
+    let across = |mut x: State<N>| {
+        x[0] = 0.0;
+        let size = x.norm();
+        (size > 0.0).then(|| (x / size, size))
+    };
+    let Some((mut x, _)) = across(State::from_fn(|i, _| 1.0 / (1.0 + i as f64))) else {
+        return floor();
+    };
+    let mut directions = vec![x; count];
+    let (mut log, mut settled, mut sign) = (0.0, false, 1.0);
+    for _ in 0..TURNS {
+        let begin = x;
+        log = 0.0;
+        for k in 0..count {
+            directions[k] = x;
+            let Some((next, size)) = across(maps[k] * x) else {
+                return floor();
+            };
+            log += size.ln();
+            x = next;
+        }
+        sign = x.dot(&begin).signum();
+        if (x * sign - begin).norm() < SETTLED {
+            settled = true;
+            break;
+        }
+    }
+    let Some((mut y, _)) = across(x) else {
+        return floor();
+    };
+    let mut duals = vec![y; count];
+    for _ in 0..2 {
+        for k in (0..count).rev() {
+            duals[k] = y;
+            let Some((next, _)) = across(maps[k].tr_mul(&y)) else {
+                return floor();
+            };
+            y = next;
+        }
+    }
+    let mut error = 0.0;
+    for k in 0..count {
+        let seen = duals[k].dot(&(maps[k] * directions[k])).abs();
+        error += TANGENT * closed.arcs()[k].error * maps[k].norm() / seen;
+    }
+    let smaller = volume.value - log;
+    if !settled || !error.is_finite() || error > 0.5 || smaller > log {
+        return floor();
+    }
+    vec![
+        Multiplier::real(log, error, sign < 0.0),
+        Multiplier::real(smaller, error + volume.uncertainty, sign < 0.0),
+    ]
+}

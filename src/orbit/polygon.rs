@@ -1,0 +1,140 @@
+//! Polygons along closed curves: what a periodic orbit is solved on.
+
+use super::arc::Tracer;
+use crate::error::Result;
+use crate::field::{State, VectorField};
+use crate::integrate::Control;
+
+/// Points along a closed curve, and the times from each to the next: a periodic orbit, or a guess of one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polygon<const N: usize> {
+    /// The points.
+    pub nodes: Vec<State<N>>,
+    /// From each node to the next, from the last to the first; all of one sign.
+    pub durations: Vec<f64>,
+}
+
+/// The end of an arc from a start over a duration, and the logarithm of what its tangent loses.
+pub type EndAndLoss<'a, const N: usize> =
+    &'a mut dyn FnMut(&State<N>, f64) -> Result<(State<N>, f64)>;
+
+/// Nodes of any polygon.
+const NODES: std::ops::RangeInclusive<usize> = 3..=128;
+/// Steps, and the change of ln |volume|, on an arc.
+const STEPS_ON_ARC: f64 = 12.0;
+const VOLUME_ON_ARC: f64 = 3.0;
+/// The largest loss on a refined arc, some four digits, and how often one is halved for it.
+const LARGEST_LOSS: f64 = 10.0;
+const DEPTH: usize = 10;
+
+impl<const N: usize> Polygon<N> {
+    /// The trajectory from `start` over this duration, cut into arcs of about equal work and contraction.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub fn along(
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        start: &State<N>,
+        duration: f64,
+    ) -> Result<Self> {
+        let whole = Polygon {
+            nodes: vec![*start],
+            durations: vec![duration],
+        };
+        whole.meshed(tracer, field)
+    }
+
+    /// The same curve, its arcs cut anew: of about equal work and contraction.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub fn meshed(&self, tracer: &mut Tracer<N>, field: &dyn VectorField<N>) -> Result<Self> {
+        // Time, state and measure at every step's end; no cut but at these.
+        let (mut way, mut begin, mut measure) = (Vec::new(), 0.0, 0.0);
+        for (start, &duration) in self.nodes.iter().zip(&self.durations) {
+            let mut trace = field.jacobian(start).trace().abs();
+            way.push((begin, *start, measure));
+            tracer.flow(
+                field,
+                start,
+                duration,
+                Some(&mut |step| {
+                    let next = field.jacobian(step.y1).trace().abs();
+                    let volume = 0.5 * (trace + next) * (step.t1 - step.t0).abs();
+                    trace = next;
+                    measure += 1.0 / STEPS_ON_ARC + volume / VOLUME_ON_ARC;
+                    way.push((begin + step.t1, *step.y1, measure));
+                    Ok(Control::Continue)
+                }),
+            )?;
+            // The next arc begins here: at its own node.
+            way.pop();
+            begin += duration;
+        }
+        let count = (measure.ceil() as usize).clamp(*NODES.start(), *NODES.end());
+        let (mut nodes, mut times) = (Vec::new(), Vec::new());
+        let mut at = 0;
+        for k in 0..count {
+            let from = measure * k as f64 / count as f64;
+            let Some(next) = way[at..].iter().position(|p| p.2 >= from) else {
+                break;
+            };
+            at += next;
+            nodes.push(way[at].1);
+            times.push(way[at].0);
+            at += 1;
+            if at == way.len() {
+                break;
+            }
+        }
+        times.push(begin);
+        let durations = times.windows(2).map(|t| t[1] - t[0]).collect();
+        Ok(Polygon { nodes, durations })
+    }
+
+    /// With arcs halved, and again, until on none of them more digits than a few are lost to contraction. `end_and_loss` gives
+    /// the end of an arc from a start over a duration, and the logarithm of the lost part.
+    ///
+    /// # Errors
+    /// Those of the closure.
+    pub fn refined(&self, end_and_loss: EndAndLoss<'_, N>) -> Result<Self> {
+        let mut finer = Polygon {
+            nodes: Vec::new(),
+            durations: Vec::new(),
+        };
+        for (x, &duration) in self.nodes.iter().zip(&self.durations) {
+            let mut x = *x;
+            // Pieces still to be looked at, the next one last.
+            let mut pieces = vec![(duration, 0)];
+            while let Some((duration, depth)) = pieces.pop() {
+                let (end, loss) = end_and_loss(&x, duration)?;
+                if loss <= LARGEST_LOSS || depth == DEPTH {
+                    finer.nodes.push(x);
+                    finer.durations.push(duration);
+                    x = end;
+                } else {
+                    let half = 0.5 * duration;
+                    pieces.push((duration - half, depth + 1));
+                    pieces.push((half, depth + 1));
+                }
+            }
+        }
+        Ok(finer)
+    }
+
+    /// The time once around.
+    pub fn period(&self) -> f64 {
+        self.durations.iter().sum()
+    }
+
+    /// The largest extent over the components.
+    pub fn extent(&self) -> f64 {
+        let over = |pick: fn(f64, f64) -> f64, from: f64, i: usize| {
+            self.nodes.iter().map(|x| x[i]).fold(from, pick)
+        };
+        (0..N)
+            .map(|i| over(f64::max, f64::NEG_INFINITY, i) - over(f64::min, f64::INFINITY, i))
+            .fold(0.0, f64::max)
+    }
+}

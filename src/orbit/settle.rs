@@ -1,0 +1,140 @@
+//! Where runs end up: from a start to a guess of the periodic orbit that it settles on.
+
+use super::arc::Tracer;
+use super::no_orbit;
+use super::polygon::Polygon;
+use crate::error::Result;
+use crate::field::{State, VectorField};
+use crate::integrate::Control;
+use crate::number::polynomial::Crossing;
+use crate::series::{Section, Zeros};
+
+/// A run's passages of a plane tau = level, downwards.
+#[derive(Debug, Clone)]
+pub(super) struct Passages<const N: usize> {
+    /// Time and state of each.
+    pub found: Vec<(f64, State<N>)>,
+    /// Least and greatest stress at the steps.
+    pub range: (f64, f64),
+    /// The state at the end.
+    pub end: State<N>,
+}
+
+/// Follows a run over `duration`, or until `most` passages. The tracer's method must be Taylor's.
+pub(super) fn passages<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    duration: f64,
+    level: f64,
+    most: usize,
+) -> Result<Passages<N>> {
+    let mut normal = [0.0; N];
+    normal[0] = 1.0;
+    let section = Section::Plane {
+        normal,
+        offset: level,
+    };
+    let (mut zeros, mut here) = (Zeros::default(), Vec::new());
+    let mut found = Vec::new();
+    let mut range = (start[0], start[0]);
+    let end = tracer.flow(
+        field,
+        start,
+        duration,
+        Some(&mut |step| {
+            range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
+            if let Some(series) = step.series {
+                here.clear();
+                series.crossings(&section, Some(Crossing::Downwards), &mut zeros, &mut here);
+                for passage in &here {
+                    found.push((step.t0 + passage.time, State::from(passage.state)));
+                }
+            }
+            Ok(if found.len() >= most {
+                Control::Stop
+            } else {
+                Control::Continue
+            })
+        }),
+    )?;
+    Ok(Passages { found, range, end })
+}
+
+/// Largest difference in a component.
+fn apart<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
+    (a - b).amax()
+}
+
+/// Most passages in one cycle of an orbit that is recognised.
+const MOST_PASSAGES: usize = 12;
+/// A return this near is worth a try with Newton's method.
+const NEAR: f64 = 0.3;
+/// A run whose stress varies by less is at an equilibrium.
+const AT_REST: f64 = 1e-6;
+/// Lengths of the stretches of a run, in rough periods; each doubles the run.
+const FIRST_STRETCH: f64 = 16.0;
+/// How often the run is prolonged.
+const STRETCHES: u32 = 7;
+
+/// The closed curves that a run seems to approach, the likeliest first, as the run gets longer: `accept` says of each whether
+/// to go on.
+///
+/// # Errors
+/// [`Error::NoOrbit`] where the run comes to rest or comes back nowhere; those of the flow.
+pub(super) fn settle<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    rough_period: f64,
+    accept: &mut dyn FnMut(&mut Tracer<N>, Polygon<N>) -> bool,
+) -> Result<()> {
+    let mut y = *start;
+    for stretch in 0..STRETCHES {
+        let length = FIRST_STRETCH * rough_period * f64::from(1u32 << stretch);
+        // Some of it unseen; then how far the stress goes; then where it passes the middle of that.
+        let unseen = passages(tracer, field, &y, 0.5 * length, y[0], usize::MAX)?;
+        let seen = passages(tracer, field, &unseen.end, 0.5 * length, y[0], usize::MAX)?;
+        let (low, high) = seen.range;
+        y = seen.end;
+        if high - low < AT_REST {
+            if stretch + 1 < STRETCHES && field.f(&y).amax() * rough_period > 1e-12 {
+                continue;
+            }
+            return Err(no_orbit(
+                "the run comes to rest at an equilibrium".into(),
+                "give a --start from which it does not, or other --driving and --stiffness",
+            ));
+        }
+        let level = 0.5 * (low + high);
+        let most = 2 * MOST_PASSAGES + 1;
+        let Passages { found, .. } = passages(tracer, field, &y, length, level, most)?;
+        let Some((last_time, last)) = found.last() else {
+            continue;
+        };
+        let mut returns: Vec<_> = found[..found.len() - 1]
+            .iter()
+            .rev()
+            .take(MOST_PASSAGES)
+            .map(|(time, state)| (apart(state, last), last_time - time))
+            .filter(|(apart, _)| *apart < NEAR)
+            .collect();
+        // A cycle traversed twice comes as near as once: the shorter one first.
+        returns.sort_by(|a, b| {
+            (a.0.max(1e-4))
+                .total_cmp(&b.0.max(1e-4))
+                .then(a.1.total_cmp(&b.1))
+        });
+        for (_, period) in returns.into_iter().take(3) {
+            if let Ok(polygon) = Polygon::along(tracer, field, last, period)
+                && accept(tracer, polygon)
+            {
+                return Ok(());
+            }
+        }
+    }
+    Err(no_orbit(
+        "the run settles on no periodic orbit".into(),
+        "look at it with `section`, or give a --start near the orbit",
+    ))
+}

@@ -1,0 +1,240 @@
+//! A periodic orbit with all that is said of it.
+
+use super::arc::Tracer;
+use super::extremes::extremes;
+use super::floquet::Floquet;
+use super::no_orbit;
+use super::polygon::Polygon;
+use super::shooting::{Closed, close};
+use super::slab::Slab;
+use super::space::{Space, Tracers};
+use crate::equilibrium::{Symmetry, Verdict};
+use crate::error::Result;
+use crate::field::VectorField;
+use crate::integrate::{Choice, MAX_STEPS, Tolerances, Work};
+use crate::number::Uncertain;
+
+/// A periodic orbit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Orbit {
+    /// Symmetric: both interfaces move alike (also said of a single one).
+    pub symmetry: Symmetry,
+    /// In L/V*.
+    pub period: Uncertain,
+    /// tau and ln psi of every interface: where tau falls through tau_ss(V_H/2), or at a node where it never does.
+    pub point: Vec<f64>,
+    /// The point may be off by this, in units of 1 + |y|.
+    pub point_uncertainty: f64,
+    /// Least stress, in a sigma.
+    pub stress_min: Uncertain,
+    /// Greatest stress, in a sigma.
+    pub stress_max: Uncertain,
+    /// Greatest slip rate of an interface, in V*.
+    pub slip_rate_max: f64,
+    /// Least psi.
+    pub state_min: f64,
+    /// Its multipliers.
+    pub floquet: Floquet,
+    /// The method.
+    pub method: &'static str,
+    /// Nodes along the cycle, (tau, ln psi) of every interface.
+    pub nodes: Vec<Vec<f64>>,
+    /// From each node to the next, from the last to the first.
+    pub durations: Vec<f64>,
+    /// Newton iterations, over all closings.
+    pub iterations: usize,
+    /// All work.
+    pub work: Work,
+}
+
+impl Orbit {
+    /// Stable, unstable or undecided.
+    pub fn verdict(&self) -> Verdict {
+        self.floquet.verdict()
+    }
+}
+
+/// What an orbit is computed with.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Accuracy {
+    /// The method that makes the flow and its derivatives.
+    pub method: Choice,
+    /// What it is asked for in a step.
+    pub tolerances: Tolerances,
+    /// The bound on steps of an arc.
+    pub max_steps: usize,
+    /// Whether a second solution, with other nodes and another tolerance, checks the uncertainties.
+    pub checked: bool,
+}
+
+impl Accuracy {
+    /// What a method is asked for where nobody says otherwise: all digits of Taylor, what the others reach in their time.
+    pub fn of(method: Choice) -> Self {
+        let tolerance = match method {
+            Choice::Auto | Choice::Taylor => 1e-15,
+            _ => 1e-11,
+        };
+        Accuracy {
+            method,
+            tolerances: Tolerances {
+                rtol: tolerance,
+                atol: tolerance,
+            },
+            max_steps: MAX_STEPS,
+            checked: true,
+        }
+    }
+
+    pub(super) fn looser(self) -> Self {
+        let Tolerances { rtol, atol } = self.tolerances;
+        Accuracy {
+            tolerances: Tolerances {
+                rtol: LOOSER * rtol,
+                atol: LOOSER * atol,
+            },
+            ..self
+        }
+    }
+}
+
+/// Tolerance of the second solution over that of the first.
+const LOOSER: f64 = 8.0;
+/// Part of the cycle by which its first node is moved.
+const SHIFT: f64 = 0.37;
+
+/// A closed polygon of either dimension with its multipliers.
+pub(super) struct Solved<const N: usize> {
+    pub closed: Closed<N>,
+    pub floquet: Floquet,
+    pub iterations: usize,
+}
+
+/// Closes a guess, refines its nodes for the multipliers, and closes it again.
+pub(super) fn solve<const N: usize>(
+    space: &impl Space<N>,
+    tracers: &mut Tracers<N>,
+    guess: Polygon<N>,
+) -> Result<Solved<N>> {
+    let field = space.field();
+    let first = close(&mut tracers.here, field, guess)?;
+    if let Some(times) = traversals(&mut tracers.here, field, &first.polygon)? {
+        let period = first.polygon.period();
+        return Err(no_orbit(
+            format!(
+                "the cycle found, of period {period}, is a shorter one traversed {times} times"
+            ),
+            "give a shorter --period-guess, or a --start farther from that orbit",
+        ));
+    }
+    let finer = first
+        .polygon
+        .refined(&mut |x, duration| space.loss(tracers, x, duration))?;
+    let closed = close(&mut tracers.here, field, finer)?;
+    let floquet = space.floquet(tracers, &closed)?;
+    Ok(Solved {
+        iterations: first.iterations + closed.iterations,
+        closed,
+        floquet,
+    })
+}
+
+/// How many times the cycle is a shorter one traversed; `None` where it is its own.
+pub(super) fn traversals<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    polygon: &Polygon<N>,
+) -> Result<Option<u32>> {
+    /// Times around that are looked for, and how near the beginning such a part ends, in units of the extent.
+    const TIMES: [u32; 5] = [2, 3, 5, 7, 11];
+    const SAME: f64 = 1e-5;
+    let (period, extent) = (polygon.period(), polygon.extent());
+    for times in TIMES {
+        // From the node before such a part's end.
+        let part = period / f64::from(times);
+        let (mut before, mut k) = (0.0, 0);
+        while k + 1 < polygon.nodes.len() && before + polygon.durations[k] <= part {
+            before += polygon.durations[k];
+            k += 1;
+        }
+        let there = if part == before {
+            polygon.nodes[k]
+        } else {
+            tracer.flow(field, &polygon.nodes[k], part - before, None)?
+        };
+        if (there - polygon.nodes[0]).amax() < SAME * extent {
+            return Ok(Some(times));
+        }
+    }
+    Ok(None)
+}
+
+/// The orbit near a guess, with everything.
+pub(super) fn orbit<const N: usize>(
+    slab: &Slab,
+    space: &impl Space<N>,
+    accuracy: &Accuracy,
+    guess: Polygon<N>,
+) -> Result<Orbit> {
+    let mut tracers = Tracers::new(accuracy)?;
+    let Solved {
+        closed,
+        mut floquet,
+        iterations,
+    } = solve(space, &mut tracers, guess)?;
+    let polygon = &closed.polygon;
+    let (mut period, node_error) = closed.budget();
+    let mut work = tracers.work();
+    if accuracy.checked {
+        let mut second = Tracers::new(&accuracy.looser())?;
+        let moved = shifted(&mut second.here, space.field(), polygon)?;
+        let other = solve(space, &mut second, moved)?;
+        floquet.widened_by(&other.floquet);
+        period.uncertainty += 2.0 * (period.value - other.closed.polygon.period()).abs();
+        work += second.work();
+    }
+    let extremes = extremes(space.field(), polygon, slab.steady_stress())?;
+    let point = extremes.passage.unwrap_or(polygon.nodes[0]);
+    let of_stress = |stress: f64| {
+        // Within a stress extreme's rounding as well.
+        let uncertainty = (node_error + 4.0 * f64::EPSILON) * (1.0 + stress.abs());
+        Uncertain::new(stress, uncertainty)
+    };
+    Ok(Orbit {
+        symmetry: space.symmetry(polygon),
+        period,
+        point: point.iter().copied().collect(),
+        point_uncertainty: node_error,
+        stress_min: of_stress(extremes.stress.0),
+        stress_max: of_stress(extremes.stress.1),
+        slip_rate_max: extremes.slip_rate_max,
+        state_min: extremes.state_min,
+        floquet,
+        method: tracers.here.name(),
+        nodes: polygon
+            .nodes
+            .iter()
+            .map(|x| x.iter().copied().collect())
+            .collect(),
+        durations: polygon.durations.clone(),
+        iterations,
+        work,
+    })
+}
+
+/// The same cycle from other nodes.
+fn shifted<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    polygon: &Polygon<N>,
+) -> Result<Polygon<N>> {
+    let mut moved = polygon.clone();
+    for (x, duration) in moved.nodes.iter_mut().zip(&polygon.durations) {
+        *x = tracer.flow(field, x, SHIFT * duration, None)?;
+    }
+    let count = moved.durations.len();
+    for k in 0..count {
+        let next = polygon.durations[(k + 1) % count];
+        moved.durations[k] = (1.0 - SHIFT) * polygon.durations[k] + SHIFT * next;
+    }
+    Ok(moved)
+}
