@@ -164,6 +164,110 @@ fn equilibria() {
 }
 
 #[test]
+fn orbit() {
+    let made = object("orbit --driving 1 --stiffness 0.14 --symmetry asymmetric");
+    envelope(&made, "orbit");
+    let orbit = &made["result"]["orbit"];
+    for field in ["period", "stress_min", "stress_max"] {
+        uncertain(&orbit[field]);
+    }
+    for field in [
+        "slip_rate_max",
+        "state_min",
+        "trivial_defect",
+        "liouville_defect",
+    ] {
+        assert!(orbit[field].is_f64(), "{field}");
+    }
+    assert_eq!(orbit["symmetry"], "asymmetric");
+    assert_eq!(orbit["verdict"], "stable");
+    assert_eq!(orbit["method"], "taylor");
+    assert_eq!(orbit["point"].as_array().map(Vec::len), Some(3));
+    let multipliers = orbit["multipliers"].as_array().expect("a list");
+    assert_eq!(multipliers.len(), 3);
+    assert_eq!(multipliers[0], serde_json::json!([1.0, 0.0]));
+    let logs = orbit["log_multipliers"].as_array().expect("a list");
+    assert_eq!(logs.len(), 2);
+    for (one, mu) in logs.iter().zip(&multipliers[1..]) {
+        uncertain(&one["ln_abs"]);
+        assert_eq!(
+            (&one["kind"], &one["angle_over_pi"]),
+            (&"real".into(), &0.0.into())
+        );
+        let ratio = number(one, "/ln_abs/value").exp() / number(mu, "/0");
+        assert!((ratio - 1.0).abs() < 1e-14);
+    }
+    let second = &orbit["crosscheck"];
+    let method = if cfg!(feature = "sundials") {
+        "cvode-bdf"
+    } else {
+        "rodas5p"
+    };
+    assert_eq!(second["method"], method);
+    assert!(number(second, "/period_difference").abs() < 1e-7);
+    assert_eq!(
+        second["ln_abs_difference"].as_array().map(Vec::len),
+        Some(2)
+    );
+    assert_eq!(made["result"]["others"], serde_json::json!([]));
+    // A pair: one above the real axis, one below.
+    let pair =
+        object("orbit --driving 0.07 --stiffness 0.14 --symmetry asymmetric --crosscheck none");
+    let multipliers = &pair["result"]["orbit"]["multipliers"];
+    assert_eq!(number(multipliers, "/1/1"), -number(multipliers, "/2/1"));
+    assert!(number(multipliers, "/1/1") > 0.0);
+    assert!(pair["result"]["orbit"]["crosscheck"].is_null());
+    assert_eq!(
+        pair["result"]["orbit"]["log_multipliers"][0]["kind"],
+        "complex"
+    );
+    let single = object("orbit --interfaces 1 --driving 1 --stiffness 0.28");
+    assert_eq!(
+        single["result"]["orbit"]["multipliers"]
+            .as_array()
+            .map(Vec::len),
+        Some(2)
+    );
+    let table =
+        csv(&twinslip("orbit --driving 1 --stiffness 0.14 --crosscheck none --format csv").out);
+    assert_eq!(table[0][..3], ["symmetry", "period", "period_uncertainty"]);
+    assert_eq!(table[0].len(), table[1].len());
+}
+
+#[test]
+fn an_orbit_that_is_none_fails_and_bad_input_is_refused() {
+    for (arguments, code, said) in [
+        ("orbit --driving 1000 --stiffness 0.14", 1, "comes to rest"),
+        ("orbit --driving 1", 2, "--stiffness"),
+        (
+            "orbit --driving 1 --stiffness 0.14 --symmetry odd",
+            2,
+            "symmetry is odd",
+        ),
+        (
+            "orbit --driving 1 --stiffness 0.14 --crosscheck taylor",
+            2,
+            "the method itself",
+        ),
+        (
+            "orbit --driving 1 --stiffness 0.14 --period-guess 3",
+            2,
+            "--start",
+        ),
+        ("orbit --driving 1 --stiffness 0.14 --rtol 0", 2, "rtol"),
+        (
+            "orbit --driving 1 --stiffness 0.14 --interfaces 1 --symmetry asymmetric",
+            2,
+            "single interface",
+        ),
+    ] {
+        let ended = twinslip(arguments);
+        assert_eq!(ended.code, code, "{arguments}: {}", ended.err);
+        assert!(ended.err.contains(said), "{arguments}: {}", ended.err);
+    }
+}
+
+#[test]
 fn an_undecided_verdict_has_its_own_exit_code() {
     // V_H = 2 V_M to the last digit: which side of the pitchfork it is on can't be told.
     let ended =

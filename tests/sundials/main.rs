@@ -1,11 +1,12 @@
 //! CVODES and KINSOL through their safe types: classics with published digits, errors by name, panics through C, events,
-//! dense output, sensitivities, threads, and silence.
+//! dense output, sensitivities, monodromy matrices, threads, and silence.
 #![cfg(feature = "sundials")]
 
 mod classics;
 mod errors;
 mod events;
 mod kinsol;
+mod monodromy;
 mod panics;
 mod sensitivities;
 mod threads;
