@@ -13,7 +13,7 @@ use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Polygon, Query, Slab, Tracer, close, find, floquet};
+use twinslip::orbit::{Accuracy, Begin, Polygon, Query, Slab, Tracer, close, find, floquet};
 
 fn slab(driving: f64, stiffness: f64) -> Slab {
     Slab {
@@ -27,8 +27,7 @@ fn slab(driving: f64, stiffness: f64) -> Slab {
 fn polygon(slab: &Slab) -> Polygon<3> {
     let query = Query {
         symmetry: Symmetry::Asymmetric,
-        start: None,
-        period_guess: None,
+        begin: Begin::Anywhere,
     };
     let orbit = find(slab, &query, &Accuracy::of(Choice::Taylor))
         .expect("an orbit")

@@ -10,7 +10,7 @@ use twinslip::error::Error;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Kind, Orbit, Query, Slab, crosscheck, find};
+use twinslip::orbit::{Accuracy, Begin, Kind, Orbit, Query, Slab, crosscheck, find};
 
 fn slab(driving: f64, stiffness: f64) -> Slab {
     Slab {
@@ -23,8 +23,7 @@ fn slab(driving: f64, stiffness: f64) -> Slab {
 fn query(symmetry: Symmetry) -> Query {
     Query {
         symmetry,
-        start: None,
-        period_guess: None,
+        begin: Begin::Anywhere,
     }
 }
 
@@ -173,9 +172,11 @@ fn three_orbits_coexist_at_small_stiffness() {
     let stable = of(query(Symmetry::Asymmetric));
     let start = (11.377, [1.53e-6_f64.ln(), 1.83e-4_f64.ln()]);
     let unstable = of(Query {
-        start: Some(start),
-        period_guess: Some(480.0),
-        ..query(Symmetry::Asymmetric)
+        symmetry: Symmetry::Asymmetric,
+        begin: Begin::At {
+            start,
+            period: Some(480.0),
+        },
     });
     assert_close(
         symmetric.period.value,
@@ -195,8 +196,11 @@ fn three_orbits_coexist_at_small_stiffness() {
     assert_eq!(unstable.verdict(), Verdict::Unstable);
     // without the period it is its returns that lead there
     let returned = of(Query {
-        start: Some(start),
-        ..query(Symmetry::Asymmetric)
+        symmetry: Symmetry::Asymmetric,
+        begin: Begin::At {
+            start,
+            period: None,
+        },
     });
     assert_close(
         returned.period.value,
@@ -207,6 +211,21 @@ fn three_orbits_coexist_at_small_stiffness() {
 }
 
 #[test]
+fn the_branch_from_a_hopf_point_leads_to_the_same_orbits() {
+    for (driving, symmetry) in [(100.0, Symmetry::Symmetric), (200.0, Symmetry::Asymmetric)] {
+        let slab = slab(driving, 0.14);
+        let of = |begin| {
+            find(&slab, &Query { symmetry, begin }, &taylor())
+                .expect("an orbit")
+                .orbit
+        };
+        let (settled, followed) = (of(Begin::Anywhere), of(Begin::Hopf));
+        assert_close(followed.period.value, settled.period.value, 1e-12, "period");
+        assert_eq!(followed.verdict(), settled.verdict());
+    }
+}
+
+#[test]
 fn a_cycle_is_not_taken_for_a_shorter_one_twice() {
     let slab = slab(1.0, 0.14);
     let orbit = find(&slab, &query(Symmetry::Asymmetric), &taylor())
@@ -214,9 +233,11 @@ fn a_cycle_is_not_taken_for_a_shorter_one_twice() {
         .orbit;
     let start = (orbit.point[0], [orbit.point[1], orbit.point[2]]);
     let twice = Query {
-        start: Some(start),
-        period_guess: Some(2.0 * orbit.period.value),
         symmetry: Symmetry::Asymmetric,
+        begin: Begin::At {
+            start,
+            period: Some(2.0 * orbit.period.value),
+        },
     };
     match find(&slab, &twice, &taylor()) {
         Err(Error::NoOrbit { what, .. }) => assert!(what.contains("traversed 2 times"), "{what}"),
@@ -224,7 +245,10 @@ fn a_cycle_is_not_taken_for_a_shorter_one_twice() {
     }
     // A start alone leads to the cycle itself.
     let once = Query {
-        period_guess: None,
+        begin: Begin::At {
+            start,
+            period: None,
+        },
         ..twice
     };
     let again = find(&slab, &once, &taylor()).expect("an orbit").orbit;
@@ -249,8 +273,10 @@ fn what_is_no_orbit_is_said() {
     // Newton's method on a cycle as small as that has but the equilibrium to go to.
     let slab = slab(1000.0, 0.14);
     let small = Query {
-        start: Some((slab.steady_stress(), [slab.steady_log_state() + 1e-9; 2])),
-        period_guess: Some(0.01),
+        begin: Begin::At {
+            start: (slab.steady_stress(), [slab.steady_log_state() + 1e-9; 2]),
+            period: Some(0.01),
+        },
         symmetry: Symmetry::Symmetric,
     };
     match find(&slab, &small, &taylor()) {

@@ -9,7 +9,7 @@ use crate::friction::positive;
 use crate::integrate::{Choice, Tolerances};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Accuracy, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
+    Accuracy, Begin, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
 };
 use crate::output::{self, Cell, Format};
 use crate::scene::{OrbitOptions, Quantity, System, start};
@@ -45,12 +45,7 @@ impl Plan {
                 ));
             }
         };
-        let start = options
-            .start
-            .as_deref()
-            .map(|text| start(text, &system, &loading))
-            .transpose()?;
-        let period_guess = options
+        let period = options
             .period_guess
             .map(|t| {
                 Ok(system
@@ -58,6 +53,20 @@ impl Plan {
                     .inward(Quantity::Time, positive("period-guess", t)?))
             })
             .transpose()?;
+        let begin = match options.start.as_deref() {
+            None => Begin::Anywhere,
+            Some("hopf") if period.is_some() => {
+                return Err(Error::Input(
+                    "--period-guess goes with a --start near the orbit, not with --start hopf"
+                        .into(),
+                ));
+            }
+            Some("hopf") => Begin::Hopf,
+            Some(text) => Begin::At {
+                start: start(text, &system, &loading)?,
+                period,
+            },
+        };
         let mut accuracy = Accuracy::of(Choice::named(&options.method)?);
         if options.max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
@@ -74,11 +83,7 @@ impl Plan {
                 interfaces: system.interfaces,
                 loading,
             },
-            query: Query {
-                symmetry,
-                start,
-                period_guess,
-            },
+            query: Query { symmetry, begin },
             second: second(options.crosscheck.as_deref(), accuracy.method)?,
             accuracy,
             system,
@@ -102,10 +107,14 @@ impl Plan {
         );
         eprintln!(
             "  guess             {}",
-            match (self.query.start, self.query.period_guess) {
-                (Some(_), Some(_)) => "the start, over the period given",
-                (Some(_), None) => "the returns of the start, else what it settles on",
-                _ => "what runs settle on, else the branch from the nearest Hopf point",
+            match self.query.begin {
+                Begin::At {
+                    period: Some(_), ..
+                } => "the start, over the period given",
+                Begin::At { .. } => "the returns of the start, else what it settles on",
+                Begin::Anywhere =>
+                    "what runs settle on, else the branch from the nearest Hopf point",
+                Begin::Hopf => "the branch from the nearest Hopf point, past its folds",
             }
         );
         eprintln!(

@@ -18,10 +18,24 @@ use crate::model::Driven;
 pub struct Query {
     /// Whether both interfaces move alike; a single one always does.
     pub symmetry: Symmetry,
-    /// tau and ln psi of both interfaces, at or near the orbit; equal ones for a single interface.
-    pub start: Option<(f64, [f64; 2])>,
-    /// The period, roughly.
-    pub period_guess: Option<f64>,
+    /// Where the search begins.
+    pub begin: Begin,
+}
+
+/// Where a search for an orbit begins.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Begin {
+    /// With runs from several starts; where they lead to no orbit of the symmetry, as from [`Begin::Hopf`].
+    Anywhere,
+    /// At the nearest Hopf point along V_H, whose branch is followed, past its folds, to the slab's V_H.
+    Hopf,
+    /// At or near the orbit.
+    At {
+        /// tau and ln psi of both interfaces; equal ones for a single interface.
+        start: (f64, [f64; 2]),
+        /// The period, roughly. With it no shorter cycle is taken for the orbit.
+        period: Option<f64>,
+    },
 }
 
 /// What was found.
@@ -56,18 +70,16 @@ pub fn find(slab: &Slab, query: &Query, accuracy: &Accuracy) -> Result<Found> {
     let whole = slab.whole();
     if query.symmetry == Symmetry::Asymmetric {
         let space = whole_of(&*whole);
-        let start = query
-            .start
-            .map(|(tau, [w1, w2])| State::<3>::new(tau, w1, w2));
         let starts = asymmetric_starts(slab);
-        return search(slab, &space, query, accuracy, start, &starts);
+        let chart = |(tau, [w1, w2]): (f64, [f64; 2])| State::<3>::new(tau, w1, w2);
+        return search(slab, &space, query, accuracy, &chart, &starts);
     }
     let plane = slab.plane();
     let space = plane_of(slab, &*plane, &*whole);
-    let start = query.start.map(|(tau, [w, _])| State::<2>::new(tau, w));
+    let chart = |(tau, [w, _]): (f64, [f64; 2])| State::<2>::new(tau, w);
     let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
     let starts = [0.5, 3.0].map(|away| State::<2>::new(tau, w - away));
-    search(slab, &space, query, accuracy, start, &starts)
+    search(slab, &space, query, accuracy, &chart, &starts)
 }
 
 /// The space of all orbits of two interfaces.
@@ -102,7 +114,7 @@ fn search<const N: usize>(
     space: &impl Space<N>,
     query: &Query,
     accuracy: &Accuracy,
-    start: Option<State<N>>,
+    chart: &dyn Fn((f64, [f64; 2])) -> State<N>,
     starts: &[State<N>],
 ) -> Result<Found> {
     let mut tracer = Tracer::taylor(ROUGH)?;
@@ -112,18 +124,22 @@ fn search<const N: usize>(
         closed: Vec::new(),
         otherwise: None,
     };
-    match (start, query.period_guess) {
-        (Some(start), Some(period)) => guesses.over(period, &mut tracer, &start)?,
-        (Some(start), None) => guesses.near(slab, &mut tracer, &start)?,
-        (None, _) => {
+    match query.begin {
+        Begin::At { start, period } => match period {
+            Some(period) => guesses.over(period, &mut tracer, &chart(start))?,
+            None => guesses.near(slab, &mut tracer, &chart(start))?,
+        },
+        Begin::Anywhere => {
             for start in starts {
                 guesses.settled(slab, &mut tracer, start);
             }
-            if guesses.closed.is_empty() {
-                for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
-                    guesses.take(polygon);
-                }
-            }
+        }
+        Begin::Hopf => {}
+    }
+    let at = matches!(query.begin, Begin::At { .. });
+    if guesses.closed.is_empty() && !at {
+        for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
+            guesses.take(polygon);
         }
     }
     if guesses.closed.is_empty() {
@@ -137,7 +153,14 @@ fn search<const N: usize>(
     let mut orbits = Vec::new();
     let mut fine = Tracer::taylor(FINE)?;
     for mut polygon in guesses.closed {
-        if query.period_guess.is_none() {
+        let whole_cycle = matches!(
+            query.begin,
+            Begin::At {
+                period: Some(_),
+                ..
+            }
+        );
+        if !whole_cycle {
             // Close to a period doubling only the last digits tell a cycle from one traversed twice.
             polygon = close(&mut fine, space.field(), polygon)?.polygon;
             polygon = once_around(&mut fine, space.field(), polygon)?;

@@ -18,7 +18,7 @@ mod space;
 
 pub use arc::{Arc, Tracer};
 pub use crosscheck::{Crosscheck, crosscheck};
-pub use find::{Found, Query, find};
+pub use find::{Begin, Found, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
 pub use polygon::{EndAndLoss, Polygon};
 pub use shooting::{Closed, close};

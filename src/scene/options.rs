@@ -195,8 +195,8 @@ pub struct OrbitOptions {
         help_heading = "Orbit"
     )]
     pub symmetry: String,
-    /// TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit, or near-symmetric[:EPS]; without it the orbit is looked
-    /// for
+    /// TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or hopf, for the branch from the
+    /// nearest Hopf point along V_H. Without it the orbit is looked for
     #[arg(
         long,
         value_name = "START",

@@ -6,7 +6,7 @@ use twinslip::equilibrium::Symmetry;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Orbit, Query, Slab, find};
+use twinslip::orbit::{Accuracy, Begin, Orbit, Query, Slab, find};
 use twinslip::sundials::{ErrorControl, Mode, Problem, Scheme, Sensitivity};
 
 fn orbit(driving: f64, stiffness: f64) -> (Slab, Orbit) {
@@ -17,8 +17,7 @@ fn orbit(driving: f64, stiffness: f64) -> (Slab, Orbit) {
     };
     let query = Query {
         symmetry: Symmetry::Asymmetric,
-        start: None,
-        period_guess: None,
+        begin: Begin::Anywhere,
     };
     let found = find(&slab, &query, &Accuracy::of(Choice::Taylor)).unwrap();
     (slab, found.orbit)
