@@ -14,7 +14,7 @@ use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 
 /// Steps of Taylor before the first look at the Jacobian, and from one look to the next.
-const FIRST_LOOK: usize = 6;
+const FIRST_LOOK: usize = 2;
 const TAYLOR_LOOKS: usize = 16;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
 const RODAS_LOOKS: usize = 4;
