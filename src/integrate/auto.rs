@@ -1,4 +1,5 @@
-//! The method that suits the run: Taylor, and Rodas5P for as long as strong damping would hold Taylor's steps short.
+//! The method that suits the run: Taylor, and Rodas5P for as long as strong damping would hold Taylor's steps short; Rodas4,
+//! whose steps are cheaper, in its place at loose tolerances.
 //!
 //! An explicit method's step is bound by h |lambda| for the fastest decaying mode lambda, Taylor's at 0.45 times its
 //! order. So a run begins with Taylor, and every few steps the dominant mode of the Jacobian is looked at; where h |lambda|
@@ -14,7 +15,7 @@ use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 
 /// Steps of Taylor before the first look at the Jacobian, and from one look to the next.
-const FIRST_LOOK: usize = 2;
+const FIRST_LOOK: usize = 6;
 const TAYLOR_LOOKS: usize = 16;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
 const RODAS_LOOKS: usize = 4;
@@ -28,6 +29,17 @@ const TRIAL: usize = 12;
 const FUTILE: f64 = 4.0;
 /// Longest wait for the next try, in looks.
 const PATIENCE: usize = 1 << 12;
+
+/// The Rosenbrock method that needs the least time at a tolerance.
+fn implicit(rtol: f64) -> RosenbrockMethod {
+    /// Above it the lower order wins.
+    const LOOSE: f64 = 1e-5;
+    if rtol > LOOSE {
+        RosenbrockMethod::Rodas4
+    } else {
+        RosenbrockMethod::Rodas5P
+    }
+}
 
 /// A stretch of a run.
 #[derive(Debug, Clone, Copy)]
@@ -69,7 +81,7 @@ impl<const N: usize> Auto<N> {
     pub fn new(tolerances: Tolerances, max_steps: usize) -> Result<Self> {
         Ok(Auto {
             taylor: Taylor::new(tolerances, max_steps)?,
-            rodas: Rosenbrock::new(RosenbrockMethod::Rodas5P, tolerances, max_steps)?,
+            rodas: Rosenbrock::new(implicit(tolerances.rtol), tolerances, max_steps)?,
             max_steps,
             work: Work::default(),
         })

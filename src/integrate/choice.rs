@@ -119,7 +119,7 @@ impl Choice {
     pub fn reason(self) -> &'static str {
         match self {
             Choice::Auto => {
-                "taylor, the fastest along stick-slip cycles, and rodas5p for as long as strong damping would hold its steps short"
+                "taylor, the fastest along stick-slip cycles, and rodas5p, or rodas4 above 1e-5, for as long as strong damping would hold its steps short"
             }
             Choice::Taylor => {
                 "power series of order 12 to 18: by far the fastest along stick-slip cycles, slow where damping is strong"
