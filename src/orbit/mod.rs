@@ -1,0 +1,15 @@
+//! What a flow settles on: return maps to a section, their periodic points and invariant curves, Lyapunov exponents.
+
+mod curve;
+mod lyapunov;
+mod periodicity;
+mod regime;
+mod returns;
+mod section;
+
+pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
+pub use lyapunov::{Spectrum, at_equilibrium, spectrum};
+pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
+pub use returns::{Ended, Record, Return, Watching, record};
+pub use section::{Chart, Landing, Surface, half_driving_stress, return_map};
