@@ -13,6 +13,7 @@
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
+//! | [`orbit::record`] | the returns of a run to a section; what they settle on by [`orbit::verdict`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
@@ -42,6 +43,8 @@ pub mod sundials;
 pub mod integrate;
 
 pub mod equilibrium;
+
+pub mod orbit;
 
 pub mod scene;
 

@@ -23,8 +23,13 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
+        "orbit",
+        &["integrate", "series", "friction", "number", "field"],
+    ),
+    (
         "scene",
         &[
+            "orbit",
             "integrate",
             "model",
             "series",
@@ -38,6 +43,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "cli",
         &[
             "scene",
+            "orbit",
             "equilibrium",
             "integrate",
             "sundials",

@@ -7,13 +7,14 @@ mod law;
 mod progress;
 mod report;
 mod run;
+mod section;
 
 use crate::error::Error;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria.
+/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, return maps.
 ///
 /// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
 /// Data goes to standard output or a file, messages to standard error.
@@ -36,6 +37,9 @@ enum Command {
     /// All steady states at a driving velocity, with eigenvalues and stability
     #[command(after_help = equilibria::EXAMPLE)]
     Equilibria(Box<crate::scene::EquilibriaOptions>),
+    /// The return map of a run to a section of constant stress: periodic, a torus, or chaotic; Lyapunov exponents
+    #[command(after_help = section::EXAMPLE)]
+    Section(Box<crate::scene::SectionOptions>),
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
@@ -84,6 +88,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Law(options) => law::run(options, &words),
         Command::Integrate(options) => integrate::run(options, &words),
         Command::Equilibria(options) => equilibria::run(options, &words),
+        Command::Section(options) => section::run(options, &words),
         Command::Run(options) => run::run(options, &words),
     };
     match ended {

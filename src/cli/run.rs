@@ -1,6 +1,6 @@
 //! `twinslip run SCENE.toml`.
 
-use super::{Command, Ending, equilibria, integrate, law, parse, program};
+use super::{Command, Ending, equilibria, integrate, law, parse, program, section};
 use crate::error::{Error, Result};
 use crate::scene::SceneFile;
 use std::path::PathBuf;
@@ -63,6 +63,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
         Command::Law(options) => law::run(options, words),
         Command::Integrate(options) => integrate::run(options, words),
         Command::Equilibria(options) => equilibria::run(options, words),
+        Command::Section(options) => section::run(options, words),
         Command::Run(_) => unreachable!("a scene file can't name the command run"),
     };
     ended.map_err(|error| match error {

@@ -46,13 +46,16 @@ pub fn regularity(points: &[[f64; 2]]) -> f64 {
     let mut worst = 0.0_f64;
     for i in 0..2 {
         let mean = points.iter().map(|p| p[i]).sum::<f64>() / points.len().max(1) as f64;
-        let spread = points.iter().map(|p| (p[i] - mean).abs()).fold(0.0, f64::max);
+        let spread = points
+            .iter()
+            .map(|p| (p[i] - mean).abs())
+            .fold(0.0, f64::max);
         if spread == 0.0 {
             continue;
         }
         let of = |f: &dyn Fn(f64) -> f64| {
-            let [first, second] = halves
-                .map(|half| weighted_mean(half.iter().map(|p| f((p[i] - mean) / spread))));
+            let [first, second] =
+                halves.map(|half| weighted_mean(half.iter().map(|p| f((p[i] - mean) / spread))));
             (first - second).abs()
         };
         worst = worst.max(of(&|x| x)).max(of(&|x| x * x));
@@ -77,7 +80,10 @@ fn angles(points: &[[f64; 2]]) -> Option<Vec<f64>> {
     let n = points.len() as f64;
     let mean = [0, 1].map(|i| points.iter().map(|p| p[i]).sum::<f64>() / n);
     let moment = |i: usize, j: usize| {
-        let sum: f64 = points.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum();
+        let sum: f64 = points
+            .iter()
+            .map(|p| (p[i] - mean[i]) * (p[j] - mean[j]))
+            .sum();
         sum / n
     };
     // The Cholesky factor of the covariance; a curve encloses an area.
@@ -106,7 +112,11 @@ fn rotation(angles: &[f64]) -> Option<Uncertain> {
     for (k, &i) in order.iter().enumerate() {
         let j = order[(k + 1) % n];
         let forward = (angles[j + 1] - angles[i + 1]).rem_euclid(1.0);
-        around += if forward > 1.0 - ROUNDING { 0.0 } else { forward };
+        around += if forward > 1.0 - ROUNDING {
+            0.0
+        } else {
+            forward
+        };
     }
     if around > 1.5 {
         return None;

@@ -21,7 +21,7 @@ const TOLERANCE: f64 = 1e-13;
 const BLOCKS: usize = 20;
 const STUDENT: f64 = 2.861;
 /// Returns needed: some for each block.
-const FEWEST: usize = 3 * BLOCKS;
+pub const FEWEST_FOR_EXPONENTS: usize = 3 * BLOCKS;
 /// Part of the run over which the perturbations turn into their directions before anything is counted.
 const ALIGNMENT: f64 = 0.1;
 /// Halves whose means are this many of their intervals apart are drifting.
@@ -47,6 +47,25 @@ pub struct Spectrum<const N: usize> {
     pub time: f64,
 }
 
+/// Exponents as a verdict needs them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exponents<'a> {
+    /// In descending order, as many as the system has dimensions.
+    pub values: &'a [Uncertain],
+    /// Whether both halves of the run agree on them.
+    pub converged: bool,
+}
+
+impl<const N: usize> Spectrum<N> {
+    /// As a verdict needs them.
+    pub fn known(&self) -> Exponents<'_> {
+        Exponents {
+            values: &self.exponents,
+            converged: self.converged,
+        }
+    }
+}
+
 /// What a part of the run does to the perturbations.
 #[derive(Debug, Clone, Copy)]
 struct Leg<const N: usize> {
@@ -69,7 +88,7 @@ pub fn spectrum<const N: usize>(
     field: &dyn VectorField<N>,
     record: &Record<N>,
 ) -> Result<Spectrum<N>> {
-    if record.returns.len() < FEWEST {
+    if record.returns.len() < FEWEST_FOR_EXPONENTS {
         return Err(Error::parameter(
             "returns",
             record.returns.len(),
@@ -89,7 +108,11 @@ pub fn at_equilibrium<const N: usize>(
 ) -> [Uncertain; N] {
     let jacobian = DMatrix::from_iterator(N, N, field.jacobian(equilibrium).iter().copied());
     let size = jacobian.norm();
-    let mut parts: Vec<f64> = jacobian.complex_eigenvalues().iter().map(|z| z.re).collect();
+    let mut parts: Vec<f64> = jacobian
+        .complex_eigenvalues()
+        .iter()
+        .map(|z| z.re)
+        .collect();
     parts.sort_by(|a, b| b.total_cmp(a));
     std::array::from_fn(|i| Uncertain::new(parts[i], SYSTEMATIC * size))
 }

@@ -8,7 +8,7 @@ mod returns;
 mod section;
 
 pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
-pub use lyapunov::{Spectrum, at_equilibrium, spectrum};
+pub use lyapunov::{Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, spectrum};
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
 pub use returns::{Ended, Record, Return, Watching, record};

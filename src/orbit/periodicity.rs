@@ -4,7 +4,7 @@
 //! long way to a periodic orbit. So a candidate is followed to a fixed point of the q-th iterate by Newton's method; that
 //! point must attract, and the returns must have come closer to it.
 
-use super::returns::{Record, Return};
+use super::returns::{Record, Return, equilibrium_near};
 use super::section::{Surface, return_map};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
@@ -114,7 +114,9 @@ impl<const N: usize> Search<'_, N> {
                 return None;
             }
             let step = inside * step;
-            point = self.surface.nearest(&(point + State::from_fn(|i, _| step[i])));
+            point = self
+                .surface
+                .nearest(&(point + State::from_fn(|i, _| step[i])));
             if (point - from).amax() > NEAR {
                 return None;
             }
@@ -133,6 +135,10 @@ impl<const N: usize> Search<'_, N> {
         time: f64,
         error: f64,
     ) -> Option<Periodic<N>> {
+        // An equilibrium on the section is no orbit.
+        if equilibrium_near(self.field, &point, self.arrived).is_some() {
+            return None;
+        }
         let moduli = reduced.complex_eigenvalues().map(|z| z.norm());
         let multiplier = moduli.iter().copied().fold(0.0, f64::max);
         if multiplier > 1.0 - NEUTRAL {
@@ -141,9 +147,8 @@ impl<const N: usize> Search<'_, N> {
         let n = self.returns.len();
         let phase = |i: &usize| (n - 1 - i).is_multiple_of(self.q);
         let distance = |i: usize| (self.returns[i].state - point).amax();
-        let over = |range: std::ops::Range<usize>| {
-            range.filter(phase).map(distance).fold(0.0, f64::max)
-        };
+        let over =
+            |range: std::ops::Range<usize>| range.filter(phase).map(distance).fold(0.0, f64::max);
         let (early, late) = (over(0..n / 2), over(n - n.div_ceil(4).max(self.q)..n));
         if late > self.arrived && late > SHRUNK * early {
             return None;

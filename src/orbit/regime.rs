@@ -1,7 +1,7 @@
 //! What a run has settled on: an equilibrium, a periodic orbit, a torus, chaos; or that it cannot be told.
 
 use super::curve::{Curve, invariant_curve, regularity};
-use super::lyapunov::Spectrum;
+use super::lyapunov::Exponents;
 use super::periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 use super::returns::{Ended, Record, Return};
 use super::section::Surface;
@@ -89,7 +89,7 @@ pub fn verdict<const N: usize>(
     field: &dyn VectorField<N>,
     surface: &Surface<N>,
     record: &Record<N>,
-    exponents: Option<&Spectrum<N>>,
+    exponents: Option<Exponents<'_>>,
 ) -> Result<Verdict<N>> {
     if let Ended::Steady { .. } = record.ended {
         return Ok(Verdict::of(Regime::Steady));
@@ -119,10 +119,7 @@ pub fn verdict<const N: usize>(
 }
 
 /// The regime of returns that are not periodic.
-fn wandering<const N: usize>(
-    points: &[[f64; 2]],
-    exponents: Option<&Spectrum<N>>,
-) -> Verdict<N> {
+fn wandering<const N: usize>(points: &[[f64; 2]], exponents: Option<Exponents<'_>>) -> Verdict<N> {
     let disorder = regularity(points);
     let holds_zero = |x: &Uncertain| x.value.abs() <= x.uncertainty;
     let positive = |x: &Uncertain| x.value > x.uncertainty;
@@ -133,7 +130,8 @@ fn wandering<const N: usize>(
             );
         }
         let curve = invariant_curve(points);
-        let two_vanish = exponents.map(|x| x.exponents[..2].iter().all(holds_zero));
+        let two_vanish =
+            exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(holds_zero));
         return match (two_vanish, curve) {
             (Some(false), _) => Verdict::undecided(
                 "the returns look quasi-periodic but no second exponent vanishes; record more",
@@ -152,7 +150,8 @@ fn wandering<const N: usize>(
             "the returns are neither periodic nor quasi-periodic; the exponents (--lyapunov) may tell, or skip more",
         );
     };
-    if exponents.converged && positive(&exponents.exponents[0]) && disorder > IRREGULAR {
+    if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR
+    {
         return Verdict::of(Regime::Chaotic);
     }
     Verdict::undecided(

@@ -133,7 +133,7 @@ pub fn record<const N: usize>(
 }
 
 /// The equilibrium within `distance` of a state in every component, by a step of Newton's method, and whether it is stable.
-fn equilibrium_near<const N: usize>(
+pub(super) fn equilibrium_near<const N: usize>(
     field: &dyn VectorField<N>,
     y: &State<N>,
     distance: f64,
@@ -243,9 +243,12 @@ impl<'a, const N: usize> Recorder<'a, N> {
         self.passed += 1;
         self.since = here.time;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
-        if self.passed == skip + returns {
+        // An equilibrium may lie on the section: then its noise returns for ever.
+        self.look(&here);
+        if self.ended.is_none() && self.passed == skip + returns {
             self.ended = Some(Ended::Complete);
-        } else if told == Control::Stop {
+        }
+        if self.ended.is_none() && told == Control::Stop {
             self.ended = Some(Ended::Stopped);
         }
     }
@@ -261,18 +264,22 @@ impl<'a, const N: usize> Recorder<'a, N> {
         }
         let late = here.time - self.since > self.watching.patience;
         if late || self.steps.is_multiple_of(BETWEEN_LOOKS) {
-            let near = equilibrium_near(self.field, &here.state, self.watching.settled());
-            if let Some((equilibrium, stable @ true)) = near {
-                self.ended = Some(Ended::Steady {
-                    time: here.time,
-                    equilibrium,
-                    stable,
-                });
-                return;
-            }
+            self.look(here);
         }
-        if late {
+        if late && self.ended.is_none() {
             self.ended = Some(Ended::Failed(self.no_return(here.time)));
+        }
+    }
+
+    /// Ends at a stable equilibrium.
+    fn look(&mut self, here: &Return<N>) {
+        let near = equilibrium_near(self.field, &here.state, self.watching.settled());
+        if let Some((equilibrium, stable @ true)) = near {
+            self.ended = Some(Ended::Steady {
+                time: here.time,
+                equilibrium,
+                stable,
+            });
         }
     }
 
