@@ -36,11 +36,7 @@ impl Quadratic for Lorenz {
         ]
     }
     fn second(&self, u: &[f64; 3], v: &[f64; 3]) -> [f64; 3] {
-        [
-            0.0,
-            -(u[0] * v[2] + u[2] * v[0]),
-            u[0] * v[1] + u[1] * v[0],
-        ]
+        [0.0, -(u[0] * v[2] + u[2] * v[0]), u[0] * v[1] + u[1] * v[0]]
     }
 }
 
@@ -198,7 +194,11 @@ impl<Q: Quadratic> Solution<3> for Track<Q> {
         self.series = x;
         self.x = sum(&x, h);
         self.columns = columns.map(|s| sum(&s, h));
-        if h == limit.hi() { limit } else { DoubleDouble::from(h) }
+        if h == limit.hi() {
+            limit
+        } else {
+            DoubleDouble::from(h)
+        }
     }
 
     fn state(&self) -> [f64; 3] {
