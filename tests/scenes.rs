@@ -96,7 +96,7 @@ fn a_scene_is_the_same_as_its_flags() {
             "symmetry,stress",
         ),
         (
-            "command = \"section\"\ndriving = 10\nstiffness = 0.14\nskip = 200\nreturns = 9\nsurface = \"stress=10\"\n",
+            "command = \"section\"\ndriving = 10\nstiffness = 0.14\nskip = 600\nreturns = 9\nsurface = \"stress=10\"\n",
             "n,time,log_state_1",
         ),
     ] {

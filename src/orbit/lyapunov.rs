@@ -33,7 +33,8 @@ const PER_ACCURACY: f64 = 100.0;
 /// The Lyapunov exponents of a run, in descending order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum<const N: usize> {
-    /// Exponents in one over time, each with an interval of 99 % confidence from block averages.
+    /// Exponents in one over time, each with an interval of 99 % confidence from block averages. That of the flow's own
+    /// direction is zero; its interval is what the run and the tangents can tell of that.
     pub exponents: [Uncertain; N],
     /// Whether the two halves of the run agree on all of them within these intervals. If not, there is no saying where the
     /// exponents end.
@@ -98,7 +99,11 @@ pub fn spectrum<const N: usize>(
     let legs = legs(field, record)?;
     let aligned = (ALIGNMENT * legs.len() as f64) as usize;
     let relative = SYSTEMATIC.max(PER_ACCURACY * record.accuracy);
-    Ok(summary(&legs[aligned..], relative))
+    // The flow's own growth is that of |f|, which the ends of the run alone decide.
+    let speed = |point: &Return<N>| field.f(&point.state).norm().ln();
+    let returns = &record.returns[aligned..];
+    let gained = speed(&returns[returns.len() - 1]) - speed(&returns[0]);
+    Ok(summary(&legs[aligned..], relative, gained))
 }
 
 /// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order.
@@ -121,8 +126,7 @@ pub fn at_equilibrium<const N: usize>(
 fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Result<Vec<Leg<N>>> {
     let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let start = record.returns[0];
-    let mut frame = Jacobian::<N>::identity();
-    frame.set_column(0, &field.f(&start.state));
+    let mut frame = beginning(&field.f(&start.state));
     orthonormalise(&mut frame, start.time)?;
     let mut points = record.waypoints.iter().peekable();
     let mut legs = Vec::with_capacity(record.returns.len());
@@ -144,6 +148,14 @@ fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Resul
         legs.push(leg);
     }
     Ok(legs)
+}
+
+/// The flow's direction, and all axes but the one closest to it.
+fn beginning<const N: usize>(f: &State<N>) -> Jacobian<N> {
+    let mut frame = Jacobian::<N>::identity();
+    frame.swap_columns(0, f.iamax());
+    frame.set_column(0, f);
+    frame
 }
 
 /// Carries the perturbations over a piece of a leg.
@@ -172,7 +184,7 @@ fn carry<const N: usize>(
 /// Makes the columns orthonormal from the first on, twice over for what rounding leaves; the logarithms of their lengths.
 fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[f64; N]> {
     let mut lengths = [0.0; N];
-    for j in 0..N {
+    for (j, of_column) in lengths.iter_mut().enumerate() {
         let mut column: State<N> = columns.column(j).into_owned();
         let mut length = 0.0;
         for _ in 0..2 {
@@ -191,18 +203,21 @@ fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[
             });
         }
         columns.set_column(j, &column);
-        lengths[j] = length;
+        *of_column = length;
     }
     Ok(lengths)
 }
 
-fn summary<const N: usize>(legs: &[Leg<N>], relative: f64) -> Spectrum<N> {
+fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
     let time: f64 = legs.iter().map(|leg| leg.time).sum();
     let growth = |leg: &Leg<N>| leg.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
     let size = legs.iter().map(growth).sum::<f64>() / time;
+    let along_flow = legs.iter().map(|leg| leg.growth[0]).sum::<f64>() / time;
     let mut converged = true;
-    let mut along_flow = 0.0;
     let mut exponents: [Uncertain; N] = std::array::from_fn(|i| {
+        if i == 0 && N > 1 {
+            return Uncertain::new(along_flow, gained.abs() / time + relative * size);
+        }
         let of = |leg: &Leg<N>| {
             if i + 1 == N {
                 leg.log_determinant - leg.growth[..i].iter().sum::<f64>()
@@ -212,14 +227,13 @@ fn summary<const N: usize>(legs: &[Leg<N>], relative: f64) -> Spectrum<N> {
         };
         let blocks = block_means(legs, of);
         let (value, interval) = mean_with_interval(&blocks);
-        let uncertainty = interval + relative * size;
+        // Blocks as long as a beat of a torus all err alike; the plain mean errs otherwise.
+        let plain = legs.iter().map(of).sum::<f64>() / time;
+        let uncertainty = interval + (plain - value).abs() + relative * size;
         let (first, second) = blocks.split_at(BLOCKS / 2);
         let drift = (mean_with_interval(first).0 - mean_with_interval(second).0).abs();
         // Each half has an interval wider by the root of two, and so has their difference again.
         converged &= drift <= DRIFT * 2.0 * uncertainty;
-        if i == 0 {
-            along_flow = value;
-        }
         Uncertain::new(value, uncertainty)
     });
     exponents.sort_by(|a, b| b.value.total_cmp(&a.value));

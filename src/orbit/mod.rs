@@ -1,9 +1,11 @@
 //! What a flow settles on: return maps to a section, their periodic points and invariant curves, Lyapunov exponents.
 
 mod curve;
+mod dense;
 mod lyapunov;
 mod periodicity;
 mod regime;
+mod rest;
 mod returns;
 mod section;
 

@@ -4,7 +4,8 @@
 //! long way to a periodic orbit. So a candidate is followed to a fixed point of the q-th iterate by Newton's method; that
 //! point must attract, and the returns must have come closer to it.
 
-use super::returns::{Record, Return, equilibrium_near};
+use super::rest::equilibrium_near;
+use super::returns::{Record, Return};
 use super::section::{Surface, return_map};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};

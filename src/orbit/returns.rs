@@ -1,12 +1,12 @@
 //! The returns of one run to a section, recorded as they come.
 
+use super::dense::crossings;
+use super::rest::{equilibrium_near, spirals_into};
 use super::section::Surface;
 use crate::error::{Error, Result};
 use crate::field::{State, VectorField};
 use crate::integrate::{Control, Integrator, Step};
-use crate::number::bracketed_root;
 use crate::series::{Passage, Section, Zeros};
-use nalgebra::DMatrix;
 
 /// Steps between two looks for an equilibrium.
 const BETWEEN_LOOKS: usize = 32;
@@ -14,9 +14,6 @@ const BETWEEN_LOOKS: usize = 32;
 const AT_START: f64 = 1e-11;
 /// Steps between two waypoints: over so few no tangent shrinks by more than doubles can tell from its largest.
 const BETWEEN_WAYPOINTS: usize = 6;
-/// Parts of a step without a series. As the slope is looked at too, a crossing is missed only where the dense output turns
-/// three times in one of them.
-const PARTS: usize = 4;
 
 /// A point of a run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -112,7 +109,7 @@ pub fn record<const N: usize>(
     let mut recorder = Recorder::new(field, surface, watching, see);
     let all = (watching.skip + watching.returns) as f64;
     // The patience ends a run before this, but a flow needs an end.
-    let span = (0.0, (all + 1.0) * watching.patience);
+    let span = (0.0, 2.0 * (all + 1.0) * watching.patience);
     let mut observer = |step: &Step<'_, N>| recorder.step(step);
     let flowed = integrator.flow(field, span, start, Some(&mut observer));
     let ended = match (flowed, recorder.ended.take()) {
@@ -132,23 +129,6 @@ pub fn record<const N: usize>(
     }
 }
 
-/// The equilibrium within `distance` of a state in every component, by a step of Newton's method, and whether it is stable.
-pub(super) fn equilibrium_near<const N: usize>(
-    field: &dyn VectorField<N>,
-    y: &State<N>,
-    distance: f64,
-) -> Option<(State<N>, bool)> {
-    let jacobian = DMatrix::from_iterator(N, N, field.jacobian(y).iter().copied());
-    let f = DMatrix::from_iterator(N, 1, field.f(y).iter().copied());
-    let step = jacobian.clone().lu().solve(&f)?;
-    if !step.iter().all(|x| x.abs() < distance) {
-        return None;
-    }
-    let equilibrium = State::from_fn(|i, _| y[i] - step[i]);
-    let stable = jacobian.complex_eigenvalues().iter().all(|z| z.re < 0.0);
-    Some((equilibrium, stable))
-}
-
 /// Sees the steps of a run.
 struct Recorder<'a, const N: usize> {
     field: &'a dyn VectorField<N>,
@@ -166,6 +146,8 @@ struct Recorder<'a, const N: usize> {
     /// The time of the last return, and the lowest and highest height since.
     since: f64,
     range: (f64, f64),
+    /// Where the patience has been over once: when, and how far the run had swung until then.
+    window: Option<(f64, f64)>,
     ended: Option<Ended<N>>,
 }
 
@@ -190,6 +172,7 @@ impl<'a, const N: usize> Recorder<'a, N> {
             steps: 0,
             since: 0.0,
             range: (f64::INFINITY, f64::NEG_INFINITY),
+            window: None,
             ended: None,
         }
     }
@@ -205,7 +188,13 @@ impl<'a, const N: usize> Recorder<'a, N> {
                     passage.time = (series.begin + passage.time).hi();
                 }
             }
-            None => self.dense(step)?,
+            None => crossings(
+                self.field,
+                self.surface,
+                step,
+                &mut self.zeros,
+                &mut self.found,
+            )?,
         }
         for k in 0..self.found.len() {
             let Passage { time, state, .. } = self.found[k];
@@ -242,6 +231,7 @@ impl<'a, const N: usize> Recorder<'a, N> {
         let told = (self.see)(self.passed, Some(&here));
         self.passed += 1;
         self.since = here.time;
+        self.window = None;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
         // An equilibrium may lie on the section: then its noise returns for ever.
         self.look(&here);
@@ -262,12 +252,13 @@ impl<'a, const N: usize> Recorder<'a, N> {
         {
             self.waypoints.push(*here);
         }
-        let late = here.time - self.since > self.watching.patience;
+        let begun = self.window.map_or(self.since, |(begun, _)| begun);
+        let late = here.time - begun > self.watching.patience;
         if late || self.steps.is_multiple_of(BETWEEN_LOOKS) {
             self.look(here);
         }
         if late && self.ended.is_none() {
-            self.ended = Some(Ended::Failed(self.no_return(here.time)));
+            self.late(here);
         }
     }
 
@@ -283,6 +274,27 @@ impl<'a, const N: usize> Recorder<'a, N> {
         }
     }
 
+    /// The patience is over. A run that spirals into an equilibrium as slowly as its eigenvalues say has one window more to
+    /// show it.
+    fn late(&mut self, here: &Return<N>) {
+        let size = self.range.1 - self.range.0;
+        let window = here.time - self.window.map_or(self.since, |(begun, _)| begun);
+        if let Some((_, before)) = self.window {
+            let spiral = spirals_into(self.field, &here.state, (before, size), window);
+            self.ended = Some(match spiral {
+                Some(equilibrium) => Ended::Steady {
+                    time: here.time,
+                    equilibrium,
+                    stable: true,
+                },
+                None => Ended::Failed(self.no_return(here.time)),
+            });
+        } else if window > 0.0 {
+            self.window = Some((here.time, size));
+            self.range = (f64::INFINITY, f64::NEG_INFINITY);
+        }
+    }
+
     fn no_return(&self, t: f64) -> Error {
         let offset = self.surface.offset;
         Error::NoReturn {
@@ -292,66 +304,5 @@ impl<'a, const N: usize> Recorder<'a, N> {
             lowest: offset + self.range.0,
             highest: offset + self.range.1,
         }
-    }
-
-    /// The crossings within a step that has no series, by its dense output.
-    fn dense(&mut self, step: &Step<'_, N>) -> Result<()> {
-        let at = |t: f64| {
-            if t == step.t1 {
-                *step.y1
-            } else {
-                (step.dense)(t)
-            }
-        };
-        let (surface, field) = (self.surface, self.field);
-        let knot = |t: f64| {
-            let y = at(t);
-            let slope = surface.gradient(&y).dot(&field.f(&y));
-            (t, surface.height(&y), slope)
-        };
-        let mut left = knot(step.t0);
-        if self.zeros.sign == 0.0 {
-            self.zeros.sign = if left.1 == 0.0 { left.2 } else { left.1 }.signum();
-        }
-        for part in 1..=PARTS {
-            let t = if part == PARTS {
-                step.t1
-            } else {
-                step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
-            };
-            let right = knot(t);
-            let mut knots = vec![right];
-            if left.2 * right.2 < 0.0 {
-                let slope = |t: f64| (knot(t).2, f64::NAN);
-                if let Ok(t) = bracketed_root("the extremum of a height", left.0, right.0, slope) {
-                    knots.insert(0, knot(t));
-                }
-            }
-            for right in knots {
-                // At 0 the next knot decides.
-                if right.1 * self.zeros.sign < 0.0 {
-                    self.zeros.sign = -self.zeros.sign;
-                    // The sign may have been lost at the joint of two steps.
-                    let t = if left.1 * right.1 < 0.0 {
-                        let height = |t: f64| {
-                            let (_, height, slope) = knot(t);
-                            (height, slope)
-                        };
-                        bracketed_root("the crossing of a section", left.0, right.0, height)?
-                    } else {
-                        left.0
-                    };
-                    if self.zeros.sign == surface.sign_behind() {
-                        self.found.push(Passage {
-                            time: t,
-                            crossing: surface.direction,
-                            state: at(t).data.0[0],
-                        });
-                    }
-                }
-                left = right;
-            }
-        }
-        Ok(())
     }
 }
