@@ -323,6 +323,14 @@ fn relaxation_orbits_and_rest() {
         assert!(stable && case.field.f(&equilibrium).amax() < 1e-4);
         assert_eq!(case.verdict(&record).regime, Regime::Steady);
     }
+    // Just before the Hopf point the way to rest is a spiral too long to wait for: its rate says where it ends.
+    let case = Case::paper(0.18, 0.07);
+    let record = case.record("auto", 1e-9, case.near_symmetric(0.3), (10, 1000));
+    assert!(
+        matches!(record.ended, Ended::Steady { stable: true, .. }),
+        "{:?}",
+        record.ended
+    );
 }
 
 /// Chaos: K = 0.14, V_H = 0.094, between the period-doubling points. Positive beyond its interval, by two unlike methods.

@@ -47,10 +47,10 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
         return written(Err(error), &report.place);
     }
     let ending = write(&plan, &report, &rows, &outcome)?;
-    if let Some(path) = &options.plot
-        && rows.iter().len() > 0
-    {
-        plot::write(path, &picture(&plan, &rows))?;
+    match &options.plot {
+        Some(path) if rows.iter().len() > 0 => plot::write(path, &picture(&plan, &rows))?,
+        Some(_) => report.say("there is no return to draw"),
+        None => {}
     }
     report.say(summary(&plan, &outcome, seconds));
     match outcome.failure {

@@ -150,10 +150,10 @@ fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Resul
     Ok(legs)
 }
 
-/// The flow's direction, and all axes but the one closest to it.
+/// The flow's direction, and others that lie in no subspace that a symmetry might keep.
 fn beginning<const N: usize>(f: &State<N>) -> Jacobian<N> {
-    let mut frame = Jacobian::<N>::identity();
-    frame.swap_columns(0, f.iamax());
+    let mut frame: Jacobian<N> =
+        Jacobian::from_fn(|i, j| (0.7 + 1.3 * i as f64 + 2.1 * j as f64).cos());
     frame.set_column(0, f);
     frame
 }
@@ -236,6 +236,14 @@ fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spect
         converged &= drift <= DRIFT * 2.0 * uncertainty;
         Uncertain::new(value, uncertainty)
     });
+    if N > 1 {
+        // The sum of all is the mean of the trace, exactly.
+        let trace = legs.iter().map(|leg| leg.log_determinant).sum::<f64>() / time;
+        let others: f64 = exponents[..N - 1].iter().map(|x| x.value).sum();
+        let last = &mut exponents[N - 1];
+        last.uncertainty += (trace - others - last.value).abs();
+        last.value = trace - others;
+    }
     exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
     let defect = |leg: &Leg<N>| leg.growth.iter().sum::<f64>() - leg.log_determinant;
     Spectrum {

@@ -26,7 +26,7 @@ const TEXT: f64 = 15.0;
 const LINE: f64 = 1.1;
 const WIDE: f64 = 1.9;
 /// Radius of a point.
-const DOT: f64 = 1.6;
+const DOT: f64 = 1.9;
 /// Room between the curves and the frame, as a part of the range.
 const MARGIN: f64 = 0.04;
 /// The same where points have names.
