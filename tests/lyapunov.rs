@@ -132,7 +132,7 @@ fn a_rotation_with_a_decaying_direction() {
         &system,
         State::<3>::new(1.0, -0.5, 1e-3),
         &plane(1, 0.0),
-        (0, 100),
+        (0, 400),
     );
     let found = spectrum(&system, &run).unwrap();
     holds(&found, [0.0, 0.0, -0.25], 1e-8);

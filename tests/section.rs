@@ -1,6 +1,9 @@
 //! Return maps: landings, regimes of the paper's runs, rotation numbers against Floquet theory, what is never said wrongly.
 #![allow(missing_docs)]
 
+#[path = "common/mod.rs"]
+mod shared;
+
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
 use twinslip::Error;
@@ -225,6 +228,24 @@ fn the_torus_turns_as_floquet_theory_says() {
     assert!(
         whole < 1e-3 && (3.5..5.0).contains(&ratio),
         "{whole:e} {ratio}"
+    );
+}
+
+/// At the torus bifurcation of K = 0.14 the derivative of the map has the multipliers of an independent computation.
+#[test]
+fn the_multipliers_at_a_torus_bifurcation() {
+    let data = &shared::data("multipliers.json")["torus_bifurcation"];
+    let (_, mu) = orbit_beyond_hopf(shared::number(&data["V_H"]));
+    let (re, im) = shared::complex(&data["mu"][0]);
+    assert!((mu[0].norm() - 1.0).abs() < 1e-9, "{mu:?}");
+    assert!(
+        (mu[0].re - re).abs() < 1e-8 && (mu[0].im.abs() - im.abs()).abs() < 1e-8,
+        "{mu:?}"
+    );
+    let angle = mu[0].arg().abs() / (0.5 * TAU);
+    assert!(
+        (angle - shared::number(&data["theta/pi"])).abs() < 1e-8,
+        "{angle}"
     );
 }
 
