@@ -150,15 +150,15 @@ pub struct Landing<const N: usize> {
 /// use twinslip::orbit::{Surface, half_driving_stress, return_map};
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-/// let field = two_interfaces(law, Loading::new(10.0, 0.14)?);
-/// let surface = Surface::<3>::stress(half_driving_stress(&law, 10.0, 2), Crossing::Downwards);
+/// let field = two_interfaces(law, Loading::new(0.12, 0.14)?);
+/// let surface = Surface::<3>::stress(half_driving_stress(&law, 0.12, 2), Crossing::Downwards);
 /// let mut taylor = Taylor::new(Tolerances::equal(1e-12)?, MAX_STEPS)?;
-/// let mut y = State::<3>::new(surface.offset, 0.5_f64.ln(), 1e-5_f64.ln());
+/// let mut y = State::<3>::new(surface.offset, -4.0, -3.5);
 /// for _ in 0..100 {
-///     y = return_map(&*field, &surface, &mut taylor, &y, 100.0)?.state;
+///     y = return_map(&*field, &surface, &mut taylor, &y, 2e4)?.state;
 /// }
 /// // The stick-slip cycle is a fixed point.
-/// let again = return_map(&*field, &surface, &mut taylor, &y, 100.0)?;
+/// let again = return_map(&*field, &surface, &mut taylor, &y, 2e4)?;
 /// assert!((again.state - y).amax() < 1e-8);
 /// # Ok(())
 /// # }
