@@ -101,6 +101,22 @@ pub enum Error {
         "this field is not written for power series, which the method taylor needs; choose another method"
     )]
     NotAnalytic,
+    /// A run did not come back to the section within the time it was given.
+    #[error(
+        "no return to the section from t = {since} to t = {t}: the run stayed between {lowest} and {highest}, the section lies at {section}; move the section in between, cross it the other way or wait longer"
+    )]
+    NoReturn {
+        /// Time of the last return; the beginning of the run if there was none.
+        since: f64,
+        /// Time reached.
+        t: f64,
+        /// Where the section lies, in the direction of its normal: the stress of a section of constant stress.
+        section: f64,
+        /// The lowest the run has been since in that direction.
+        lowest: f64,
+        /// The highest.
+        highest: f64,
+    },
     /// An iteration stopped before its tolerance.
     #[error(
         "{what} did not converge: residual {residual:e} after {iterations} iterations, {tolerance:e} was asked for"

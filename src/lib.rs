@@ -15,6 +15,7 @@
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
 //! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
+//! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
@@ -44,6 +45,8 @@ pub mod sundials;
 pub mod integrate;
 
 pub mod equilibrium;
+
+pub mod section;
 
 pub mod orbit;
 

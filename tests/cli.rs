@@ -92,6 +92,56 @@ fn parameters_outside_their_domain_are_refused() {
 }
 
 #[test]
+fn wrong_sections_are_refused() {
+    let section = |change: &str| {
+        format!("section --driving 0.1 --stiffness 0.2 --skip 5 --returns 5 {change}")
+    };
+    for surface in ["10", "stress=", "stress=high", "stress=nan", "state=1"] {
+        refused(
+            &section(&format!("--surface {surface}")),
+            &format!("--surface \"{surface}\" must be stress=auto or stress=VALUE"),
+        );
+    }
+    refused(
+        &section("--patience 0"),
+        "patience is 0, but must be positive",
+    );
+    refused(&section("--max-steps 0"), "max-steps is 0");
+    refused(
+        &section("--lyapunov"),
+        "returns is 5, but must be at least 60",
+    );
+    refused(&section("--plot map.txt"), "must end in .svg or .png");
+    refused(
+        "section --driving 0.1 --stiffness 0.2 --returns 0",
+        "returns is 0, but must be from 1",
+    );
+    refused("section --stiffness 0.2", "--driving V_H is missing");
+}
+
+/// A run that never comes to the surface ends with status 1, says where it has been, and keeps the header.
+#[test]
+fn a_surface_that_is_not_met_is_told() {
+    let ended = twinslip(
+        "section --driving 10 --stiffness 0.14 --surface stress=20 --patience 50 --format csv",
+    );
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(
+        ended.err.contains("no return to the section from t = 0")
+            && ended.err.contains("lies at 20"),
+        "{}",
+        ended.err
+    );
+    assert!(ended.out.contains("n,time,log_state_1"), "{}", ended.out);
+    let explained = twinslip(
+        "section --driving 10 --stiffness 0.14 --skip 9 --returns 9 --explain --format csv",
+    );
+    for line in ["dimension", "section", "returns", "periodicity", "tangents"] {
+        assert!(explained.err.contains(line), "{}", explained.err);
+    }
+}
+
+#[test]
 fn a_state_above_one_is_refused_where_the_law_bounds_it() {
     for law in ["spinodal", "bounded"] {
         refused(

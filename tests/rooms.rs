@@ -23,6 +23,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
     (
+        "section",
+        &["integrate", "series", "friction", "number", "field"],
+    ),
+    (
         "orbit",
         &[
             "equilibrium",
@@ -37,6 +41,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
+            "section",
             "integrate",
             "model",
             "series",
@@ -51,6 +56,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         &[
             "scene",
             "orbit",
+            "section",
             "equilibrium",
             "integrate",
             "sundials",

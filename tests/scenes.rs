@@ -46,7 +46,11 @@ fn every_scene_runs_and_can_be_drawn() {
                 .is_some_and(|rows| rows.len() > 10)
         );
         let drawn = std::fs::read_to_string(svg).expect("a picture");
-        assert!(drawn.starts_with("<svg") && drawn.contains("phase plane"));
+        let panel = match made["command"][1].as_str() {
+            Some("run") if made["result"].get("regime").is_some() => "return map",
+            _ => "phase plane",
+        };
+        assert!(drawn.starts_with("<svg") && drawn.contains(panel), "{name}");
         assert!(
             std::fs::read(png)
                 .expect("a picture")
@@ -90,6 +94,10 @@ fn a_scene_is_the_same_as_its_flags() {
         (
             "command = \"equilibria\"\ndriving = 10\n",
             "symmetry,stress",
+        ),
+        (
+            "command = \"section\"\ndriving = 10\nstiffness = 0.14\nskip = 600\nreturns = 9\nsurface = \"stress=10\"\n",
+            "n,time,log_state_1",
         ),
     ] {
         std::fs::write(&path, text).expect("written");

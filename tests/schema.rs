@@ -268,11 +268,85 @@ fn an_orbit_that_is_none_fails_and_bad_input_is_refused() {
 }
 
 #[test]
+fn section() {
+    let made = object(
+        "section --driving 10 --stiffness 0.14 --start 9.9,0.9,1e-3 --skip 300 --returns 60 --lyapunov",
+    );
+    envelope(&made, "section");
+    let result = &made["result"];
+    let rows = result["rows"].as_array().expect("a list");
+    assert_eq!(rows.len(), 60);
+    assert_eq!(
+        fields(&rows[0]),
+        [
+            "n",
+            "time",
+            "log_state_1",
+            "log_state_2",
+            "slip_rate_1",
+            "slip_rate_2",
+            "slip_rate_sum",
+            "next_slip_rate_sum"
+        ]
+    );
+    for pair in rows.windows(2) {
+        assert_eq!(pair[0]["next_slip_rate_sum"], pair[1]["slip_rate_sum"]);
+    }
+    assert_eq!(result["regime"], "periodic");
+    assert_eq!(result["period_of_orbit"], 1);
+    uncertain(&result["period"]);
+    assert!(result["rotation_number"].is_null());
+    let exponents = result["lyapunov"].as_array().expect("a list");
+    assert_eq!(exponents.len(), 3);
+    exponents.iter().for_each(uncertain);
+    assert_eq!(result["lyapunov_converged"], true);
+    assert!(result["lyapunov_along_flow"].is_f64() && result["liouville_defect"].is_f64());
+    // Without exponents there is no such field; where a torus is, there is a rotation number.
+    let torus = object("section --driving 0.102 --stiffness 0.2 --returns 600");
+    assert!(torus["result"].get("lyapunov").is_none());
+    assert_eq!(torus["result"]["regime"], "torus");
+    assert!(torus["result"]["period_of_orbit"].is_null());
+    uncertain(&torus["result"]["rotation_number"]);
+    let rest = object("section --driving 1000 --stiffness 0.14 --lyapunov");
+    assert_eq!(rest["result"]["regime"], "steady");
+    assert_eq!(rest["result"]["lyapunov"].as_array().map(Vec::len), Some(3));
+    // In the symmetric subspace the orbit is stable; across it the largest exponent is positive.
+    let symmetric = object(
+        "section --driving 0.2 --stiffness 0.14 --start 11,0.3,0.3 --skip 50 --returns 60 --lyapunov",
+    );
+    assert_eq!(symmetric["result"]["regime"], "periodic");
+    let multiplier = 43.7139146599523_f64;
+    let period = 215.60668708;
+    let across = number(&symmetric, "/result/lyapunov/0/value");
+    assert!(
+        (across / (multiplier.ln() / period) - 1.0).abs() < 1e-4,
+        "{across}"
+    );
+    let one = object("section --interfaces 1 --driving 1 --stiffness 0.1 --skip 50 --returns 9");
+    assert_eq!(
+        fields(&one["result"]["rows"][0]),
+        [
+            "n",
+            "time",
+            "log_state_1",
+            "slip_rate_1",
+            "slip_rate_sum",
+            "next_slip_rate_sum"
+        ]
+    );
+    assert_eq!(one["result"]["regime"], "periodic");
+}
+
+#[test]
 fn an_undecided_verdict_has_its_own_exit_code() {
     // V_H = 2 V_M to the last digit: which side of the pitchfork it is on can't be told.
     let ended =
         twinslip("equilibria --driving 0.049863166268876906 --stiffness 0.45 --format json");
     assert_eq!(ended.code, 3, "{}{}", ended.out, ended.err);
+    // A few returns of a torus: it may yet be anything.
+    let ended = twinslip("section --driving 0.102 --stiffness 0.2 --returns 50 --format json");
+    assert_eq!(ended.code, 3, "{}{}", ended.out, ended.err);
+    assert!(ended.out.contains("\"regime\":\"undecided\"") && ended.err.contains("record more"));
 }
 
 #[test]

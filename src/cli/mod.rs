@@ -8,13 +8,14 @@ mod orbit;
 mod progress;
 mod report;
 mod run;
+mod section;
 
 use crate::error::Error;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits.
+/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return maps.
 ///
 /// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
 /// Data goes to standard output or a file, messages to standard error.
@@ -40,6 +41,9 @@ enum Command {
     /// A periodic orbit: period, extremes, Floquet multipliers and stability, each with its error budget
     #[command(after_help = orbit::EXAMPLE)]
     Orbit(Box<crate::scene::OrbitOptions>),
+    /// The return map of a run to a section of constant stress: periodic, a torus, or chaotic; Lyapunov exponents
+    #[command(after_help = section::EXAMPLE)]
+    Section(Box<crate::scene::SectionOptions>),
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
@@ -89,6 +93,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Integrate(options) => integrate::run(options, &words),
         Command::Equilibria(options) => equilibria::run(options, &words),
         Command::Orbit(options) => orbit::run(options, &words),
+        Command::Section(options) => section::run(options, &words),
         Command::Run(options) => run::run(options, &words),
     };
     match ended {

@@ -1,6 +1,6 @@
 //! `twinslip run SCENE.toml`.
 
-use super::{Command, Ending, equilibria, integrate, law, orbit, parse, program};
+use super::{Command, Ending, equilibria, integrate, law, orbit, parse, program, section};
 use crate::error::{Error, Result};
 use crate::scene::SceneFile;
 use std::path::PathBuf;
@@ -64,6 +64,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
         Command::Integrate(options) => integrate::run(options, words),
         Command::Equilibria(options) => equilibria::run(options, words),
         Command::Orbit(options) => orbit::run(options, words),
+        Command::Section(options) => section::run(options, words),
         Command::Run(_) => unreachable!("a scene file can't name the command run"),
     };
     ended.map_err(|error| match error {

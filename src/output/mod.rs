@@ -9,7 +9,7 @@ mod table;
 pub use csv::CsvRows;
 pub use json::{Envelope, Rows, object, uncertain};
 pub use place::{Place, write_whole};
-pub use table::TableRows;
+pub use table::{TableRows, number as seven_digits};
 
 use crate::error::{Error, Result};
 use std::path::Path;

@@ -71,7 +71,7 @@ fn text(cell: &Cell) -> String {
 }
 
 /// Seven digits: plain where that is readable, else with an exponent.
-pub(super) fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     /// Plain notation from 1e-3 to below 1e6.
     const PLAIN: std::ops::Range<f64> = 1e-3..1e6;
     if x == 0.0 {

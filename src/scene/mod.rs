@@ -33,6 +33,7 @@ mod file;
 mod options;
 mod plan;
 mod run;
+mod section;
 mod slip;
 mod system;
 mod units;
@@ -43,9 +44,12 @@ pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
-    OutputOptions,
+    OutputOptions, SectionOptions,
 };
 pub use plan::{Dimension, Plan, Sampling, start};
 pub use run::{Outcome, Sink, run};
+pub use section::{
+    Lyapunov, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
+};
 pub use system::System;
 pub use units::{Quantity, Units};

@@ -167,6 +167,57 @@ pub struct IntegrateOptions {
     pub output: OutputOptions,
 }
 
+/// `section`: the return map of a run.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct SectionOptions {
+    /// What slides.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// How the run starts.
+    #[arg(
+        long,
+        value_name = "START",
+        default_value = "near-symmetric",
+        allow_hyphen_values = true,
+        help_heading = "Run",
+        help = START_HELP
+    )]
+    pub start: String,
+    /// Where the run is intersected: stress=VALUE, or stress=auto for the steady stress of the mean slip rate, tau_ss(V_H/2)
+    /// of two interfaces
+    #[arg(
+        long,
+        value_name = "SURFACE",
+        default_value = "stress=auto",
+        help_heading = "Run"
+    )]
+    pub surface: String,
+    /// Where the stress rises through the surface, instead of where it falls
+    #[arg(long, help_heading = "Run")]
+    pub upwards: bool,
+    /// Returns that are recorded
+    #[arg(long, value_name = "N", default_value_t = 1000, help_heading = "Run")]
+    pub returns: usize,
+    /// Returns that are let pass before, so that the run settles
+    #[arg(long, value_name = "M", default_value_t = 1000, help_heading = "Run")]
+    pub skip: usize,
+    /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H)]
+    #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
+    pub patience: Option<f64>,
+    /// Lyapunov exponents along the recorded returns; without them chaos is not told
+    #[arg(long, help_heading = "Run")]
+    pub lyapunov: bool,
+    /// By which method.
+    #[command(flatten)]
+    pub numerics: NumericsOptions,
+    /// Draw v_1 + v_2 at each return against the one before, and the states at the returns, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
 /// `equilibria`: all steady states at a driving velocity.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct EquilibriaOptions {

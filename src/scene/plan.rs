@@ -29,6 +29,17 @@ pub enum Dimension {
 }
 
 impl Dimension {
+    /// Of a run of this system from tau and ln psi of both interfaces.
+    pub(super) fn of(system: &System, (_, log_state): &(f64, [f64; 2])) -> Self {
+        if system.interfaces == 1 {
+            Dimension::Single
+        } else if log_state[0] == log_state[1] {
+            Dimension::Symmetric
+        } else {
+            Dimension::Full
+        }
+    }
+
     /// 2 or 3.
     pub fn number(self) -> usize {
         match self {
@@ -93,13 +104,7 @@ impl Plan {
         let system = System::new(&options.model)?;
         let loading = system.loading()?;
         let start = start(&options.start, &system, &loading)?;
-        let dimension = if system.interfaces == 1 {
-            Dimension::Single
-        } else if start.1[0] == start.1[1] {
-            Dimension::Symmetric
-        } else {
-            Dimension::Full
-        };
+        let dimension = Dimension::of(&system, &start);
         let until = options
             .until
             .ok_or_else(|| Error::Input("--until T is missing: when shall the run end?".into()))?;
@@ -159,7 +164,7 @@ impl Plan {
 }
 
 /// The method and the tolerances, checked.
-fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
+pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
     let tolerances = Tolerances::new(options.rtol, options.atol.unwrap_or(options.rtol))?;
     Ok((Choice::named(&options.method)?, tolerances))
 }

@@ -25,6 +25,8 @@ const BOTTOM_LABELS: f64 = 44.0;
 const TEXT: f64 = 15.0;
 const LINE: f64 = 1.1;
 const WIDE: f64 = 1.9;
+/// Radius of a point.
+const DOT: f64 = 1.9;
 /// Room between the curves and the frame, as a part of the range.
 const MARGIN: f64 = 0.04;
 /// The same where points have names.
@@ -82,7 +84,10 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
     let zero = [0.0];
     let zero = zero.iter().filter(|_| panel.zero_line);
     // A function of time ends with its data; a phase plane needs air around it, and so do names above and below.
-    let tight = panel.series.iter().all(|series| series.x.is_sorted());
+    let tight = panel
+        .series
+        .iter()
+        .all(|series| !series.dots && series.x.is_sorted());
     let margin = if panel.marks.is_empty() {
         MARGIN
     } else {
@@ -147,6 +152,12 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
             .iter()
             .zip(&series.y)
             .map(|(&a, &b)| (x.at(a), y.at(b)));
+        if series.dots {
+            let seen = points.filter(|(a, b)| a.is_finite() && b.is_finite());
+            let dots = seen.map(|at| Circle::new(at, px(DOT), colour.filled()));
+            chart.draw_series(dots).map_err(unrendered)?;
+            continue;
+        }
         for piece in thinned(points, per_pixel, series.x.is_sorted()) {
             chart
                 .draw_series(LineSeries::new(

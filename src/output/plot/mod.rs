@@ -71,7 +71,7 @@ impl Axis {
     }
 }
 
-/// One curve.
+/// One curve, or points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Its name in the legend; empty for none.
@@ -80,6 +80,8 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Ordinates.
     pub y: Vec<f64>,
+    /// Whether its points stand for themselves, without a line.
+    pub dots: bool,
 }
 
 impl Series {
@@ -89,6 +91,15 @@ impl Series {
             label: label.into(),
             x,
             y,
+            dots: false,
+        }
+    }
+
+    /// Points without a line between them.
+    pub fn dots(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Series {
+            dots: true,
+            ..Series::new(label, x, y)
         }
     }
 }

@@ -1,0 +1,325 @@
+//! `twinslip section`.
+
+use super::interrupt;
+use super::progress::Progress;
+use super::report::{self, Report, unit_names};
+use super::{Ending, written};
+use crate::error::Result;
+use crate::integrate::Control;
+use crate::number::Uncertain;
+use crate::output::{self, Cell, Format, RowWriter, Rows, plot};
+use crate::scene::{
+    Lyapunov, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan, Sink,
+    explain_section, run_section,
+};
+use crate::section::Regime;
+use serde_json::{Map, Value, json};
+use std::io;
+use std::path::Path;
+
+pub const EXAMPLE: &str =
+    "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:
+  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg";
+
+/// Slip rates that differ by more than this factor are drawn on logarithmic axes.
+const DECADES: f64 = 30.0;
+
+pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
+    let plan = SectionPlan::new(options)?;
+    if let Some(path) = &options.plot {
+        plot::Kind::of(path)?;
+    }
+    let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
+    let report = Report::new(&options.output, words, &others)?;
+    if options.output.explain {
+        eprint!("{}", explain_section(&plan));
+    }
+    let mut out = match Out::new(&plan, &report, options.plot.is_some()) {
+        Ok(out) => out,
+        Err(error) => return written(Err(error), &report.place),
+    };
+    interrupt::watch();
+    let outcome = run_section(&plan, &mut out)?;
+    interrupt::unwatch();
+    let seconds = out.progress.finish().as_secs_f64();
+    let Out { rows, broken, .. } = out;
+    if let Some(error) = broken {
+        return written(Err(error), &report.place);
+    }
+    let ending = write(&plan, &report, &rows, &outcome)?;
+    match &options.plot {
+        Some(path) if rows.iter().len() > 0 => plot::write(path, &picture(&plan, &rows))?,
+        Some(_) => report.say("there is no return to draw"),
+        None => {}
+    }
+    report.say(summary(&plan, &outcome, seconds));
+    match outcome.failure {
+        Some(error) => Err(error),
+        None if interrupt::asked() => Ok(Ending::Interrupted),
+        None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
+            Ok(Ending::Undecided)
+        }
+        None => Ok(ending),
+    }
+}
+
+/// Takes the rows of a run: writes them, keeps them, or both.
+struct Out {
+    writer: Option<Box<dyn RowWriter>>,
+    broken: Option<io::Error>,
+    keep: bool,
+    rows: Rows,
+    progress: Progress,
+}
+
+impl Out {
+    fn new(plan: &SectionPlan, report: &Report<'_>, drawn: bool) -> io::Result<Self> {
+        let all = SectionColumn::all(plan.system.interfaces);
+        let columns: Vec<String> = all.iter().map(SectionColumn::name).collect();
+        let writer = if report.format == Format::Json {
+            None
+        } else {
+            let units = unit_names(&plan.system.units, all.iter().map(SectionColumn::quantity));
+            let remarks = report.remarks(&plan.system, &numerics(plan));
+            let stream = report.place.stream().map_err(io::Error::other)?;
+            Some(report.rows(stream, &remarks, &columns, &units)?)
+        };
+        Ok(Out {
+            keep: drawn || writer.is_none(),
+            writer,
+            broken: None,
+            rows: Rows::new(columns),
+            progress: Progress::new(report.quiet),
+        })
+    }
+}
+
+impl Sink for Out {
+    fn row(&mut self, row: &[f64]) -> Control {
+        if self.keep {
+            self.rows.numbers.extend_from_slice(row);
+        }
+        if let Some(writer) = &mut self.writer {
+            // The first column counts: a whole number needs no point.
+            let mut cells: Vec<Cell> = row.iter().map(|&x| Cell::Number(x)).collect();
+            cells[0] = Cell::Text(format!("{}", row[0]));
+            if let Err(error) = writer.row(&cells) {
+                self.broken = Some(error);
+                return Control::Stop;
+            }
+        }
+        Control::Continue
+    }
+
+    fn reached(&mut self, fraction: f64) -> Control {
+        self.progress.reached(fraction);
+        if interrupt::asked() {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
+    }
+}
+
+fn numerics(plan: &SectionPlan) -> Value {
+    let units = &plan.system.units;
+    json!({
+        "method": plan.method.name(),
+        "asked": plan.asked_method,
+        "rtol": plan.tolerances.rtol,
+        "atol": plan.tolerances.atol,
+        "max_steps": plan.max_steps,
+        "dimension": plan.dimension.number(),
+        "surface_stress": units.outward(Quantity::Stress, plan.stress),
+        "upwards": plan.direction == crate::number::polynomial::Crossing::Upwards,
+        "skip": plan.skip,
+        "returns": plan.returns,
+        "patience": units.outward(Quantity::Time, plan.patience),
+    })
+}
+
+/// The object, or in a table the verdict after the rows.
+fn write(
+    plan: &SectionPlan,
+    report: &Report<'_>,
+    rows: &Rows,
+    outcome: &SectionOutcome,
+) -> Result<Ending> {
+    if report.format == Format::Json {
+        let bytes = report.envelope(
+            &plan.system,
+            numerics(plan),
+            result(plan, rows, outcome),
+            report::work(&outcome.work),
+            outcome.failure.as_ref(),
+        );
+        return written(report.place.write(&bytes), &report.place);
+    }
+    if report.format == Format::Csv || report.place.path().is_some() {
+        return Ok(Ending::Done);
+    }
+    let mut columns = vec!["regime".to_owned(), "period_of_orbit".to_owned()];
+    let q = outcome.period_of_orbit.map(|q| Cell::Text(q.to_string()));
+    let mut cells = vec![
+        Cell::from(outcome.regime.name()),
+        q.unwrap_or(Cell::Missing),
+    ];
+    let mut quantities = vec![Quantity::Number; 2];
+    let mut add = |name: &str, quantity, x: Option<Uncertain>| {
+        let x = x.map(|x| plan.system.units.outward_uncertain(quantity, x));
+        columns.extend([name.to_owned(), "+-".to_owned()]);
+        cells.extend([x.map(|x| x.value).into(), x.map(|x| x.uncertainty).into()]);
+        quantities.extend([quantity; 2]);
+    };
+    add("rotation_number", Quantity::Number, outcome.rotation_number);
+    for (i, x) in outcome
+        .lyapunov
+        .iter()
+        .flat_map(|l| &l.exponents)
+        .enumerate()
+    {
+        add(&format!("lyapunov_{}", i + 1), Quantity::Growth, Some(*x));
+    }
+    let units = unit_names(&plan.system.units, quantities.into_iter());
+    let mut to = report.place.stream()?;
+    let all = writeln!(to)
+        .and_then(|()| report.rows(to, &[], &columns, &units))
+        .and_then(|mut writer| writer.row(&cells));
+    written(all, &report.place)
+}
+
+/// What the object holds.
+#[derive(serde::Serialize)]
+struct Found<'a> {
+    rows: &'a Rows,
+    #[serde(flatten)]
+    verdict: Map<String, Value>,
+}
+
+fn result<'a>(plan: &SectionPlan, rows: &'a Rows, outcome: &SectionOutcome) -> Found<'a> {
+    let units = &plan.system.units;
+    let uncertain = |quantity, x: Option<Uncertain>| {
+        x.map_or(Value::Null, |x| report::uncertain(units, quantity, x))
+    };
+    let mut verdict = Map::new();
+    let mut put = |name: &str, value: Value| verdict.insert(name.to_owned(), value);
+    put("regime", json!(outcome.regime.name()));
+    put("period_of_orbit", json!(outcome.period_of_orbit));
+    put("period", uncertain(Quantity::Time, outcome.period));
+    put(
+        "rotation_number",
+        uncertain(Quantity::Number, outcome.rotation_number),
+    );
+    put("curves", json!(outcome.curves));
+    if plan.lyapunov {
+        let found = outcome.lyapunov.as_ref();
+        let list = |found: &Lyapunov| -> Value {
+            let list = found.exponents.iter();
+            list.map(|x| report::uncertain(units, Quantity::Growth, *x))
+                .collect()
+        };
+        let rate = |x: f64| units.outward(Quantity::Growth, x);
+        put("lyapunov", found.map_or(Value::Null, list));
+        put("lyapunov_converged", json!(found.map(|x| x.converged)));
+        let along_flow = found.and_then(|x| x.along_flow).map(rate);
+        put("lyapunov_along_flow", json!(along_flow));
+        let defect = found.and_then(|x| x.liouville_defect).map(rate);
+        put("liouville_defect", json!(defect));
+    }
+    put("note", json!(outcome.note));
+    Found { rows, verdict }
+}
+
+fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String {
+    let work = &outcome.work;
+    let mut text = format!(
+        "{} steps ({} rejected), {} evaluations of f, {seconds:.3} s, {} returns: {}",
+        work.steps,
+        work.rejected,
+        work.rhs,
+        outcome.returns,
+        outcome.regime.name()
+    );
+    if let Some(q) = outcome.period_of_orbit {
+        text.push_str(&format!(", period {q}"));
+    }
+    if let Some(rotation) = outcome.rotation_number {
+        let Uncertain { value, uncertainty } = rotation;
+        text.push_str(&format!(
+            ", rotation number {value:.9} +- {uncertainty:.1e}"
+        ));
+    }
+    let exponents = outcome.lyapunov.iter().flat_map(|found| &found.exponents);
+    let exponents: Vec<String> = exponents
+        .map(|x| {
+            let x = plan.system.units.outward_uncertain(Quantity::Growth, *x);
+            format!("{:.3e} +- {:.1e}", x.value, x.uncertainty)
+        })
+        .collect();
+    if !exponents.is_empty() {
+        text.push_str(&format!(", exponents {}", exponents.join(", ")));
+    }
+    if outcome
+        .lyapunov
+        .as_ref()
+        .is_some_and(|found| !found.converged)
+    {
+        text.push_str(", not converged");
+    }
+    if let Some(note) = &outcome.note {
+        text.push_str(&format!("; {note}"));
+    }
+    text
+}
+
+fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
+    let units = &plan.system.units;
+    let column = |name: &str| rows.column(name).unwrap_or_default();
+    let (sums, next) = (column("slip_rate_sum"), column("next_slip_rate_sum"));
+    let ends = |x: &[f64]| {
+        let least = x.iter().copied().fold(f64::INFINITY, f64::min);
+        (least, x.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+    };
+    let (least, most) = ends(&[sums.as_slice(), next.as_slice()].concat());
+    let log = least > 0.0 && most > DECADES * least;
+    let axis = |label: String, log| plot::Axis { label, log };
+    let sum = if plan.system.interfaces == 2 {
+        "v₁ + v₂"
+    } else {
+        "v"
+    };
+    let rate = report::short_unit(units, Quantity::SlipRate);
+    let panel = |title: &str, x, y, series| plot::Panel {
+        title: title.into(),
+        x,
+        y,
+        series,
+        marks: Vec::new(),
+        zero_line: false,
+    };
+    let stress = units.outward(Quantity::Stress, plan.stress);
+    let stress_unit = report::short_unit(units, Quantity::Stress);
+    let map = panel(
+        &format!(
+            "return map at τ = {} [{stress_unit}]",
+            output::seven_digits(stress)
+        ),
+        axis(format!("{sum} at return n [{rate}]"), log),
+        axis(format!("{sum} at return n + 1 [{rate}]"), log),
+        vec![
+            plot::Series::dots("", sums, next),
+            plot::Series::new("diagonal", vec![least, most], vec![least, most]),
+        ],
+    );
+    if plan.system.interfaces == 1 {
+        return plot::Drawing::columns(vec![vec![map]]);
+    }
+    let state = |i: usize| column(&format!("log_state_{i}"));
+    let section = panel(
+        "states at the returns",
+        plot::Axis::linear("ln ψ₁"),
+        plot::Axis::linear("ln ψ₂"),
+        vec![plot::Series::dots("", state(1), state(2))],
+    );
+    plot::Drawing::columns(vec![vec![map], vec![section]])
+}

@@ -1,0 +1,79 @@
+//! Crossings of a section within steps that have no series, by root finding on the dense output.
+
+use super::surface::Surface;
+use crate::error::Result;
+use crate::field::VectorField;
+use crate::integrate::Step;
+use crate::number::bracketed_root;
+use crate::series::{Passage, Zeros};
+
+/// Parts of a step. As the slope is looked at too, a crossing is missed only where the dense output turns three times in one
+/// of them.
+const PARTS: usize = 4;
+
+/// Appends the crossings in the surface's direction within a step that has no series; `zeros` carries the sign of the height
+/// over steps of either kind.
+pub(super) fn crossings<const N: usize>(
+    field: &dyn VectorField<N>,
+    surface: &Surface<N>,
+    step: &Step<'_, N>,
+    zeros: &mut Zeros,
+    found: &mut Vec<Passage<N>>,
+) -> Result<()> {
+    let at = |t: f64| {
+        if t == step.t1 {
+            *step.y1
+        } else {
+            (step.dense)(t)
+        }
+    };
+    let knot = |t: f64| {
+        let y = at(t);
+        let slope = surface.gradient(&y).dot(&field.f(&y));
+        (t, surface.height(&y), slope)
+    };
+    let mut left = knot(step.t0);
+    if zeros.sign == 0.0 {
+        zeros.sign = if left.1 == 0.0 { left.2 } else { left.1 }.signum();
+    }
+    for part in 1..=PARTS {
+        let t = if part == PARTS {
+            step.t1
+        } else {
+            step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
+        };
+        let right = knot(t);
+        let mut knots = vec![right];
+        if left.2 * right.2 < 0.0 {
+            let slope = |t: f64| (knot(t).2, f64::NAN);
+            if let Ok(t) = bracketed_root("the extremum of a height", left.0, right.0, slope) {
+                knots.insert(0, knot(t));
+            }
+        }
+        for right in knots {
+            // At 0 the next knot decides.
+            if right.1 * zeros.sign < 0.0 {
+                zeros.sign = -zeros.sign;
+                // The sign may have been lost at the joint of two steps.
+                let t = if left.1 * right.1 < 0.0 {
+                    let height = |t: f64| {
+                        let (_, height, slope) = knot(t);
+                        (height, slope)
+                    };
+                    bracketed_root("the crossing of a section", left.0, right.0, height)?
+                } else {
+                    left.0
+                };
+                if zeros.sign == surface.sign_behind() {
+                    found.push(Passage {
+                        time: t,
+                        crossing: surface.direction,
+                        state: at(t).data.0[0],
+                    });
+                }
+            }
+            left = right;
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,274 @@
+//! Lyapunov exponents of a flow: the mean growth rates of perturbations along it.
+//!
+//! Perturbations are carried along short pieces of a run by its tangent flow and made orthogonal after each (Benettin et al.
+//! 1980). The direction of the flow itself is kept as the first of them: in its own direction nothing grows on a bounded run,
+//! which checks the tangents, and the others are measured across it, where a small exponent is not drowned by that zero.
+//!
+//! Benettin, G., Galgani, L., Giorgilli, A. and Strelcyn, J.-M. (1980). Lyapunov characteristic exponents for smooth dynamical
+//! systems and for Hamiltonian systems; a method for computing all of them. Meccanica 15, 9-20 and 21-30.
+
+use super::curve::weighted_mean;
+use super::returns::{Record, Return};
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State, VectorField};
+use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
+use crate::number::Uncertain;
+use nalgebra::DMatrix;
+
+/// The tolerance of the tangents.
+const TOLERANCE: f64 = 1e-13;
+/// Blocks whose means the interval is made of, and Student's factor for 99 % with one degree of freedom less.
+const BLOCKS: usize = 20;
+const STUDENT: f64 = 2.861;
+/// Returns needed: some for each block.
+pub const FEWEST_FOR_EXPONENTS: usize = 3 * BLOCKS;
+/// Part of the run over which the perturbations turn into their directions before anything is counted.
+const ALIGNMENT: f64 = 0.1;
+/// Halves whose means are this many of their intervals apart are drifting.
+const DRIFT: f64 = 1.5;
+/// The error of exponents relative to the largest: that of the tangents, and that of the points of the run, in tolerances.
+const SYSTEMATIC: f64 = 3e-9;
+const PER_ACCURACY: f64 = 100.0;
+
+/// The Lyapunov exponents of a run, in descending order.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectrum<const N: usize> {
+    /// Exponents in one over time, each with an interval of 99 % confidence from block averages. That of the flow's own
+    /// direction is zero; its interval is what the run and the tangents can tell of that.
+    pub exponents: [Uncertain; N],
+    /// Whether the two halves of the run agree on all of them within these intervals. If not, there is no saying where the
+    /// exponents end.
+    pub converged: bool,
+    /// The growth rate in the direction of the flow: zero on a bounded run that does not come to rest.
+    pub along_flow: f64,
+    /// What the sum of the exponents, each from its own perturbation, differs from the mean of the Jacobian's trace by
+    /// (Liouville).
+    pub liouville_defect: f64,
+    /// The time over which the means are taken.
+    pub time: f64,
+}
+
+/// Exponents as a verdict needs them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Exponents<'a> {
+    /// In descending order, as many as the system has dimensions.
+    pub values: &'a [Uncertain],
+    /// Whether both halves of the run agree on them.
+    pub converged: bool,
+}
+
+impl<const N: usize> Spectrum<N> {
+    /// As a verdict needs them.
+    pub fn known(&self) -> Exponents<'_> {
+        Exponents {
+            values: &self.exponents,
+            converged: self.converged,
+        }
+    }
+}
+
+/// What a part of the run does to the perturbations.
+#[derive(Debug, Clone, Copy)]
+struct Leg<const N: usize> {
+    time: f64,
+    /// Logarithms of the growth of the orthogonal perturbations, along the flow first.
+    growth: [f64; N],
+    log_determinant: f64,
+}
+
+/// The exponents along the returns of a run that was recorded with waypoints.
+///
+/// The means are weighted within each block of returns ([`weighted_mean`]): where the run is regular they then converge
+/// faster than any power of the number of returns. The last exponent, whose perturbations shrink the most, follows from the
+/// sum of all, which is the mean of the trace.
+///
+/// # Errors
+/// [`Error::Parameter`] for fewer than 60 returns, [`Error::NonFinite`] where the field vanishes or a tangent does, and those
+/// of [`Taylor::derivatives`].
+pub fn spectrum<const N: usize>(
+    field: &dyn VectorField<N>,
+    record: &Record<N>,
+) -> Result<Spectrum<N>> {
+    if record.returns.len() < FEWEST_FOR_EXPONENTS {
+        return Err(Error::parameter(
+            "returns",
+            record.returns.len(),
+            "at least 60 for exponents, which are means with an uncertainty",
+        ));
+    }
+    let legs = legs(field, record)?;
+    let aligned = (ALIGNMENT * legs.len() as f64) as usize;
+    let relative = SYSTEMATIC.max(PER_ACCURACY * record.accuracy);
+    // The flow's own growth is that of |f|, which the ends of the run alone decide.
+    let speed = |point: &Return<N>| field.f(&point.state).norm().ln();
+    let returns = &record.returns[aligned..];
+    let gained = speed(&returns[returns.len() - 1]) - speed(&returns[0]);
+    Ok(summary(&legs[aligned..], relative, gained))
+}
+
+/// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order.
+pub fn at_equilibrium<const N: usize>(
+    field: &dyn VectorField<N>,
+    equilibrium: &State<N>,
+) -> [Uncertain; N] {
+    let jacobian = DMatrix::from_iterator(N, N, field.jacobian(equilibrium).iter().copied());
+    let size = jacobian.norm();
+    let mut parts: Vec<f64> = jacobian
+        .complex_eigenvalues()
+        .iter()
+        .map(|z| z.re)
+        .collect();
+    parts.sort_by(|a, b| b.total_cmp(a));
+    std::array::from_fn(|i| Uncertain::new(parts[i], SYSTEMATIC * size))
+}
+
+/// From each return to the next.
+fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Result<Vec<Leg<N>>> {
+    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+    let start = record.returns[0];
+    let mut frame = beginning(&field.f(&start.state));
+    orthonormalise(&mut frame, start.time)?;
+    let mut points = record.waypoints.iter().peekable();
+    let mut legs = Vec::with_capacity(record.returns.len());
+    for pair in record.returns.windows(2) {
+        let (mut here, end) = (pair[0], pair[1]);
+        let mut leg = Leg {
+            time: end.time - here.time,
+            growth: [0.0; N],
+            log_determinant: 0.0,
+        };
+        while here.time < end.time {
+            let between = |point: &&Return<N>| point.time < end.time;
+            let next = points.next_if(between).copied().unwrap_or(end);
+            if next.time > here.time {
+                carry(field, &mut taylor, (&here, &next), &mut frame, &mut leg)?;
+                here = next;
+            }
+        }
+        legs.push(leg);
+    }
+    Ok(legs)
+}
+
+/// The flow's direction, and others that lie in no subspace that a symmetry might keep.
+fn beginning<const N: usize>(f: &State<N>) -> Jacobian<N> {
+    let mut frame: Jacobian<N> =
+        Jacobian::from_fn(|i, j| (0.7 + 1.3 * i as f64 + 2.1 * j as f64).cos());
+    frame.set_column(0, f);
+    frame
+}
+
+/// Carries the perturbations over a piece of a leg.
+fn carry<const N: usize>(
+    field: &dyn VectorField<N>,
+    taylor: &mut Taylor,
+    (here, next): (&Return<N>, &Return<N>),
+    frame: &mut Jacobian<N>,
+    leg: &mut Leg<N>,
+) -> Result<()> {
+    let span = (0.0, next.time - here.time);
+    let (end, tangent) = taylor.derivatives(field, span, &here.state, false)?;
+    *frame = Jacobian::from(tangent.start) * *frame;
+    let along = frame.column(0).norm().ln();
+    // The flow's direction anew at each point: it would turn into one that grows.
+    frame.set_column(0, &field.f(&end));
+    let mut growth = orthonormalise(frame, next.time)?;
+    growth[0] = along;
+    for (sum, growth) in leg.growth.iter_mut().zip(growth) {
+        *sum += growth;
+    }
+    leg.log_determinant += tangent.log_determinant;
+    Ok(())
+}
+
+/// Makes the columns orthonormal from the first on, twice over for what rounding leaves; the logarithms of their lengths.
+fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[f64; N]> {
+    let mut lengths = [0.0; N];
+    for (j, of_column) in lengths.iter_mut().enumerate() {
+        let mut column: State<N> = columns.column(j).into_owned();
+        let mut length = 0.0;
+        for _ in 0..2 {
+            for i in 0..j {
+                let against = columns.column(i);
+                column -= against * against.dot(&column);
+            }
+            let norm = column.norm();
+            length += norm.ln();
+            column /= norm;
+        }
+        if !column.iter().all(|x| x.is_finite()) {
+            return Err(Error::NonFinite {
+                what: "a perturbation's direction",
+                t,
+            });
+        }
+        columns.set_column(j, &column);
+        *of_column = length;
+    }
+    Ok(lengths)
+}
+
+fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
+    let time: f64 = legs.iter().map(|leg| leg.time).sum();
+    let growth = |leg: &Leg<N>| leg.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let size = legs.iter().map(growth).sum::<f64>() / time;
+    let along_flow = legs.iter().map(|leg| leg.growth[0]).sum::<f64>() / time;
+    let mut converged = true;
+    let mut exponents: [Uncertain; N] = std::array::from_fn(|i| {
+        if i == 0 && N > 1 {
+            return Uncertain::new(along_flow, gained.abs() / time + relative * size);
+        }
+        let of = |leg: &Leg<N>| {
+            if i + 1 == N {
+                leg.log_determinant - leg.growth[..i].iter().sum::<f64>()
+            } else {
+                leg.growth[i]
+            }
+        };
+        let blocks = block_means(legs, of);
+        let (value, interval) = mean_with_interval(&blocks);
+        // Blocks as long as a beat of a torus all err alike; the plain mean errs otherwise.
+        let plain = legs.iter().map(of).sum::<f64>() / time;
+        let uncertainty = interval + (plain - value).abs() + relative * size;
+        let (first, second) = blocks.split_at(BLOCKS / 2);
+        let drift = (mean_with_interval(first).0 - mean_with_interval(second).0).abs();
+        // Each half has an interval wider by the root of two, and so has their difference again.
+        converged &= drift <= DRIFT * 2.0 * uncertainty;
+        Uncertain::new(value, uncertainty)
+    });
+    if N > 1 {
+        // The sum of all is the mean of the trace, exactly.
+        let trace = legs.iter().map(|leg| leg.log_determinant).sum::<f64>() / time;
+        let others: f64 = exponents[..N - 1].iter().map(|x| x.value).sum();
+        let last = &mut exponents[N - 1];
+        last.uncertainty += (trace - others - last.value).abs();
+        last.value = trace - others;
+    }
+    exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
+    let defect = |leg: &Leg<N>| leg.growth.iter().sum::<f64>() - leg.log_determinant;
+    Spectrum {
+        exponents,
+        converged,
+        along_flow,
+        liouville_defect: legs.iter().map(defect).sum::<f64>() / time,
+        time,
+    }
+}
+
+/// The rates over blocks of as many legs, with what is left over in the last.
+fn block_means<const N: usize>(legs: &[Leg<N>], of: impl Fn(&Leg<N>) -> f64) -> Vec<f64> {
+    (0..BLOCKS)
+        .map(|block| {
+            let block = &legs[block * legs.len() / BLOCKS..(block + 1) * legs.len() / BLOCKS];
+            weighted_mean(block.iter().map(&of)) / weighted_mean(block.iter().map(|leg| leg.time))
+        })
+        .collect()
+}
+
+/// The mean, and the half width of its interval of 99 % confidence.
+fn mean_with_interval(blocks: &[f64]) -> (f64, f64) {
+    let n = blocks.len() as f64;
+    let mean = blocks.iter().sum::<f64>() / n;
+    let squares: f64 = blocks.iter().map(|x| (x - mean) * (x - mean)).sum();
+    (mean, STUDENT * (squares / (n * (n - 1.0))).sqrt())
+}

@@ -1,0 +1,17 @@
+//! What a flow settles on: return maps to a section, their periodic points and invariant curves, Lyapunov exponents.
+
+mod curve;
+mod dense;
+mod lyapunov;
+mod periodicity;
+mod regime;
+mod rest;
+mod returns;
+mod surface;
+
+pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
+pub use lyapunov::{Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, spectrum};
+pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
+pub use returns::{Ended, Record, Return, Watching, record};
+pub use surface::{Chart, Landing, Surface, half_driving_stress, return_map};

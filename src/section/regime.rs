@@ -1,0 +1,186 @@
+//! What a run has settled on: an equilibrium, a periodic orbit, a torus, chaos; or that it cannot be told.
+
+use super::curve::{Curve, invariant_curve, regularity};
+use super::lyapunov::Exponents;
+use super::periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+use super::returns::{Ended, Record, Return};
+use super::surface::Surface;
+use crate::error::Result;
+use crate::field::VectorField;
+use crate::number::Uncertain;
+
+/// Returns without which neither torus nor chaos is told.
+pub const FEWEST_RETURNS: usize = 200;
+/// Averages over halves that agree to this, relative to their spread, are those of a quasi-periodic run.
+const REGULAR: f64 = 1e-5;
+/// Averages that differ by more than this are not.
+const IRREGULAR: f64 = 1e-3;
+/// The error of the run moves a rotation number by so many tolerances.
+const PER_ACCURACY: f64 = 100.0;
+/// Points that repeat to this part of their spread repeat for good.
+const REPEATED: f64 = 1e-7;
+
+/// What a flow does in the end.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Regime {
+    /// It rests.
+    Steady,
+    /// It repeats itself.
+    Periodic,
+    /// It winds around a torus and never repeats itself.
+    Torus,
+    /// It forgets where it came from.
+    Chaotic,
+    /// The returns do not tell.
+    Undecided,
+}
+
+impl Regime {
+    /// The name in tables and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Regime::Steady => "steady",
+            Regime::Periodic => "periodic",
+            Regime::Torus => "torus",
+            Regime::Chaotic => "chaotic",
+            Regime::Undecided => "undecided",
+        }
+    }
+}
+
+/// A regime, with what it rests on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict<const N: usize> {
+    /// The regime.
+    pub regime: Regime,
+    /// The periodic point that the returns close in on.
+    pub periodic: Option<Periodic<N>>,
+    /// The closed curves on which the returns of a torus lie, where they bend little enough to be seen.
+    pub curve: Option<Curve>,
+    /// Why nothing can be said, and what to try.
+    pub why: Option<&'static str>,
+}
+
+impl<const N: usize> Verdict<N> {
+    fn of(regime: Regime) -> Self {
+        Verdict {
+            regime,
+            periodic: None,
+            curve: None,
+            why: None,
+        }
+    }
+
+    fn undecided(why: &'static str) -> Self {
+        Verdict {
+            why: Some(why),
+            ..Self::of(Regime::Undecided)
+        }
+    }
+}
+
+/// The regime of a recorded run. Periodic is one whose returns close in on an attracting periodic point; a torus has
+/// quasi-periodic returns and, where the exponents are given, two that vanish within their intervals; chaos has a largest
+/// exponent that is positive beyond its interval. Without exponents chaos is not told.
+///
+/// # Errors
+/// Those of [`periodicity`].
+pub fn verdict<const N: usize>(
+    field: &dyn VectorField<N>,
+    surface: &Surface<N>,
+    record: &Record<N>,
+    exponents: Option<Exponents<'_>>,
+) -> Result<Verdict<N>> {
+    if let Ended::Steady { .. } = record.ended {
+        return Ok(Verdict::of(Regime::Steady));
+    }
+    let returns = &record.returns;
+    if let Some(periodic) = periodicity(field, surface, record)? {
+        return Ok(Verdict {
+            periodic: Some(periodic),
+            ..Verdict::of(Regime::Periodic)
+        });
+    }
+    if N != 3 {
+        return Ok(Verdict::undecided(
+            "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more",
+        ));
+    }
+    if returns.len() < FEWEST_RETURNS {
+        return Ok(Verdict::undecided(
+            "fewer than 200 returns that do not close in on a periodic point; record more, or skip more",
+        ));
+    }
+    let mut verdict = wandering(&points(surface, returns), exponents);
+    if let Some(curve) = &mut verdict.curve {
+        curve.rotation.uncertainty += PER_ACCURACY * record.accuracy;
+    }
+    Ok(verdict)
+}
+
+/// The regime of returns that are not periodic.
+fn wandering<const N: usize>(points: &[[f64; 2]], exponents: Option<Exponents<'_>>) -> Verdict<N> {
+    let disorder = regularity(points);
+    let holds_zero = |x: &Uncertain| x.value.abs() <= x.uncertainty;
+    let positive = |x: &Uncertain| x.value > x.uncertainty;
+    if disorder < REGULAR {
+        if repeats(points) {
+            return Verdict::undecided(
+                "the returns repeat after more than 64; a long period cannot be told from a torus",
+            );
+        }
+        let curve = invariant_curve(points);
+        let two_vanish =
+            exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(holds_zero));
+        return match (two_vanish, curve) {
+            (Some(false), _) => Verdict::undecided(
+                "the returns look quasi-periodic but no second exponent vanishes; record more",
+            ),
+            (None, None) => Verdict::undecided(
+                "the returns look quasi-periodic on no simple curve; the exponents (--lyapunov) may tell",
+            ),
+            (Some(true), _) | (None, Some(_)) => Verdict {
+                curve,
+                ..Verdict::of(Regime::Torus)
+            },
+        };
+    }
+    let Some(exponents) = exponents else {
+        return Verdict::undecided(
+            "the returns are neither periodic nor quasi-periodic; the exponents (--lyapunov) may tell, or skip more",
+        );
+    };
+    if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR
+    {
+        return Verdict::of(Regime::Chaotic);
+    }
+    Verdict::undecided(
+        "no exponent is positive beyond its interval, and the returns have not settled; skip and record more",
+    )
+}
+
+/// Coordinates of the returns within the section.
+fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]) -> Vec<[f64; 2]> {
+    let origin = returns[0].state;
+    let inside = surface.directions(&origin);
+    let along = |point: &Return<N>, j: usize| -> f64 {
+        (0..N)
+            .map(|i| inside[(i, j)] * (point.state[i] - origin[i]))
+            .sum()
+    };
+    returns
+        .iter()
+        .map(|point| [along(point, 0), along(point, 1)])
+        .collect()
+}
+
+/// Whether all points repeat after some number of returns beyond [`LONGEST_PERIOD`].
+fn repeats(points: &[[f64; 2]]) -> bool {
+    let n = points.len();
+    let apart = |i: usize, j: usize| {
+        let [x, y] = [0, 1].map(|k| points[i][k] - points[j][k]);
+        x.abs().max(y.abs())
+    };
+    let spread = (1..n).map(|i| apart(i, 0)).fold(0.0, f64::max);
+    (LONGEST_PERIOD + 1..=n / 2).any(|q| (q..n).all(|i| apart(i, i - q) < REPEATED * spread))
+}

@@ -1,0 +1,308 @@
+//! The returns of one run to a section, recorded as they come.
+
+use super::dense::crossings;
+use super::rest::{equilibrium_near, spirals_into};
+use super::surface::Surface;
+use crate::error::{Error, Result};
+use crate::field::{State, VectorField};
+use crate::integrate::{Control, Integrator, Step};
+use crate::series::{Passage, Section, Zeros};
+
+/// Steps between two looks for an equilibrium.
+const BETWEEN_LOOKS: usize = 32;
+/// A start so close to an equilibrium, in every component, would leave it by rounding alone.
+const AT_START: f64 = 1e-11;
+/// Steps between two waypoints: over so few no tangent shrinks by more than doubles can tell from its largest.
+const BETWEEN_WAYPOINTS: usize = 6;
+
+/// A point of a run.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Return<const N: usize> {
+    /// Its time.
+    pub time: f64,
+    /// The state there.
+    pub state: State<N>,
+}
+
+/// How many returns are wanted, and how long to wait for them.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Watching {
+    /// Returns that are let pass.
+    pub skip: usize,
+    /// Returns that are recorded after these.
+    pub returns: usize,
+    /// The longest time to wait for a return.
+    pub patience: f64,
+    /// The relative tolerance of the run: what its returns are good to follows from it.
+    pub accuracy: f64,
+    /// Whether waypoints are recorded too, for [`super::spectrum`].
+    pub waypoints: bool,
+}
+
+impl Watching {
+    /// An equilibrium is reached where each component of the state is so close to it.
+    fn settled(&self) -> f64 {
+        const LEAST: f64 = 1e-7;
+        const PER_ACCURACY: f64 = 10.0;
+        LEAST.max(PER_ACCURACY * self.accuracy)
+    }
+}
+
+/// How a recording ended.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Ended<const N: usize> {
+    /// With all returns.
+    Complete,
+    /// At an equilibrium, which it can't leave.
+    Steady {
+        /// The time when it had come there; 0 if it began there.
+        time: f64,
+        /// The equilibrium.
+        equilibrium: State<N>,
+        /// Whether the run was drawn to it; an unstable one holds only a run that begins on it.
+        stable: bool,
+    },
+    /// By the caller's word.
+    Stopped,
+    /// By an error; what was recorded before is good.
+    Failed(Error),
+}
+
+/// What was recorded.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Record<const N: usize> {
+    /// The returns after those that were let pass.
+    pub returns: Vec<Return<N>>,
+    /// Points of the run between the first and the last of these, both included, a few steps apart.
+    pub waypoints: Vec<Return<N>>,
+    /// How it ended.
+    pub ended: Ended<N>,
+    /// The relative tolerance of the run.
+    pub accuracy: f64,
+}
+
+/// Follows a run from `start` at time 0 and records its returns to the surface. `see` is told of every return, with the number
+/// of those before it, and may end the recording; so may it after every step, where it is told of none.
+///
+/// A run that comes to a stable equilibrium ends there ([`Ended::Steady`]); one that wanders but does not return within the
+/// patience ends as [`Ended::Failed`] with [`Error::NoReturn`].
+pub fn record<const N: usize>(
+    integrator: &mut dyn Integrator<N>,
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    surface: &Surface<N>,
+    watching: &Watching,
+    see: &mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
+) -> Record<N> {
+    if let Some((equilibrium, stable)) = equilibrium_near(field, start, AT_START) {
+        return Record {
+            returns: Vec::new(),
+            waypoints: Vec::new(),
+            ended: Ended::Steady {
+                time: 0.0,
+                equilibrium,
+                stable,
+            },
+            accuracy: watching.accuracy,
+        };
+    }
+    let mut recorder = Recorder::new(field, surface, watching, see);
+    let all = (watching.skip + watching.returns) as f64;
+    // The patience ends a run before this, but a flow needs an end.
+    let span = (0.0, 2.0 * (all + 1.0) * watching.patience);
+    let mut observer = |step: &Step<'_, N>| recorder.step(step);
+    let flowed = integrator.flow(field, span, start, Some(&mut observer));
+    let ended = match (flowed, recorder.ended.take()) {
+        (Err(error), _) => Ended::Failed(error),
+        (Ok(_), Some(ended)) => ended,
+        (Ok(_), None) => Ended::Failed(recorder.no_return(span.1)),
+    };
+    let mut waypoints = recorder.waypoints;
+    if let Some(last) = recorder.returns.last() {
+        waypoints.retain(|point| point.time <= last.time);
+    }
+    Record {
+        returns: recorder.returns,
+        waypoints,
+        ended,
+        accuracy: watching.accuracy,
+    }
+}
+
+/// Sees the steps of a run.
+struct Recorder<'a, const N: usize> {
+    field: &'a dyn VectorField<N>,
+    surface: &'a Surface<N>,
+    section: Section<N>,
+    watching: &'a Watching,
+    see: &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
+    /// Of the height over the surface; its sign is carried over steps of either kind.
+    zeros: Zeros,
+    found: Vec<Passage<N>>,
+    passed: usize,
+    returns: Vec<Return<N>>,
+    waypoints: Vec<Return<N>>,
+    steps: usize,
+    /// The time of the last return, and the lowest and highest height since.
+    since: f64,
+    range: (f64, f64),
+    /// Where the patience has been over once: when, and how far the run had swung until then.
+    window: Option<(f64, f64)>,
+    ended: Option<Ended<N>>,
+}
+
+impl<'a, const N: usize> Recorder<'a, N> {
+    fn new(
+        field: &'a dyn VectorField<N>,
+        surface: &'a Surface<N>,
+        watching: &'a Watching,
+        see: &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
+    ) -> Self {
+        Recorder {
+            field,
+            surface,
+            section: surface.section(),
+            watching,
+            see,
+            zeros: Zeros::default(),
+            found: Vec::new(),
+            passed: 0,
+            returns: Vec::new(),
+            waypoints: Vec::new(),
+            steps: 0,
+            since: 0.0,
+            range: (f64::INFINITY, f64::NEG_INFINITY),
+            window: None,
+            ended: None,
+        }
+    }
+
+    fn step(&mut self, step: &Step<'_, N>) -> Result<Control> {
+        self.steps += 1;
+        self.found.clear();
+        match step.series {
+            Some(series) => {
+                let direction = Some(self.surface.direction);
+                series.crossings(&self.section, direction, &mut self.zeros, &mut self.found);
+                for passage in &mut self.found {
+                    passage.time = (series.begin + passage.time).hi();
+                }
+            }
+            None => crossings(
+                self.field,
+                self.surface,
+                step,
+                &mut self.zeros,
+                &mut self.found,
+            )?,
+        }
+        for k in 0..self.found.len() {
+            let Passage { time, state, .. } = self.found[k];
+            let state = State::from(state);
+            self.arrive(Return { time, state });
+            if self.ended.is_some() {
+                return Ok(Control::Stop);
+            }
+        }
+        let here = Return {
+            time: step.t1,
+            state: *step.y1,
+        };
+        if (self.see)(self.passed, None) == Control::Stop {
+            self.ended = Some(Ended::Stopped);
+        }
+        self.between_returns(&here);
+        Ok(if self.ended.is_some() {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    }
+
+    fn arrive(&mut self, here: Return<N>) {
+        let Watching { skip, returns, .. } = *self.watching;
+        let recorded = self.passed >= skip;
+        if recorded {
+            self.returns.push(here);
+            if self.watching.waypoints {
+                self.waypoints.push(here);
+            }
+        }
+        let told = (self.see)(self.passed, Some(&here));
+        self.passed += 1;
+        self.since = here.time;
+        self.window = None;
+        self.range = (f64::INFINITY, f64::NEG_INFINITY);
+        // An equilibrium may lie on the section: then its noise returns for ever.
+        self.look(&here);
+        if self.ended.is_none() && self.passed == skip + returns {
+            self.ended = Some(Ended::Complete);
+        }
+        if self.ended.is_none() && told == Control::Stop {
+            self.ended = Some(Ended::Stopped);
+        }
+    }
+
+    fn between_returns(&mut self, here: &Return<N>) {
+        let height = self.surface.height(&here.state);
+        self.range = (self.range.0.min(height), self.range.1.max(height));
+        if self.steps.is_multiple_of(BETWEEN_WAYPOINTS)
+            && self.watching.waypoints
+            && !self.returns.is_empty()
+        {
+            self.waypoints.push(*here);
+        }
+        let begun = self.window.map_or(self.since, |(begun, _)| begun);
+        let late = here.time - begun > self.watching.patience;
+        if late || self.steps.is_multiple_of(BETWEEN_LOOKS) {
+            self.look(here);
+        }
+        if late && self.ended.is_none() {
+            self.late(here);
+        }
+    }
+
+    /// Ends at a stable equilibrium.
+    fn look(&mut self, here: &Return<N>) {
+        let near = equilibrium_near(self.field, &here.state, self.watching.settled());
+        if let Some((equilibrium, stable @ true)) = near {
+            self.ended = Some(Ended::Steady {
+                time: here.time,
+                equilibrium,
+                stable,
+            });
+        }
+    }
+
+    /// The patience is over. A run that spirals into an equilibrium as slowly as its eigenvalues say has one window more to
+    /// show it.
+    fn late(&mut self, here: &Return<N>) {
+        let size = self.range.1 - self.range.0;
+        let window = here.time - self.window.map_or(self.since, |(begun, _)| begun);
+        if let Some((_, before)) = self.window {
+            let spiral = spirals_into(self.field, &here.state, (before, size), window);
+            self.ended = Some(match spiral {
+                Some(equilibrium) => Ended::Steady {
+                    time: here.time,
+                    equilibrium,
+                    stable: true,
+                },
+                None => Ended::Failed(self.no_return(here.time)),
+            });
+        } else if window > 0.0 {
+            self.window = Some((here.time, size));
+            self.range = (f64::INFINITY, f64::NEG_INFINITY);
+        }
+    }
+
+    fn no_return(&self, t: f64) -> Error {
+        let offset = self.surface.offset;
+        Error::NoReturn {
+            since: self.since,
+            t,
+            section: offset,
+            lowest: offset + self.range.0,
+            highest: offset + self.range.1,
+        }
+    }
+}
