@@ -62,7 +62,8 @@ pub trait Integrator<const N: usize> {
     /// The state at `t.1` from `y0` at `t.0`; backwards in time if `t.1 < t.0`.
     ///
     /// # Errors
-    /// [`Error::StepTooSmall`], [`Error::BlowUp`], [`Error::TooManySteps`], [`Error::NonFinite`] (at the start), those of
+    /// [`StepTooSmall`](crate::Error::StepTooSmall), [`BlowUp`](crate::Error::BlowUp),
+    /// [`TooManySteps`](crate::Error::TooManySteps), [`NonFinite`](crate::Error::NonFinite) (at the start), those of
     /// SUNDIALS, and those of the observer. Never returns a state that is not finite.
     fn flow(
         &mut self,

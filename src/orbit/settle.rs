@@ -81,7 +81,7 @@ const STRETCHES: u32 = 7;
 /// to go on.
 ///
 /// # Errors
-/// [`Error::NoOrbit`] where the run comes to rest or comes back nowhere; those of the flow.
+/// [`crate::Error::NoOrbit`] where the run comes to rest or comes back nowhere; those of the flow.
 pub(super) fn settle<const N: usize>(
     tracer: &mut Tracer<N>,
     field: &dyn VectorField<N>,

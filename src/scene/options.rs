@@ -6,6 +6,9 @@ use std::path::PathBuf;
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
     symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given";
 
+const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
+    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for";
+
 /// The friction law, how many interfaces there are and how they are driven; the defaults are the paper's.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
@@ -246,13 +249,13 @@ pub struct OrbitOptions {
         help_heading = "Orbit"
     )]
     pub symmetry: String,
-    /// TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or hopf, for the branch from the
-    /// nearest Hopf point along V_H. Without it the orbit is looked for
+    /// At or near the orbit, or at a Hopf point; without it the orbit is looked for.
     #[arg(
         long,
         value_name = "START",
         allow_hyphen_values = true,
-        help_heading = "Orbit"
+        help_heading = "Orbit",
+        help = ORBIT_START_HELP
     )]
     pub start: Option<String>,
     /// The period, roughly; with it no shorter cycle is taken instead
