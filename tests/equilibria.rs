@@ -7,7 +7,7 @@ use common::{assert_close, complex, data, number, relative};
 use twinslip::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};
 use twinslip::field::{State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::model::{Loading, TwoInterfaces};
+use twinslip::model::{Loading, two_interfaces};
 
 const SOLVERS: &[Solver] = &[
     #[cfg(feature = "sundials")]
@@ -150,9 +150,8 @@ fn states_and_eigenvalues_match_the_reference() {
 fn eigenvalues_are_those_of_the_jacobian() {
     for driving in [0.01, 0.06, 0.2, 5.0, 300.0, 1000.0, 30000.0, 1e6] {
         for stiffness in [0.01, 0.14, 0.45, 20.0] {
-            let law = Parameters::heslot_1994().spinodal();
             let loading = Loading::new(driving, stiffness).expect("valid");
-            let field = TwoInterfaces { law, loading };
+            let field = two_interfaces(spinodal(), loading);
             for state in steady_states(&spinodal(), driving, 2, Solver::Newton)
                 .expect("solved")
                 .equilibria

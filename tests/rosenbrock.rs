@@ -6,11 +6,11 @@ mod trajectories;
 use trajectories::Run;
 use twinslip::error::{Error, Result};
 use twinslip::field::{Jacobian, State, VectorField};
-use twinslip::friction::Parameters;
+use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{
     Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Tolerances,
 };
-use twinslip::model::{Loading, TwoInterfaces, symmetric, two_interfaces};
+use twinslip::model::{Driven, Loading, symmetric, two_interfaces};
 
 fn integrator<const N: usize>(method: RosenbrockMethod, tolerance: f64) -> Rosenbrock<N> {
     Rosenbrock::new(method, Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
@@ -184,11 +184,9 @@ fn the_error_falls_with_the_tolerance() {
     }
 }
 
-fn paper_field(driving: f64, stiffness: f64) -> TwoInterfaces<twinslip::friction::Spinodal> {
-    TwoInterfaces {
-        law: Parameters::heslot_1994().spinodal(),
-        loading: Loading::new(driving, stiffness).unwrap(),
-    }
+fn paper_field(driving: f64, stiffness: f64) -> Box<dyn Driven<3>> {
+    let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
+    two_interfaces(law, Loading::new(driving, stiffness).unwrap())
 }
 
 #[test]
@@ -201,9 +199,9 @@ fn backwards_returns_to_the_start() {
         (RosenbrockMethod::Ros23, 1e-9),
     ] {
         let mut rosenbrock = integrator::<3>(method, tolerance);
-        let there = rosenbrock.flow(&field, (0.0, 0.5), &start, None).unwrap();
+        let there = rosenbrock.flow(&*field, (0.0, 0.5), &start, None).unwrap();
         assert!((there - start).amax() > 0.1);
-        let back = rosenbrock.flow(&field, (0.5, 0.0), &there, None).unwrap();
+        let back = rosenbrock.flow(&*field, (0.5, 0.0), &there, None).unwrap();
         let error = (back - start).amax();
         println!("{method:?}: {error:e}");
         assert!(error < 1e4 * tolerance, "{method:?}: {error:e}");
@@ -228,7 +226,7 @@ fn steps_join_land_on_the_end_and_leave_no_sliver() {
             };
             let mut rosenbrock = integrator::<3>(method, 1e-6);
             let last = rosenbrock
-                .flow(&field, (0.0, end), &start, Some(&mut see))
+                .flow(&*field, (0.0, end), &start, Some(&mut see))
                 .unwrap();
             assert_eq!((now, y), (end, last));
             assert_eq!(lengths.len(), rosenbrock.work().steps);
@@ -245,14 +243,14 @@ fn an_observer_changes_nothing_and_can_stop_or_fail() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
     let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas5P, 1e-6);
-    let alone = rosenbrock.flow(&field, (0.0, 1.0), &start, None).unwrap();
+    let alone = rosenbrock.flow(&*field, (0.0, 1.0), &start, None).unwrap();
     let work = rosenbrock.work();
     let mut look = |step: &Step<'_, 3>| {
         (step.dense)(0.5 * (step.t0 + step.t1));
         Ok(Control::Continue)
     };
     let seen = rosenbrock
-        .flow(&field, (0.0, 1.0), &start, Some(&mut look))
+        .flow(&*field, (0.0, 1.0), &start, Some(&mut look))
         .unwrap();
     assert_eq!((seen, rosenbrock.work()), (alone, work));
 
@@ -268,7 +266,7 @@ fn an_observer_changes_nothing_and_can_stop_or_fail() {
         })
     };
     let stopped = rosenbrock
-        .flow(&field, (0.0, 1.0), &start, Some(&mut stop))
+        .flow(&*field, (0.0, 1.0), &start, Some(&mut stop))
         .unwrap();
     assert_eq!(
         (count, rosenbrock.work().steps, stopped),
@@ -276,7 +274,7 @@ fn an_observer_changes_nothing_and_can_stop_or_fail() {
     );
 
     let mut fail = |_: &Step<'_, 3>| Err(Error::Input("enough".into()));
-    let failed = rosenbrock.flow(&field, (0.0, 1.0), &start, Some(&mut fail));
+    let failed = rosenbrock.flow(&*field, (0.0, 1.0), &start, Some(&mut fail));
     assert_eq!(failed, Err(Error::Input("enough".into())));
 }
 
@@ -285,17 +283,29 @@ fn no_time_no_change_and_no_nonsense() {
     let field = paper_field(10.0, 0.14);
     let start = State::<3>::new(10.0, -2.0, -4.0);
     let mut rosenbrock = integrator::<3>(RosenbrockMethod::Rodas4, 1e-6);
-    assert_eq!(rosenbrock.flow(&field, (3.0, 3.0), &start, None), Ok(start));
-    let (y, tangent) = rosenbrock.tangent_flow(&field, (3.0, 3.0), &start).unwrap();
+    assert_eq!(
+        rosenbrock.flow(&*field, (3.0, 3.0), &start, None),
+        Ok(start)
+    );
+    let (y, tangent) = rosenbrock
+        .tangent_flow(&*field, (3.0, 3.0), &start)
+        .unwrap();
     assert_eq!((y, tangent), (start, Jacobian::identity()));
 
     let lost = State::<3>::new(f64::NAN, 0.0, 0.0);
     for outcome in [
-        rosenbrock.flow(&field, (0.0, 1.0), &lost, None).map(drop),
-        rosenbrock.tangent_flow(&field, (0.0, 1.0), &lost).map(drop),
+        rosenbrock.flow(&*field, (0.0, 1.0), &lost, None).map(drop),
+        rosenbrock
+            .tangent_flow(&*field, (0.0, 1.0), &lost)
+            .map(drop),
         // sinh(1000) overflows
         rosenbrock
-            .flow(&field, (0.0, 1.0), &State::<3>::new(1000.0, 0.0, 0.0), None)
+            .flow(
+                &*field,
+                (0.0, 1.0),
+                &State::<3>::new(1000.0, 0.0, 0.0),
+                None,
+            )
             .map(drop),
     ] {
         assert!(
@@ -303,7 +313,7 @@ fn no_time_no_change_and_no_nonsense() {
             "{outcome:?}"
         );
     }
-    let outcome = rosenbrock.flow(&field, (0.0, f64::INFINITY), &start, None);
+    let outcome = rosenbrock.flow(&*field, (0.0, f64::INFINITY), &start, None);
     assert!(matches!(outcome, Err(Error::Parameter { .. })));
     let tolerances = Tolerances::equal(1e-6).unwrap();
     assert!(Rosenbrock::<3>::new(RosenbrockMethod::Rodas4, tolerances, 0).is_err());
@@ -316,7 +326,7 @@ fn the_bound_on_steps_holds() {
     for method in RosenbrockMethod::ALL {
         let tolerances = Tolerances::equal(1e-8).unwrap();
         let mut rosenbrock = Rosenbrock::<3>::new(method, tolerances, 50).unwrap();
-        let outcome = rosenbrock.flow(&field, (0.0, 100.0), &start, None);
+        let outcome = rosenbrock.flow(&*field, (0.0, 100.0), &start, None);
         let work = rosenbrock.work();
         assert_eq!(work.steps + work.rejected, 50);
         assert!(
@@ -327,17 +337,15 @@ fn the_bound_on_steps_holds() {
 
 #[test]
 fn a_finite_time_singularity_is_found_where_it_is() {
-    let field = TwoInterfaces {
-        law: Parameters::heslot_1994().dieterich_ruina(),
-        loading: Loading::new(1.0, 0.35).unwrap(),
-    };
+    let law = AnyLaw::DieterichRuina(Parameters::heslot_1994().dieterich_ruina());
+    let field = two_interfaces(law, Loading::new(1.0, 0.35).unwrap());
     let start = State::<3>::new(10.85, 1.99_f64.ln(), 2.01_f64.ln());
     for (method, tolerance, allowed) in [
         (RosenbrockMethod::Rodas5P, 1e-14, 1e-9),
         (RosenbrockMethod::Rodas4, 1e-13, 1e-9),
         (RosenbrockMethod::Ros23, 1e-8, 1e-2),
     ] {
-        let outcome = integrator::<3>(method, tolerance).flow(&field, (0.0, 300.0), &start, None);
+        let outcome = integrator::<3>(method, tolerance).flow(&*field, (0.0, 300.0), &start, None);
         let Err(Error::BlowUp { t, rate }) = outcome else {
             panic!("{method:?}: {outcome:?}");
         };

@@ -137,14 +137,13 @@ fn trivial_defect<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> S
 
 /// The multipliers of an orbit in the space of its field.
 pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
+    const { assert!(N == 2 || N == 3, "one or two nontrivial multipliers") };
     let (volume, liouville_defect) = volume(closed);
-    let multipliers = match N {
-        2 => vec![Multiplier::real(volume.value, volume.uncertainty, false)],
-        3 => {
-            let errors: Vec<f64> = closed.arcs().iter().map(|arc| arc.error).collect();
-            pair(closed.maps(), &errors, volume)
-        }
-        _ => unimplemented!("multipliers in {N} dimensions"),
+    let multipliers = if N == 2 {
+        vec![Multiplier::real(volume.value, volume.uncertainty, false)]
+    } else {
+        let errors: Vec<f64> = closed.arcs().iter().map(|arc| arc.error).collect();
+        pair(closed.maps(), &errors, volume)
     };
     Floquet {
         multipliers,

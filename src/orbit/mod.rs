@@ -21,7 +21,7 @@ pub use crosscheck::{Crosscheck, crosscheck};
 pub use find::{Begin, Found, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
 pub use polygon::{EndAndLoss, Polygon};
-pub use shooting::{Closed, close};
+pub use shooting::{Closed, close, newton_step};
 pub use slab::Slab;
 pub use solve::{Accuracy, Orbit};
 

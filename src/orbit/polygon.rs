@@ -123,6 +123,16 @@ impl<const N: usize> Polygon<N> {
         Ok(finer)
     }
 
+    /// With this part of a correction of nodes and durations.
+    pub(super) fn moved(&self, nodes: &[State<N>], durations: &[f64], part: f64) -> Self {
+        let moved = self.nodes.iter().zip(nodes);
+        let stretched = self.durations.iter().zip(durations);
+        Polygon {
+            nodes: moved.map(|(x, dx)| x + dx * part).collect(),
+            durations: stretched.map(|(t, dt)| t + dt * part).collect(),
+        }
+    }
+
     /// The time once around.
     pub fn period(&self) -> f64 {
         self.durations.iter().sum()

@@ -80,6 +80,26 @@ fn relative<const N: usize>(dx: &State<N>, x: &State<N>) -> f64 {
         .fold(0.0, f64::max)
 }
 
+/// One whole step of Newton's method.
+///
+/// # Errors
+/// [`Error::NotConverged`] where the linear equations are singular; those of the flow.
+pub fn newton_step<const N: usize>(
+    tracer: &mut Tracer<N>,
+    field: &dyn VectorField<N>,
+    polygon: &Polygon<N>,
+) -> Result<Polygon<N>> {
+    let linear = Linear::new(tracer, field, polygon, false)?;
+    let correction = linear.correction(&linear.gaps);
+    let (nodes, durations) = correction.ok_or(Error::NotConverged {
+        what: "the periodic orbit",
+        iterations: 1,
+        residual: f64::INFINITY,
+        tolerance: CLOSED,
+    })?;
+    Ok(polygon.moved(&nodes, &durations, 1.0))
+}
+
 /// Closes a polygon.
 ///
 /// # Errors
@@ -132,20 +152,7 @@ pub fn close<const N: usize>(
         let mut part = (TRUSTED / of_nodes.max(stretch)).min(1.0);
         let mut halvings = 0;
         linear = loop {
-            let trial = Polygon {
-                nodes: polygon
-                    .nodes
-                    .iter()
-                    .zip(&nodes)
-                    .map(|(x, dx)| x + dx * part)
-                    .collect(),
-                durations: polygon
-                    .durations
-                    .iter()
-                    .zip(&durations)
-                    .map(|(t, dt)| t + dt * part)
-                    .collect(),
-            };
+            let trial = polygon.moved(&nodes, &durations, part);
             match Linear::new(tracer, field, &trial, false) {
                 Ok(next) => {
                     polygon = trial;
