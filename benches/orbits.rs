@@ -47,7 +47,7 @@ fn tracer(name: &str, tolerance: f64) -> Tracer<3> {
     Tracer::new(choice, tolerances, MAX_STEPS).expect("valid")
 }
 
-fn newton_step(criterion: &mut Criterion) {
+fn newton_steps(criterion: &mut Criterion) {
     let mut methods = vec!["taylor", "rodas5p", "rodas4"];
     if cfg!(feature = "sundials") {
         methods.extend(["cvode-bdf", "cvode-adams"]);
@@ -109,5 +109,5 @@ fn hundred_orbits(criterion: &mut Criterion) {
     });
 }
 
-criterion_group!(benches, newton_step, hundred_orbits);
+criterion_group!(benches, newton_steps, hundred_orbits);
 criterion_main!(benches);

@@ -5,7 +5,7 @@ mod common;
 
 use common::{assert_close, complex, data, number, relative};
 use twinslip::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};
-use twinslip::field::{State, VectorField};
+use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::{Loading, two_interfaces};
 

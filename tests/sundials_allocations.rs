@@ -3,7 +3,7 @@
 #![cfg(feature = "sundials")]
 
 use allocation_counter::measure;
-use twinslip::field::{Jacobian, State, VectorField};
+use twinslip::field::{Jacobian, State};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Tolerances;
 use twinslip::model::{Driven, Loading, two_interfaces};
