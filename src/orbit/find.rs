@@ -165,7 +165,12 @@ fn search<const N: usize>(
             polygon = close(&mut fine, space.field(), polygon)?.polygon;
             polygon = once_around(&mut fine, space.field(), polygon)?;
         }
-        orbits.push(orbit(slab, space, accuracy, polygon)?);
+        let orbit = orbit(slab, space, accuracy, polygon)?;
+        let period = orbit.period.value;
+        let known = |other: &Orbit| (other.period.value / period - 1.0).abs() < SAME_PERIOD;
+        if !orbits.iter().any(known) {
+            orbits.push(orbit);
+        }
     }
     let stable = orbits
         .iter()

@@ -84,6 +84,13 @@ impl Floquet {
         verdict
     }
 
+    /// Claims nothing.
+    pub(super) fn doubt(&mut self) {
+        for multiplier in &mut self.multipliers {
+            multiplier.ln_abs.uncertainty = f64::INFINITY;
+        }
+    }
+
     /// Widens every uncertainty by what another computation differs, a few times over.
     pub fn widened_by(&mut self, other: &Floquet) {
         /// How many times.

@@ -186,10 +186,18 @@ pub(super) fn orbit<const N: usize>(
     let mut work = tracers.work();
     if accuracy.checked {
         let mut second = Tracers::new(&accuracy.looser())?;
-        let moved = shifted(&mut second.here, space.field(), polygon)?;
-        let other = solve(space, &mut second, moved)?;
-        floquet.widened_by(&other.floquet);
-        period.uncertainty += 2.0 * (period.value - other.closed.polygon.period()).abs();
+        let moved = shifted(&mut second.here, space.field(), polygon);
+        match moved.and_then(|moved| solve(space, &mut second, moved)) {
+            Ok(other) => {
+                floquet.widened_by(&other.floquet);
+                period.uncertainty += 2.0 * (period.value - other.closed.polygon.period()).abs();
+            }
+            // Nothing is claimed that could not be done twice.
+            Err(_) => {
+                floquet.doubt();
+                period.uncertainty = f64::INFINITY;
+            }
+        }
         work += second.work();
     }
     let extremes = extremes(space.field(), polygon, slab.steady_stress())?;
