@@ -232,20 +232,25 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
             .collect();
         cycles.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, begin) in cycles {
-            let closed = Polygon::along(tracer, field, &begin, period)
-                .and_then(|polygon| close(tracer, field, polygon));
-            match closed {
-                Ok(closed) => {
-                    if self.take(closed.polygon) {
-                        return Ok(());
-                    }
-                }
-                Err(error) => {
-                    self.otherwise.get_or_insert(error);
-                }
+            if self.closes(tracer, &begin, period) {
+                break;
             }
         }
         Ok(())
+    }
+
+    /// Whether Newton's method on the cycle of this duration from this point leads to an orbit of the symmetry.
+    fn closes(&mut self, tracer: &mut Tracer<N>, begin: &State<N>, period: f64) -> bool {
+        let field = self.space.field();
+        let closed = Polygon::along(tracer, field, begin, period)
+            .and_then(|polygon| close(tracer, field, polygon));
+        match closed {
+            Ok(closed) => self.take(closed.polygon),
+            Err(error) => {
+                self.otherwise.get_or_insert(error);
+                false
+            }
+        }
     }
 
     /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.
@@ -277,15 +282,8 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
         returns.retain(|&(_, _, period)| period > 1e-9 * length);
         returns.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, begin, period) in returns.into_iter().take(TRIED) {
-            let closed = Polygon::along(tracer, field, &begin, period)
-                .and_then(|polygon| close(tracer, field, polygon));
-            match closed {
-                Ok(closed) => {
-                    if self.take(closed.polygon) {
-                        return Ok(());
-                    }
-                }
-                Err(error) => self.otherwise = Some(error),
+            if self.closes(tracer, &begin, period) {
+                return Ok(());
             }
         }
         self.settled(slab, tracer, start);
