@@ -50,6 +50,8 @@ pub mod section;
 
 pub mod orbit;
 
+pub mod bifurcation;
+
 pub mod scene;
 
 pub mod output;

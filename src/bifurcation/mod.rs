@@ -1,0 +1,265 @@
+//! Branches of equilibria and of periodic orbits, their bifurcations, and the curves of these in the (V_H, K) plane.
+//!
+//! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
+
+use crate::equilibrium::{Symmetry, Verdict};
+use crate::number::Uncertain;
+use crate::orbit::Slab;
+
+pub use crate::model::Parameter;
+
+/// What a point is, in AUTO's letters where AUTO has them.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum Label {
+    /// Pitchfork or branch point of equilibria.
+    Bp,
+    /// Fold of equilibria.
+    Lp,
+    /// Hopf point.
+    Hb,
+    /// Period doubling.
+    Pd,
+    /// Torus (Neimark-Sacker).
+    Tr,
+    /// Pitchfork of periodic orbits: a symmetric orbit meets asymmetric ones.
+    Pf,
+    /// Fold (saddle-node) of periodic orbits.
+    Sn,
+    /// A value that was asked for.
+    Uz,
+    /// The end of the range, or of the branch.
+    Ep,
+    /// No further: the method failed here.
+    Mx,
+    /// Strong resonance 1:1.
+    R1,
+    /// Strong resonance 1:2.
+    R2,
+    /// Strong resonance 1:3.
+    R3,
+    /// Strong resonance 1:4.
+    R4,
+    /// Degenerate (generalised) Hopf point: the first Lyapunov coefficient is zero.
+    Gh,
+    /// Chenciner point: the cubic coefficient of the torus bifurcation is zero.
+    Ch,
+    /// Degenerate period doubling: its cubic coefficient is zero.
+    Gpd,
+    /// Cusp; on a curve of pitchforks the degenerate pitchfork where a fold curve ends.
+    Cp,
+    /// Bogdanov-Takens point.
+    Bt,
+    /// Zero-Hopf point.
+    Zh,
+    /// The largest K of a curve.
+    Top,
+}
+
+impl Label {
+    /// As tables write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Label::Bp => "BP",
+            Label::Lp => "LP",
+            Label::Hb => "HB",
+            Label::Pd => "PD",
+            Label::Tr => "TR",
+            Label::Pf => "PF",
+            Label::Sn => "SN",
+            Label::Uz => "UZ",
+            Label::Ep => "EP",
+            Label::Mx => "MX",
+            Label::R1 => "R1",
+            Label::R2 => "R2",
+            Label::R3 => "R3",
+            Label::R4 => "R4",
+            Label::Gh => "GH",
+            Label::Ch => "CH",
+            Label::Gpd => "GPD",
+            Label::Cp => "CP",
+            Label::Bt => "BT",
+            Label::Zh => "ZH",
+            Label::Top => "TOP",
+        }
+    }
+
+    /// In words.
+    pub fn meaning(self) -> &'static str {
+        match self {
+            Label::Bp => "pitchfork",
+            Label::Lp => "saddle-node",
+            Label::Hb => "Hopf",
+            Label::Pd => "period doubling",
+            Label::Tr => "torus",
+            Label::Pf => "pitchfork of orbits",
+            Label::Sn => "saddle-node of orbits",
+            Label::Uz => "value asked for",
+            Label::Ep => "end",
+            Label::Mx => "no further",
+            Label::R1 => "resonance 1:1",
+            Label::R2 => "resonance 1:2",
+            Label::R3 => "resonance 1:3",
+            Label::R4 => "resonance 1:4",
+            Label::Gh => "degenerate Hopf",
+            Label::Ch => "Chenciner",
+            Label::Gpd => "degenerate period doubling",
+            Label::Cp => "cusp",
+            Label::Bt => "Bogdanov-Takens",
+            Label::Zh => "zero-Hopf",
+            Label::Top => "largest stiffness",
+        }
+    }
+}
+
+/// To which side the bifurcating solutions lie.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Criticality {
+    /// They are stable where what they come from is unstable.
+    Supercritical,
+    /// They are unstable where what they come from is stable.
+    Subcritical,
+    /// The coefficient is zero within its error.
+    Undecided,
+}
+
+/// A special point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Special {
+    /// What it is.
+    pub label: Label,
+    /// V_H.
+    pub driving: Uncertain,
+    /// K.
+    pub stiffness: Uncertain,
+    /// The period of the orbit, or of the oscillation at a Hopf point.
+    pub period: Option<Uncertain>,
+    /// Where the bifurcation has one.
+    pub criticality: Option<Criticality>,
+    /// The normal form's coefficient whose sign that is.
+    pub coefficient: Option<f64>,
+    /// Why the branch ends here, or what else is to be said.
+    pub note: Option<String>,
+}
+
+/// A point of a branch.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BranchRow {
+    /// The number of the branch, from 0: one run may follow several.
+    pub branch: usize,
+    /// V_H.
+    pub driving: f64,
+    /// K.
+    pub stiffness: f64,
+    /// The stress of an equilibrium, or the mean over an orbit.
+    pub stress: f64,
+    /// Least and largest stress.
+    pub stress_range: (f64, f64),
+    /// The period of an orbit.
+    pub period: Option<f64>,
+    /// psi of both interfaces: of an equilibrium, or where the orbit's stress is largest.
+    pub state: [f64; 2],
+    /// The slip rates there.
+    pub slip_rate: [f64; 2],
+    /// ln |mu| of both nontrivial multipliers, the larger one first; `None` for equilibria without stiffness.
+    pub ln_abs_multiplier: [Option<f64>; 2],
+    /// Stability.
+    pub verdict: Verdict,
+    /// What is special here.
+    pub label: Option<Label>,
+}
+
+/// A point of a curve in the (V_H, K) plane.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocusRow {
+    /// The number of the curve, from 0: a locus may consist of several.
+    pub curve: usize,
+    /// V_H.
+    pub driving: Uncertain,
+    /// K.
+    pub stiffness: Uncertain,
+    /// The period of the orbit, or of the oscillation at a Hopf point.
+    pub period: Option<f64>,
+    /// The angle of the multipliers of a torus bifurcation.
+    pub angle_over_pi: Option<f64>,
+    /// Where it was asked for.
+    pub criticality: Option<Criticality>,
+    /// What is special here.
+    pub label: Option<Label>,
+}
+
+/// What is found on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Event {
+    /// A point of a branch.
+    Branch(BranchRow),
+    /// A point of a curve.
+    Locus(LocusRow),
+    /// A special point.
+    Special(Special),
+}
+
+/// Whether to go on.
+pub type Seen<'a> = &'a mut dyn FnMut(Event) -> std::ops::ControlFlow<()>;
+
+/// A branch that is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BranchRequest {
+    /// Law and interfaces; its loading has the fixed parameter.
+    pub slab: Slab,
+    /// What is varied.
+    pub along: Parameter,
+    /// From where to where; the larger one may come first.
+    pub range: (f64, f64),
+    /// One symmetry, or both.
+    pub symmetry: Option<Symmetry>,
+    /// Values to land on.
+    pub at: Vec<f64>,
+    /// Factor on the step limits.
+    pub step: f64,
+    /// The accuracy of special points, relative.
+    pub tolerance: f64,
+}
+
+/// The curves that there are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LocusKind {
+    /// Pitchforks of equilibria.
+    Pitchfork,
+    /// Folds of equilibria.
+    SaddleNode,
+    /// Hopf points.
+    Hopf,
+    /// Pitchforks of orbits.
+    OrbitPitchfork,
+    /// Folds of orbits.
+    OrbitSaddleNode,
+    /// Period doublings.
+    PeriodDoubling,
+    /// Torus bifurcations.
+    Torus,
+}
+
+/// A curve that is asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LocusRequest {
+    /// Law and interfaces; its loading does not matter.
+    pub slab: Slab,
+    /// Of what.
+    pub kind: LocusKind,
+    /// One symmetry, or both where there are two.
+    pub symmetry: Option<Symmetry>,
+    /// V_H from, to.
+    pub driving: (f64, f64),
+    /// K from, to.
+    pub stiffness: (f64, f64),
+    /// Values to land on.
+    pub at_driving: Vec<f64>,
+    /// Values to land on.
+    pub at_stiffness: Vec<f64>,
+    /// Factor on the step limits.
+    pub step: f64,
+    /// The accuracy of all points, relative.
+    pub tolerance: f64,
+    /// Whether normal form coefficients are computed.
+    pub criticality: bool,
+}
