@@ -15,6 +15,8 @@ pub struct Arc<const N: usize> {
     pub parameters: [State<N>; 2],
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
+    /// Steps that the method took.
+    pub steps: usize,
     /// Bound on what the method errs by at the end, in units of 1 + |y|: steps times tolerance and rounding.
     pub error: f64,
 }
@@ -148,6 +150,7 @@ impl<const N: usize> Tracer<N> {
             tangent,
             parameters: in_parameters,
             log_determinant,
+            steps: work.steps,
             error: self.step_error * work.steps.max(1) as f64,
         })
     }

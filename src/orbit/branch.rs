@@ -1,94 +1,63 @@
-//! Along a branch of periodic orbits, past its folds: pseudo-arclength continuation of polygons in ln V_H.
-//!
-//! The arclength is of the nodes' mean square displacement across the flow, and of ln V_H; the period is not in it.
+//! Branches of periodic orbits from Hopf points, and the orbits on them at a wanted V_H.
 
 use super::arc::Tracer;
+use super::correct::Corrector;
+use super::family::{Family, OverLoadings};
 use super::hopf::{HopfPoint, hopf_points};
-use super::linear::Linear;
+use super::motion::{Motion, Site};
 use super::polygon::Polygon;
 use super::shooting::close;
 use super::slab::Slab;
 use super::space::Space;
+use super::walk::{Path, Walk};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::field::{State, VectorField};
-
-/// A direction in the space of nodes and ln V_H.
-#[derive(Debug, Clone)]
-struct Direction<const N: usize> {
-    nodes: Vec<State<N>>,
-    log_driving: f64,
-}
-
-impl<const N: usize> Direction<N> {
-    fn dot(&self, other: &Self) -> f64 {
-        let nodes = self.nodes.iter().zip(&other.nodes).map(|(a, b)| a.dot(b));
-        nodes.sum::<f64>() / self.nodes.len() as f64 + self.log_driving * other.log_driving
-    }
-
-    fn scaled(mut self, by: f64) -> Self {
-        self.nodes.iter_mut().for_each(|x| *x *= by);
-        self.log_driving *= by;
-        self
-    }
-
-    fn normalised(self) -> Option<Self> {
-        let length = self.dot(&self).sqrt();
-        (length.is_finite() && length > 0.0).then(|| self.scaled(1.0 / length))
-    }
-
-    /// The same at the nodes of another polygon of the cycle, by phase.
-    fn resampled(&self, from: &Polygon<N>, to: &Polygon<N>) -> Self {
-        let phases = |polygon: &Polygon<N>| {
-            let period = polygon.period();
-            let mut at = 0.0;
-            let each = polygon.durations.iter().map(move |duration| {
-                let phase = at / period;
-                at += duration;
-                phase
-            });
-            each.collect::<Vec<f64>>()
-        };
-        let (old, new) = (phases(from), phases(to));
-        let nodes = new.iter().map(|&phase| {
-            let k = old.partition_point(|&p| p <= phase).max(1) - 1;
-            let next = (k + 1) % old.len();
-            let end = if next == 0 { 1.0 } else { old[next] };
-            let part = (phase - old[k]) / (end - old[k]);
-            self.nodes[k] * (1.0 - part) + self.nodes[next] * part
-        });
-        Direction {
-            nodes: nodes.collect(),
-            log_driving: self.log_driving,
-        }
-    }
-}
-
-/// A point of the branch.
-#[derive(Debug, Clone)]
-struct Point<const N: usize> {
-    polygon: Polygon<N>,
-    log_driving: f64,
-    direction: Direction<N>,
-}
+use crate::field::State;
+use crate::model::Parameter;
 
 /// Size of the first orbit.
 const FIRST: f64 = 0.02;
-/// Lengths of steps.
+/// Below this extent the square of the amplitude is taken to change in proportion with the parameter, and no smaller orbits
+/// are asked for: their nodes' planes would miss them.
+const SMALL: f64 = 0.2;
+/// The longest step and the number of steps on a branch.
 const LONGEST: f64 = 0.5;
-const SHORTEST: f64 = 1e-6;
-/// Newton iterations of a step; after fewer than this the next one is longer.
-const ITERATIONS: usize = 8;
-const EASY: usize = 3;
-const LONGER: f64 = 1.6;
-/// Correction at which a step is done: a guess for Newton's method at the V_H that is wanted.
-const DONE: f64 = 1e-7;
-/// Steps on a branch.
 const STEPS: usize = 400;
 /// How far beyond the wanted ln V_H a branch is followed, in its distance from the Hopf point and absolutely.
 const BEYOND: f64 = 2.0;
-/// Orbits of less extent have come to another Hopf point.
-const SMALL: f64 = 1e-3;
+
+impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
+    /// Along the branch of a Hopf point, from a small orbit outwards.
+    pub fn from_hopf(
+        corrector: &'c mut Corrector<'f, F, N>,
+        path: Path,
+        hopf: &HopfPoint,
+    ) -> Option<Self> {
+        let at = hopf.at();
+        let polygon = hopf.ellipse(&*corrector.family.field(at), FIRST);
+        let centre = polygon.nodes.iter().sum::<State<N>>() / polygon.nodes.len() as f64;
+        let outwards = Motion {
+            nodes: polygon.nodes.iter().map(|x| x - centre).collect(),
+            durations: vec![0.0; polygon.nodes.len()],
+            parameters: [0.0; 2],
+        };
+        // The ellipse itself is the first prediction.
+        let site = Site { polygon, at };
+        Walk::from(corrector, path, site, outwards.normalised()?)
+    }
+
+    /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
+    /// to an equilibrium.
+    pub fn vanishes(&self, before: &Site<N>) -> Option<f64> {
+        let here = &self.pace.here.site;
+        let free = *self.path.free.first()?;
+        let (old, new) = (before.polygon.extent(), here.polygon.extent());
+        let (old, new) = (old * old, new * new);
+        let shrinks = new < SMALL * SMALL && new < old;
+        let slope = (here.at[free] - before.at[free]) / (old - new);
+        shrinks.then_some(here.at[free] + slope * new)
+    }
+}
 
 /// The closed orbits at the slab's V_H on the branches from the Hopf points of a symmetry, the nearest Hopf point first. The
 /// search ends with the first branch that has one.
@@ -97,10 +66,13 @@ pub(super) fn from_hopf<const N: usize>(
     symmetry: Symmetry,
     space: &impl Space<N>,
     tracer: &mut Tracer<N>,
-) -> Result<Vec<Polygon<N>>> {
+) -> Result<Vec<Polygon<N>>>
+where
+    OverLoadings: Family<N>,
+{
     let mut found = Vec::new();
-    for hopf in hopf_points(slab, symmetry)? {
-        follow(slab, space, tracer, &hopf, &mut found);
+    for hopf in hopf_points(slab, symmetry, Parameter::Driving)? {
+        follow(slab, space, tracer, &hopf, &mut found)?;
         if !found.is_empty() {
             break;
         }
@@ -115,131 +87,39 @@ fn follow<const N: usize>(
     tracer: &mut Tracer<N>,
     hopf: &HopfPoint,
     found: &mut Vec<Polygon<N>>,
-) {
+) -> Result<()>
+where
+    OverLoadings: Family<N>,
+{
+    /// Tolerance of the walk.
+    const ROUGH: f64 = 1e-10;
     let wanted = slab.loading.driving.ln();
-    let begin = hopf.driving.ln();
-    let field_at = |log: f64| space.field_at(&slab.driven_at(log.exp()));
-    let polygon = hopf.ellipse(&*field_at(begin), FIRST);
-    let centre = polygon.nodes.iter().sum::<State<N>>() / polygon.nodes.len() as f64;
-    let outwards = Direction {
-        nodes: polygon.nodes.iter().map(|x| x - centre).collect(),
-        log_driving: 0.0,
-    };
-    let Some(direction) = outwards.normalised() else {
-        return;
-    };
-    let first = Point {
-        polygon,
-        log_driving: begin,
-        direction,
-    };
-    // The ellipse itself is the first prediction.
-    let Some((mut point, _)) = correct(&field_at, tracer, &first) else {
-        return;
-    };
-    let mut length = FIRST;
+    let begin = hopf.at()[0];
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
+    let family = OverLoadings(*slab);
+    let mut corrector = Corrector::new(&family, ROUGH)?;
+    let Some(mut walk) = Walk::from_hopf(&mut corrector, Path::branch(0, LONGEST), hopf) else {
+        return Ok(());
+    };
     for _ in 0..STEPS {
-        let mut predicted = point.clone();
-        for (x, along) in predicted
-            .polygon
-            .nodes
-            .iter_mut()
-            .zip(&point.direction.nodes)
-        {
-            *x += along * length;
-        }
-        predicted.log_driving += length * point.direction.log_driving;
-        let Some((next, iterations)) = correct(&field_at, tracer, &predicted) else {
-            length *= 0.4;
-            if length < SHORTEST {
-                return;
-            }
-            continue;
+        let Some((before, _)) = walk.step() else {
+            break;
         };
-        if (next.log_driving - wanted) * (point.log_driving - wanted) <= 0.0 {
+        let (old, new) = (&before.here.site, &walk.pace.here.site);
+        if (new.at[0] - wanted) * (old.at[0] - wanted) <= 0.0 {
             // The nearer of both is the guess.
-            let before = (point.log_driving - wanted).abs() < (next.log_driving - wanted).abs();
-            let guess = if before { &point } else { &next };
+            let nearer = (old.at[0] - wanted).abs() < (new.at[0] - wanted).abs();
+            let guess = if nearer { old } else { new };
             if let Ok(closed) = close(tracer, space.field(), guess.polygon.clone()) {
                 found.push(closed.polygon);
             }
         }
-        point = next;
-        let far = (point.log_driving - begin).abs() > reach;
-        if far || point.polygon.extent() < SMALL {
-            return;
-        }
-        if iterations <= EASY {
-            length = (length * LONGER).min(LONGEST);
+        let far = (new.at[0] - begin).abs() > reach;
+        if far || walk.vanishes(old).is_some() || walk.mesh().is_none() {
+            break;
         }
     }
-}
-
-/// Newton's method across the direction of the prediction, then a new mesh and its tangent.
-fn correct<const N: usize>(
-    field_at: &dyn Fn(f64) -> Box<dyn VectorField<N>>,
-    tracer: &mut Tracer<N>,
-    predicted: &Point<N>,
-) -> Option<(Point<N>, usize)> {
-    let mut polygon = predicted.polygon.clone();
-    let mut log_driving = predicted.log_driving;
-    let across = &predicted.direction;
-    for iteration in 1..=ITERATIONS {
-        let field = field_at(log_driving);
-        let linear = Linear::new(tracer, &*field, &polygon, true).ok()?;
-        let closing = linear.correction(&linear.gaps)?;
-        let sliding = linear.correction(&linear.in_log_driving(log_driving))?;
-        let off = Direction {
-            nodes: polygon
-                .nodes
-                .iter()
-                .zip(&predicted.polygon.nodes)
-                .map(|(x, p)| x - p)
-                .collect(),
-            log_driving: log_driving - predicted.log_driving,
-        };
-        let of = |nodes: &Vec<State<N>>, log_driving: f64| {
-            across.dot(&Direction {
-                nodes: nodes.clone(),
-                log_driving,
-            })
-        };
-        let slide = -(across.dot(&off) + of(&closing.0, 0.0)) / of(&sliding.0, 1.0);
-        let mut size = slide.abs();
-        for k in 0..polygon.nodes.len() {
-            let dx = closing.0[k] + sliding.0[k] * slide;
-            let dt = closing.1[k] + sliding.1[k] * slide;
-            size = size.max(dx.amax()).max((dt / polygon.durations[k]).abs());
-            polygon.nodes[k] += dx;
-            polygon.durations[k] += dt;
-        }
-        log_driving += slide;
-        let small = size < 1.0;
-        if !small || polygon.durations.iter().any(|&t| t <= 0.0) {
-            return None;
-        }
-        if size < DONE {
-            let field = field_at(log_driving);
-            let meshed = polygon.meshed(tracer, &*field).ok()?;
-            let old = across.resampled(&polygon, &meshed);
-            let linear = Linear::new(tracer, &*field, &meshed, true).ok()?;
-            let (nodes, _) = linear.correction(&linear.in_log_driving(log_driving))?;
-            let tangent = Direction {
-                nodes,
-                log_driving: 1.0,
-            };
-            let tangent = tangent.normalised()?;
-            let sign = if tangent.dot(&old) < 0.0 { -1.0 } else { 1.0 };
-            let point = Point {
-                polygon: meshed,
-                log_driving,
-                direction: tangent.scaled(sign),
-            };
-            return Some((point, iteration));
-        }
-    }
-    None
+    Ok(())
 }
 
 #[cfg(test)]
@@ -259,7 +139,7 @@ mod tests {
 
     #[test]
     fn hopf_points_are_where_they_are_known_to_be() {
-        let fast = |symmetry| hopf_points(&slab(200.0), symmetry).unwrap()[0].driving;
+        let fast = |symmetry| hopf_points(&slab(200.0), symmetry, Parameter::Driving).unwrap()[0].driving;
         assert!((fast(Symmetry::Asymmetric) - 231.309).abs() < 5e-4);
         assert!((fast(Symmetry::Symmetric) - 190.983).abs() < 5e-4);
     }

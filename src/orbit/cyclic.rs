@@ -5,25 +5,35 @@
 //! Stable parallel algorithms for two-point boundary value problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
 use crate::field::{Jacobian, State};
+use nalgebra::SMatrix;
 
 /// A pivot below this part of the largest is zero.
 const SINGULAR: f64 = 1e-14;
 
 /// The rows that a node's elimination leaves behind: `diagonal` (upper triangular) times u_k plus `first` u_0 plus `next`
-/// u_{k+1} equals the right-hand side.
+/// u_{k+1} equals the right-hand sides.
 #[derive(Debug, Clone, Copy)]
-struct Rows<const N: usize> {
+struct Rows<const N: usize, const C: usize> {
     diagonal: Jacobian<N>,
     first: Jacobian<N>,
     next: Jacobian<N>,
-    right: State<N>,
+    right: SMatrix<f64, N, C>,
 }
 
-/// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
-pub(super) fn solve<const N: usize>(
+/// The equations u_{k+1} = P_k u_k + r_k, u_m = u_0, for C right-hand sides, with all but u_0 eliminated.
+#[derive(Debug, Clone)]
+pub(super) struct Reduced<const N: usize, const C: usize> {
+    left: Vec<Rows<N, C>>,
+    /// What is left: `closing` (upper triangular) times u_0 equals `right`.
+    pub closing: Jacobian<N>,
+    pub right: SMatrix<f64, N, C>,
+}
+
+/// Eliminates all nodes but the first.
+pub(super) fn reduce<const N: usize, const C: usize>(
     maps: &[Jacobian<N>],
-    right: &[State<N>],
-) -> Option<Vec<State<N>>> {
+    right: &[SMatrix<f64, N, C>],
+) -> Reduced<N, C> {
     let nodes = maps.len();
     // e u_0 + f u_k = c, at first from k = 1.
     let mut e = -maps[0];
@@ -50,33 +60,61 @@ pub(super) fn solve<const N: usize>(
         pivot: [e + f, Jacobian::zeros()],
         first: [Jacobian::zeros(); 2],
         next: [Jacobian::zeros(); 2],
-        right: [c, State::zeros()],
+        right: [c, SMatrix::zeros()],
     };
     last.triangulate();
-    let [closing, _] = last.pivot;
-    let start = closing.solve_upper_triangular(&last.right[0])?;
-    let mut u = vec![start; nodes];
-    let mut next = start;
-    for (k, rows) in left.iter().enumerate().rev() {
-        let rest = rows.right - rows.first * start - rows.next * next;
-        next = rows.diagonal.solve_upper_triangular(&rest)?;
-        u[k + 1] = next;
+    Reduced {
+        left,
+        closing: last.pivot[0],
+        right: last.right[0],
     }
+}
+
+impl<const N: usize, const C: usize> Reduced<N, C> {
+    /// All u_k from u_0, for this combination of the right-hand sides; `None` where they are not finite.
+    pub fn extended(
+        &self,
+        start: &State<N>,
+        combination: &nalgebra::SVector<f64, C>,
+    ) -> Option<Vec<State<N>>> {
+        let mut u = vec![*start; self.left.len() + 1];
+        let mut next = *start;
+        for (k, rows) in self.left.iter().enumerate().rev() {
+            let rest = rows.right * combination - rows.first * start - rows.next * next;
+            next = rows.diagonal.solve_upper_triangular(&rest)?;
+            u[k + 1] = next;
+        }
+        u.iter()
+            .all(|u| u.iter().all(|x| x.is_finite()))
+            .then_some(u)
+    }
+}
+
+/// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
+pub(super) fn solve<const N: usize>(
+    maps: &[Jacobian<N>],
+    right: &[State<N>],
+) -> Option<Vec<State<N>>> {
+    let reduced = reduce::<N, 1>(maps, right);
+    let start = reduced.closing.solve_upper_triangular(&reduced.right)?;
     // Where one direction is free, rounding alone keeps the last pivot from being zero.
-    let free = closing.diagonal().abs().min() <= SINGULAR * closing.amax();
-    let finite = u.iter().all(|u| u.iter().all(|x| x.is_finite()));
-    (finite && !free).then_some(u)
+    let pivots = reduced.closing.diagonal().abs();
+    let free = pivots.min() <= SINGULAR * reduced.closing.amax();
+    if free {
+        return None;
+    }
+    reduced.extended(&start, &nalgebra::SVector::repeat(1.0))
 }
 
 /// 2N rows in blocks of N.
-struct Stacked<const N: usize> {
+struct Stacked<const N: usize, const C: usize> {
     pivot: [Jacobian<N>; 2],
     first: [Jacobian<N>; 2],
     next: [Jacobian<N>; 2],
-    right: [State<N>; 2],
+    right: [SMatrix<f64, N, C>; 2],
 }
 
-impl<const N: usize> Stacked<N> {
+impl<const N: usize, const C: usize> Stacked<N, C> {
     /// Makes the pivot's first block upper triangular and its second zero, by reflections of all rows.
     fn triangulate(&mut self) {
         for j in 0..N {
@@ -99,9 +137,9 @@ impl<const N: usize> Stacked<N> {
                     *block -= v * along.transpose();
                 }
             }
-            let along = (v[0].dot(&self.right[0]) + v[1].dot(&self.right[1])) * (2.0 / squared);
+            let along = (self.right[0].tr_mul(&v[0]) + self.right[1].tr_mul(&v[1])) * (2.0 / squared);
             for (right, v) in self.right.iter_mut().zip(&v) {
-                *right -= v * along;
+                *right -= v * along.transpose();
             }
         }
     }

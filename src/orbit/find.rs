@@ -1,6 +1,7 @@
 //! Finding periodic orbits: from a given point, from settled runs, or along a branch from a Hopf point.
 
 use super::arc::Tracer;
+use super::family::{Family, OverLoadings};
 use super::polygon::Polygon;
 use super::settle::{passages, settle};
 use super::shooting::close;
@@ -116,7 +117,10 @@ fn search<const N: usize>(
     accuracy: &Accuracy,
     chart: &dyn Fn((f64, [f64; 2])) -> State<N>,
     starts: &[State<N>],
-) -> Result<Found> {
+) -> Result<Found>
+where
+    OverLoadings: Family<N>,
+{
     let mut tracer = Tracer::taylor(ROUGH)?;
     let mut guesses = Guesses {
         space,

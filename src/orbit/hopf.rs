@@ -5,23 +5,26 @@ use super::slab::Slab;
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, stability, steady_states};
 use crate::error::Result;
 use crate::field::{State, VectorField};
+use crate::model::{Loading, Parameter};
 
 /// A Hopf point.
 #[derive(Debug, Clone)]
-pub(super) struct HopfPoint {
+pub struct HopfPoint {
     /// V_H.
     pub driving: f64,
+    /// K.
+    pub stiffness: f64,
     /// The equilibrium there.
     pub equilibrium: Equilibrium,
     /// The imaginary part of the pair that crosses.
     pub frequency: f64,
 }
 
-/// Velocities between which Hopf points are looked for, and how many are tried.
-const SLOWEST: f64 = 1e-4;
-const FASTEST: f64 = 1e7;
+/// Between which values of a parameter Hopf points are looked for, and how many are tried.
+const DRIVINGS: (f64, f64) = (1e-4, 1e7);
+const STIFFNESSES: (f64, f64) = (1e-6, 1e3);
 const TRIED: usize = 400;
-/// Bisections of an interval: to the last digits of ln V_H.
+/// Bisections of an interval: to the last digits of the logarithm.
 const BISECTIONS: usize = 60;
 
 /// The equilibrium of a symmetry with its oscillatory pair of eigenvalues, where it has one. Of several asymmetric ones that
@@ -45,10 +48,22 @@ fn oscillation(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, f
     Ok(pair.map(|z| (equilibrium, z.re, z.im)))
 }
 
-/// All Hopf points of equilibria of this symmetry along V_H at the slab's stiffness, the nearest to its V_H first.
-pub(super) fn hopf_points(slab: &Slab, symmetry: Symmetry) -> Result<Vec<HopfPoint>> {
-    let at = |log: f64| oscillation(&slab.driven_at(log.exp()), symmetry);
-    let (from, to) = (SLOWEST.ln(), FASTEST.ln());
+/// All Hopf points of equilibria of this symmetry along a parameter, the other one that of the slab; the nearest to the slab's
+/// own first.
+///
+/// # Errors
+/// Those of [`steady_states`] and [`stability`].
+pub fn hopf_points(slab: &Slab, symmetry: Symmetry, along: Parameter) -> Result<Vec<HopfPoint>> {
+    let there = |log: f64| match along {
+        Parameter::Driving => slab.driven_at(log.exp()),
+        Parameter::Stiffness => slab.of_stiffness(log.exp()),
+    };
+    let at = |log: f64| oscillation(&there(log), symmetry);
+    let ((from, to), own) = match along {
+        Parameter::Driving => (DRIVINGS, slab.loading.driving),
+        Parameter::Stiffness => (STIFFNESSES, slab.loading.stiffness),
+    };
+    let (from, to) = (from.ln(), to.ln());
     let grid = (0..=TRIED).map(|i| from + (to - from) * i as f64 / TRIED as f64);
     let mut points = Vec::new();
     let mut last: Option<(f64, f64)> = None;
@@ -65,23 +80,33 @@ pub(super) fn hopf_points(slab: &Slab, symmetry: Symmetry) -> Result<Vec<HopfPoi
                     _ => right = middle,
                 }
             }
-            if let Some((equilibrium, _, frequency)) = at(0.5 * (left + right))? {
-                points.push(HopfPoint {
-                    driving: (0.5 * (left + right)).exp(),
-                    equilibrium,
-                    frequency,
-                });
+            let middle = 0.5 * (left + right);
+            if let Some((equilibrium, _, frequency)) = at(middle)? {
+                let Loading { driving, stiffness } = there(middle).loading;
+                points.push((
+                    middle,
+                    HopfPoint {
+                        driving,
+                        stiffness,
+                        equilibrium,
+                        frequency,
+                    },
+                ));
             }
         }
         last = here;
     }
-    let wanted = slab.loading.driving.ln();
-    let far = |point: &HopfPoint| (point.driving.ln() - wanted).abs();
-    points.sort_by(|a, b| far(a).total_cmp(&far(b)));
-    Ok(points)
+    let far = |log: f64| (log - own.ln()).abs();
+    points.sort_by(|a, b| far(a.0).total_cmp(&far(b.0)));
+    Ok(points.into_iter().map(|(_, point)| point).collect())
 }
 
 impl HopfPoint {
+    /// The coordinates (ln V_H, ln K).
+    pub fn at(&self) -> [f64; 2] {
+        [self.driving.ln(), self.stiffness.ln()]
+    }
+
     /// The ellipse of this size around the equilibrium on which the linearised system turns.
     ///
     /// With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and there J^2 = -omega^2.

@@ -6,9 +6,11 @@
 
 use super::arc::{Arc, Tracer};
 use super::cyclic;
+use super::motion::Motion;
 use super::polygon::Polygon;
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// One linearisation around the circle.
 #[derive(Debug, Clone)]
@@ -33,8 +35,28 @@ impl<const N: usize> Linear<N> {
         polygon: &Polygon<N>,
         parameters: bool,
     ) -> Result<Self> {
+        let frames = polygon.nodes.iter().map(|x| frame(&field.f(x))).collect();
+        Self::in_frames(tracer, field, polygon, parameters, frames)
+    }
+
+    /// The same in the planes of another linearisation nearby, so that the maps can be compared.
+    pub fn beside(
+        &self,
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        polygon: &Polygon<N>,
+    ) -> Result<Self> {
+        Self::in_frames(tracer, field, polygon, false, self.frames.clone())
+    }
+
+    fn in_frames(
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        polygon: &Polygon<N>,
+        parameters: bool,
+        frames: Vec<Jacobian<N>>,
+    ) -> Result<Self> {
         let count = polygon.nodes.len();
-        let frames: Vec<_> = polygon.nodes.iter().map(|x| frame(&field.f(x))).collect();
         let mut linear = Linear {
             arcs: Vec::with_capacity(count),
             frames,
@@ -74,29 +96,131 @@ impl<const N: usize> Linear<N> {
         seen
     }
 
-    /// What a unit of ln V_H adds to the gaps.
-    pub fn in_log_driving(&self, log_driving: f64) -> Vec<State<N>> {
-        let driving = log_driving.exp();
-        self.arcs
-            .iter()
-            .map(|arc| arc.parameters[0] * driving)
-            .collect()
-    }
-
     /// The corrections of all nodes and durations that close these gaps.
     pub fn correction(&self, gaps: &[State<N>]) -> Option<(Vec<State<N>>, Vec<f64>)> {
         let count = self.frames.len();
         let seen: Vec<_> = (0..count).map(|k| self.seen(k, &gaps[k])).collect();
         let u = cyclic::solve(&self.maps, &seen)?;
+        Some(self.motion(&u, |k| gaps[k]))
+    }
+
+    /// Nodes and durations from the displacements in the planes.
+    fn motion(
+        &self,
+        u: &[State<N>],
+        gap: impl Fn(usize) -> State<N>,
+    ) -> (Vec<State<N>>, Vec<f64>) {
+        let count = self.frames.len();
         let nodes: Vec<State<N>> = (0..count).map(|k| self.frames[k] * u[k]).collect();
         let durations = (0..count).map(|k| {
             let normal = self.frames[(k + 1) % count].column(0).into_owned();
-            let arrival = self.arcs[k].tangent * nodes[k] + gaps[k];
+            let arrival = self.arcs[k].tangent * nodes[k] + gap(k);
             -normal.dot(&arrival) * self.slowness[k]
         });
         let durations = durations.collect();
-        Some((nodes, durations))
+        (nodes, durations)
     }
+
+    /// The displacements that close the gaps where some parameters are free too, and the directions in which the orbit can
+    /// then still move: as many as there are free parameters, orthonormal. Regular at folds; `None` where there are more
+    /// directions than that, as at branch points.
+    ///
+    /// `scale` are the derivatives of the parameters in their coordinates.
+    pub fn solutions(
+        &self,
+        free: &[usize],
+        scale: [f64; 2],
+    ) -> Option<(Motion<N>, Vec<Motion<N>>)> {
+        let count = self.frames.len();
+        // What the parameters add to the gaps.
+        let pulls = |k: usize| {
+            let mut pulls = [State::<N>::zeros(); 2];
+            for &i in free {
+                pulls[i] = self.arcs[k].parameters[i] * scale[i];
+            }
+            pulls
+        };
+        let right: Vec<SMatrix<f64, N, 3>> = (0..count)
+            .map(|k| {
+                let [first, second] = pulls(k).map(|pull| self.seen(k, &pull));
+                SMatrix::from_columns(&[self.seen(k, &self.gaps[k]), first, second])
+            })
+            .collect();
+        let reduced = cyclic::reduce(&self.maps, &right);
+        let (particular, kernel) = underdetermined(&reduced.closing, &reduced.right, free)?;
+        let motion = |(start, parameters): &(State<N>, [f64; 2]), closing: f64| {
+            let combination = SVector::<f64, 3>::new(closing, parameters[0], parameters[1]);
+            let u = reduced.extended(start, &combination)?;
+            let (nodes, durations) = self.motion(&u, |k| {
+                let [first, second] = pulls(k);
+                self.gaps[k] * closing + first * parameters[0] + second * parameters[1]
+            });
+            Some(Motion {
+                nodes,
+                durations,
+                parameters: *parameters,
+            })
+        };
+        let closing = motion(&particular, 1.0)?;
+        let mut along: Vec<Motion<N>> = Vec::with_capacity(kernel.len());
+        for direction in &kernel {
+            let mut direction = motion(direction, 0.0)?.normalised()?;
+            // Twice is enough.
+            for _ in 0..2 {
+                for other in &along {
+                    let part = direction.dot(other);
+                    direction = direction.plus(-part, other);
+                }
+                direction = direction.normalised()?;
+            }
+            along.push(direction);
+        }
+        Some((closing, along))
+    }
+}
+
+/// A displacement of the first node and of the parameters.
+type Start<const N: usize> = (State<N>, [f64; 2]);
+
+/// Of closing u = right_0 + p_0 right_1 + p_1 right_2 in (u, p) with these p free: the shortest solution, and the kernel.
+fn underdetermined<const N: usize>(
+    closing: &Jacobian<N>,
+    right: &SMatrix<f64, N, 3>,
+    free: &[usize],
+) -> Option<(Start<N>, Vec<Start<N>>)> {
+    /// A pivot below this part of the largest is zero.
+    const SINGULAR: f64 = 1e-13;
+    let unknowns = N + free.len();
+    // The transpose, with columns of zeros: its orthogonal factor then is square and ends with the kernel.
+    let mut transposed = DMatrix::<f64>::zeros(unknowns, unknowns);
+    for row in 0..N {
+        for j in 0..N {
+            transposed[(j, row)] = closing[(row, j)];
+        }
+        for (j, &i) in free.iter().enumerate() {
+            transposed[(N + j, row)] = -right[(row, 1 + i)];
+        }
+    }
+    let size = transposed.amax();
+    let (q, r) = transposed.qr().unpack();
+    let regular = (0..N).all(|i| r[(i, i)].abs() > SINGULAR * size);
+    if !(regular && size.is_finite()) {
+        return None;
+    }
+    let mut y = DVector::<f64>::zeros(unknowns);
+    for i in 0..N {
+        let known: f64 = (0..i).map(|j| r[(j, i)] * y[j]).sum();
+        y[i] = (right[(i, 0)] - known) / r[(i, i)];
+    }
+    let start = |x: &DVector<f64>| {
+        let mut parameters = [0.0; 2];
+        for (j, &i) in free.iter().enumerate() {
+            parameters[i] = x[N + j];
+        }
+        (State::<N>::from_fn(|i, _| x[i]), parameters)
+    };
+    let kernel = (N..unknowns).map(|j| start(&q.column(j).into_owned()));
+    Some((start(&(&q * y)), kernel.collect()))
 }
 
 /// Orthonormal columns, the first along f: the reflection that takes the first axis there.

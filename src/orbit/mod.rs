@@ -2,28 +2,41 @@
 
 mod arc;
 mod branch;
+mod correct;
 mod crosscheck;
 mod cyclic;
 mod extremes;
+mod family;
 mod find;
 mod floquet;
 mod hopf;
+mod indicator;
 mod linear;
+mod motion;
 mod polygon;
+mod profile;
 mod settle;
 mod shooting;
 mod slab;
 mod solve;
 mod space;
+mod walk;
 
 pub use arc::{Arc, Tracer};
+pub use correct::{Condition, Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck};
+pub use family::{Family, OverLoadings};
 pub use find::{Begin, Found, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
-pub use polygon::{EndAndLoss, Polygon};
+pub use hopf::{HopfPoint, hopf_points};
+pub use indicator::{Indicator, Spectrum};
+pub use motion::{Motion, Site};
+pub use polygon::{EndAndLoss, Mesh, Polygon};
+pub use profile::{Profile, profile};
 pub use shooting::{Closed, close, newton_step};
 pub use slab::Slab;
 pub use solve::{Accuracy, Orbit};
+pub use walk::{Pace, Path, Walk};
 
 use crate::error::Error;
 

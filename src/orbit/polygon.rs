@@ -18,11 +18,33 @@ pub struct Polygon<const N: usize> {
 pub type EndAndLoss<'a, const N: usize> =
     &'a mut dyn FnMut(&State<N>, f64) -> Result<(State<N>, f64)>;
 
-/// Nodes of any polygon.
-const NODES: std::ops::RangeInclusive<usize> = 3..=128;
-/// Steps, and the change of ln |volume|, on an arc.
-const STEPS_ON_ARC: f64 = 12.0;
-const VOLUME_ON_ARC: f64 = 3.0;
+/// How a cycle is cut into arcs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Mesh {
+    /// The least and the largest number of nodes.
+    pub nodes: (usize, usize),
+    /// Steps on an arc, of the tracer's method.
+    pub steps: f64,
+    /// The change of ln |volume| on an arc.
+    pub volume: f64,
+}
+
+impl Mesh {
+    /// For an orbit from a good guess: few arcs, which take the least time.
+    pub const COARSE: Mesh = Mesh {
+        nodes: (3, 128),
+        steps: 12.0,
+        volume: 3.0,
+    };
+    /// For orbits that are to move far: along short arcs Newton's method converges from farther away, and no node's plane is
+    /// missed by a smaller orbit as soon.
+    pub const FINE: Mesh = Mesh {
+        nodes: (12, 256),
+        steps: 5.0,
+        volume: 2.0,
+    };
+}
+
 /// The largest loss on a refined arc, some four digits, and how often one is halved for it.
 const LARGEST_LOSS: f64 = 10.0;
 const DEPTH: usize = 10;
@@ -50,6 +72,19 @@ impl<const N: usize> Polygon<N> {
     /// # Errors
     /// Those of the flow.
     pub fn meshed(&self, tracer: &mut Tracer<N>, field: &dyn VectorField<N>) -> Result<Self> {
+        self.cut(tracer, field, &Mesh::COARSE)
+    }
+
+    /// The same by another rule.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub fn cut(
+        &self,
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        mesh: &Mesh,
+    ) -> Result<Self> {
         // Time, state and measure at every step's end; no cut but at these.
         let (mut way, mut begin, mut measure) = (Vec::new(), 0.0, 0.0);
         for (start, &duration) in self.nodes.iter().zip(&self.durations) {
@@ -63,7 +98,7 @@ impl<const N: usize> Polygon<N> {
                     let next = field.jacobian(step.y1).trace().abs();
                     let volume = 0.5 * (trace + next) * (step.t1 - step.t0).abs();
                     trace = next;
-                    measure += 1.0 / STEPS_ON_ARC + volume / VOLUME_ON_ARC;
+                    measure += 1.0 / mesh.steps + volume / mesh.volume;
                     way.push((begin + step.t1, *step.y1, measure));
                     Ok(Control::Continue)
                 }),
@@ -72,7 +107,7 @@ impl<const N: usize> Polygon<N> {
             way.pop();
             begin += duration;
         }
-        let count = (measure.ceil() as usize).clamp(*NODES.start(), *NODES.end());
+        let count = (measure.ceil() as usize).clamp(mesh.nodes.0, mesh.nodes.1);
         let (mut nodes, mut times) = (Vec::new(), Vec::new());
         let mut at = 0;
         for k in 0..count {
@@ -121,6 +156,28 @@ impl<const N: usize> Polygon<N> {
             }
         }
         Ok(finer)
+    }
+
+    /// The same cycle from other nodes: each moved along its arc by this part of it.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub fn shifted(
+        &self,
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        part: f64,
+    ) -> Result<Self> {
+        let mut moved = self.clone();
+        for (x, duration) in moved.nodes.iter_mut().zip(&self.durations) {
+            *x = tracer.flow(field, x, part * duration, None)?;
+        }
+        let count = moved.durations.len();
+        for k in 0..count {
+            let next = self.durations[(k + 1) % count];
+            moved.durations[k] = (1.0 - part) * self.durations[k] + part * next;
+        }
+        Ok(moved)
     }
 
     /// With this part of a correction of nodes and durations.

@@ -40,6 +40,17 @@ impl Slab {
         }
     }
 
+    /// The same slab with another K > 0.
+    pub fn of_stiffness(&self, stiffness: f64) -> Slab {
+        Slab {
+            loading: Loading {
+                stiffness,
+                ..self.loading
+            },
+            ..*self
+        }
+    }
+
     /// The slip rate of each interface where all slide steadily alike.
     pub fn steady_rate(&self) -> f64 {
         self.loading.driving / self.interfaces as f64

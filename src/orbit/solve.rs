@@ -186,7 +186,7 @@ pub(super) fn orbit<const N: usize>(
     let mut work = tracers.work();
     if accuracy.checked {
         let mut second = Tracers::new(&accuracy.looser())?;
-        let moved = shifted(&mut second.here, space.field(), polygon);
+        let moved = polygon.shifted(&mut second.here, space.field(), SHIFT);
         match moved.and_then(|moved| solve(space, &mut second, moved)) {
             Ok(other) => {
                 floquet.widened_by(&other.floquet);
@@ -227,22 +227,4 @@ pub(super) fn orbit<const N: usize>(
         iterations,
         work,
     })
-}
-
-/// The same cycle from other nodes.
-fn shifted<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    polygon: &Polygon<N>,
-) -> Result<Polygon<N>> {
-    let mut moved = polygon.clone();
-    for (x, duration) in moved.nodes.iter_mut().zip(&polygon.durations) {
-        *x = tracer.flow(field, x, SHIFT * duration, None)?;
-    }
-    let count = moved.durations.len();
-    for k in 0..count {
-        let next = polygon.durations[(k + 1) % count];
-        moved.durations[k] = (1.0 - SHIFT) * polygon.durations[k] + SHIFT * next;
-    }
-    Ok(moved)
 }

@@ -1,0 +1,211 @@
+//! What happens between two orbits of a walk: zeros of what is watched, none missed, none invented.
+//!
+//! A change of sign shows a zero. Two zeros in one step show by the slopes: the cubic with the values and slopes at both ends
+//! dips to zero, or does not fit the midpoint; the step is then halved for a look.
+
+use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Pace, Regular, Spectrum, Walk};
+
+/// What is watched along a walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Watch {
+    /// An indicator.
+    Indicator(Indicator),
+    /// The direction's component along a parameter: zero at folds of a branch, at tops of a curve.
+    Turn(usize),
+    /// A parameter's coordinate less this value.
+    Value(usize, f64),
+}
+
+/// A zero between two orbits.
+#[derive(Debug, Clone)]
+pub(super) struct Zero<const N: usize> {
+    pub watch: Watch,
+    /// The distance from the orbit before, along the direction there.
+    pub at: f64,
+    /// An orbit near it.
+    pub near: Pace<N>,
+}
+
+/// A place on the step, with what is watched there and its slopes.
+#[derive(Debug, Clone)]
+struct Place<const N: usize> {
+    at: f64,
+    pace: Pace<N>,
+    values: Vec<(f64, Option<f64>)>,
+}
+
+/// Halvings of a step.
+const DEPTH: usize = 6;
+/// An extremum of the cubic below this part of the values at both ends is looked at.
+const DIP: f64 = 0.25;
+/// So is a step whose cubic turns by more than this part of them.
+const BENT: f64 = 0.6;
+
+impl Watch {
+    /// The value, scaled to be of order one, and its slope where there is one.
+    fn value<const N: usize>(
+        self,
+        pace: &Pace<N>,
+        slope: Option<&Spectrum>,
+    ) -> (f64, Option<f64>) {
+        match self {
+            Watch::Turn(i) => (pace.direction.parameters[i], None),
+            Watch::Value(i, value) => (
+                pace.here.site.at[i] - value,
+                Some(pace.direction.parameters[i]),
+            ),
+            Watch::Indicator(indicator) => {
+                let at = &pace.here.spectrum;
+                let (value, size) = (indicator.of::<N>(at), size::<N>(indicator, at));
+                let slope = slope.map(|by| indicator.change_along::<N>(at, by) / size);
+                (value / size, slope)
+            }
+        }
+    }
+}
+
+fn size<const N: usize>(indicator: Indicator, at: &Spectrum) -> f64 {
+    match indicator {
+        Indicator::Fold | Indicator::Doubling if N > 2 => 1.0 + at.trace.abs() + at.volume.exp(),
+        _ => 1.0,
+    }
+}
+
+/// All zeros on the step from `before` to where the walk stands, by distance.
+pub(super) fn zeros<F: Family<N>, const N: usize>(
+    walk: &mut Walk<'_, '_, F, N>,
+    before: &Pace<N>,
+    length: f64,
+    watches: &[Watch],
+) -> Vec<Zero<N>> {
+    let start = place(walk.corrector, before.clone(), 0.0, watches);
+    let end = place(walk.corrector, walk.pace.clone(), length, watches);
+    let mut found = Vec::new();
+    // Which watches are to be looked at on this piece: all.
+    look(walk, before, &start, &end, watches, DEPTH, &mut found);
+    found.sort_by(|a: &Zero<N>, b| a.at.total_cmp(&b.at));
+    found
+}
+
+fn place<F: Family<N>, const N: usize>(
+    corrector: &mut Corrector<'_, F, N>,
+    pace: Pace<N>,
+    at: f64,
+    watches: &[Watch],
+) -> Place<N> {
+    let indicators = watches.iter().any(|w| matches!(w, Watch::Indicator(_)));
+    let slope = indicators
+        .then(|| corrector.slope(&pace.here, &pace.direction))
+        .flatten();
+    let values = watches.iter().map(|w| w.value(&pace, slope.as_ref()));
+    Place {
+        at,
+        values: values.collect(),
+        pace,
+    }
+}
+
+fn look<F: Family<N>, const N: usize>(
+    walk: &mut Walk<'_, '_, F, N>,
+    before: &Pace<N>,
+    a: &Place<N>,
+    b: &Place<N>,
+    watches: &[Watch],
+    depth: usize,
+    found: &mut Vec<Zero<N>>,
+) {
+    let length = b.at - a.at;
+    let pairs = a.values.iter().zip(&b.values);
+    if depth > 0 && pairs.clone().any(|(a, b)| suspicious(*a, *b, length)) {
+        let middle = 0.5 * (a.at + b.at);
+        if let Some(pace) = walk.beyond(before, middle) {
+            let m = place(walk.corrector, pace, middle, watches);
+            look(walk, before, a, &m, watches, depth - 1, found);
+            look(walk, before, &m, b, watches, depth - 1, found);
+            return;
+        }
+    }
+    for (i, (&(left, _), &(right, _))) in pairs.enumerate() {
+        // A value that is zero at an end belongs to the piece before.
+        if left * right < 0.0 || (right == 0.0 && left != 0.0) {
+            let part = left / (left - right);
+            found.push(Zero {
+                watch: watches[i],
+                at: a.at + part * length,
+                near: if part < 0.5 { a.pace.clone() } else { b.pace.clone() },
+            });
+        }
+    }
+}
+
+/// Whether the cubic with these values and slopes at the ends of a step hides something.
+fn suspicious(a: (f64, Option<f64>), b: (f64, Option<f64>), length: f64) -> bool {
+    let ((p, Some(u)), (q, Some(v))) = (a, b) else {
+        return false;
+    };
+    let (u, v) = (u * length, v * length);
+    // p + u s + c s^2 + d s^3 on 0 <= s <= 1.
+    let (c, d) = (3.0 * (q - p) - 2.0 * u - v, 2.0 * (p - q) + u + v);
+    let least = p.abs().min(q.abs());
+    if (c.abs() + d.abs()) > BENT * (p.abs() + q.abs()) && least < 0.5 {
+        return true;
+    }
+    let discriminant = c * c - 3.0 * d * u;
+    if discriminant < 0.0 {
+        return false;
+    }
+    let root = discriminant.sqrt();
+    let turns = [(-c + root) / (3.0 * d), (-c - root) / (3.0 * d), -0.5 * u / c];
+    turns.into_iter().any(|s| {
+        let inside = s > 0.0 && s < 1.0;
+        let value = p + s * (u + s * (c + s * d));
+        // Away from the straight way between both ends, at zero or beyond.
+        inside
+            && (value * p < 0.0 && p * q > 0.0
+                || value.abs() < DIP * least && p * q > 0.0
+                || p * q < 0.0 && value.abs() > p.abs().max(q.abs()))
+    })
+}
+
+/// The orbit at a zero, to the accuracy of the walk's corrector or of another, found by Newton's method on the condition itself.
+pub(super) fn landed<F: Family<N>, const N: usize>(
+    walk: &mut Walk<'_, '_, F, N>,
+    before: &Pace<N>,
+    length: f64,
+    zero: &Zero<N>,
+    goal: Goal,
+) -> Option<Regular<N>> {
+    let condition = match zero.watch {
+        Watch::Indicator(indicator) => Condition::Indicator(indicator),
+        Watch::Value(i, value) => Condition::Parameter(i, value),
+        // Along a branch a turn is a fold.
+        Watch::Turn(_) => Condition::Indicator(Indicator::Fold),
+    };
+    let conditions = walk.path.and(condition);
+    let free = walk.path.free.clone();
+    let mut near = zero.near.clone();
+    let (mut low, mut high) = (0.0, length);
+    let mut at = zero.at;
+    for _ in 0..12 {
+        let guess = walk.beyond(before, at);
+        let start = guess.as_ref().unwrap_or(&near);
+        let found = walk.corrector.correct(start.here.site.clone(), &free, &conditions, None, goal);
+        if let Some(found) = found {
+            let there = before.direction.dot(&found.site.from(&before.here.site));
+            if there > -0.1 * length && there < 1.1 * length {
+                return Some(found);
+            }
+        }
+        // By halves, then, until Newton's method stays.
+        let guess = guess?;
+        let value = |pace: &Pace<N>| zero.watch.value(pace, None).0;
+        if value(&guess) * value(before) > 0.0 {
+            low = at;
+        } else {
+            high = at;
+        }
+        at = 0.5 * (low + high);
+        near = guess;
+    }
+    None
+}

@@ -1,0 +1,56 @@
+//! Follows a curve of orbits of any family and hands on what it meets.
+
+use super::detect::{Watch, Zero, landed, zeros};
+use super::sharp::{Sharp, sharpened};
+use crate::orbit::{Condition, Family, Goal, Indicator, Motion, Pace, Regular, Walk};
+use std::ops::ControlFlow;
+
+/// Something that is met on the way.
+pub enum Met<'a, const N: usize> {
+    /// The next orbit.
+    Orbit(&'a Pace<N>),
+    /// An orbit where something that is watched is zero, to the accuracy of the walk.
+    Zero(Watch, &'a Regular<N>),
+}
+
+/// Why a walk ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum End {
+    /// Whoever is told had enough.
+    Told,
+    /// Steps shrank to nothing.
+    Stuck,
+    /// As many orbits as were allowed.
+    Count,
+}
+
+/// Follows the walk, past all that is watched.
+pub fn follow<F: Family<N>, const N: usize>(
+    walk: &mut Walk<'_, '_, F, N>,
+    watches: &[Watch],
+    most: usize,
+    met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, Met<'_, N>) -> ControlFlow<()>,
+) -> End {
+    for _ in 0..most {
+        let Some((before, length)) = walk.step() else {
+            return End::Stuck;
+        };
+        for zero in zeros(walk, &before, length, watches) {
+            // What can't be landed on is none: a sign that changes by noise, or through a pole.
+            let Some(at) = landed(walk, &before, length, &zero, Goal::STEP) else {
+                continue;
+            };
+            if met(walk, Met::Zero(zero.watch, &at)).is_break() {
+                return End::Told;
+            }
+        }
+        let pace = walk.pace.clone();
+        if met(walk, Met::Orbit(&pace)).is_break() {
+            return End::Told;
+        }
+        if walk.mesh().is_none() {
+            return End::Stuck;
+        }
+    }
+    End::Count
+}

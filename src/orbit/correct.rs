@@ -1,0 +1,309 @@
+//! Newton's method for a periodic orbit that meets as many conditions as there are free parameters.
+//!
+//! The equations of the orbit alone leave it free to move in as many directions as there are parameters. The correction closes
+//! the orbit and moves it in these directions until the conditions hold: a plane for a step of pseudo-arclength continuation,
+//! an indicator for a bifurcation, a value for a parameter. At folds nothing special happens.
+
+use super::arc::Tracer;
+use super::family::Family;
+use super::indicator::{Indicator, Spectrum};
+use super::linear::Linear;
+use super::motion::{Motion, Site};
+use nalgebra::{Matrix2, Vector2};
+
+/// What an orbit is to meet.
+#[derive(Debug, Clone, Copy)]
+pub enum Condition<'a, const N: usize> {
+    /// To lie in the plane through a site with as many nodes, across a direction.
+    Plane(&'a Motion<N>, &'a Site<N>),
+    /// The coordinate of this parameter to have this value.
+    Parameter(usize, f64),
+    /// A bifurcation.
+    Indicator(Indicator),
+}
+
+/// An orbit with what is known of its surroundings.
+#[derive(Debug, Clone)]
+pub struct Regular<const N: usize> {
+    /// Where it is.
+    pub site: Site<N>,
+    /// Directions in which it can move, orthonormal: one for each free parameter.
+    pub along: Vec<Motion<N>>,
+    /// Its spectrum.
+    pub spectrum: Spectrum,
+    /// The gradients of the indicators among the conditions, in the order of these, as motions.
+    pub gradients: Vec<Motion<N>>,
+    /// Iterations that it took.
+    pub iterations: usize,
+    /// The last correction.
+    pub residual: f64,
+    pub(super) linear: Linear<N>,
+}
+
+/// When a correction is at its end.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Goal {
+    /// The size of a correction that is the last. It is made, so that the error left is of the order of its square.
+    pub done: f64,
+    /// Iterations, at most.
+    pub iterations: usize,
+    /// The largest correction.
+    pub largest: f64,
+}
+
+impl Goal {
+    /// For the steps of a continuation.
+    pub const STEP: Goal = Goal {
+        done: 1e-6,
+        iterations: 7,
+        largest: 1.0,
+    };
+    /// To the last digits.
+    pub const SHARP: Goal = Goal {
+        done: 2e-14,
+        iterations: 20,
+        largest: 1.0,
+    };
+}
+
+/// Corrections below this that have ceased to shrink are the flow's own noise.
+const NOISE: f64 = 1e-8;
+/// The step by which indicators are differentiated.
+const STEP: f64 = 1e-6;
+/// A correction that shrinks by less than this asks for new gradients.
+const SLOW: f64 = 0.02;
+
+/// What makes orbits of a family.
+pub struct Corrector<'a, F, const N: usize> {
+    /// The family.
+    pub family: &'a F,
+    /// Whether spectra have the multiplier across the symmetric subspace, even where no condition asks for it.
+    pub watch_across: bool,
+    /// What makes its arcs.
+    pub tracer: Tracer<N>,
+    tolerance: f64,
+}
+
+impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
+    /// With a Taylor method of this tolerance.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for a tolerance outside its domain.
+    pub fn new(family: &'a F, tolerance: f64) -> crate::Result<Self> {
+        Ok(Corrector {
+            family,
+            watch_across: false,
+            tracer: Tracer::taylor(tolerance)?,
+            tolerance,
+        })
+    }
+
+    fn across(&self, site: &Site<N>, wanted: bool) -> Option<Option<f64>> {
+        if !wanted {
+            return Some(None);
+        }
+        self.family
+            .across(site.at, &site.polygon, self.tolerance)
+            .ok()
+    }
+
+    /// The orbit near `guess` that meets the conditions, one for each of the free parameters; `None` where Newton's method
+    /// finds none. `gradients` are those of an orbit nearby with as many nodes, if there is one.
+    pub fn correct(
+        &mut self,
+        guess: Site<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+        gradients: Option<Vec<Motion<N>>>,
+        goal: Goal,
+    ) -> Option<Regular<N>> {
+        let across = self.watch_across || asks_across(conditions);
+        let mut site = guess;
+        let mut gradients = gradients;
+        let mut last = f64::INFINITY;
+        let mut fresh = false;
+        for iterations in 1..=goal.iterations {
+            let field = self.family.field(site.at);
+            let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
+            drop(field);
+            let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
+            let spectrum = Spectrum::new(&linear, self.across(&site, across)?);
+            let known = match gradients.take() {
+                Some(known) => known,
+                None => {
+                    fresh = true;
+                    self.gradients(&site, &linear, &along, &spectrum, conditions, across)?
+                }
+            };
+            let weights = weights::<N>(&site, &closing, &along, &spectrum, conditions, &known)?;
+            let mut correction = closing;
+            for (weight, direction) in weights.iter().zip(&along) {
+                correction = correction.plus(*weight, direction);
+            }
+            let (size, stretch) = site.size(&correction);
+            if !(size < goal.largest && stretch < goal.largest) {
+                return None;
+            }
+            let size = size.max(stretch);
+            let done = size < goal.done || (size < NOISE && size > 0.3 * last && fresh);
+            site = site.moved(&correction, 1.0);
+            if site.polygon.durations.iter().any(|&t| t <= 0.0) {
+                return None;
+            }
+            if done {
+                return Some(Regular {
+                    site,
+                    along,
+                    spectrum,
+                    gradients: known,
+                    iterations,
+                    residual: size,
+                    linear,
+                });
+            }
+            // Old gradients serve as long as the corrections shrink.
+            gradients = (size < SLOW * last || !fresh && last == f64::INFINITY).then_some(known);
+            last = size;
+        }
+        None
+    }
+
+    /// An orbit as it stands, with its surroundings and the gradients of the conditions' indicators.
+    pub fn look(
+        &mut self,
+        site: Site<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+    ) -> Option<Regular<N>> {
+        let across = self.watch_across || asks_across(conditions);
+        let field = self.family.field(site.at);
+        let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
+        drop(field);
+        let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
+        let spectrum = Spectrum::new(&linear, self.across(&site, across)?);
+        let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions, across)?;
+        Some(Regular {
+            residual: site.size(&closing).0,
+            site,
+            along,
+            spectrum,
+            gradients,
+            iterations: 0,
+            linear,
+        })
+    }
+
+    /// The gradients of all indicators among the conditions, in the directions in which the orbit can move.
+    fn gradients(
+        &mut self,
+        site: &Site<N>,
+        linear: &Linear<N>,
+        along: &[Motion<N>],
+        spectrum: &Spectrum,
+        conditions: &[Condition<'_, N>],
+        across: bool,
+    ) -> Option<Vec<Motion<N>>> {
+        let indicators: Vec<Indicator> = conditions.iter().filter_map(indicator).collect();
+        if indicators.is_empty() {
+            return Some(Vec::new());
+        }
+        let mut sums: Vec<Option<Motion<N>>> = vec![None; indicators.len()];
+        for direction in along {
+            let change = self.change(site, linear, direction, spectrum, across)?;
+            for (sum, indicator) in sums.iter_mut().zip(&indicators) {
+                let slope = indicator.change_along::<N>(spectrum, &change);
+                let part = direction.clone().scaled(slope);
+                *sum = Some(match sum.take() {
+                    None => part,
+                    Some(sum) => sum.plus(1.0, &part),
+                });
+            }
+        }
+        sums.into_iter().collect()
+    }
+
+    /// How the spectrum of an orbit changes in a direction.
+    pub fn slope(&mut self, orbit: &Regular<N>, direction: &Motion<N>) -> Option<Spectrum> {
+        let across = orbit.spectrum.across.is_finite();
+        self.change(
+            &orbit.site,
+            &orbit.linear,
+            direction,
+            &orbit.spectrum,
+            across,
+        )
+    }
+
+    /// How the spectrum changes in this direction.
+    fn change(
+        &mut self,
+        site: &Site<N>,
+        linear: &Linear<N>,
+        direction: &Motion<N>,
+        spectrum: &Spectrum,
+        across: bool,
+    ) -> Option<Spectrum> {
+        let beside = site.moved(direction, STEP);
+        let field = self.family.field(beside.at);
+        let moved = linear.beside(&mut self.tracer, &*field, &beside.polygon).ok()?;
+        let here = across.then_some(spectrum.across);
+        let there = self.across(&beside, across)?;
+        Some(Spectrum::change(linear, &moved, [here, there], STEP))
+    }
+}
+
+fn asks_across<const N: usize>(conditions: &[Condition<'_, N>]) -> bool {
+    conditions
+        .iter()
+        .any(|c| matches!(c, Condition::Indicator(Indicator::Across)))
+}
+
+fn indicator<const N: usize>(condition: &Condition<'_, N>) -> Option<Indicator> {
+    match condition {
+        Condition::Indicator(indicator) => Some(*indicator),
+        _ => None,
+    }
+}
+
+/// How far to go in every direction for the conditions to hold, to first order.
+fn weights<const N: usize>(
+    site: &Site<N>,
+    closing: &Motion<N>,
+    along: &[Motion<N>],
+    spectrum: &Spectrum,
+    conditions: &[Condition<'_, N>],
+    gradients: &[Motion<N>],
+) -> Option<Vec<f64>> {
+    let mut gradients = gradients.iter();
+    let mut rows = Vec::with_capacity(conditions.len());
+    for condition in conditions {
+        let (slopes, missing): (Vec<f64>, f64) = match condition {
+            Condition::Plane(across, origin) => (
+                along.iter().map(|t| across.dot(t)).collect(),
+                -across.dot(&site.from(origin)) - across.dot(closing),
+            ),
+            Condition::Parameter(i, value) => (
+                along.iter().map(|t| t.parameters[*i]).collect(),
+                value - site.at[*i] - closing.parameters[*i],
+            ),
+            Condition::Indicator(indicator) => {
+                let gradient = gradients.next()?;
+                (
+                    along.iter().map(|t| gradient.dot(t)).collect(),
+                    -indicator.of::<N>(spectrum),
+                )
+            }
+        };
+        rows.push((slopes, missing));
+    }
+    match &rows[..] {
+        [(a, b)] if a.len() == 1 => Some(vec![b / a[0]]),
+        [(a, b), (c, d)] if a.len() == 2 => {
+            let m = Matrix2::new(a[0], a[1], c[0], c[1]);
+            let w = m.lu().solve(&Vector2::new(*b, *d))?;
+            Some(vec![w[0], w[1]])
+        }
+        _ => None,
+    }
+    .filter(|w: &Vec<f64>| w.iter().all(|w| w.is_finite()))
+}

@@ -1,0 +1,125 @@
+//! Functions of an orbit that are zero at its bifurcations, and how they change along a motion.
+//!
+//! With the trace and the determinant of the return map, 1 - tr + det and 1 + tr + det; the determinant by the integral of
+//! the Jacobian's trace. The trace changes as the maps of the single arcs do: a difference of two traces would lose, at small
+//! stiffness, what the maps' product loses.
+
+use super::linear::Linear;
+use crate::field::Jacobian;
+
+/// What is to be zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Indicator {
+    /// A multiplier is 1: 1 - tr + det. Also at a pitchfork, in the whole space.
+    Fold,
+    /// A multiplier is -1: 1 + tr + det.
+    Doubling,
+    /// The product of both is 1: ln det. A torus bifurcation where |tr| < 2, a neutral saddle elsewhere.
+    Torus,
+    /// The trace has this value: on a torus bifurcation 2 cos of the multipliers' angle.
+    Trace(f64),
+    /// The multiplier across the symmetric subspace is 1.
+    Across,
+}
+
+/// What the indicators are made of, or its change.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Spectrum {
+    /// Of the return map: the sum of the nontrivial multipliers.
+    pub trace: f64,
+    /// ln of the product of the nontrivial multipliers' moduli.
+    pub volume: f64,
+    /// ln of the multiplier across the symmetric subspace; not a number where there is none.
+    pub across: f64,
+}
+
+impl Spectrum {
+    pub(super) fn new<const N: usize>(linear: &Linear<N>, across: Option<f64>) -> Self {
+        let maps = linear.maps.iter();
+        let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
+        Spectrum {
+            // Of the identity's first diagonal entry the maps leave nothing.
+            trace: product.trace(),
+            volume: volume(linear),
+            across: across.unwrap_or(f64::NAN),
+        }
+    }
+
+    /// The change from one linearisation to another in the same planes, divided by the step between them.
+    pub(super) fn change<const N: usize>(
+        from: &Linear<N>,
+        to: &Linear<N>,
+        across: [Option<f64>; 2],
+        step: f64,
+    ) -> Self {
+        let count = from.maps.len();
+        let mut after = vec![Jacobian::<N>::identity(); count];
+        for k in (1..count).rev() {
+            after[k - 1] = after[k] * from.maps[k];
+        }
+        let mut before = Jacobian::<N>::identity();
+        let mut trace = 0.0;
+        for (k, after) in after.iter().enumerate() {
+            trace += (after * (to.maps[k] - from.maps[k]) * before).trace();
+            before = from.maps[k] * before;
+        }
+        let volumes = from.arcs.iter().zip(&to.arcs);
+        let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
+        let [before, after] = across.map(|x| x.unwrap_or(f64::NAN));
+        Spectrum {
+            trace: trace / step,
+            volume: volume / step,
+            across: (after - before) / step,
+        }
+    }
+
+    /// ln |mu| of both nontrivial multipliers, the larger one first, where the return map is of two dimensions.
+    pub fn log_multipliers(&self) -> [f64; 2] {
+        let Spectrum { trace, volume, .. } = *self;
+        let det = volume.exp();
+        let half = 0.5 * trace;
+        let discriminant = half * half - det;
+        if discriminant < 0.0 {
+            return [0.5 * volume; 2];
+        }
+        // Away from cancellation; the other one by the product.
+        let larger = (half.abs() + discriminant.sqrt()).ln();
+        [larger, volume - larger]
+    }
+}
+
+fn volume<const N: usize>(linear: &Linear<N>) -> f64 {
+    linear.arcs.iter().map(|arc| arc.volume()).sum()
+}
+
+impl Indicator {
+    /// Its value.
+    pub fn of<const N: usize>(self, spectrum: &Spectrum) -> f64 {
+        let Spectrum {
+            trace,
+            volume,
+            across,
+        } = *spectrum;
+        match self {
+            Indicator::Fold if N == 2 => volume.exp_m1(),
+            Indicator::Fold => 1.0 - trace + volume.exp(),
+            Indicator::Doubling => 1.0 + trace + volume.exp(),
+            Indicator::Torus => volume,
+            Indicator::Trace(value) => trace - value,
+            Indicator::Across => across,
+        }
+    }
+
+    /// Its change with that of the spectrum.
+    pub fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
+        let of_det = at.volume.exp() * by.volume;
+        match self {
+            Indicator::Fold if N == 2 => of_det,
+            Indicator::Fold => of_det - by.trace,
+            Indicator::Doubling => of_det + by.trace,
+            Indicator::Torus => by.volume,
+            Indicator::Trace(_) => by.trace,
+            Indicator::Across => by.across,
+        }
+    }
+}

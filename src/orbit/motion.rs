@@ -1,0 +1,102 @@
+//! How an orbit moves: displacements of its nodes, of its durations and of both parameters.
+
+use super::polygon::Polygon;
+use crate::field::State;
+
+/// A displacement of an orbit, or a direction in which it can be displaced.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Motion<const N: usize> {
+    /// Of every node.
+    pub nodes: Vec<State<N>>,
+    /// Of every duration.
+    pub durations: Vec<f64>,
+    /// Of the coordinates of both parameters.
+    pub parameters: [f64; 2],
+}
+
+/// An orbit, or a guess of one, at a place in the plane of parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Site<const N: usize> {
+    /// Its nodes and durations.
+    pub polygon: Polygon<N>,
+    /// The coordinates of the parameters.
+    pub at: [f64; 2],
+}
+
+impl<const N: usize> Motion<N> {
+    /// The mean over the nodes of the products of their displacements, and those of the parameters. The durations and with
+    /// them the period stay out of it: near homoclinic orbits and canards they would drown everything else.
+    pub fn dot(&self, other: &Self) -> f64 {
+        let nodes = self.nodes.iter().zip(&other.nodes).map(|(a, b)| a.dot(b));
+        let parameters = self.parameters[0] * other.parameters[0] + self.parameters[1] * other.parameters[1];
+        nodes.sum::<f64>() / self.nodes.len() as f64 + parameters
+    }
+
+    /// Times x.
+    pub fn scaled(mut self, x: f64) -> Self {
+        self.nodes.iter_mut().for_each(|dx| *dx *= x);
+        self.durations.iter_mut().for_each(|dt| *dt *= x);
+        self.parameters = self.parameters.map(|p| p * x);
+        self
+    }
+
+    /// Plus x times another.
+    pub fn plus(mut self, x: f64, other: &Self) -> Self {
+        let nodes = self.nodes.iter_mut().zip(&other.nodes);
+        nodes.for_each(|(a, b)| *a += b * x);
+        let durations = self.durations.iter_mut().zip(&other.durations);
+        durations.for_each(|(a, b)| *a += b * x);
+        for (a, b) in self.parameters.iter_mut().zip(&other.parameters) {
+            *a += b * x;
+        }
+        self
+    }
+
+    /// What of a motion of this orbit does not depend on its nodes: the change of the parameters and of ln T.
+    pub(super) fn seen_from_afar(&self, polygon: &Polygon<N>) -> [f64; 3] {
+        let of_period = self.durations.iter().sum::<f64>() / polygon.period();
+        [self.parameters[0], self.parameters[1], of_period]
+    }
+
+    /// Of length 1; `None` where it has none.
+    pub fn normalised(self) -> Option<Self> {
+        let length = self.dot(&self).sqrt();
+        (length.is_finite() && length > 0.0).then(|| self.scaled(1.0 / length))
+    }
+}
+
+impl<const N: usize> Site<N> {
+    /// Displaced by x times this.
+    pub fn moved(&self, motion: &Motion<N>, x: f64) -> Self {
+        Site {
+            polygon: self.polygon.moved(&motion.nodes, &motion.durations, x),
+            at: [0, 1].map(|i| self.at[i] + x * motion.parameters[i]),
+        }
+    }
+
+    /// From another site with as many nodes to this one.
+    pub fn from(&self, other: &Self) -> Motion<N> {
+        let pairs = self.polygon.nodes.iter().zip(&other.polygon.nodes);
+        let durations = self.polygon.durations.iter().zip(&other.polygon.durations);
+        Motion {
+            nodes: pairs.map(|(a, b)| a - b).collect(),
+            durations: durations.map(|(a, b)| a - b).collect(),
+            parameters: [0, 1].map(|i| self.at[i] - other.at[i]),
+        }
+    }
+
+    /// How large a displacement is: the largest of a node's in units of 1 + |x|, of a duration's relative, of a parameter's
+    /// coordinate.
+    pub fn size(&self, motion: &Motion<N>) -> (f64, f64) {
+        let mut nodes = 0_f64;
+        for (dx, x) in motion.nodes.iter().zip(&self.polygon.nodes) {
+            for i in 0..N {
+                nodes = nodes.max(dx[i].abs() / (1.0 + x[i].abs()));
+            }
+        }
+        let pairs = motion.durations.iter().zip(&self.polygon.durations);
+        let stretch = pairs.map(|(dt, t)| (dt / t).abs()).fold(0.0, f64::max);
+        let parameters = motion.parameters.iter().fold(0.0, |a: f64, p| a.max(p.abs()));
+        (nodes.max(parameters), stretch)
+    }
+}
