@@ -35,6 +35,8 @@ pub struct Regular<const N: usize> {
     pub gradients: Vec<Motion<N>>,
     /// Iterations that it took.
     pub iterations: usize,
+    /// The first correction: how far the guess was off.
+    pub first: f64,
     /// The last correction.
     pub residual: f64,
     pub(super) linear: Linear<N>,
@@ -70,6 +72,8 @@ impl Goal {
 const NOISE: f64 = 1e-8;
 /// The step by which indicators are differentiated.
 const STEP: f64 = 1e-6;
+/// What a relative change of an arc's duration counts, where steps are chosen: the shortest arcs change by most.
+const STRETCH: f64 = 0.1;
 /// A correction that shrinks by less than this asks for new gradients.
 const SLOW: f64 = 0.02;
 
@@ -98,44 +102,48 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         })
     }
 
-    fn across(&self, site: &Site<N>, wanted: bool) -> Option<Option<f64>> {
+    /// The integral of the whole system's trace, where it is wanted.
+    fn whole(&self, site: &Site<N>, wanted: bool) -> Option<Option<f64>> {
         if !wanted {
             return Some(None);
         }
         self.family
-            .across(site.at, &site.polygon, self.tolerance)
+            .whole_volume(site.at, &site.polygon, self.tolerance)
             .ok()
     }
 
     /// The orbit near `guess` that meets the conditions, one for each of the free parameters; `None` where Newton's method
-    /// finds none. `gradients` are those of an orbit nearby with as many nodes, if there is one.
+    /// finds none.
     pub fn correct(
         &mut self,
         guess: Site<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
-        gradients: Option<Vec<Motion<N>>>,
         goal: Goal,
     ) -> Option<Regular<N>> {
         let across = self.watch_across || asks_across(conditions);
         let mut site = guess;
-        let mut gradients = gradients;
-        let mut last = f64::INFINITY;
-        let mut fresh = false;
+        let mut gradients: Option<Vec<Motion<N>>> = None;
+        let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         for iterations in 1..=goal.iterations {
             let field = self.family.field(site.at);
             let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
             drop(field);
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-            let spectrum = Spectrum::new(&linear, self.across(&site, across)?);
+            let spectrum = Spectrum::new(&linear, self.whole(&site, across)?);
             let known = match gradients.take() {
                 Some(known) => known,
                 None => {
-                    fresh = true;
                     self.gradients(&site, &linear, &along, &spectrum, conditions, across)?
                 }
             };
-            let weights = weights::<N>(&site, &closing, &along, &spectrum, conditions, &known)?;
+            let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions, across)?;
+            let known_here = Known {
+                spectrum: &spectrum,
+                gradients: &known,
+                by_closing: &by_closing,
+            };
+            let weights = weights::<N>(&site, &closing, &along, conditions, &known_here)?;
             let mut correction = closing;
             for (weight, direction) in weights.iter().zip(&along) {
                 correction = correction.plus(*weight, direction);
@@ -144,8 +152,11 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             if !(size < goal.largest && stretch < goal.largest) {
                 return None;
             }
+            if iterations == 1 {
+                first = size.max(STRETCH * stretch);
+            }
             let size = size.max(stretch);
-            let done = size < goal.done || (size < NOISE && size > 0.3 * last && fresh);
+            let done = size < goal.done || (size < NOISE && size > 0.3 * last);
             site = site.moved(&correction, 1.0);
             if site.polygon.durations.iter().any(|&t| t <= 0.0) {
                 return None;
@@ -157,12 +168,13 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                     spectrum,
                     gradients: known,
                     iterations,
+                    first,
                     residual: size,
                     linear,
                 });
             }
             // Old gradients serve as long as the corrections shrink.
-            gradients = (size < SLOW * last || !fresh && last == f64::INFINITY).then_some(known);
+            gradients = (size < SLOW * last).then_some(known);
             last = size;
         }
         None
@@ -180,9 +192,10 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
         drop(field);
         let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-        let spectrum = Spectrum::new(&linear, self.across(&site, across)?);
+        let spectrum = Spectrum::new(&linear, self.whole(&site, across)?);
         let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions, across)?;
         Some(Regular {
+            first: site.size(&closing).0,
             residual: site.size(&closing).0,
             site,
             along,
@@ -222,6 +235,31 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         sums.into_iter().collect()
     }
 
+    /// What closing the orbit will add to the indicators among the conditions. Where the gaps are small that is for the next
+    /// iteration to see.
+    fn by_closing(
+        &mut self,
+        site: &Site<N>,
+        linear: &Linear<N>,
+        closing: &Motion<N>,
+        spectrum: &Spectrum,
+        conditions: &[Condition<'_, N>],
+        across: bool,
+    ) -> Option<Vec<f64>> {
+        /// Smaller closings are not looked at.
+        const SMALL: f64 = 1e-7;
+        let indicators: Vec<Indicator> = conditions.iter().filter_map(indicator).collect();
+        let length = closing.dot(closing).sqrt();
+        let (size, stretch) = site.size(closing);
+        if indicators.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
+            return Some(vec![0.0; indicators.len()]);
+        }
+        let direction = closing.clone().scaled(1.0 / length);
+        let change = self.change(site, linear, &direction, spectrum, across)?;
+        let each = indicators.iter();
+        Some(each.map(|i| length * i.change_along::<N>(spectrum, &change)).collect())
+    }
+
     /// How the spectrum of an orbit changes in a direction.
     pub fn slope(&mut self, orbit: &Regular<N>, direction: &Motion<N>) -> Option<Spectrum> {
         let across = orbit.spectrum.across.is_finite();
@@ -246,9 +284,8 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear.beside(&mut self.tracer, &*field, &beside.polygon).ok()?;
-        let here = across.then_some(spectrum.across);
-        let there = self.across(&beside, across)?;
-        Some(Spectrum::change(linear, &moved, [here, there], STEP))
+        let whole = self.whole(&beside, across)?;
+        Some(Spectrum::change(linear, spectrum, &moved, whole, STEP))
     }
 }
 
@@ -265,16 +302,22 @@ fn indicator<const N: usize>(condition: &Condition<'_, N>) -> Option<Indicator> 
     }
 }
 
+/// What is known of the indicators among the conditions.
+struct Known<'a, const N: usize> {
+    spectrum: &'a Spectrum,
+    gradients: &'a [Motion<N>],
+    by_closing: &'a [f64],
+}
+
 /// How far to go in every direction for the conditions to hold, to first order.
 fn weights<const N: usize>(
     site: &Site<N>,
     closing: &Motion<N>,
     along: &[Motion<N>],
-    spectrum: &Spectrum,
     conditions: &[Condition<'_, N>],
-    gradients: &[Motion<N>],
+    known: &Known<'_, N>,
 ) -> Option<Vec<f64>> {
-    let mut gradients = gradients.iter();
+    let mut indicators = known.gradients.iter().zip(known.by_closing);
     let mut rows = Vec::with_capacity(conditions.len());
     for condition in conditions {
         let (slopes, missing): (Vec<f64>, f64) = match condition {
@@ -287,10 +330,10 @@ fn weights<const N: usize>(
                 value - site.at[*i] - closing.parameters[*i],
             ),
             Condition::Indicator(indicator) => {
-                let gradient = gradients.next()?;
+                let (gradient, by_closing) = indicators.next()?;
                 (
                     along.iter().map(|t| gradient.dot(t)).collect(),
-                    -indicator.of::<N>(spectrum),
+                    -indicator.of::<N>(known.spectrum) - by_closing,
                 )
             }
         };

@@ -20,12 +20,18 @@ pub trait Family<const N: usize>: Sync {
     /// Of each parameter, its derivative in its coordinate.
     fn scale(&self, at: [f64; 2]) -> [f64; 2];
 
-    /// The logarithm of the multiplier across a symmetric subspace that holds this family, as a quadrature along the orbit;
-    /// `None` where the family is all there is.
+    /// The integral of the trace of the whole system's Jacobian along an orbit, where the family is that of a symmetric
+    /// subspace: less that of the subspace's own it is the logarithm of the multiplier across. `None` where the family is all
+    /// there is.
     ///
     /// # Errors
     /// Those of the flow.
-    fn across(&self, at: [f64; 2], polygon: &Polygon<N>, tolerance: f64) -> Result<Option<f64>> {
+    fn whole_volume(
+        &self,
+        at: [f64; 2],
+        polygon: &Polygon<N>,
+        tolerance: f64,
+    ) -> Result<Option<f64>> {
         let _ = (at, polygon, tolerance);
         Ok(None)
     }
@@ -75,21 +81,21 @@ impl Family<2> for OverLoadings {
         at.map(f64::exp)
     }
 
-    // ln mu of the antisymmetric mode is the trace of the whole system less that of the plane, both integrated.
-    fn across(&self, at: [f64; 2], polygon: &Polygon<2>, tolerance: f64) -> Result<Option<f64>> {
+    fn whole_volume(
+        &self,
+        at: [f64; 2],
+        polygon: &Polygon<2>,
+        tolerance: f64,
+    ) -> Result<Option<f64>> {
         if self.0.interfaces == 1 {
             return Ok(None);
         }
-        let slab = self.slab(at);
-        let (whole, plane) = (slab.whole(), slab.plane());
+        let whole = self.slab(at).whole();
         let mut tracer = Tracer::<3>::taylor(tolerance)?;
-        let mut within = Tracer::<2>::taylor(tolerance)?;
         let mut sum = 0.0;
         for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
             let embedded = State::<3>::new(x[0], x[1], x[1]);
-            let arc = tracer.arc(&*whole, &embedded, duration, false)?;
-            let inner = within.arc(&*plane, x, duration, false)?;
-            sum += arc.volume() - inner.volume();
+            sum += tracer.arc(&*whole, &embedded, duration, false)?.volume();
         }
         Ok(Some(sum))
     }

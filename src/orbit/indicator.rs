@@ -34,22 +34,25 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    pub(super) fn new<const N: usize>(linear: &Linear<N>, across: Option<f64>) -> Self {
+    /// Of a return map; with the integral of the whole system's trace where it is one of a symmetric subspace.
+    pub(super) fn new<const N: usize>(linear: &Linear<N>, whole: Option<f64>) -> Self {
         let maps = linear.maps.iter();
         let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
+        let volume = volume(linear);
         Spectrum {
             // Of the identity's first diagonal entry the maps leave nothing.
             trace: product.trace(),
-            volume: volume(linear),
-            across: across.unwrap_or(f64::NAN),
+            volume,
+            across: whole.map_or(f64::NAN, |whole| whole - volume),
         }
     }
 
     /// The change from one linearisation to another in the same planes, divided by the step between them.
     pub(super) fn change<const N: usize>(
         from: &Linear<N>,
+        spectrum: &Spectrum,
         to: &Linear<N>,
-        across: [Option<f64>; 2],
+        whole: Option<f64>,
         step: f64,
     ) -> Self {
         let count = from.maps.len();
@@ -65,11 +68,11 @@ impl Spectrum {
         }
         let volumes = from.arcs.iter().zip(&to.arcs);
         let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
-        let [before, after] = across.map(|x| x.unwrap_or(f64::NAN));
+        let across = Spectrum::new(to, whole).across - spectrum.across;
         Spectrum {
             trace: trace / step,
             volume: volume / step,
-            across: (after - before) / step,
+            across: across / step,
         }
     }
 

@@ -161,7 +161,7 @@ impl<const N: usize> Linear<N> {
                 parameters: *parameters,
             })
         };
-        let closing = motion(&particular, 1.0)?;
+        let mut closing = motion(&particular, 1.0)?;
         let mut along: Vec<Motion<N>> = Vec::with_capacity(kernel.len());
         for direction in &kernel {
             let mut direction = motion(direction, 0.0)?.normalised()?;
@@ -174,6 +174,14 @@ impl<const N: usize> Linear<N> {
                 direction = direction.normalised()?;
             }
             along.push(direction);
+        }
+        // The shortest start can belong to a long motion, where something grows on the way. Only what is across the directions
+        // closes the orbit.
+        for _ in 0..2 {
+            for direction in &along {
+                let part = closing.dot(direction);
+                closing = closing.plus(-part, direction);
+            }
         }
         Some((closing, along))
     }

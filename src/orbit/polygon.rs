@@ -180,6 +180,13 @@ impl<const N: usize> Polygon<N> {
         Ok(moved)
     }
 
+    /// The same, beginning at the k-th node.
+    pub(super) fn beginning_at(mut self, k: usize) -> Self {
+        self.nodes.rotate_left(k);
+        self.durations.rotate_left(k);
+        self
+    }
+
     /// With this part of a correction of nodes and durations.
     pub(super) fn moved(&self, nodes: &[State<N>], durations: &[f64], part: f64) -> Self {
         let moved = self.nodes.iter().zip(nodes);

@@ -4,7 +4,7 @@ use super::correct::{Condition, Corrector, Goal, Regular};
 use super::family::Family;
 use super::indicator::Indicator;
 use super::motion::{Motion, Site};
-use super::polygon::Mesh;
+use super::polygon::{Mesh, Polygon};
 
 /// Where a walk stands.
 #[derive(Debug, Clone)]
@@ -29,9 +29,11 @@ pub struct Path {
 /// Lengths of steps.
 const FIRST: f64 = 0.02;
 const SHORTEST: f64 = 1e-9;
-/// After fewer iterations than this the next step is longer.
-const EASY: usize = 3;
-const LONGER: f64 = 1.7;
+/// What a prediction may be off by, which grows with the square of the step; and the least and largest ratio of one step to
+/// the one before.
+const OFF: f64 = 0.03;
+const RATIO: (f64, f64) = (0.5, 2.0);
+/// A step that fails is shortened to this.
 const SHORTER: f64 = 0.4;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.8;
@@ -104,7 +106,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         direction: Motion<N>,
     ) -> Option<Self> {
         let conditions = path.and(Condition::Plane(&direction, &site));
-        let here = corrector.correct(site.clone(), &path.free, &conditions, None, Goal::STEP)?;
+        let here = corrector.correct(site.clone(), &path.free, &conditions, Goal::STEP)?;
         let direction = path.direction(&here, &direction)?;
         Some(Walk {
             corrector,
@@ -132,12 +134,11 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         let Pace { here, direction } = pace;
         let predicted = here.site.moved(direction, length);
         let conditions = self.path.and(Condition::Plane(direction, &predicted));
-        let old = (!here.gradients.is_empty()).then(|| here.gradients.clone());
+        // The gradients there, and not those of the orbit here: the direction depends on them.
         let next = self.corrector.correct(
             predicted.clone(),
             &self.path.free,
             &conditions,
-            old,
             Goal::STEP,
         )?;
         let along = self.path.direction(&next, direction)?;
@@ -168,11 +169,8 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
                 continue;
             };
             self.fresh = false;
-            if next.here.iterations <= EASY {
-                self.length = (length * LONGER).min(self.path.longest);
-            } else if next.here.iterations > EASY + 2 {
-                self.length *= SHORTER;
-            }
+            let ratio = (OFF / next.here.first).sqrt().clamp(RATIO.0, RATIO.1);
+            self.length = (length * ratio).min(self.path.longest);
             let before = std::mem::replace(&mut self.pace, next);
             return Some((before, length));
         }
@@ -198,13 +196,52 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             .ok()?;
         drop(field);
         let old = direction.seen_from_afar(&site.polygon);
-        let site = Site {
+        let mut site = Site {
             polygon,
             at: site.at,
         };
-        self.pace = self.arrived(site, old)?;
+        for _ in 0..HALVINGS {
+            self.pace = self.arrived(site, old)?;
+            if growth(&self.pace.here).all(|growth| growth < GROWTH) {
+                break;
+            }
+            site = self.halved()?;
+        }
+        let largest = most_moved(&self.pace.here);
+        if largest != 0 {
+            let Site { polygon, at } = self.pace.here.site.clone();
+            let polygon = polygon.beginning_at(largest);
+            self.pace = self.arrived(Site { polygon, at }, old)?;
+        }
         self.fresh = true;
         Some(())
+    }
+
+    /// With a node more in the middle of every arc along which something grows by too much: what the end of such an arc does
+    /// is linear in its beginning for small steps only.
+    fn halved(&mut self) -> Option<Site<N>> {
+        let Regular { site, linear, .. } = &self.pace.here;
+        let field = self.corrector.family.field(site.at);
+        let mut finer = Polygon {
+            nodes: Vec::new(),
+            durations: Vec::new(),
+        };
+        let Polygon { nodes, durations } = &site.polygon;
+        for (k, (x, &duration)) in nodes.iter().zip(durations).enumerate() {
+            finer.nodes.push(*x);
+            if linear.maps[k].amax().ln() < GROWTH {
+                finer.durations.push(duration);
+                continue;
+            }
+            let half = 0.5 * duration;
+            let middle = self.corrector.tracer.flow(&*field, x, half, None).ok()?;
+            finer.nodes.push(middle);
+            finer.durations.extend([half, duration - half]);
+        }
+        Some(Site {
+            polygon: finer,
+            at: site.at,
+        })
     }
 
     /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
@@ -227,22 +264,36 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     }
 }
 
+/// ln of what an arc of a new mesh may grow by, and one of an old mesh; how often arcs are halved for it.
+const GROWTH: f64 = 1.0;
+const GROWN: f64 = 2.0;
+const HALVINGS: usize = 6;
+
+/// The node that the motions left to the orbit move most. All others are found from the first one: from the small end of a
+/// motion that grows by many decades nothing is found.
+fn most_moved<const N: usize>(orbit: &Regular<N>) -> usize {
+    let moved = |k: usize| -> f64 {
+        let each = orbit.along.iter().map(|motion| motion.nodes[k].norm_squared());
+        each.sum()
+    };
+    let count = orbit.site.polygon.nodes.len();
+    (0..count).max_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0)
+}
+
+/// ln of the largest growth along every arc.
+fn growth<const N: usize>(orbit: &Regular<N>) -> impl Iterator<Item = f64> {
+    orbit.linear.maps.iter().map(|map| map.amax().ln())
+}
+
 /// Whether arcs take far more work than the others or than they should, or grow by too much.
 fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
-    /// Steps of an arc over the mean, and of the mean over what it should be, either way.
+    /// Steps of an arc over the mean, and of the mean over what it should be.
     const WORST: f64 = 2.5;
     const MEAN: f64 = 1.6;
-    /// ln of an arc's largest growth: beyond, Newton's method converges from nearby only.
-    const GROWTH: f64 = 7.0;
     let arcs = &orbit.linear.arcs;
     let count = arcs.len() as f64;
     let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
     let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
-    let maps = orbit.linear.maps.iter();
-    let growth = maps.map(|map| map.amax()).fold(0.0, f64::max).ln();
-    let least = arcs.len() <= Mesh::FINE.nodes.0;
-    let coarse = mean > MEAN * Mesh::FINE.steps;
-    // The volume cuts arcs too, so that few steps alone are no fault.
-    let fine = mean < Mesh::FINE.steps / (MEAN * MEAN * MEAN) && !least;
-    worst > WORST * mean + 1.0 || coarse || fine || growth > GROWTH
+    let most = mean.max(Mesh::FINE.steps);
+    worst > WORST * most || mean > MEAN * Mesh::FINE.steps || growth(orbit).any(|g| g > GROWN)
 }

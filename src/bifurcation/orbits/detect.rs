@@ -175,6 +175,10 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
     zero: &Zero<N>,
     goal: Goal,
 ) -> Option<Regular<N>> {
+    if zero.watch == Watch::Turn(1) && walk.path.indicator.is_some() {
+        // Along a curve of bifurcations a turn has no condition of its own.
+        return walk.beyond(before, zero.at).map(|pace| pace.here);
+    }
     let condition = match zero.watch {
         Watch::Indicator(indicator) => Condition::Indicator(indicator),
         Watch::Value(i, value) => Condition::Parameter(i, value),
@@ -189,7 +193,7 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
     for _ in 0..12 {
         let guess = walk.beyond(before, at);
         let start = guess.as_ref().unwrap_or(&near);
-        let found = walk.corrector.correct(start.here.site.clone(), &free, &conditions, None, goal);
+        let found = walk.corrector.correct(start.here.site.clone(), &free, &conditions, goal);
         if let Some(found) = found {
             let there = before.direction.dot(&found.site.from(&before.here.site));
             if there > -0.1 * length && there < 1.1 * length {

@@ -4,6 +4,10 @@ mod detect;
 mod follow;
 mod sharp;
 mod branch;
+mod curve;
+mod locus;
 mod rows;
+mod top;
 
 pub use branch::branch;
+pub use locus::locus;

@@ -47,7 +47,7 @@ pub fn sharpened<F: Family<N>, const N: usize>(
             polygon,
             at: begin.at,
         };
-        match corrector.correct(site, free, conditions, None, Goal::SHARP) {
+        match corrector.correct(site, free, conditions, Goal::SHARP) {
             Some(solution) => solutions.push(solution),
             None if solutions.is_empty() => return None,
             None => {}

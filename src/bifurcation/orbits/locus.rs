@@ -1,0 +1,215 @@
+//! Curves of bifurcations of periodic orbits in the (V_H, K) plane, with what is special on them.
+//!
+//! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
+//! through resonances, to where the bifurcation ceases to be one.
+
+use super::branch::{ROUGH, crosses};
+use super::curve::Curve;
+use super::detect::Watch;
+use super::follow::{Met, follow};
+use crate::bifurcation::{Event, LocusKind, LocusRequest, Seen};
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::model::Parameter;
+use crate::orbit::{
+    Corrector, Family, Indicator, OverLoadings, Path, Site, Walk, hopf_points,
+};
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// Follows all curves of the kind that is asked for, and hands on what is found.
+///
+/// # Errors
+/// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of the
+/// equilibria and of the flow.
+pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
+    let mut count = 0;
+    for symmetry in symmetries(request)? {
+        let told = match symmetry {
+            Symmetry::Symmetric => Locus::<2>::follow(request, symmetry, &mut count, seen)?,
+            Symmetry::Asymmetric => Locus::<3>::follow(request, symmetry, &mut count, seen)?,
+        };
+        if told.is_break() {
+            break;
+        }
+    }
+    Ok(())
+}
+
+/// Orbits of which symmetry have the bifurcation.
+fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
+    let possible: &[Symmetry] = match request.kind {
+        LocusKind::OrbitPitchfork => &[Symmetry::Symmetric],
+        LocusKind::OrbitSaddleNode => &[Symmetry::Symmetric, Symmetry::Asymmetric],
+        LocusKind::PeriodDoubling | LocusKind::Torus => &[Symmetry::Asymmetric],
+        _ => {
+            return Err(Error::Input(
+                "equilibria have curves of their own: this one is of orbits".into(),
+            ));
+        }
+    };
+    let both = request.slab.interfaces == 2;
+    let wanted: Vec<Symmetry> = possible
+        .iter()
+        .copied()
+        .filter(|s| request.symmetry.is_none_or(|only| only == *s))
+        .filter(|s| both || *s == Symmetry::Symmetric)
+        .collect();
+    if wanted.is_empty() || (!both && request.kind == LocusKind::OrbitPitchfork) {
+        return Err(Error::Input(
+            "orbits of this symmetry do not have this bifurcation: in the plane of symmetric orbits there are folds, and \
+             pitchforks out of it; period doublings and tori need asymmetric ones"
+                .into(),
+        ));
+    }
+    Ok(wanted)
+}
+
+/// The longest step along a curve, and along the branches where curves are looked for.
+const LONGEST: f64 = 0.3;
+const LONGEST_OF_BRANCH: f64 = 0.7;
+/// Steps on such a branch.
+const STEPS: usize = 2000;
+/// Below this K no branch is followed for seeds: the curves that there are come down from above.
+const LOWEST: f64 = 0.045;
+/// From one such branch to the next K is divided by this.
+const APART: f64 = 2.0;
+
+/// The curves of one kind and symmetry.
+pub(super) struct Locus<'r, const N: usize> {
+    pub request: &'r LocusRequest,
+    pub family: OverLoadings,
+    pub indicator: Indicator,
+    /// (ln V_H, ln K, ln T) along the curves so far.
+    pub known: Vec<Vec<[f64; 3]>>,
+}
+
+impl<'r, const N: usize> Locus<'r, N>
+where
+    OverLoadings: Family<N>,
+{
+    fn follow(
+        request: &'r LocusRequest,
+        symmetry: Symmetry,
+        count: &mut usize,
+        seen: Seen<'_>,
+    ) -> Result<ControlFlow<()>> {
+        let mut locus = Locus {
+            request,
+            family: OverLoadings(request.slab),
+            indicator: match request.kind {
+                LocusKind::OrbitPitchfork => Indicator::Across,
+                LocusKind::PeriodDoubling => Indicator::Doubling,
+                LocusKind::Torus => Indicator::Torus,
+                _ => Indicator::Fold,
+            },
+            known: Vec::new(),
+        };
+        let (from, to) = request.stiffness;
+        let mut stiffness = to;
+        while stiffness >= from.max(LOWEST.min(to)) {
+            for seed in locus.seeds(symmetry, stiffness)? {
+                if locus.is_known(&seed) {
+                    continue;
+                }
+                let number = *count;
+                *count += 1;
+                let Some(curve) = Curve::through(&mut locus, number, seed)? else {
+                    *count -= 1;
+                    continue;
+                };
+                if curve.told(seen).is_break() {
+                    return Ok(Break(()));
+                }
+                locus.known.push(curve.course());
+            }
+            stiffness /= APART;
+        }
+        Ok(Continue(()))
+    }
+
+    /// The bifurcations on the branches at this K.
+    fn seeds(&self, symmetry: Symmetry, stiffness: f64) -> Result<Vec<Site<N>>> {
+        let slab = self.request.slab.of_stiffness(stiffness);
+        let family = OverLoadings(slab);
+        let (from, to) = self.request.driving;
+        let (from, to) = (from.ln(), to.ln());
+        let watch = match self.indicator {
+            Indicator::Fold => Watch::Turn(0),
+            other => Watch::Indicator(other),
+        };
+        let mut seeds = Vec::new();
+        let mut ends: Vec<f64> = Vec::new();
+        for hopf in hopf_points(&slab, symmetry, Parameter::Driving)? {
+            let begin = hopf.at()[0];
+            if ends.iter().any(|end| (end - begin).abs() < 1e-3) {
+                continue;
+            }
+            let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
+            corrector.watch_across = self.indicator == Indicator::Across;
+            let path = Path::branch(0, LONGEST_OF_BRANCH);
+            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopf) else {
+                continue;
+            };
+            let mut last = walk.pace.here.site.clone();
+            let mut been = (from..=to).contains(&begin);
+            follow(&mut walk, &[watch], STEPS, &mut |walk, met| match met {
+                Met::Zero(_, at) => {
+                    let inside = (from..=to).contains(&at.site.at[0]);
+                    let pitchfork = N == 3 && crosses(&walk.pace.here.site, &last);
+                    let torus = self.indicator != Indicator::Torus || at.spectrum.trace.abs() < 2.0;
+                    if inside && torus && !(pitchfork && self.indicator == Indicator::Fold) {
+                        seeds.push(at.site.clone());
+                    }
+                    Continue(())
+                }
+                Met::Orbit(pace) => {
+                    let here = &pace.here.site;
+                    let inside = (from..=to).contains(&here.at[0]);
+                    let left = been && !inside;
+                    been |= inside;
+                    let vanishes = walk.vanishes(&last);
+                    ends.extend(vanishes);
+                    let merged = N == 3 && crosses(here, &last);
+                    last = here.clone();
+                    if left || vanishes.is_some() || merged {
+                        Break(())
+                    } else {
+                        Continue(())
+                    }
+                }
+            });
+        }
+        Ok(seeds)
+    }
+
+    /// Whether a curve that was followed passes there.
+    fn is_known(&self, seed: &Site<N>) -> bool {
+        /// What the straight way between two of its points may err by, in ln V_H and ln T.
+        const NEAR: (f64, f64) = (2e-3, 2e-2);
+        let [v, k] = seed.at;
+        let t = seed.polygon.period().ln();
+        let passes = |pair: &[[f64; 3]]| {
+            let (a, b) = (pair[0], pair[1]);
+            if (a[1] - k) * (b[1] - k) > 0.0 || a[1] == b[1] {
+                return false;
+            }
+            let part = (k - a[1]) / (b[1] - a[1]);
+            let between = |i: usize| a[i] + part * (b[i] - a[i]);
+            (between(0) - v).abs() < NEAR.0 && (between(2) - t).abs() < NEAR.1
+        };
+        self.known.iter().any(|curve| curve.windows(2).any(passes))
+    }
+
+    /// The longest step.
+    pub fn longest(&self) -> f64 {
+        LONGEST * self.request.step
+    }
+}
+
+/// What was found on a curve, told in order.
+pub(super) fn tell(events: impl IntoIterator<Item = Event>, seen: Seen<'_>) -> ControlFlow<()> {
+    for event in events {
+        seen(event)?;
+    }
+    Continue(())
+}

@@ -1,0 +1,136 @@
+//! Where K is largest along a curve of bifurcations.
+//!
+//! The slope of a curve is known by gradients, to six digits or so. The points themselves are known to the last: the curve is
+//! interpolated through a few, over the distance along one direction, and the interpolating polynomial has its top where the
+//! curve has. Two widths of the interval show what the interpolation errs by.
+
+use crate::number::Uncertain;
+use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Motion, Path, Regular, Site};
+
+/// A stationary value of K on a curve.
+pub struct Top<const N: usize> {
+    /// A point of the curve next to it.
+    pub orbit: Regular<N>,
+    /// Both parameters.
+    pub at: [Uncertain; 2],
+    /// The period.
+    pub period: Uncertain,
+    /// Whether it is a maximum.
+    pub largest: bool,
+}
+
+/// Points of the interpolation, and the half widths of its two intervals.
+const POINTS: usize = 9;
+const WIDTHS: [f64; 2] = [0.06, 0.04];
+/// Tolerance of the points.
+const FINE: f64 = 1e-16;
+
+/// The stationary point of the second coordinate along the curve of an indicator, near a site on it.
+pub fn top<F: Family<N>, const N: usize>(
+    family: &F,
+    near: &Site<N>,
+    indicator: Indicator,
+) -> Option<Top<N>> {
+    let mut corrector = Corrector::new(family, FINE).ok()?;
+    let path = Path::locus(indicator, 1.0);
+    let own = [Condition::Indicator(indicator)];
+    let here = corrector.look(near.clone(), &path.free, &own)?;
+    let any = here.along[0].clone();
+    let direction = path.direction(&here, &any)?;
+    let mut found = Vec::new();
+    for width in WIDTHS {
+        found.push(stationary(&mut corrector, near, &direction, width, indicator)?);
+    }
+    let [first, second] = [&found[0], &found[1]];
+    let at = near.moved(&direction, second.s);
+    let conditions = path.and(Condition::Plane(&direction, &at));
+    let orbit = corrector.correct(at.clone(), &path.free, &conditions, Goal::SHARP)?;
+    let (parameters, scale) = (family.parameters(second.at), family.scale(second.at));
+    // The value at a stationary point is known far better than its place.
+    let uncertain = |i: usize| {
+        let apart = 3.0 * (first.at[i] - second.at[i]).abs() + orbit.residual;
+        let rounding = 8.0 * f64::EPSILON * parameters[i].abs();
+        Uncertain::new(parameters[i], scale[i].abs() * apart + rounding)
+    };
+    let apart = 3.0 * (first.period - second.period).abs();
+    Some(Top {
+        at: [uncertain(0), uncertain(1)],
+        period: Uncertain::new(second.period, apart + 1e-14 * second.period),
+        largest: second.bend < 0.0,
+        orbit,
+    })
+}
+
+struct Stationary {
+    s: f64,
+    at: [f64; 2],
+    period: f64,
+    bend: f64,
+}
+
+fn stationary<F: Family<N>, const N: usize>(
+    corrector: &mut Corrector<'_, F, N>,
+    near: &Site<N>,
+    direction: &Motion<N>,
+    width: f64,
+    indicator: Indicator,
+) -> Option<Stationary> {
+    let (mut v, mut k, mut t) = ([0.0; POINTS], [0.0; POINTS], [0.0; POINTS]);
+    for i in 0..POINTS {
+        // Chebyshev's points: the least of the interpolation's error.
+        let s = ((i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64).cos();
+        let at = near.moved(direction, width * s);
+        let conditions = [
+            Condition::Indicator(indicator),
+            Condition::Plane(direction, &at),
+        ];
+        let orbit = corrector.correct(at.clone(), &[0, 1], &conditions, Goal::SHARP)?;
+        [v[i], k[i]] = orbit.site.at;
+        t[i] = orbit.site.polygon.period();
+    }
+    let [v, k, t] = [v, k, t].map(|values| coefficients(&values));
+    let mut x = 0.0;
+    for _ in 0..50 {
+        let (_, slope, bend) = value(&k, x);
+        let dx = -slope / bend;
+        x += dx;
+        if dx.abs() < 1e-16 {
+            break;
+        }
+    }
+    let (top, _, bend) = value(&k, x);
+    let inside = x.abs() < 1.0 && top.is_finite();
+    inside.then(|| Stationary {
+        s: width * x,
+        at: [value(&v, x).0, top],
+        period: value(&t, x).0,
+        bend,
+    })
+}
+
+/// Of the polynomials of Chebyshev, by the sums over the points that these are orthogonal in.
+fn coefficients(values: &[f64; POINTS]) -> [f64; POINTS] {
+    std::array::from_fn(|n| {
+        let sum: f64 = (0..POINTS)
+            .map(|i| {
+                let angle = (i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64;
+                values[i] * (n as f64 * angle).cos()
+            })
+            .sum();
+        sum * if n == 0 { 1.0 } else { 2.0 } / POINTS as f64
+    })
+}
+
+/// The sum of c_n T_n(x) with its first two derivatives.
+fn value(c: &[f64; POINTS], x: f64) -> (f64, f64, f64) {
+    let (mut t, mut dt, mut ddt) = ((1.0, x), (0.0, 1.0), (0.0, 0.0));
+    let mut sum = (c[0] + c[1] * x, c[1], 0.0);
+    for c in &c[2..] {
+        let next = 2.0 * x * t.1 - t.0;
+        let slope = 2.0 * t.1 + 2.0 * x * dt.1 - dt.0;
+        let bend = 4.0 * dt.1 + 2.0 * x * ddt.1 - ddt.0;
+        (t, dt, ddt) = ((t.1, next), (dt.1, slope), (ddt.1, bend));
+        sum = (sum.0 + c * next, sum.1 + c * slope, sum.2 + c * bend);
+    }
+    sum
+}
