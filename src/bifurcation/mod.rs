@@ -2,6 +2,8 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
+pub mod equilibria;
+
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
 use crate::orbit::Slab;
