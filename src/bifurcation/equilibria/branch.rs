@@ -2,15 +2,15 @@
 
 use super::crossing::{Root, oscillation, symmetric};
 use super::curves::{AlongDriving, AlongStiffness, Curve};
-use super::hopf::{Hopf, HopfPoints, criticality};
+use super::hopf::{Hopf, HopfPoints};
 use super::pieces::{Begin, Ends};
+use super::special::Teller;
 use super::stationary::{fold, pitchforks};
-use crate::bifurcation::{BranchRequest, BranchRow, Event, Label, Parameter, Seen, Special};
+use crate::bifurcation::{BranchRequest, BranchRow, Label, Parameter, Seen, Special};
 use crate::continuation::{Branch, Mark, Point, Settings, Stop, Watch, ZeroProblem, follow};
 use crate::equilibrium::{Equilibrium, Interface, Solver, Symmetry, stability, steady_states};
 use crate::error::{Error, Result};
 use crate::friction::{steady_slope, steady_stress};
-use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
 /// The longest step, in ln V_H and ln K, and the largest change of the stress in one.
@@ -23,7 +23,10 @@ pub(super) fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
     let mut run = Run {
         request,
         settings,
-        seen,
+        teller: Teller {
+            seen,
+            tolerance: request.tolerance,
+        },
         branches: 0,
     };
     // an observer's end is no error
@@ -36,9 +39,6 @@ pub(super) fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
 
 fn settings(request: &BranchRequest) -> Result<Settings> {
     let (a, b) = request.range;
-    for x in [a, b] {
-        crate::bifurcation::equilibria::positive("range", x)?;
-    }
     let inside = |x: &&f64| **x >= a.min(b) && **x <= a.max(b);
     let wanted = request.at.iter().filter(inside).map(|x| x.ln()).collect();
     Settings {
@@ -51,7 +51,7 @@ fn settings(request: &BranchRequest) -> Result<Settings> {
 struct Run<'a> {
     request: &'a BranchRequest,
     settings: Settings,
-    seen: Seen<'a>,
+    teller: Teller<'a>,
     branches: usize,
 }
 
@@ -125,7 +125,7 @@ impl Run<'_> {
             rates,
             begin,
             number: self.branches,
-            seen: &mut *self.seen,
+            teller: &mut self.teller,
             failure: None,
         };
         self.branches += 1;
@@ -146,14 +146,14 @@ impl Run<'_> {
 }
 
 /// What looks on along one branch: names what is special, and hands on.
-struct Walk<'a> {
+struct Walk<'a, 'b> {
     request: &'a BranchRequest,
     curve: Curve,
     /// The slip rates along K, where they don't change.
     rates: Option<[f64; 2]>,
     begin: &'a Begin,
     number: usize,
-    seen: Seen<'a>,
+    teller: &'a mut Teller<'b>,
     failure: Option<Error>,
 }
 
@@ -165,7 +165,7 @@ struct Place {
     rates: [f64; 2],
 }
 
-impl Walk<'_> {
+impl Walk<'_, '_> {
     fn place(&self, point: &Point, value: f64) -> Place {
         let loading = self.request.slab.loading;
         match self.rates {
@@ -253,10 +253,10 @@ impl Walk<'_> {
 
     fn hand_on(&mut self, place: &Place, special: Special) -> Result<ControlFlow<()>> {
         let row = self.row(place, Some(special.label))?;
-        if (self.seen)(Event::Branch(row)).is_break() {
+        if self.teller.branch(row).is_break() {
             return Ok(ControlFlow::Break(()));
         }
-        Ok((self.seen)(Event::Special(special)))
+        Ok(self.teller.special(special))
     }
 
     fn plain(&mut self, place: &Place, label: Label, note: &str) -> Result<ControlFlow<()>> {
@@ -291,7 +291,7 @@ impl Walk<'_> {
         // the symmetric branch has told of it already, if it was followed
         if self.curve == Curve::Asymmetric && self.request.symmetry.is_none() {
             let row = self.row(&at, Some(Label::Bp))?;
-            return Ok((self.seen)(Event::Branch(row)));
+            return Ok(self.teller.branch(row));
         }
         let special = Special {
             driving: pitchfork.driving,
@@ -345,7 +345,7 @@ impl Walk<'_> {
                 driving: point.driving,
                 stiffness: point.stiffness,
                 period: Some(point.period),
-                criticality: Some(criticality(l_1)),
+                criticality: Some(points.criticality(&point)),
                 coefficient: Some(l_1.value),
                 ..Special::at(Label::Hb, point.driving.value, point.stiffness.value)
             };
@@ -374,7 +374,7 @@ impl Walk<'_> {
             Stop::StepTooSmall { .. } => "no step is short enough".into(),
             _ => "as many points as allowed".into(),
         });
-        (self.seen)(Event::Special(special))
+        self.teller.special(special)
     }
 
     fn shown(&mut self, point: &Point, mark: Mark) -> Result<ControlFlow<()>> {
@@ -382,7 +382,7 @@ impl Walk<'_> {
         match mark {
             Mark::Step => {
                 let row = self.row(&place, None)?;
-                Ok((self.seen)(Event::Branch(row)))
+                Ok(self.teller.branch(row))
             }
             Mark::Begin if self.begin.pitchfork => self.special(Label::Bp, &place),
             Mark::Begin => self.plain(&place, Label::Ep, "begin of the range"),
@@ -399,7 +399,7 @@ fn close(point: &Hopf, place: &Place) -> bool {
     near(point.driving.value, place.driving) && near(point.stiffness.value, place.stiffness)
 }
 
-impl Watch for Walk<'_> {
+impl Watch for Walk<'_, '_> {
     fn tests(&self, point: &Point) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
         let law = &self.request.slab.law;
@@ -430,20 +430,5 @@ impl Watch for Walk<'_> {
             self.failure = Some(error);
             ControlFlow::Break(())
         })
-    }
-}
-
-impl Special {
-    /// A point that is known exactly and of which nothing else is.
-    pub(super) fn at(label: Label, driving: f64, stiffness: f64) -> Self {
-        Special {
-            label,
-            driving: Uncertain::new(driving, 0.0),
-            stiffness: Uncertain::new(stiffness, 0.0),
-            period: None,
-            criticality: None,
-            coefficient: None,
-            note: None,
-        }
     }
 }

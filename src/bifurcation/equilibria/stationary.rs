@@ -1,9 +1,10 @@
 //! Pitchforks and folds: both are properties of the steady-state friction law alone, the same at every stiffness.
 
 use super::hopf::bound;
+use super::inputs::rounding;
 use crate::bifurcation::Criticality;
 use crate::equilibrium::{Interface, routh_hurwitz};
-use crate::friction::{AnyLaw, Extremum, steady_slope, steady_stress};
+use crate::friction::{AnyLaw, Extremum, Law, steady_slope, steady_stress};
 use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
 
 /// A pitchfork V_H = 2 V_e, V_e an extremum of tau_ss  (23).
@@ -29,7 +30,9 @@ fn curvatures<T: Real>(law: &AnyLaw, v: T) -> [T; 2] {
 pub(super) fn pitchforks(law: &AnyLaw) -> Vec<Pitchfork> {
     Extremum::all(law)
         .into_iter()
-        .map(|Extremum { slip_rate, .. }| {
+        .enumerate()
+        .map(|(i, Extremum { slip_rate, .. })| {
+            let of_inputs = rounding(law, |law| law.steady_extrema().get(i).copied());
             let [second, third] = curvatures(law, slip_rate.value);
             let around = Interval::around(slip_rate.value, slip_rate.uncertainty);
             // the symmetric state is stable where tau_ss rises: z' = -(tau_ss' z + tau_ss''' z^3 / 6) times a positive number
@@ -39,7 +42,10 @@ pub(super) fn pitchforks(law: &AnyLaw) -> Vec<Pitchfork> {
                 None => Criticality::Undecided,
             };
             Pitchfork {
-                driving: Uncertain::new(2.0 * slip_rate.value, 2.0 * slip_rate.uncertainty),
+                driving: Uncertain::new(
+                    2.0 * slip_rate.value,
+                    2.0 * (slip_rate.uncertainty + of_inputs),
+                ),
                 coefficient: -3.0 * second / third,
                 criticality,
             }
@@ -70,6 +76,12 @@ fn counterpart(law: &AnyLaw, rate: f64, guess: f64) -> (f64, f64) {
 ///
 /// Of the two rates that nearer to its extremum of tau_ss is the unknown; the other one follows from it and is well determined.
 pub(super) fn fold(law: &AnyLaw, near: [f64; 2]) -> Option<Fold> {
+    let mut found = of_law(law, near)?;
+    found.driving.uncertainty += rounding(law, |law| Some(of_law(law, near)?.driving.value));
+    Some(found)
+}
+
+fn of_law(law: &AnyLaw, near: [f64; 2]) -> Option<Fold> {
     let steepness = near.map(|v| (steady_slope(law, v) * v).abs());
     let unknown = usize::from(steepness[1] < steepness[0]);
     let (p, d) = (near[unknown], near[1 - unknown]);
