@@ -15,6 +15,7 @@
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
 //! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
+//! | [`continuation::follow()`] | curves of zeros, by pseudo-arclength |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!
@@ -43,6 +44,8 @@ pub mod contract;
 pub mod sundials;
 
 pub mod integrate;
+
+pub mod continuation;
 
 pub mod equilibrium;
 

@@ -22,6 +22,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     ("equilibrium", &["friction", "number", "field", "sundials"]),
+    ("continuation", &[]),
     (
         "section",
         &["integrate", "series", "friction", "number", "field"],
@@ -34,6 +35,18 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "model",
             "field",
             "series",
+            "friction",
+            "number",
+        ],
+    ),
+    (
+        "bifurcation",
+        &[
+            "equilibrium",
+            "orbit",
+            "continuation",
+            "model",
+            "field",
             "friction",
             "number",
         ],

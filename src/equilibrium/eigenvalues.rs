@@ -4,10 +4,11 @@
 //! only an absolute one. The verdict does not look at eigenvalues: it is the Routh-Hurwitz criterion in interval arithmetic
 //! over the error budget of the equilibrium, and "undecided" where that can't tell.
 
+use super::interface::{Interface, routh_hurwitz};
 use super::{Equilibrium, Symmetry};
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, critical_stiffness, positive, with_law};
-use crate::number::{Interval, Jet, Real};
+use crate::friction::{AnyLaw, Law, positive, with_law};
+use crate::number::{Interval, Real};
 use nalgebra::{Complex, Matrix3};
 
 /// Newton corrections of an eigenvalue; two suffice from the start that the matrix algorithm gives.
@@ -31,33 +32,6 @@ pub struct Stability {
     pub eigenvalues: Vec<Complex<f64>>,
     /// Stable, unstable or undecided.
     pub verdict: Verdict,
-}
-
-/// One interface's part of the linearised system, in the paper's letters.
-#[derive(Debug, Clone, Copy)]
-struct Interface<T> {
-    /// 1 / F_V
-    compliance: T,
-    /// G_psi
-    g_psi: T,
-    /// s_i = k_c / F_V
-    s: T,
-    /// a_i s_i = F_psi G_V / F_V^2  (31)
-    a_s: T,
-}
-
-impl<T: Real> Interface<T> {
-    fn at(law: &impl Law, v: T) -> Self {
-        let [rate, psi] = Jet::<T, 2>::variables([v, law.steady_state(v)]);
-        let [f_v, f_psi] = law.stress(rate, psi).gradient;
-        let [minus_g_v, minus_g_psi] = law.evolution(rate, psi).gradient;
-        Interface {
-            compliance: T::constant(1.0) / f_v,
-            g_psi: -minus_g_psi,
-            s: critical_stiffness(law, v) / f_v,
-            a_s: -(f_psi * minus_g_v / (f_v * f_v)),
-        }
-    }
 }
 
 /// Eigenvalues and verdict of an equilibrium at stiffness K.
@@ -180,13 +154,9 @@ fn symmetric_verdict(one: &Interface<Interval>, _k: f64) -> Verdict {
     verdict(one.s)
 }
 
-/// Routh-Hurwitz for (30), s^3 + c_2 s^2 + c_1 s + c_0.
+/// Routh-Hurwitz for (30).
 fn asymmetric_verdict(one: &Interface<Interval>, two: &Interface<Interval>, k: f64) -> Verdict {
-    let s_3 = (one.compliance + two.compliance) * k;
-    let (sum, product) = (one.s + two.s, one.s * two.s);
-    let c_2 = s_3 - sum;
-    let c_1 = product - s_3 * sum + (one.a_s + two.a_s) * k;
-    let c_0 = s_3 * product - (one.a_s * two.s + two.a_s * one.s) * k;
+    let [c_2, c_1, c_0] = routh_hurwitz(one, two, Interval::constant(k));
     let conditions = [c_2, c_0, c_2 * c_1 - c_0].map(Interval::sign);
     if conditions.contains(&Some(-1.0)) {
         Verdict::Unstable

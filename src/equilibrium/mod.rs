@@ -5,12 +5,15 @@
 //! KINSOL the two logarithms of the rates.
 
 mod eigenvalues;
+mod interface;
 mod isolate;
 #[cfg(feature = "sundials")]
 mod kinsol;
 mod newton;
 
 pub use eigenvalues::{Stability, Verdict, stability};
+pub(crate) use interface::{Interface, routh_hurwitz};
+pub(crate) use isolate::quotient;
 
 use crate::error::Result;
 use crate::friction::{AnyLaw, Law, positive, steady_stress_within, with_law};
@@ -51,6 +54,22 @@ pub struct Equilibrium {
 }
 
 impl Equilibrium {
+    /// The state in which one or two interfaces slide alike at V_H.
+    pub(crate) fn symmetric(law: &impl Law, driving: f64, interfaces: usize) -> Self {
+        let each = driving / interfaces as f64;
+        Self::at(law, Symmetry::Symmetric, &vec![(each, 0.0); interfaces])
+    }
+
+    /// The asymmetric state at V_H with this slower rate, enclosed: without bounds where it can't be, as at the fold V_sn.
+    pub(crate) fn asymmetric(law: &impl Law, driving: f64, slow: f64) -> Self {
+        // of the two, the faster rate is the one that V_H - V does not rob of digits
+        let fast = driving - slow;
+        // The error budget belongs to the number, not to the solver: signs on both sides of it, in intervals.
+        let radius = enclosing_radius(slow, |s| quotient(law, driving, s));
+        let rates = [(slow, radius), (fast, radius + fast * f64::EPSILON)];
+        Self::at(law, Symmetry::Asymmetric, &rates)
+    }
+
     /// psi of each interface.
     pub fn state(&self) -> Vec<f64> {
         self.log_state.iter().map(|w| w.exp()).collect()
@@ -138,8 +157,7 @@ pub fn steady_states(
 }
 
 fn of_law(law: &impl Law, driving: f64, interfaces: usize, solver: Solver) -> Result<SteadyStates> {
-    let each = driving / interfaces as f64;
-    let symmetric = Equilibrium::at(law, Symmetry::Symmetric, &vec![(each, 0.0); interfaces]);
+    let symmetric = Equilibrium::symmetric(law, driving, interfaces);
     let mut found = SteadyStates {
         equilibria: vec![symmetric],
         complete: true,
@@ -153,14 +171,9 @@ fn of_law(law: &impl Law, driving: f64, interfaces: usize, solver: Solver) -> Re
             Solver::Newton => newton::solve(law, driving, &isolation.brackets)?,
         };
         for slow in slower_rates {
-            // of the two, the faster rate is the one that V_H - V does not rob of digits
-            let fast = driving - slow;
-            // The error budget belongs to the number, not to the solver: signs on both sides of it, in intervals.
-            let radius = enclosing_radius(slow, |s| isolate::quotient(law, driving, s));
-            let rates = [(slow, radius), (fast, radius + fast * f64::EPSILON)];
             found
                 .equilibria
-                .push(Equilibrium::at(law, Symmetry::Asymmetric, &rates));
+                .push(Equilibrium::asymmetric(law, driving, slow));
         }
     }
     found

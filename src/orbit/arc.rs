@@ -114,7 +114,10 @@ impl<const N: usize> Tracer<N> {
     }
 
     /// By Taylor's method with this tolerance.
-    pub(super) fn taylor(tolerance: f64) -> Result<Self> {
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for a tolerance outside its domain.
+    pub fn taylor(tolerance: f64) -> Result<Self> {
         Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, MAX_STEPS)
     }
 

@@ -6,6 +6,7 @@ mod sharp;
 mod branch;
 mod curve;
 mod locus;
+pub mod normal_form;
 mod rows;
 mod top;
 

@@ -1,0 +1,125 @@
+//! Branches of equilibria, and the curves of their bifurcations in the (V_H, K) plane.
+//!
+//! Equilibria are the steady states (20); their pitchforks, folds and Hopf points are found by [`continuation`](crate::continuation)
+//! and then computed from closed forms and one-dimensional zeros, to the last digits and with error budgets.
+
+mod branch;
+mod crossing;
+mod curves;
+mod hopf;
+mod hopf_curve;
+mod hopf_special;
+mod inputs;
+mod lyapunov;
+mod pieces;
+mod rates;
+mod special;
+mod stationary;
+mod vertical;
+
+use super::{BranchRequest, LocusKind, LocusRequest, Seen};
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::orbit::Slab;
+use special::Teller;
+
+/// All branches of equilibria over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
+///
+/// Symmetric branch first. Labels: `BP` (23), with the coefficient of (24); `LP`, the fold V_sn; `HB` with the first Lyapunov
+/// coefficient, where <q, q> = 1 in (tau, psi_1, psi_2), and the period 2 pi / omega; `UZ` and `EP`; `MX` where a branch had to
+/// be given up. States that differ by an exchange of the interfaces are one. A branch ends at a pitchfork, as `BP`.
+///
+/// # Errors
+/// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense; those of
+/// [`steady_states`](crate::equilibrium::steady_states). That the observer ended it is none.
+pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
+    checked(
+        &request.slab,
+        request.symmetry,
+        request.step,
+        request.tolerance,
+    )?;
+    positive("driving", request.slab.loading.driving)?;
+    positive("stiffness", request.slab.loading.stiffness)?;
+    range("range", request.range)?;
+    values("wanted value", &request.at)?;
+    branch::branch(request, seen)
+}
+
+/// The curves of pitchforks, of folds or of Hopf points of equilibria within ranges of V_H and K.
+///
+/// Along Hopf points: `TOP`, the largest K; `GH`, a zero of the first Lyapunov coefficient; `BT`, `ZH`; `UZ` at every crossing of
+/// a wanted value; `EP` where a curve leaves the ranges.
+///
+/// # Errors
+/// As of [`branch`]; [`Error::Input`] for a kind of curve that is not of equilibria.
+pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
+    checked(
+        &request.slab,
+        request.symmetry,
+        request.step,
+        request.tolerance,
+    )?;
+    range("driving range", request.driving)?;
+    range("stiffness range", request.stiffness)?;
+    values("wanted driving", &request.at_driving)?;
+    values("wanted stiffness", &request.at_stiffness)?;
+    let tolerance = request.tolerance;
+    let mut teller = Teller { seen, tolerance };
+    // an observer's end is no error
+    let _ = match request.kind {
+        LocusKind::Hopf => hopf_curve::locus(request, &mut teller)?,
+        LocusKind::Pitchfork | LocusKind::SaddleNode if request.slab.interfaces == 1 => {
+            return Err(Error::Input(
+                "a single interface has one steady state, without pitchforks and folds; take two"
+                    .into(),
+            ));
+        }
+        LocusKind::Pitchfork | LocusKind::SaddleNode => vertical::locus(request, &mut teller)?,
+        _ => {
+            return Err(Error::Input(
+                "this is a curve of orbits, not of equilibria".into(),
+            ));
+        }
+    };
+    Ok(())
+}
+
+fn checked(slab: &Slab, symmetry: Option<Symmetry>, step: f64, tolerance: f64) -> Result<()> {
+    if !(1..=2).contains(&slab.interfaces) {
+        return Err(Error::parameter("interfaces", slab.interfaces, "1 or 2"));
+    }
+    if slab.interfaces == 1 && symmetry == Some(Symmetry::Asymmetric) {
+        return Err(Error::Input(
+            "a single interface has no asymmetric states; take two".into(),
+        ));
+    }
+    positive("step", step)?;
+    positive("tolerance", tolerance)?;
+    Ok(())
+}
+
+fn positive(name: &str, value: f64) -> Result<f64> {
+    if value > 0.0 && value.is_finite() {
+        Ok(value)
+    } else {
+        Err(Error::parameter(name, value, "positive and finite"))
+    }
+}
+
+fn range(name: &str, (from, to): (f64, f64)) -> Result<()> {
+    positive(name, from)?;
+    positive(name, to)?;
+    if from == to {
+        return Err(Error::parameter(
+            name,
+            format!("{from} to {to}"),
+            "from one value to another",
+        ));
+    }
+    Ok(())
+}
+
+fn values(name: &str, all: &[f64]) -> Result<()> {
+    all.iter().try_for_each(|&x| positive(name, x).map(|_| ()))
+}

@@ -1,0 +1,49 @@
+//! Handing on what is found, with a word where a special point is less accurate than was asked for.
+
+use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Seen, Special};
+use crate::number::Uncertain;
+use std::ops::ControlFlow;
+
+/// Tells the observer.
+pub(super) struct Teller<'a> {
+    pub seen: Seen<'a>,
+    /// Asked for, relative.
+    pub tolerance: f64,
+}
+
+impl Teller<'_> {
+    pub fn branch(&mut self, row: BranchRow) -> ControlFlow<()> {
+        (self.seen)(Event::Branch(row))
+    }
+
+    pub fn locus(&mut self, row: LocusRow) -> ControlFlow<()> {
+        (self.seen)(Event::Locus(row))
+    }
+
+    pub fn special(&mut self, mut special: Special) -> ControlFlow<()> {
+        let off = |x: &Uncertain| x.uncertainty > self.tolerance * x.value.abs();
+        if off(&special.driving) || off(&special.stiffness) {
+            let before = special
+                .note
+                .take()
+                .map_or(String::new(), |note| note + "; ");
+            special.note = Some(before + "less accurate than asked for");
+        }
+        (self.seen)(Event::Special(special))
+    }
+}
+
+impl Special {
+    /// A point that is known exactly and of which nothing else is.
+    pub(super) fn at(label: Label, driving: f64, stiffness: f64) -> Self {
+        Special {
+            label,
+            driving: Uncertain::new(driving, 0.0),
+            stiffness: Uncertain::new(stiffness, 0.0),
+            period: None,
+            criticality: None,
+            coefficient: None,
+            note: None,
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! Curves of pitchforks and folds in the (V_H, K) plane: vertical lines, as both are the same at every stiffness.
+//!
+//! Looked for on them: a second zero eigenvalue. On a pitchfork line there is none at K > 0, as there (26) leaves
+//! s^2 + 2 K s / F_V + 2 K G_psi / F_V with positive coefficients, and nothing degenerates along it. On a fold line c_1 of
+//! (30) has one zero, a Bogdanov-Takens point; with the paper's parameters it lies at K = 4.4e-13, next to nothing.
+
+use super::curves::{AlongDriving, Curve};
+use super::pieces::Ends;
+use super::special::Teller;
+use super::stationary::{Fold, fold, pitchforks};
+use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
+use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
+use crate::error::Result;
+use crate::friction::AnyLaw;
+use crate::number::Uncertain;
+use std::ops::ControlFlow;
+
+/// The longest step in ln K.
+const LONGEST: f64 = 0.2;
+
+/// A vertical line.
+struct Line {
+    driving: Uncertain,
+    criticality: Option<Criticality>,
+    coefficient: Option<f64>,
+    /// What lies on it.
+    bogdanov_takens: Option<Uncertain>,
+}
+
+pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<ControlFlow<()>> {
+    let (from, to) = request.driving;
+    let law = &request.slab.law;
+    let lines: Vec<Line> = if request.kind == LocusKind::Pitchfork {
+        let all = pitchforks(law).into_iter();
+        all.map(|p| Line {
+            driving: p.driving,
+            criticality: Some(p.criticality).filter(|_| request.criticality),
+            coefficient: Some(p.coefficient).filter(|_| request.criticality),
+            bogdanov_takens: None,
+        })
+        .collect()
+    } else {
+        let all = folds(law, request.driving)?.into_iter();
+        all.map(|f| Line {
+            driving: f.driving,
+            criticality: None,
+            coefficient: None,
+            bogdanov_takens: f.bogdanov_takens(law),
+        })
+        .collect()
+    };
+    let inside = |line: &&Line| (from.min(to)..=from.max(to)).contains(&line.driving.value);
+    for (number, line) in lines.iter().filter(inside).enumerate() {
+        if along(request, line, number, teller).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+    }
+    Ok(ControlFlow::Continue(()))
+}
+
+/// All values of K to be shown, in order, with what they are.
+fn values(request: &LocusRequest, line: &Line) -> Vec<(Uncertain, Option<Label>)> {
+    let (from, to) = request.stiffness;
+    let (low, high) = (from.min(to), from.max(to));
+    let parts = ((high / low).ln() / (LONGEST * request.step))
+        .ceil()
+        .max(1.0);
+    let exact = |k: f64| Uncertain::new(k, 0.0);
+    let mut all: Vec<_> = (1..parts as usize)
+        .map(|i| low * (high / low).powf(i as f64 / parts))
+        .map(|k| (exact(k), None))
+        .collect();
+    all.extend([low, high].map(|k| (exact(k), Some(Label::Ep))));
+    let wanted = request
+        .at_stiffness
+        .iter()
+        .map(|&k| (exact(k), Some(Label::Uz)));
+    let special = line.bogdanov_takens.map(|k| (k, Some(Label::Bt)));
+    all.extend(
+        wanted
+            .chain(special)
+            .filter(|(k, _)| (low..=high).contains(&k.value)),
+    );
+    all.sort_by(|(a, _), (b, _)| a.value.total_cmp(&b.value));
+    if from > to {
+        all.reverse();
+    }
+    all
+}
+
+fn along(
+    request: &LocusRequest,
+    line: &Line,
+    curve: usize,
+    teller: &mut Teller<'_>,
+) -> ControlFlow<()> {
+    for (stiffness, label) in values(request, line) {
+        teller.locus(LocusRow {
+            curve,
+            driving: line.driving,
+            stiffness,
+            period: None,
+            angle_over_pi: None,
+            criticality: line.criticality,
+            label,
+        })?;
+        if let Some(label) = label {
+            teller.special(Special {
+                driving: line.driving,
+                stiffness,
+                criticality: line.criticality,
+                coefficient: line.coefficient,
+                ..Special::at(label, line.driving.value, stiffness.value)
+            })?;
+        }
+    }
+    ControlFlow::Continue(())
+}
+
+/// Sees folds and keeps the rates.
+struct Hunt {
+    found: Vec<[f64; 2]>,
+}
+
+impl Watch for Hunt {
+    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+        Ok(vec![point.u[0], point.lambda_slope() / point.u[0]])
+    }
+    fn ends(&self, test: usize) -> bool {
+        test == 0
+    }
+    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
+        if mark == Mark::Zero(1) {
+            self.found
+                .push(Curve::Asymmetric.rates(point, point.lambda.exp()));
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+/// All folds of asymmetric states within a range of V_H.
+fn folds(law: &AnyLaw, (from, to): (f64, f64)) -> Result<Vec<Fold>> {
+    let settings = Settings::new((from.min(to).ln(), from.max(to).ln()), LONGEST)?;
+    let problem = AlongDriving {
+        law,
+        curve: Curve::Asymmetric,
+    };
+    let mut hunt = Hunt { found: Vec::new() };
+    let mut ends = Ends::of(law, (from, to))?;
+    while let Some(begin) = ends.next() {
+        let branch = follow(&problem, &begin.start, &settings, &mut hunt)?;
+        if let Stop::StepTooSmall {
+            because: Some(error),
+            ..
+        } = branch.stopped
+        {
+            return Err(error);
+        }
+        ends.reached(&branch);
+    }
+    Ok(hunt
+        .found
+        .iter()
+        .filter_map(|&rates| fold(law, rates))
+        .collect())
+}

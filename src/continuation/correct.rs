@@ -1,0 +1,132 @@
+//! Newton's method on the extended system: the N equations, and one that fixes the place on the curve.
+
+use super::{Point, ZeroProblem};
+use crate::error::{Error, Result};
+use nalgebra::{DMatrix, DVector};
+
+/// Newton steps before a try counts as failed.
+const MOST: usize = 12;
+/// Where corrections no longer shrink they are rounding, if they are below this many times the tolerance.
+const ROUNDING: f64 = 1e4;
+
+/// (u, lambda) as one vector.
+pub(super) fn joined(u: &DVector<f64>, lambda: f64) -> DVector<f64> {
+    u.push(lambda)
+}
+
+/// The equation that fixes the place: `normal` times (u, lambda) is `offset`.
+#[derive(Debug)]
+pub(super) struct Plane {
+    pub normal: DVector<f64>,
+    pub offset: f64,
+}
+
+impl Plane {
+    /// All points at this distance along the tangent.
+    pub fn ahead(point: &Point, distance: f64) -> Self {
+        let here = joined(&point.u, point.lambda);
+        Plane {
+            offset: point.tangent.dot(&here) + distance,
+            normal: point.tangent.clone(),
+        }
+    }
+
+    /// All points of this lambda.
+    pub fn lambda(dimension: usize, value: f64) -> Self {
+        let mut normal = DVector::zeros(dimension + 1);
+        normal[dimension] = 1.0;
+        Plane {
+            normal,
+            offset: value,
+        }
+    }
+}
+
+/// dG/d(u, lambda), and the plane's normal below.
+fn bordered(
+    problem: &dyn ZeroProblem,
+    x: &DVector<f64>,
+    last: &DVector<f64>,
+) -> Result<DMatrix<f64>> {
+    let n = problem.dimension();
+    let upper = problem.jacobian(&x.rows(0, n).into_owned(), x[n])?;
+    let mut matrix = DMatrix::zeros(n + 1, n + 1);
+    matrix.view_mut((0, 0), (n, n + 1)).copy_from(&upper);
+    matrix.row_mut(n).copy_from(&last.transpose());
+    Ok(matrix)
+}
+
+fn failed(iterations: usize, residual: f64, tolerance: f64) -> Error {
+    Error::NotConverged {
+        what: "a point of the curve",
+        iterations,
+        // a NaN would say nothing
+        residual: if residual.is_nan() {
+            f64::INFINITY
+        } else {
+            residual
+        },
+        tolerance,
+    }
+}
+
+/// The point of the curve in the plane, near `guess`, with the number of Newton steps.
+pub(super) fn onto(
+    problem: &dyn ZeroProblem,
+    guess: &DVector<f64>,
+    plane: &Plane,
+    tolerance: f64,
+) -> Result<(DVector<f64>, usize)> {
+    let n = problem.dimension();
+    let mut x = guess.clone();
+    let mut last = f64::INFINITY;
+    for iteration in 1..=MOST {
+        let g = problem.residual(&x.rows(0, n).into_owned(), x[n])?;
+        let right = joined(&-g, plane.offset - plane.normal.dot(&x));
+        let matrix = bordered(problem, &x, &plane.normal)?;
+        let Some(change) = matrix.lu().solve(&right) else {
+            return Err(failed(iteration, last, tolerance));
+        };
+        let size = change.amax() / (1.0 + x.amax());
+        if !size.is_finite() {
+            return Err(failed(iteration, last, tolerance));
+        }
+        x += change;
+        if size <= tolerance {
+            return Ok((x, iteration));
+        }
+        if size > 0.5 * last {
+            return if size <= ROUNDING * tolerance {
+                Ok((x, iteration))
+            } else {
+                Err(failed(iteration, size, tolerance))
+            };
+        }
+        last = size;
+    }
+    if last <= ROUNDING * tolerance {
+        return Ok((x, MOST));
+    }
+    Err(failed(MOST, last, tolerance))
+}
+
+/// The unit tangent at x whose product with `along` is positive.
+pub(super) fn tangent(
+    problem: &dyn ZeroProblem,
+    x: &DVector<f64>,
+    along: &DVector<f64>,
+) -> Result<DVector<f64>> {
+    let n = problem.dimension();
+    let matrix = bordered(problem, x, along)?;
+    let mut right = DVector::zeros(n + 1);
+    right[n] = 1.0;
+    let direction = matrix
+        .lu()
+        .solve(&right)
+        .ok_or_else(|| failed(0, f64::INFINITY, 0.0))?;
+    let length = direction.norm();
+    if !(length.is_finite() && length > 0.0) {
+        return Err(failed(0, length, 0.0));
+    }
+    Ok(direction / length)
+}

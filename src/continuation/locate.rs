@@ -1,0 +1,252 @@
+//! What lies within one step: zeros of the test functions, wanted values, the ends of the range.
+
+use super::correct::{Plane, joined, onto, tangent};
+use super::{Mark, Point, Settings, Watch, ZeroProblem};
+use crate::error::Result;
+use nalgebra::DVector;
+
+/// Looks at a supposed dip in a test function, per step.
+const LOOKS: usize = 12;
+/// A dip is looked at where the parabola falls below this part of the value in the middle.
+const DIP: f64 = 0.5;
+/// Nearer to a known value than this part of the step nothing is looked at.
+const NEAR: f64 = 0.01;
+/// Evaluations for one zero: the bracket at least halves with every third.
+const EVALUATIONS: usize = 100;
+
+/// One step of a curve, on which every point can be had.
+pub(super) struct Step<'a> {
+    pub problem: &'a dyn ZeroProblem,
+    pub settings: &'a Settings,
+    pub from: &'a Point,
+    pub to: &'a Point,
+    pub length: f64,
+}
+
+/// A point within the step, the distance to its plane, and all functions that are watched.
+#[derive(Debug, Clone)]
+struct Sample {
+    s: f64,
+    point: Point,
+    values: Vec<f64>,
+}
+
+/// Something met on the way.
+#[derive(Debug, Clone)]
+pub(super) struct Met {
+    pub s: f64,
+    pub point: Point,
+    pub mark: Mark,
+}
+
+impl Step<'_> {
+    /// The point at distance s along the tangent of the first.
+    fn at(&self, s: f64) -> Result<Point> {
+        if s == 0.0 || s == self.length {
+            return Ok(if s == 0.0 { self.from } else { self.to }.clone());
+        }
+        // Hermite's cubic between both ends
+        let h = self.length;
+        let (x0, x1) = (
+            joined(&self.from.u, self.from.lambda),
+            joined(&self.to.u, self.to.lambda),
+        );
+        let (d0, d1) = (
+            &self.from.tangent * h,
+            &self.to.tangent * (h / self.to.tangent.dot(&self.from.tangent)),
+        );
+        let t = s / h;
+        let (a, b) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
+        let guess = &x0 * (1.0 - a) + &x1 * a + d0 * (b * (1.0 - t)) - d1 * (b * t);
+        let plane = Plane::ahead(self.from, s);
+        self.corrected(&guess, &plane, s)
+    }
+
+    fn corrected(&self, guess: &DVector<f64>, plane: &Plane, s: f64) -> Result<Point> {
+        let n = self.problem.dimension();
+        let (x, _) = onto(self.problem, guess, plane, self.settings.tolerance)?;
+        Ok(Point {
+            u: x.rows(0, n).into_owned(),
+            lambda: x[n],
+            tangent: tangent(self.problem, &x, &self.from.tangent)?,
+            arclength: self.from.arclength + s,
+        })
+    }
+
+    fn sample(&self, watch: &dyn Watch, s: f64) -> Result<Sample> {
+        let point = self.at(s)?;
+        let values = values(self.settings, watch, &point)?;
+        Ok(Sample { s, point, values })
+    }
+
+    /// Where the step comes back to the curve's first point.
+    fn closing(&self, first: &Point) -> Option<Met> {
+        /// Two points are one if they differ by no more than this many tolerances.
+        const SAME: f64 = 1e5;
+        let x = joined(&first.u, first.lambda);
+        let s = self
+            .from
+            .tangent
+            .dot(&(&x - joined(&self.from.u, self.from.lambda)));
+        let onward = first.tangent.dot(&self.from.tangent) > 0.0;
+        if !(onward && s > 0.0 && s <= self.length) {
+            return None;
+        }
+        let point = self.at(s).ok()?;
+        let apart = (x - joined(&point.u, point.lambda)).amax();
+        let mark = Mark::Begin;
+        (apart <= SAME * self.settings.tolerance * (1.0 + first.u.amax())).then_some(Met {
+            s,
+            point,
+            mark,
+        })
+    }
+
+    /// All that the step meets, in order; `first` is where the curve began, unless it begins here.
+    pub fn met(&self, watch: &dyn Watch, first: Option<&Point>) -> Result<Vec<Met>> {
+        let mut samples = vec![self.sample(watch, 0.0)?];
+        samples.push(self.sample(watch, 0.5 * self.length)?);
+        samples.push(self.sample(watch, self.length)?);
+        for _ in 0..LOOKS {
+            let Some(s) = self.dip(&samples) else { break };
+            let place = samples.partition_point(|x| x.s < s);
+            samples.insert(place, self.sample(watch, s)?);
+        }
+        let mut found = Vec::new();
+        for pair in samples.windows(2) {
+            for i in 0..pair[0].values.len() {
+                let (a, b) = (pair[0].values[i], pair[1].values[i]);
+                if a * b < 0.0 || (b == 0.0 && a != 0.0 && a.is_finite()) {
+                    found.push(self.zero(watch, i, &pair[0], &pair[1])?);
+                }
+            }
+        }
+        found.extend(first.and_then(|first| self.closing(first)));
+        // the curve's end last, so that what lies on it is met
+        let after = |mark: Mark| matches!(mark, Mark::Lowest | Mark::Highest | Mark::Begin);
+        found.sort_by(|a, b| a.s.total_cmp(&b.s).then(after(a.mark).cmp(&after(b.mark))));
+        Ok(found)
+    }
+
+    /// Where a test function without a change of sign in three neighbours may dip through zero.
+    fn dip(&self, samples: &[Sample]) -> Option<f64> {
+        for three in samples.windows(3) {
+            let s = [three[0].s, three[1].s, three[2].s];
+            for i in 0..three[0].values.len() {
+                let f = [three[0].values[i], three[1].values[i], three[2].values[i]];
+                let Some((at, value)) = vertex(s, f) else {
+                    continue;
+                };
+                let low = value * f[1].signum() < DIP * f[1].abs();
+                let fresh = samples
+                    .iter()
+                    .all(|x| (x.s - at).abs() > NEAR * self.length);
+                if low && fresh {
+                    return Some(at);
+                }
+            }
+        }
+        None
+    }
+
+    /// The zero of one function between two samples, by inverse quadratic interpolation in a bracket (Chandrupatla 1997).
+    fn zero(&self, watch: &dyn Watch, i: usize, a: &Sample, b: &Sample) -> Result<Met> {
+        let (mut a, mut b) = (b.clone(), a.clone());
+        let mut best = a.clone();
+        if best.values[i] == 0.0 {
+            return self.landed(i, best);
+        }
+        let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(NEAR, 1.0 - NEAR);
+        for _ in 0..EVALUATIONS {
+            let x = self.sample(watch, a.s + t * (b.s - a.s))?;
+            let c;
+            if x.values[i].signum() == a.values[i].signum() {
+                c = std::mem::replace(&mut a, x);
+            } else {
+                c = std::mem::replace(&mut b, std::mem::replace(&mut a, x));
+            }
+            best = if a.values[i].abs() < b.values[i].abs() {
+                a.clone()
+            } else {
+                b.clone()
+            };
+            let width = (b.s - a.s).abs();
+            let limit = 2.0 * f64::EPSILON * (best.s.abs() + 0.01 * self.length);
+            if best.values[i] == 0.0 || width <= 2.0 * limit {
+                break;
+            }
+            t = next_fraction([a.s, b.s, c.s], [a.values[i], b.values[i], c.values[i]]);
+            let margin = (limit / width).min(0.5);
+            t = t.clamp(margin, 1.0 - margin);
+        }
+        self.landed(i, best)
+    }
+
+    /// A zero as what it means; with exactly the value of lambda where it means one.
+    fn landed(&self, i: usize, sample: Sample) -> Result<Met> {
+        let (mark, value) = meaning(self.settings, i, sample.values.len());
+        let Sample { s, mut point, .. } = sample;
+        if let Some(value) = value {
+            let guess = joined(&point.u, value);
+            let plane = Plane::lambda(self.problem.dimension(), value);
+            // at a fold lambda alone does not say where; the point is there already
+            if let Ok(exact) = self.corrected(&guess, &plane, s) {
+                point = exact;
+            }
+            point.lambda = value;
+        }
+        Ok(Met { s, point, mark })
+    }
+}
+
+/// The test functions, then lambda less each wanted value, then less both ends of the range.
+fn values(settings: &Settings, watch: &dyn Watch, point: &Point) -> Result<Vec<f64>> {
+    let mut all = watch.tests(point)?;
+    all.extend(settings.wanted.iter().map(|w| point.lambda - w));
+    all.push(point.lambda - settings.range.0);
+    all.push(point.lambda - settings.range.1);
+    Ok(all)
+}
+
+/// What the zero of the i-th function is, and its value of lambda.
+fn meaning(settings: &Settings, i: usize, count: usize) -> (Mark, Option<f64>) {
+    let wanted = settings.wanted.len();
+    let tests = count - wanted - 2;
+    if i < tests {
+        (Mark::Zero(i), None)
+    } else if i < tests + wanted {
+        (Mark::Wanted(i - tests), Some(settings.wanted[i - tests]))
+    } else if i == tests + wanted {
+        (Mark::Lowest, Some(settings.range.0))
+    } else {
+        (Mark::Highest, Some(settings.range.1))
+    }
+}
+
+/// Place and value of the extremum, inside, of the parabola through three values of one sign.
+fn vertex(s: [f64; 3], f: [f64; 3]) -> Option<(f64, f64)> {
+    let one_sign = f[0] * f[1] > 0.0 && f[1] * f[2] > 0.0;
+    if !one_sign {
+        return None;
+    }
+    let left = (f[1] - f[0]) / (s[1] - s[0]);
+    let right = (f[2] - f[1]) / (s[2] - s[1]);
+    let curvature = (right - left) / (s[2] - s[0]);
+    let slope = left + curvature * (s[1] - s[0]);
+    let towards = -0.5 * slope / curvature;
+    let at = s[1] + towards;
+    let value = f[1] + 0.5 * slope * towards;
+    let inside = at > s[0] && at < s[2] && value.is_finite() && curvature * f[1] > 0.0;
+    inside.then_some((at, value))
+}
+
+/// Where in the bracket to look next, as a part of it from its first end.
+fn next_fraction([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> f64 {
+    let xi = (a - b) / (c - b);
+    let phi = (fa - fb) / (fc - fb);
+    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+        fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    } else {
+        0.5
+    }
+}

@@ -1,0 +1,293 @@
+//! Curves of zeros with known shapes: circle, cusp, pitchfork, and what lies on them.
+#![allow(missing_docs)]
+
+use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
+use twinslip::continuation::{Mark, Point, Settings, Start, Stop, Watch, ZeroProblem, follow};
+use twinslip::{Error, Result};
+
+/// One equation in one unknown, with its two derivatives.
+struct Scalar<F: Fn(f64, f64) -> [f64; 3]>(F);
+
+impl<F: Fn(f64, f64) -> [f64; 3]> ZeroProblem for Scalar<F> {
+    fn dimension(&self) -> usize {
+        1
+    }
+    fn residual(&self, u: &DVector<f64>, lambda: f64) -> Result<DVector<f64>> {
+        Ok(DVector::from_element(1, (self.0)(u[0], lambda)[0]))
+    }
+    fn jacobian(&self, u: &DVector<f64>, lambda: f64) -> Result<DMatrix<f64>> {
+        let [_, by_u, by_lambda] = (self.0)(u[0], lambda);
+        Ok(DMatrix::from_row_slice(1, 2, &[by_u, by_lambda]))
+    }
+}
+
+/// Test functions of a point, and how many points may be seen.
+struct Look<T: Fn(&Point) -> Vec<f64>> {
+    tests: T,
+    patience: usize,
+    ending: Option<usize>,
+}
+
+impl<T: Fn(&Point) -> Vec<f64>> Watch for Look<T> {
+    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+        Ok((self.tests)(point))
+    }
+    fn ends(&self, test: usize) -> bool {
+        self.ending == Some(test)
+    }
+    fn seen(&mut self, _: &Point, _: Mark) -> ControlFlow<()> {
+        self.patience -= 1;
+        if self.patience == 0 {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+}
+
+fn look<T: Fn(&Point) -> Vec<f64>>(tests: T) -> Look<T> {
+    Look {
+        tests,
+        patience: usize::MAX,
+        ending: None,
+    }
+}
+
+fn start(u: f64, lambda: f64, direction: [f64; 2]) -> Start {
+    Start {
+        u: DVector::from_element(1, u),
+        lambda,
+        direction: DVector::from_row_slice(&direction),
+    }
+}
+
+fn circle(u: f64, l: f64) -> [f64; 3] {
+    [u * u + l * l - 1.0, 2.0 * u, 2.0 * l]
+}
+
+/// u^3 - u + lambda: folds at u = +-1/sqrt 3.
+fn s_shaped(u: f64, l: f64) -> [f64; 3] {
+    [u * u * u - u + l, 3.0 * u * u - 1.0, 1.0]
+}
+
+#[test]
+fn a_circle_is_closed_and_has_two_folds() {
+    let settings = Settings::new((-2.0, 2.0), 0.2).unwrap();
+    let mut watch = look(|p| vec![p.lambda_slope(), p.u[0] - 0.6]);
+    let branch = follow(
+        &Scalar(circle),
+        &start(1.0, 0.0, [0.0, 1.0]),
+        &settings,
+        &mut watch,
+    )
+    .unwrap();
+    assert_eq!(branch.stopped, Stop::Closed);
+    let marks: Vec<_> = branch
+        .points
+        .iter()
+        .filter(|(_, mark)| *mark != Mark::Step)
+        .map(|(p, mark)| (*mark, p.u[0], p.lambda))
+        .collect();
+    let expected = [
+        (Mark::Begin, 1.0, 0.0),
+        (Mark::Zero(1), 0.6, 0.8),
+        (Mark::Zero(0), 0.0, 1.0),
+        (Mark::Zero(0), 0.0, -1.0),
+        (Mark::Zero(1), 0.6, -0.8),
+        (Mark::Begin, 1.0, 0.0),
+    ];
+    assert_eq!(marks.len(), expected.len(), "{marks:?}");
+    for ((mark, u, lambda), (mark_0, u_0, lambda_0)) in marks.iter().zip(expected) {
+        assert_eq!(*mark, mark_0);
+        assert!(
+            (u - u_0).abs() < 1e-13 && (lambda - lambda_0).abs() < 1e-13,
+            "{mark:?}: {u} {lambda}"
+        );
+    }
+    for (p, _) in &branch.points {
+        assert!((p.u[0].hypot(p.lambda) - 1.0).abs() < 1e-14);
+    }
+}
+
+#[test]
+fn the_same_special_points_whatever_the_steps() {
+    let fold = 1.0 / 3_f64.sqrt();
+    let fold_lambda = fold - fold.powi(3);
+    for longest in [0.8, 0.2, 0.05, 0.0125] {
+        let mut settings = Settings::new((-1.0, 1.0), longest).unwrap();
+        settings.wanted = vec![0.2];
+        // a parabola of the unknown that is negative over 0.02 only: two zeros that a long step contains both
+        let mut watch = look(|p| vec![p.lambda_slope(), (p.u[0] + 0.31) * (p.u[0] + 0.33)]);
+        let begin = start(1.3247179572447461, -1.0, [0.0, 1.0]);
+        let branch = follow(&Scalar(s_shaped), &begin, &settings, &mut watch).unwrap();
+        assert_eq!(branch.stopped, Stop::RangeEnd);
+        let special: Vec<_> = branch
+            .points
+            .iter()
+            .filter(|(_, mark)| *mark != Mark::Step)
+            .map(|(p, mark)| (*mark, p.u[0], p.lambda))
+            .collect();
+        let root = |guess: f64| {
+            let mut u = guess;
+            for _ in 0..50 {
+                u -= s_shaped(u, 0.2)[0] / s_shaped(u, 0.2)[1];
+            }
+            u
+        };
+        let on = |u: f64| u - u * u * u;
+        let expected = [
+            (Mark::Begin, 1.3247179572447461, -1.0),
+            (Mark::Wanted(0), root(0.9), 0.2),
+            (Mark::Zero(0), fold, fold_lambda),
+            (Mark::Wanted(0), root(0.2), 0.2),
+            (Mark::Zero(1), -0.31, on(-0.31)),
+            (Mark::Zero(1), -0.33, on(-0.33)),
+            (Mark::Zero(0), -fold, -fold_lambda),
+            (Mark::Wanted(0), root(-1.1), 0.2),
+            (Mark::Highest, -1.3247179572447461, 1.0),
+        ];
+        assert_eq!(
+            special.len(),
+            expected.len(),
+            "longest {longest}: {special:?}"
+        );
+        for ((mark, u, lambda), (mark_0, u_0, lambda_0)) in special.iter().zip(expected) {
+            assert_eq!(*mark, mark_0, "longest {longest}");
+            assert!(
+                (u - u_0).abs() < 1e-12,
+                "longest {longest}, {mark:?}: {u}, not {u_0}"
+            );
+            assert!((lambda - lambda_0).abs() < 1e-12);
+            if matches!(mark, Mark::Wanted(_) | Mark::Highest) {
+                assert_eq!(*lambda, lambda_0, "landed exactly");
+            }
+        }
+    }
+}
+
+/// The surface x^3 + lambda x = mu of a cusp, cut close to its tip.
+#[test]
+fn through_the_tip_of_a_cusp() {
+    // x^3 + lambda x = 0.001: nearly a pitchfork, folds of two separate curves; the lower one has its fold
+    // at x = -(0.0005)^(1/3)
+    let problem = Scalar(|x: f64, l: f64| [x * x * x + l * x - 0.001, 3.0 * x * x + l, x]);
+    let settings = Settings::new((-1.0, 1.0), 0.1).unwrap();
+    let x = -1.0005;
+    let mut watch = look(|p| vec![p.lambda_slope()]);
+    let branch = follow(
+        &problem,
+        &start(x + 0.001, -1.0, [0.0, 1.0]),
+        &settings,
+        &mut watch,
+    )
+    .unwrap();
+    assert_eq!(branch.stopped, Stop::RangeEnd);
+    let folds: Vec<_> = branch
+        .points
+        .iter()
+        .filter(|(_, m)| matches!(m, Mark::Zero(_)))
+        .collect();
+    assert_eq!(folds.len(), 1);
+    let tip = -(0.0005_f64).cbrt();
+    assert!((folds[0].0.u[0] - tip).abs() < 1e-12);
+    assert!((folds[0].0.lambda + 3.0 * tip * tip).abs() < 1e-12);
+    // it came back to the end that it started from, on the other sheet
+    let (end, mark) = branch.points.last().unwrap();
+    assert_eq!((*mark, end.lambda), (Mark::Lowest, -1.0));
+    assert!(end.u[0] > -0.0011 && end.u[0] < -0.0009);
+}
+
+#[test]
+fn straight_through_a_pitchfork() {
+    // u (lambda - u^2): along u = 0 the derivative in u changes its sign at 0
+    let problem = Scalar(|u: f64, l: f64| [u * (l - u * u), l - 3.0 * u * u, u]);
+    let settings = Settings::new((-1.0, 1.03), 0.1).unwrap();
+    let mut watch = look(|p| vec![p.lambda]);
+    let branch = follow(
+        &problem,
+        &start(0.0, -1.0, [0.0, 1.0]),
+        &settings,
+        &mut watch,
+    )
+    .unwrap();
+    assert_eq!(branch.stopped, Stop::RangeEnd);
+    assert!(branch.points.iter().all(|(p, _)| p.u[0] == 0.0));
+    let zeros: Vec<_> = branch
+        .points
+        .iter()
+        .filter(|(_, m)| *m == Mark::Zero(0))
+        .collect();
+    assert_eq!(zeros.len(), 1);
+    assert!(zeros[0].0.lambda.abs() < 1e-15);
+    assert_eq!(branch.points.last().unwrap().0.lambda, 1.03);
+}
+
+#[test]
+fn every_end_has_its_reason() {
+    let settings = Settings::new((-2.0, 2.0), 0.2).unwrap();
+    let begin = start(1.0, 0.0, [0.0, 1.0]);
+    let mut impatient = Look {
+        patience: 3,
+        ..look(|_| vec![])
+    };
+    let branch = follow(&Scalar(circle), &begin, &settings, &mut impatient).unwrap();
+    assert_eq!((branch.stopped, branch.points.len()), (Stop::Observer, 3));
+
+    let mut ended = Look {
+        ending: Some(0),
+        ..look(|p| vec![p.u[0]])
+    };
+    let branch = follow(&Scalar(circle), &begin, &settings, &mut ended).unwrap();
+    assert_eq!(branch.stopped, Stop::Ended(0));
+    assert!(branch.points.last().unwrap().0.u[0].abs() < 1e-15);
+
+    let few = Settings {
+        max_points: 4,
+        ..settings.clone()
+    };
+    let branch = follow(&Scalar(circle), &begin, &few, &mut look(|_| vec![])).unwrap();
+    assert_eq!(branch.stopped, Stop::MaxPoints);
+
+    // u = sqrt(1 - lambda) is not differentiable at its end
+    let root = Scalar(|u: f64, l: f64| [u - (1.0 - l).sqrt(), 1.0, 0.5 / (1.0 - l).sqrt()]);
+    let branch = follow(&root, &begin, &settings, &mut look(|_| vec![])).unwrap();
+    let Stop::StepTooSmall { lambda, .. } = branch.stopped else {
+        panic!("{:?}", branch.stopped)
+    };
+    assert!((lambda - 1.0).abs() < 1e-6, "{lambda}");
+}
+
+#[test]
+fn a_start_that_is_none_is_an_error() {
+    let settings = Settings::new((-2.0, 2.0), 0.2).unwrap();
+    let nowhere = Scalar(|u: f64, l: f64| [u * u + l * l + 1.0, 2.0 * u, 2.0 * l]);
+    let found = follow(
+        &nowhere,
+        &start(1.0, 0.0, [0.0, 1.0]),
+        &settings,
+        &mut look(|_| vec![]),
+    );
+    assert!(
+        matches!(found, Err(Error::NotConverged { .. })),
+        "{found:?}"
+    );
+    let outside = follow(
+        &Scalar(circle),
+        &start(1.0, 3.0, [0.0, 1.0]),
+        &settings,
+        &mut look(|_| vec![]),
+    );
+    assert!(outside.unwrap_err().is_input());
+    assert!(Settings::new((1.0, 1.0), 0.2).is_err());
+    assert!(Settings::new((0.0, f64::NAN), 0.2).is_err());
+    assert!(Settings::new((0.0, 1.0), -0.2).is_err());
+    assert!(
+        Settings {
+            first_step: 1.0,
+            ..settings
+        }
+        .checked()
+        .is_err()
+    );
+}
