@@ -10,6 +10,7 @@
 //! | [`friction::Law`] | how an interface resists: two formulas, and what follows from them |
 //! | [`field::VectorField`] | what a dynamical system is |
 //! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
+//! | [`series::Equations`] | any other small system, from its right-hand side written once; with it [`model::Smooth`] is a field |
 //! | [`series::Formula`] | a differential equation whose solutions are made as power series |
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |

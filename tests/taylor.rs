@@ -99,10 +99,7 @@ fn tangents_agree_with_an_unlike_method_and_with_the_reference() {
             .unwrap();
         let apart = (Jacobian::<3>::from(made.start) - exact_matrix).amax() / size;
         assert!(apart < 1e-10, "{name}: {apart:e}");
-        for (made, exact) in [
-            (made.driving, exact.driving),
-            (made.stiffness, exact.stiffness),
-        ] {
+        for (made, exact) in made.parameters.into_iter().zip(exact.parameters) {
             let (made, exact) = (State::from(made), State::from(exact));
             let apart = (made - exact).amax() / exact.amax();
             assert!(apart < 1e-10, "{name}, parameters: {apart:e}");
@@ -141,8 +138,8 @@ fn parameter_derivatives_are_those_of_the_system() {
                 .unwrap()
         };
         for (p, made) in [
-            (Parameter::Driving, made.driving),
-            (Parameter::Stiffness, made.stiffness),
+            (Parameter::Driving, made.parameters[0]),
+            (Parameter::Stiffness, made.parameters[1]),
         ] {
             let (up, down, step) = match p {
                 Parameter::Driving => (end(v + v * STEP, k), end(v - v * STEP, k), v * STEP),

@@ -1,17 +1,22 @@
-//! The paper's systems: one interface (11), two interfaces (19), and the symmetric subspace of the latter.
+//! The paper's systems: one interface (11), two interfaces (19), the symmetric subspace of the latter, and the normal form
+//! (39)-(40); and any other small system.
 //!
 //! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
 
+pub mod classics;
+pub mod normal_form;
 mod response;
 pub mod scales;
 mod series;
 mod single_interface;
+mod smooth;
 mod symmetric;
 mod tangent;
 mod trajectories;
 mod two_interfaces;
 
 pub use single_interface::SingleInterface;
+pub use smooth::Smooth;
 pub use symmetric::Symmetric;
 pub(crate) use trajectories::{Convoy, MAX_LANES, convoy};
 pub use two_interfaces::TwoInterfaces;

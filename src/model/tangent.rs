@@ -335,8 +335,10 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize, const ROOM: usi
         let growth: f64 = (0..N - 1).map(|i| end[i] - self.start[i]).sum();
         Derivatives {
             start: std::array::from_fn(column),
-            driving: parameter(N, self.weights.0),
-            stiffness: parameter(N + 1, self.weights.1),
+            parameters: [
+                parameter(N, self.weights.0),
+                parameter(N + 1, self.weights.1),
+            ],
             log_determinant: self.log_determinant.first() - growth,
         }
     }

@@ -136,7 +136,7 @@ impl<const N: usize> Tracer<N> {
         let (end, tangent, in_parameters, log_determinant, work) = match &mut self.method {
             Method::Taylor(taylor) => {
                 let (end, d) = taylor.derivatives(field, span, start, parameters)?;
-                let in_parameters = [d.driving.into(), d.stiffness.into()];
+                let in_parameters = d.parameters.map(State::from);
                 let work = Integrator::<N>::work(taylor);
                 let log_determinant = Some(d.log_determinant);
                 (end, d.start.into(), in_parameters, log_determinant, work)

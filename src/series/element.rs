@@ -28,6 +28,14 @@ pub trait Element:
     fn to_exact(self) -> DoubleDouble {
         DoubleDouble::from(self.first())
     }
+    /// The number in a lane, with all its digits.
+    fn lane_exact(self, i: usize) -> DoubleDouble {
+        DoubleDouble::from(self.lane(i))
+    }
+    /// The same without the derivatives that it may carry.
+    fn plain(self) -> Self {
+        self
+    }
     /// The call, compiled for the processor that the element is made for.
     #[inline(always)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
@@ -49,8 +57,16 @@ pub trait Element:
     fn rough_exp2(self) -> Self;
     /// e^self
     fn exp(self) -> Self;
+    /// e^self - 1, accurate near 0. Lane by lane where an element does not say otherwise: series need it but once in a step.
+    fn exp_m1(self) -> Self {
+        lane_by_lane(self, f64::exp_m1)
+    }
     /// ln self
     fn ln(self) -> Self;
+    /// ln(1 + self), accurate near 0; likewise.
+    fn ln_1p(self) -> Self {
+        lane_by_lane(self, f64::ln_1p)
+    }
     /// self^p
     fn powf(self, p: f64) -> Self;
     /// sinh and cosh
@@ -96,6 +112,14 @@ pub trait Element:
     fn largest_over_interfaces(self) -> Self {
         self
     }
+}
+
+/// The function in one lane after the other.
+fn lane_by_lane<E: Element>(mut x: E, f: impl Fn(f64) -> f64) -> E {
+    for i in 0..E::LANES {
+        x = x.with_lane(i, f(x.lane(i)));
+    }
+    x
 }
 
 /// log2 x from the bits of x: its exponent, and its mantissa by a parabola.
@@ -229,6 +253,9 @@ impl Element for DoubleDouble {
     fn to_exact(self) -> DoubleDouble {
         self
     }
+    fn lane_exact(self, _: usize) -> DoubleDouble {
+        self
+    }
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
     }
@@ -253,8 +280,14 @@ impl Element for DoubleDouble {
     fn exp(self) -> Self {
         Real::exp(self)
     }
+    fn exp_m1(self) -> Self {
+        Real::exp_m1(self)
+    }
     fn ln(self) -> Self {
         Real::ln(self)
+    }
+    fn ln_1p(self) -> Self {
+        Real::ln_1p(self)
     }
     fn powf(self, p: f64) -> Self {
         Real::powf(self, p)

@@ -7,7 +7,7 @@ use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
 /// Rows that a formula may take, its variables included.
-pub(super) const ROWS: usize = 40;
+pub(super) const ROWS: usize = 64;
 /// Coefficients of all rows of a formula, of which each has the same room.
 pub(super) type Memory<E, const ROOM: usize> = [[E; ROOM]; ROWS];
 /// Quantities of a formula, other than its variables, whose series are kept too.

@@ -11,8 +11,11 @@
 //! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods. Experimental Mathematics 14, 99-117.
 
+mod array;
 mod columns;
+mod dual;
 mod element;
+mod equations;
 mod event;
 mod formula;
 #[cfg(target_arch = "x86_64")]
@@ -25,11 +28,15 @@ mod real;
 mod recurrences;
 mod stepper;
 mod tape;
+mod variational;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
+pub use array::Array;
 pub use columns::{Columns, Linearisation, Spread};
+pub use dual::Dual;
 pub use element::Element;
+pub use equations::{Equations, Plain};
 pub use event::{Passage, Section, Zeros};
 pub use formula::{Formula, Rates, WATCHED};
 pub use handle::{Series, value};
@@ -38,6 +45,7 @@ pub use lanes::{Eight, Four, Pair};
 pub use plain::Both;
 pub use stepper::Stepper;
 pub use tape::Order;
+pub use variational::Variational;
 
 /// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
 pub const MAX_ORDER: usize = 18;
@@ -79,10 +87,8 @@ pub trait Tangent<const N: usize>: Solution<N> {
 pub struct Derivatives<const N: usize> {
     /// In the j-th component of the start: column j.
     pub start: [[f64; N]; N],
-    /// In V_H.
-    pub driving: [f64; N],
-    /// In K.
-    pub stiffness: [f64; N],
+    /// In the two control parameters: V_H and K of the slab, those of an [`Equations`].
+    pub parameters: [[f64; N]; 2],
     /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
     /// it knows nothing.
     pub log_determinant: f64,

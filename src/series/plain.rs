@@ -2,6 +2,7 @@
 
 use super::element::Element;
 use crate::number::DoubleDouble;
+use pulp::NullaryFnOnce;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// Both interfaces under one stress, or twice as many lanes.
@@ -53,6 +54,14 @@ impl<T: Element> Element for Both<T> {
         self.0[0].to_exact()
     }
     #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        self.0[0].run(f)
+    }
+    #[inline(always)]
+    fn lane_exact(self, i: usize) -> DoubleDouble {
+        self.0[i / T::LANES].lane_exact(i % T::LANES)
+    }
+    #[inline(always)]
     fn lane(self, i: usize) -> f64 {
         self.0[i / T::LANES].lane(i % T::LANES)
     }
@@ -72,7 +81,9 @@ impl<T: Element> Element for Both<T> {
         abs();
         sign();
         exp();
+        exp_m1();
         ln();
+        ln_1p();
         powf(p: f64);
         rough_log2();
         rough_exp2();

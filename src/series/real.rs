@@ -207,7 +207,9 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
 
     functions! {
         exp: |x| Element::exp(x), |a| a.exponential();
+        exp_m1: |x| Element::exp_m1(x), |a| a.exponential_less_one();
         ln: |x| Element::ln(x), |a| a.logarithm();
+        ln_1p: |x| Element::ln_1p(x), |a| a.logarithm_of_one_more();
         sinh: |x| Element::sinh_cosh(x).0, |a| a.hyperbolic().0;
         cosh: |x| Element::sinh_cosh(x).1, |a| a.hyperbolic().1;
         abs: |x| Element::abs(x), |a| a.magnitude();
@@ -242,15 +244,7 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         }
     }
 
-    // The others are made of these; near 0 they cancel, as the laws' own formulas never do.
-    #[inline(always)]
-    fn exp_m1(self) -> Self {
-        self.exp() - 1.0
-    }
-    #[inline(always)]
-    fn ln_1p(self) -> Self {
-        (self + 1.0).ln()
-    }
+    // The others are made of these. Near 0 asinh cancels, as the laws' own formulas never do.
     #[inline(always)]
     fn sqrt(self) -> Self {
         self.powf(0.5)

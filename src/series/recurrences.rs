@@ -185,6 +185,16 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         e.put(self.mul_add(e.get(0), rest))
     }
 
+    /// exp a - 1: beyond the first coefficient those of exp a, which are as small as those of a.
+    #[inline(always)]
+    pub(super) fn exponential_less_one(self) -> Self {
+        let e = self.exponential();
+        if self.order() == 0 {
+            return e.mapped(self.newest().exp_m1());
+        }
+        e.loose()
+    }
+
     /// s = sinh a, c = cosh a from s' = c a', c' = s a'.
     #[inline(always)]
     pub(super) fn hyperbolic(self) -> (Self, Self) {
@@ -220,6 +230,16 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let new = self.mul_add(one_over, rest);
         slopes.put(new * new.like(k as f64));
         l.put(new)
+    }
+
+    /// ln(1 + a): beyond the first coefficient those of the logarithm.
+    #[inline(always)]
+    pub(super) fn logarithm_of_one_more(self) -> Self {
+        let l = self.plus(self.any().like(1.0)).logarithm();
+        if self.order() == 0 {
+            return l.mapped(self.newest().ln_1p());
+        }
+        l.loose()
     }
 
     /// y = a^p from a y' = p a' y: k a_0 y_k = sum of (p (k-j) - j) a_(k-j) y_j over 0 <= j < k

@@ -68,7 +68,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
             let size = Element::max(self.x[c].abs(), zero.like(f64::MIN_POSITIVE));
             rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
         }
-        let rate = rate.largest_over_interfaces();
+        let rate = rate.plain().largest_over_interfaces();
         let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
         self.next_unit = new.if_negative(next_unit, self.next_unit);
     }

@@ -219,8 +219,7 @@ impl<Q: Quadratic> Tangent<3> for Track<Q> {
     fn derivatives(&self) -> Derivatives<3> {
         Derivatives {
             start: self.columns,
-            driving: [0.0; 3],
-            stiffness: [0.0; 3],
+            parameters: [[0.0; 3]; 2],
             log_determinant: self.log_determinant,
         }
     }

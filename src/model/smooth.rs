@@ -1,0 +1,141 @@
+//! Any small system of [`Equations`] as a vector field: everything from the right-hand side, written once.
+
+use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::number::{DoubleDouble, Jet};
+use crate::series::{
+    Array, Equations, MAX_ORDER, Plain, REFERENCE_ORDER, Solution, Tangent, Variational,
+};
+#[cfg(target_arch = "x86_64")]
+use {
+    crate::series::{Both, Four},
+    pulp::x86::V3,
+};
+
+/// Equations at given parameters.
+///
+/// ```
+/// use twinslip::field::State;
+/// use twinslip::integrate::{MAX_STEPS, Taylor, Tolerances};
+/// use twinslip::model::{Smooth, classics::Lorenz};
+/// # fn main() -> twinslip::Result<()> {
+/// let lorenz = Smooth { equations: Lorenz::classical(), parameters: [28.0, 8.0 / 3.0] };
+/// let mut taylor = Taylor::new(Tolerances::equal(1e-14)?, MAX_STEPS)?;
+/// let (_, derivatives) = taylor.derivatives(&lorenz, (0.0, 1.0), &State::<3>::new(1.0, 2.0, 20.0), true)?;
+/// // volumes shrink by the same factor everywhere
+/// assert!((derivatives.log_determinant + 10.0 + 1.0 + 8.0 / 3.0).abs() < 1e-13);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smooth<S, const N: usize> {
+    /// The right-hand side.
+    pub equations: S,
+    /// The two control parameters.
+    pub parameters: [f64; 2],
+}
+
+impl<S: Equations<N>, const N: usize> Smooth<S, N> {
+    /// df/dp of the i-th parameter.
+    pub fn parameter_derivative(&self, y: &State<N>, i: usize) -> State<N> {
+        let mut parameters = self.parameters.map(constant);
+        parameters[i].gradient = [1.0];
+        let x = y.data.0[0].map(constant);
+        State::from(self.equations.rates(x, parameters).map(|f| f.gradient[0]))
+    }
+}
+
+/// A number that does not vary.
+fn constant(value: f64) -> Jet<f64, 1> {
+    Jet {
+        value,
+        gradient: [0.0],
+    }
+}
+
+impl<S: Equations<N>, const N: usize> VectorField<N> for Smooth<S, N> {
+    fn f(&self, y: &State<N>) -> State<N> {
+        State::from(self.equations.rates(y.data.0[0], self.parameters))
+    }
+
+    fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
+        let parameters = self.parameters.map(|value| Jet {
+            value,
+            gradient: [0.0; N],
+        });
+        let rates = self
+            .equations
+            .rates(Jet::variables(y.data.0[0]), parameters);
+        Jacobian::from_fn(|i, j| rates[i].gradient[j])
+    }
+
+    fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
+        // f(y + a u + b v), differentiated in a and in b.
+        let of = |value: f64, u: f64, v: f64| Jet {
+            value: Jet {
+                value,
+                gradient: [u],
+            },
+            gradient: [constant(v)],
+        };
+        let x = std::array::from_fn(|i| of(y[i], u[i], v[i]));
+        let rates = self
+            .equations
+            .rates(x, self.parameters.map(|p| of(p, 0.0, 0.0)));
+        State::from(rates.map(|f| f.gradient[0].gradient[0]))
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<N>> {
+        Some(self)
+    }
+}
+
+/// Coefficients that there is room for.
+const ROOM: usize = MAX_ORDER + 1;
+const REFERENCE_ROOM: usize = REFERENCE_ORDER + 1;
+
+impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
+    fn solution(&self) -> Box<dyn Solution<N> + '_> {
+        Box::new(Plain::<_, _, N, ROOM>::new(
+            self.equations,
+            self.parameters,
+            0.0,
+        ))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<N> + '_> {
+        Box::new(Plain::<_, _, N, REFERENCE_ROOM>::new(
+            self.equations,
+            self.parameters,
+            DoubleDouble::ZERO,
+        ))
+    }
+
+    // With or without the derivatives in the parameters: they fill lanes that there are.
+    fn tangent(&self, _: bool) -> Box<dyn Tangent<N> + '_> {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = V3::try_new() {
+            let gradient = Both([Four::new(simd, [0.0; 4]); 2]);
+            return Box::new(Variational::<_, _, _, N, ROOM>::new(
+                self.equations,
+                self.parameters,
+                0.0,
+                gradient,
+            ));
+        }
+        Box::new(Variational::<_, _, _, N, ROOM>::new(
+            self.equations,
+            self.parameters,
+            0.0,
+            Array([0.0; 8]),
+        ))
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {
+        Box::new(Variational::<_, _, _, N, REFERENCE_ROOM>::new(
+            self.equations,
+            self.parameters,
+            DoubleDouble::ZERO,
+            Array([DoubleDouble::ZERO; 8]),
+        ))
+    }
+}
