@@ -94,6 +94,8 @@ struct Track<S, E, X, L, const ROOM: usize> {
     /// Zero for a quantity that does not change along solutions.
     constant: [E; ROOM],
     log_determinant: E,
+    /// The integral of dg/dpsi of the first interface.
+    log_across: E,
     /// Half the number of states that are variables of the system.
     states: E,
     /// ln psi at the start.
@@ -167,6 +169,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const ROOM: usize> Track<S, E, 
             stiffness: zero.like(loading.stiffness),
             constant: [zero; ROOM],
             log_determinant: zero,
+            log_across: zero,
             states: zero,
             start: [0.0; 2],
         }
@@ -189,25 +192,28 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const ROOM: usize> Track<S, E, 
         let taken = self.stepper.advance_by(accuracy, h, limit);
         let h = taken / self.stepper.unit();
         self.columns.advance_by(accuracy.order, h);
-        let trace = self.mean_trace(accuracy.order, h);
+        let (trace, across) = self.mean_traces(accuracy.order, h);
         self.log_determinant = trace.mul_add(taken, self.log_determinant);
+        self.log_across = across.mul_add(taken, self.log_across);
         taken
     }
 
     /// The mean over the last step of -K (dv_1/dtau + dv_2/dtau) + dg_1/dpsi_1 + dg_2/dpsi_2, where the interfaces are one the
-    /// last term once.
+    /// last term once; and of dg/dpsi.
     #[inline(always)]
-    fn mean_trace(&self, order: usize, h: E) -> E {
+    fn mean_traces(&self, order: usize, h: E) -> (E, E) {
         let [v_tau, _, _, g_psi] = entries(&self.stepper, &self.constant);
-        let mut mean = h.like(0.0);
+        let (mut mean, mut across) = (h.like(0.0), h.like(0.0));
         let mut j = order;
         while j > 0 {
             j -= 1;
             let states = g_psi[j].over_interfaces() * self.states;
             let term = states - self.stiffness * v_tau[j].over_interfaces();
-            mean = mean.mul_add(h, term / h.like((j + 1) as f64));
+            let one_over = h.like(1.0) / h.like((j + 1) as f64);
+            mean = mean.mul_add(h, term * one_over);
+            across = across.mul_add(h, g_psi[j] * one_over);
         }
-        mean
+        (mean, across)
     }
 }
 
@@ -286,6 +292,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize, const ROOM: usi
         self.columns = Columns::new(x, lane(N), lane(N + 1));
         self.states = zero.like(0.5 * (N - 1) as f64);
         self.log_determinant = zero;
+        self.log_across = zero;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
@@ -340,6 +347,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize, const ROOM: usi
                 parameter(N + 1, self.weights.1),
             ],
             log_determinant: self.log_determinant.first() - growth,
+            log_across: (N == 2).then(|| self.log_across.first() - growth),
         }
     }
 }

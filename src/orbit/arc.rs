@@ -15,6 +15,9 @@ pub struct Arc<const N: usize> {
     pub parameters: [State<N>; 2],
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
+    /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
+    /// method makes it.
+    pub log_across: Option<f64>,
     /// Steps that the method took.
     pub steps: usize,
     /// Bound on what the method errs by at the end, in units of 1 + |y|: steps times tolerance and rounding.
@@ -133,18 +136,18 @@ impl<const N: usize> Tracer<N> {
         parameters: bool,
     ) -> Result<Arc<N>> {
         let span = (0.0, duration);
-        let (end, tangent, in_parameters, log_determinant, work) = match &mut self.method {
+        let (end, tangent, in_parameters, logs, work) = match &mut self.method {
             Method::Taylor(taylor) => {
                 let (end, d) = taylor.derivatives(field, span, start, parameters)?;
                 let in_parameters = d.parameters.map(State::from);
                 let work = Integrator::<N>::work(taylor);
-                let log_determinant = Some(d.log_determinant);
-                (end, d.start.into(), in_parameters, log_determinant, work)
+                let logs = (Some(d.log_determinant), d.log_across);
+                (end, d.start.into(), in_parameters, logs, work)
             }
             Method::Other(integrator) => {
                 let (end, tangent) = integrator.tangent_flow(field, span, start)?;
                 let work = integrator.work();
-                (end, tangent, [State::zeros(); 2], None, work)
+                (end, tangent, [State::zeros(); 2], (None, None), work)
             }
         };
         self.work += work;
@@ -152,7 +155,8 @@ impl<const N: usize> Tracer<N> {
             end,
             tangent,
             parameters: in_parameters,
-            log_determinant,
+            log_determinant: logs.0,
+            log_across: logs.1,
             steps: work.steps,
             error: self.step_error * work.steps.max(1) as f64,
         })

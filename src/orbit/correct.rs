@@ -81,11 +81,8 @@ const SLOW: f64 = 0.02;
 pub struct Corrector<'a, F, const N: usize> {
     /// The family.
     pub family: &'a F,
-    /// Whether spectra have the multiplier across the symmetric subspace, even where no condition asks for it.
-    pub watch_across: bool,
     /// What makes its arcs.
     pub tracer: Tracer<N>,
-    tolerance: f64,
 }
 
 impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
@@ -96,20 +93,8 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     pub fn new(family: &'a F, tolerance: f64) -> crate::Result<Self> {
         Ok(Corrector {
             family,
-            watch_across: false,
             tracer: Tracer::taylor(tolerance)?,
-            tolerance,
         })
-    }
-
-    /// The integral of the whole system's trace, where it is wanted.
-    fn whole(&self, site: &Site<N>, wanted: bool) -> Option<Option<f64>> {
-        if !wanted {
-            return Some(None);
-        }
-        self.family
-            .whole_volume(site.at, &site.polygon, self.tolerance)
-            .ok()
     }
 
     /// The orbit near `guess` that meets the conditions, one for each of the free parameters; `None` where Newton's method
@@ -121,7 +106,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         conditions: &[Condition<'_, N>],
         goal: Goal,
     ) -> Option<Regular<N>> {
-        let across = self.watch_across || asks_across(conditions);
         let mut site = guess;
         let mut gradients: Option<Vec<Motion<N>>> = None;
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
@@ -130,14 +114,14 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
             drop(field);
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-            let spectrum = Spectrum::new(&linear, self.whole(&site, across)?);
+            let spectrum = Spectrum::new(&linear);
             let known = match gradients.take() {
                 Some(known) => known,
                 None => {
-                    self.gradients(&site, &linear, &along, &spectrum, conditions, across)?
+                    self.gradients(&site, &linear, &along, &spectrum, conditions)?
                 }
             };
-            let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions, across)?;
+            let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions)?;
             let known_here = Known {
                 spectrum: &spectrum,
                 gradients: &known,
@@ -187,13 +171,12 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         free: &[usize],
         conditions: &[Condition<'_, N>],
     ) -> Option<Regular<N>> {
-        let across = self.watch_across || asks_across(conditions);
         let field = self.family.field(site.at);
         let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
         drop(field);
         let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
-        let spectrum = Spectrum::new(&linear, self.whole(&site, across)?);
-        let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions, across)?;
+        let spectrum = Spectrum::new(&linear);
+        let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions)?;
         Some(Regular {
             first: site.size(&closing).0,
             residual: site.size(&closing).0,
@@ -214,7 +197,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         along: &[Motion<N>],
         spectrum: &Spectrum,
         conditions: &[Condition<'_, N>],
-        across: bool,
     ) -> Option<Vec<Motion<N>>> {
         let indicators: Vec<Indicator> = conditions.iter().filter_map(indicator).collect();
         if indicators.is_empty() {
@@ -222,7 +204,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         }
         let mut sums: Vec<Option<Motion<N>>> = vec![None; indicators.len()];
         for direction in along {
-            let change = self.change(site, linear, direction, spectrum, across)?;
+            let change = self.change(site, linear, direction, spectrum)?;
             for (sum, indicator) in sums.iter_mut().zip(&indicators) {
                 let slope = indicator.change_along::<N>(spectrum, &change);
                 let part = direction.clone().scaled(slope);
@@ -244,7 +226,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         closing: &Motion<N>,
         spectrum: &Spectrum,
         conditions: &[Condition<'_, N>],
-        across: bool,
     ) -> Option<Vec<f64>> {
         /// Smaller closings are not looked at.
         const SMALL: f64 = 1e-7;
@@ -255,21 +236,14 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             return Some(vec![0.0; indicators.len()]);
         }
         let direction = closing.clone().scaled(1.0 / length);
-        let change = self.change(site, linear, &direction, spectrum, across)?;
+        let change = self.change(site, linear, &direction, spectrum)?;
         let each = indicators.iter();
         Some(each.map(|i| length * i.change_along::<N>(spectrum, &change)).collect())
     }
 
     /// How the spectrum of an orbit changes in a direction.
     pub fn slope(&mut self, orbit: &Regular<N>, direction: &Motion<N>) -> Option<Spectrum> {
-        let across = orbit.spectrum.across.is_finite();
-        self.change(
-            &orbit.site,
-            &orbit.linear,
-            direction,
-            &orbit.spectrum,
-            across,
-        )
+        self.change(&orbit.site, &orbit.linear, direction, &orbit.spectrum)
     }
 
     /// How the spectrum changes in this direction.
@@ -279,20 +253,12 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         linear: &Linear<N>,
         direction: &Motion<N>,
         spectrum: &Spectrum,
-        across: bool,
     ) -> Option<Spectrum> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear.beside(&mut self.tracer, &*field, &beside.polygon).ok()?;
-        let whole = self.whole(&beside, across)?;
-        Some(Spectrum::change(linear, spectrum, &moved, whole, STEP))
+        Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }
-}
-
-fn asks_across<const N: usize>(conditions: &[Condition<'_, N>]) -> bool {
-    conditions
-        .iter()
-        .any(|c| matches!(c, Condition::Indicator(Indicator::Across)))
 }
 
 fn indicator<const N: usize>(condition: &Condition<'_, N>) -> Option<Indicator> {

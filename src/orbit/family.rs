@@ -1,10 +1,7 @@
 //! Vector fields that depend on two parameters, along which orbits are continued.
 
-use super::arc::Tracer;
-use super::polygon::Polygon;
 use super::slab::Slab;
-use crate::error::Result;
-use crate::field::{State, VectorField};
+use crate::field::VectorField;
 use crate::model::Loading;
 
 /// Vector fields over a plane of two parameters.
@@ -19,22 +16,6 @@ pub trait Family<const N: usize>: Sync {
 
     /// Of each parameter, its derivative in its coordinate.
     fn scale(&self, at: [f64; 2]) -> [f64; 2];
-
-    /// The integral of the trace of the whole system's Jacobian along an orbit, where the family is that of a symmetric
-    /// subspace: less that of the subspace's own it is the logarithm of the multiplier across. `None` where the family is all
-    /// there is.
-    ///
-    /// # Errors
-    /// Those of the flow.
-    fn whole_volume(
-        &self,
-        at: [f64; 2],
-        polygon: &Polygon<N>,
-        tolerance: f64,
-    ) -> Result<Option<f64>> {
-        let _ = (at, polygon, tolerance);
-        Ok(None)
-    }
 }
 
 /// A slab over (ln V_H, ln K).
@@ -79,24 +60,5 @@ impl Family<2> for OverLoadings {
 
     fn scale(&self, at: [f64; 2]) -> [f64; 2] {
         at.map(f64::exp)
-    }
-
-    fn whole_volume(
-        &self,
-        at: [f64; 2],
-        polygon: &Polygon<2>,
-        tolerance: f64,
-    ) -> Result<Option<f64>> {
-        if self.0.interfaces == 1 {
-            return Ok(None);
-        }
-        let whole = self.slab(at).whole();
-        let mut tracer = Tracer::<3>::taylor(tolerance)?;
-        let mut sum = 0.0;
-        for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
-            let embedded = State::<3>::new(x[0], x[1], x[1]);
-            sum += tracer.arc(&*whole, &embedded, duration, false)?.volume();
-        }
-        Ok(Some(sum))
     }
 }

@@ -34,16 +34,15 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Of a return map; with the integral of the whole system's trace where it is one of a symmetric subspace.
-    pub(super) fn new<const N: usize>(linear: &Linear<N>, whole: Option<f64>) -> Self {
+    pub(super) fn new<const N: usize>(linear: &Linear<N>) -> Self {
         let maps = linear.maps.iter();
         let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
-        let volume = volume(linear);
+        let across: Option<f64> = linear.arcs.iter().map(|arc| arc.log_across).sum();
         Spectrum {
             // Of the identity's first diagonal entry the maps leave nothing.
             trace: product.trace(),
-            volume,
-            across: whole.map_or(f64::NAN, |whole| whole - volume),
+            volume: volume(linear),
+            across: across.unwrap_or(f64::NAN),
         }
     }
 
@@ -52,7 +51,6 @@ impl Spectrum {
         from: &Linear<N>,
         spectrum: &Spectrum,
         to: &Linear<N>,
-        whole: Option<f64>,
         step: f64,
     ) -> Self {
         let count = from.maps.len();
@@ -68,7 +66,7 @@ impl Spectrum {
         }
         let volumes = from.arcs.iter().zip(&to.arcs);
         let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
-        let across = Spectrum::new(to, whole).across - spectrum.across;
+        let across = Spectrum::new(to).across - spectrum.across;
         Spectrum {
             trace: trace / step,
             volume: volume / step,

@@ -92,6 +92,9 @@ pub struct Derivatives<const N: usize> {
     /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
     /// it knows nothing.
     pub log_determinant: f64,
+    /// Where the system is the symmetric subspace of two equal parts under one common variable: the logarithm by which a small
+    /// difference between the parts grows.
+    pub log_across: Option<f64>,
 }
 
 /// The series of a solution at the beginning of a step, in the variables that it is made in.

@@ -236,6 +236,7 @@ impl<S: Equations<N>, T: Element, X: Element, const N: usize, const ROOM: usize>
             start: std::array::from_fn(column),
             parameters: [column(N), column(N + 1)],
             log_determinant: self.log_determinant.to_f64(),
+            log_across: None,
         }
     }
 }

@@ -136,7 +136,6 @@ where
         self.reached[i] = true;
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
-        corrector.watch_across = N == 2 && self.request.slab.interfaces == 2;
         let path = Path::branch(self.free, LONGEST * self.request.step);
         let begin = hopf.at()[self.free];
         let inside = self.in_range(begin);

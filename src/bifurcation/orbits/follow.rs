@@ -1,8 +1,7 @@
 //! Follows a curve of orbits of any family and hands on what it meets.
 
-use super::detect::{Watch, Zero, landed, zeros};
-use super::sharp::{Sharp, sharpened};
-use crate::orbit::{Condition, Family, Goal, Indicator, Motion, Pace, Regular, Walk};
+use super::detect::{Watch, landed, zeros};
+use crate::orbit::{Family, Goal, Pace, Regular, Walk};
 use std::ops::ControlFlow;
 
 /// Something that is met on the way.

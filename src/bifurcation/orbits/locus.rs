@@ -145,7 +145,6 @@ where
                 continue;
             }
             let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
-            corrector.watch_across = self.indicator == Indicator::Across;
             let path = Path::branch(0, LONGEST_OF_BRANCH);
             let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopf) else {
                 continue;

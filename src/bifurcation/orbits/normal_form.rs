@@ -29,45 +29,73 @@ pub enum Form {
 }
 
 /// Points of the grid in each direction.
-const POINTS: usize = 9;
-/// Half widths of the grids, in the plane's coordinates.
-const WIDTHS: [f64; 2] = [0.02, 0.014];
+const POINTS: usize = 7;
+/// Half widths of the grids, in the plane's coordinates, and the second width that each is held against, as a part of it.
+const WIDTHS: [f64; 4] = [0.04, 0.013, 0.004, 0.0013];
+const NARROWER: f64 = 0.7;
+/// Planes that are tried. Where the orbit is about to jump the map is far from its polynomials; where it has jumped it is
+/// tame.
+const PLANES: usize = 8;
+/// A relative uncertainty with which nothing better is looked for.
+const ENOUGH: f64 = 0.02;
 /// Tolerance of the flow.
 const FINE: f64 = 1e-16;
 
-/// The cubic coefficient of an orbit in three dimensions that bifurcates, for eigenvectors of length 1, and which way that is.
-/// `node` is where the map's plane stands.
-///
-/// # Errors
-/// Those of the flow.
+/// The cubic coefficient of an orbit in three dimensions that bifurcates, for eigenvectors of length 1 in one of its planes,
+/// and which way that is.
 pub fn normal_form(
+    field: &dyn VectorField<3>,
+    polygon: &Polygon<3>,
+    form: Form,
+) -> (Uncertain, Criticality) {
+    let mut best = Uncertain::new(0.0, f64::INFINITY);
+    let relative = |x: &Uncertain| x.uncertainty / x.value.abs();
+    let count = polygon.nodes.len();
+    for plane in 0..PLANES.min(count) {
+        for width in WIDTHS {
+            let node = plane * count / PLANES.min(count);
+            // A map that can't be had somewhere on the grid says nothing.
+            let Some(coefficient) = coefficient(field, polygon, node, form, width) else {
+                continue;
+            };
+            if coefficient.value.is_finite()
+                && (best.uncertainty.is_infinite() || relative(&coefficient) < relative(&best))
+            {
+                best = coefficient;
+            }
+        }
+        if relative(&best) < ENOUGH {
+            break;
+        }
+    }
+    let criticality = match form {
+        _ if best.value.abs() <= best.uncertainty => Criticality::Undecided,
+        Form::Doubling if best.value > 0.0 => Criticality::Supercritical,
+        Form::Torus | Form::Pitchfork if best.value < 0.0 => Criticality::Supercritical,
+        _ => Criticality::Subcritical,
+    };
+    (best, criticality)
+}
+
+pub fn coefficient(
     field: &dyn VectorField<3>,
     polygon: &Polygon<3>,
     node: usize,
     form: Form,
-) -> Result<(Uncertain, Criticality)> {
-    let mut map = ReturnMap::new(field, polygon, node)?;
-    let mut coefficients = [0.0; 2];
-    for (coefficient, width) in coefficients.iter_mut().zip(WIDTHS) {
+    width: f64,
+) -> Option<Uncertain> {
+    let mut map = ReturnMap::new(field, polygon, node).ok()?;
+    let mut of = |width: f64| {
         let derivatives = Derivatives::of(&mut map, width)?;
-        *coefficient = match form {
+        Some(match form {
             Form::Torus => derivatives.torus(),
             Form::Doubling => derivatives.real(-1.0),
             Form::Pitchfork => derivatives.real(1.0),
-        };
-    }
-    let [wide, narrow] = coefficients;
-    let uncertainty = 3.0 * (wide - narrow).abs() + 1e-6 * narrow.abs();
-    let criticality = match form {
-        // Not even a number where the map could not be had.
-        _ if narrow.is_nan() || uncertainty.is_nan() || narrow.abs() <= uncertainty => {
-            Criticality::Undecided
-        }
-        Form::Doubling if narrow > 0.0 => Criticality::Supercritical,
-        Form::Torus | Form::Pitchfork if narrow < 0.0 => Criticality::Supercritical,
-        _ => Criticality::Subcritical,
+        })
     };
-    Ok((Uncertain::new(narrow, uncertainty), criticality))
+    let (wide, narrow) = (of(width)?, of(width * NARROWER)?);
+    let uncertainty = 3.0 * (wide - narrow).abs() + 1e-6 * narrow.abs();
+    Some(Uncertain::new(narrow, uncertainty))
 }
 
 /// The return map to the plane across the flow at a point of an orbit, in orthonormal coordinates there.
@@ -105,26 +133,28 @@ impl<'a> ReturnMap<'a> {
         })
     }
 
-    /// Where a point of the plane comes back to it.
-    ///
-    /// # Errors
-    /// Those of the flow.
-    pub fn at(&mut self, x: Vector2<f64>) -> Result<Vector2<f64>> {
+    /// Where a point of the plane comes back to it; `None` where it does not after about a period.
+    pub fn at(&mut self, x: Vector2<f64>) -> Option<Vector2<f64>> {
         /// Newton iterations to the plane, whose last is below rounding.
         const LANDINGS: usize = 6;
+        /// Part of the period by which a return may come sooner or later.
+        const FAR: f64 = 0.1;
         let normal = self.frame.column(0).into_owned();
         let start = self.origin + self.frame.column(1) * x[0] + self.frame.column(2) * x[1];
-        let mut y = self.tracer.flow(self.field, &start, self.period, None)?;
+        let mut y = self.tracer.flow(self.field, &start, self.period, None).ok()?;
         for _ in 0..LANDINGS {
             let off = normal.dot(&(y - self.origin));
             let dt = -off / normal.dot(&self.field.f(&y));
+            if !(dt.abs() < FAR * self.period) {
+                return None;
+            }
             if dt.abs() < 1e-15 * self.period {
                 break;
             }
-            y = self.tracer.flow(self.field, &y, dt, None)?;
+            y = self.tracer.flow(self.field, &y, dt, None).ok()?;
         }
         let off = y - self.origin;
-        Ok(Vector2::new(
+        Some(Vector2::new(
             self.frame.column(1).dot(&off),
             self.frame.column(2).dot(&off),
         ))
@@ -137,7 +167,7 @@ struct Derivatives {
 }
 
 impl Derivatives {
-    fn of(map: &mut ReturnMap<'_>, width: f64) -> Result<Self> {
+    fn of(map: &mut ReturnMap<'_>, width: f64) -> Option<Self> {
         let angle = |i: usize| (i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64;
         let mut values = [[[0.0; POINTS]; POINTS]; 2];
         for i in 0..POINTS {
@@ -164,7 +194,7 @@ impl Derivatives {
                 }
             }
         }
-        Ok(Derivatives { d })
+        Some(Derivatives { d })
     }
 
     fn linear(&self) -> Matrix2<f64> {

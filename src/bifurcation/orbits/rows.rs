@@ -27,7 +27,7 @@ pub(super) fn row<const N: usize>(
     } else {
         // Within the plane, and across it.
         let mut both = vec![spectrum.volume];
-        both.extend(spectrum.across.is_finite().then_some(spectrum.across));
+        both.extend((slab.interfaces == 2).then_some(spectrum.across));
         both.sort_by(|a, b| b.total_cmp(a));
         [both.first().copied(), both.get(1).copied()]
     };
