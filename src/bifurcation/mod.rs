@@ -2,6 +2,9 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
+pub mod equilibria;
+pub mod orbits;
+
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
 use crate::orbit::Slab;
