@@ -84,6 +84,17 @@ impl Label {
         Label::Top,
     ];
 
+    /// The bifurcations of one parameter.
+    pub const BIFURCATIONS: [Label; 7] = [
+        Label::Bp,
+        Label::Lp,
+        Label::Hb,
+        Label::Pd,
+        Label::Tr,
+        Label::Pf,
+        Label::Sn,
+    ];
+
     /// The label of that name.
     pub fn named(name: &str) -> Option<Label> {
         Label::ALL.into_iter().find(|label| label.name() == name)

@@ -1,0 +1,330 @@
+//! `twinslip locus`.
+
+use super::Ending;
+use super::continuation::{Row, Task};
+use super::diagram;
+use super::fields::{Column, Entry};
+use super::following::{self, Following, criticality, landings, numbers, range};
+use super::resume::unknown;
+use crate::bifurcation::{
+    Criticality, Event, Label, LocusKind, LocusRequest, LocusRow, equilibria, orbits,
+};
+use crate::error::{Error, Result};
+use crate::model::Loading;
+use crate::number::Uncertain;
+use crate::orbit::Slab;
+use crate::scene::{LocusOptions, Quantity, System, Units};
+use serde_json::{Value, json};
+
+pub const EXAMPLE: &str =
+    "Example, the torus bifurcations of the paper's Figs 12 and 14, with their resonances:
+  twinslip locus torus --stiffness-range 0.02,0.3 -o torus.csv --plot torus.svg";
+
+/// The curves by name, and whether they are of orbits.
+const KINDS: [(&str, LocusKind, bool); 7] = [
+    ("pitchfork", LocusKind::Pitchfork, false),
+    ("saddle-node", LocusKind::SaddleNode, false),
+    ("hopf", LocusKind::Hopf, false),
+    ("orbit-pitchfork", LocusKind::OrbitPitchfork, true),
+    ("orbit-saddle-node", LocusKind::OrbitSaddleNode, true),
+    ("period-doubling", LocusKind::PeriodDoubling, true),
+    ("torus", LocusKind::Torus, true),
+];
+
+/// What is to be done, checked.
+struct Plan {
+    name: &'static str,
+    orbits: bool,
+    system: System,
+    request: LocusRequest,
+    following: Following,
+    numerics: Value,
+}
+
+fn kind(name: Option<&str>) -> Result<(&'static str, LocusKind, bool)> {
+    let known = || KINDS.map(|(name, ..)| name).join(", ");
+    let name = name.ok_or_else(|| {
+        Error::Input(format!(
+            "it is missing of which bifurcation the curve is: locus followed by one of {}",
+            known()
+        ))
+    })?;
+    KINDS
+        .into_iter()
+        .find(|&(known, ..)| known == name)
+        .ok_or_else(|| {
+            Error::Input(format!(
+                "there is no curve of {name:?}; choose one of {}",
+                known()
+            ))
+        })
+}
+
+/// A range A,B, dimensionless.
+fn ends(
+    name: &str,
+    text: Option<&str>,
+    (quantity, units): (Quantity, &Units),
+    default: (f64, f64),
+) -> Result<(f64, f64)> {
+    let Some(text) = text else {
+        return Ok(default);
+    };
+    let [from, to] = numbers(name, text)?[..] else {
+        return Err(Error::Input(format!(
+            "--{name} {text} must be two numbers, A,B"
+        )));
+    };
+    let (from, to) = range(
+        &format!("--{name}"),
+        (units.inward(quantity, from), units.inward(quantity, to)),
+    )?;
+    Ok((from.min(to), from.max(to)))
+}
+
+impl Plan {
+    fn new(options: &LocusOptions) -> Result<Self> {
+        let (name, kind, orbits) = kind(options.of.as_deref())?;
+        for (name, given) in [
+            ("driving", options.model.driving),
+            ("stiffness", options.model.stiffness),
+        ] {
+            if given.is_some() {
+                return Err(Error::Input(format!(
+                    "--{name} varies along a curve and can't be given; use --{name}-range, or --at-{name} to land on a value"
+                )));
+            }
+        }
+        let system = System::new(&options.model)?;
+        let rates = (Quantity::SlipRate, &system.units);
+        let stiffnesses = (Quantity::Stiffness, &system.units);
+        let driving = ends(
+            "driving-range",
+            options.driving_range.as_deref(),
+            rates,
+            following::DRIVING,
+        )?;
+        let stiffness = ends(
+            "stiffness-range",
+            options.stiffness_range.as_deref(),
+            stiffnesses,
+            following::STIFFNESS,
+        )?;
+        let following = Following::new(&options.continuation, orbits)?;
+        let request = LocusRequest {
+            slab: Slab {
+                law: system.law,
+                interfaces: system.interfaces,
+                loading: Loading::new(driving.0, stiffness.0)?,
+            },
+            kind,
+            symmetry: following::symmetry(&options.symmetry, system.interfaces)?,
+            driving,
+            stiffness,
+            at_driving: landings("at-driving", options.at_driving.as_deref(), rates, driving)?,
+            at_stiffness: landings(
+                "at-stiffness",
+                options.at_stiffness.as_deref(),
+                stiffnesses,
+                stiffness,
+            )?,
+            step: following.step,
+            tolerance: following.tolerance,
+            criticality: options.criticality,
+            skip: Vec::new(),
+        };
+        Ok(Plan {
+            numerics: numerics(name, options, &request, &following, &system.units),
+            name,
+            orbits,
+            system,
+            request,
+            following,
+        })
+    }
+
+    fn explain(&self) {
+        let units = &self.system.units;
+        eprintln!("plan of this command");
+        eprintln!("  curve             {}", self.name);
+        following::explain_symmetry(self.request.symmetry, self.system.interfaces);
+        for (name, quantity, (from, to)) in [
+            ("V_H", Quantity::SlipRate, self.request.driving),
+            ("K", Quantity::Stiffness, self.request.stiffness),
+        ] {
+            eprintln!(
+                "  {name:<18}from {:e} to {:e}",
+                units.outward(quantity, from),
+                units.outward(quantity, to)
+            );
+        }
+        if self.orbits {
+            eprintln!(
+                "  method            taylor, tangents on, multiple shooting, V_H and K unknown"
+            );
+        } else {
+            eprintln!("  method            the conditions on equilibria; nothing is integrated");
+        }
+        eprintln!(
+            "  criticality       {}",
+            if self.request.criticality {
+                "on: the normal form's coefficient at every point"
+            } else {
+                "off at rows: --criticality is not given"
+            }
+        );
+        let at = [&self.request.at_driving[..], &self.request.at_stiffness[..]];
+        following::explain(&self.following, &at.concat());
+    }
+}
+
+fn numerics(
+    name: &str,
+    options: &LocusOptions,
+    request: &LocusRequest,
+    following: &Following,
+    units: &Units,
+) -> Value {
+    let list = |quantity, values: &[f64]| -> Vec<f64> {
+        values.iter().map(|&x| units.outward(quantity, x)).collect()
+    };
+    let (driving, stiffness) = (request.driving, request.stiffness);
+    json!({
+        "of": name,
+        "symmetry": options.symmetry,
+        "driving_range": list(Quantity::SlipRate, &[driving.0, driving.1]),
+        "stiffness_range": list(Quantity::Stiffness, &[stiffness.0, stiffness.1]),
+        "at_driving": list(Quantity::SlipRate, &request.at_driving),
+        "at_stiffness": list(Quantity::Stiffness, &request.at_stiffness),
+        "criticality": request.criticality,
+        "step_limit": following.step,
+        "tolerance": following.tolerance,
+        "crosscheck": following.second.map(|second| second.name()),
+    })
+}
+
+pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
+    let plan = Plan::new(options)?;
+    let recheck = |special: &_, method| {
+        orbits::crosscheck(&plan.request.slab, plan.request.symmetry, special, method)
+    };
+    let task = Task {
+        system: &plan.system,
+        columns: columns(),
+        numerics: plan.numerics.clone(),
+        second: plan
+            .following
+            .second
+            .map(|method| (method, &recheck as &dyn Fn(&_, _) -> _)),
+        resume: options.resume.as_ref(),
+        plot: options.plot.as_ref(),
+        output: &options.output,
+        words,
+    };
+    let report = task.report()?;
+    if options.output.explain {
+        plan.explain();
+    }
+    task.run(
+        &report,
+        |skip, seen| {
+            let request = LocusRequest {
+                skip: skip.to_vec(),
+                ..plan.request.clone()
+            };
+            if plan.orbits {
+                orbits::locus(&request, seen)
+            } else {
+                equilibria::locus(&request, seen)
+            }
+        },
+        |rows, special| diagram::curves(rows, special, plan.name, &plan.system.units),
+    )
+}
+
+fn columns() -> Vec<Column<LocusRow>> {
+    type Row = LocusRow;
+    vec![
+        Column::uncertain("driving", Quantity::SlipRate, |row: &Row| {
+            Entry::Uncertain(Some(row.driving))
+        }),
+        Column::uncertain("stiffness", Quantity::Stiffness, |row: &Row| {
+            Entry::Uncertain(Some(row.stiffness))
+        }),
+        Column::new("period", Quantity::Time, |row: &Row| {
+            Entry::Number(row.period)
+        }),
+        Column::new("angle_over_pi", Quantity::Number, |row: &Row| {
+            Entry::Number(row.angle_over_pi)
+        }),
+        Column::new("criticality", Quantity::Number, |row: &Row| {
+            Entry::word(row.criticality.map(criticality))
+        }),
+        Column::new("label", Quantity::Number, |row: &Row| {
+            Entry::word(row.label.map(Label::name))
+        }),
+        Column::new("curve", Quantity::Number, |row: &Row| {
+            Entry::Count(row.curve)
+        }),
+    ]
+}
+
+impl Row for LocusRow {
+    const WHOLE: &'static str = "curve";
+    const WHOLES: &'static str = "curves";
+
+    fn of(event: Event) -> std::result::Result<Self, Event> {
+        match event {
+            Event::Locus(row) => Ok(row),
+            other => Err(other),
+        }
+    }
+
+    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
+        let number = |name: &str| cell(name).parse::<f64>().ok();
+        let uncertain = |name: &str, quantity| {
+            let value = units.inward(quantity, number(name)?);
+            let bound = number(&format!("{name}_uncertainty"));
+            Some(bound.map_or(unknown(value), |bound| {
+                Uncertain::new(value, bound / units.factor(quantity))
+            }))
+        };
+        let sides = [
+            Criticality::Supercritical,
+            Criticality::Subcritical,
+            Criticality::Undecided,
+        ];
+        Some(LocusRow {
+            curve: cell("curve").parse().ok()?,
+            driving: uncertain("driving", Quantity::SlipRate)?,
+            stiffness: uncertain("stiffness", Quantity::Stiffness)?,
+            period: number("period").map(|t| units.inward(Quantity::Time, t)),
+            angle_over_pi: number("angle_over_pi"),
+            criticality: sides
+                .into_iter()
+                .find(|&side| criticality(side) == cell("criticality")),
+            label: Label::named(cell("label")),
+        })
+    }
+
+    fn number(&self) -> usize {
+        self.curve
+    }
+
+    fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    fn loading(&self) -> (Uncertain, Uncertain) {
+        (self.driving, self.stiffness)
+    }
+
+    fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// Points of a curve have no verdict.
+    fn undecided(&self) -> bool {
+        false
+    }
+}

@@ -1,0 +1,145 @@
+//! Special points as objects and as a short table.
+
+use super::fields::{self, Column, Entry};
+use super::following::criticality;
+use crate::bifurcation::Special;
+use crate::number::Uncertain;
+use crate::output::shortest;
+use crate::scene::{Quantity, System, Units};
+use serde_json::{Value, json};
+
+/// What a second method says of the special points.
+#[derive(Default)]
+pub struct Checks {
+    /// Its name, if there is one.
+    pub method: Option<&'static str>,
+    /// Relative differences in V_H, K and the period, of the first so many points.
+    pub differences: Vec<Option<[f64; 3]>>,
+}
+
+fn columns() -> Vec<Column<Special>> {
+    vec![
+        Column::new("label", Quantity::Number, |one: &Special| {
+            Entry::word(Some(one.label.name()))
+        }),
+        Column::new("name", Quantity::Number, |one| {
+            Entry::word(Some(one.label.meaning()))
+        }),
+        Column::uncertain("driving", Quantity::SlipRate, |one| {
+            Entry::Uncertain(Some(one.driving))
+        }),
+        Column::uncertain("stiffness", Quantity::Stiffness, |one| {
+            Entry::Uncertain(Some(one.stiffness))
+        }),
+        Column::uncertain("period", Quantity::Time, |one| Entry::Uncertain(one.period)),
+        Column::new("criticality", Quantity::Number, |one| {
+            Entry::word(one.criticality.map(criticality))
+        }),
+        Column::new("coefficient", Quantity::Number, |one| {
+            Entry::Number(one.coefficient)
+        }),
+        Column::new("note", Quantity::Number, |one| {
+            Entry::Word(one.note.clone())
+        }),
+    ]
+}
+
+/// `result.special`.
+pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value> {
+    let columns = columns();
+    let object = |(i, one): (usize, &Special)| {
+        let mut object = fields::object(&columns, one, units);
+        if let Some(method) = checks.method {
+            let difference = checks.differences.get(i).copied().flatten();
+            let check = difference.map(|[driving, stiffness, period]| {
+                json!({
+                    "method": method,
+                    "driving_difference": driving,
+                    "stiffness_difference": stiffness,
+                    "period_difference": period,
+                })
+            });
+            object.insert("crosscheck".to_owned(), json!(check));
+        }
+        Value::Object(object)
+    };
+    special.iter().enumerate().map(object).collect()
+}
+
+/// The table, a line each with the header first; none where there is no special point.
+pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<String> {
+    if special.is_empty() {
+        return Vec::new();
+    }
+    let units = &system.units;
+    let unit = |quantity| units.name(quantity);
+    let mut header = vec![
+        String::new(),
+        String::new(),
+        format!("V_H [{}]", unit(Quantity::SlipRate)),
+        format!("K [{}]", unit(Quantity::Stiffness)),
+        format!("period [{}]", unit(Quantity::Time)),
+        String::new(),
+    ];
+    if let Some(method) = checks.method {
+        header.push(format!("{method} differs in V_H, K, period by"));
+    }
+    header.push(String::new());
+    let mut table = vec![header];
+    for (i, one) in special.iter().enumerate() {
+        let number = |quantity, x: Option<Uncertain>| {
+            x.map_or(String::new(), |x| {
+                written(units.outward_uncertain(quantity, x))
+            })
+        };
+        let mut row = vec![
+            one.label.name().to_owned(),
+            one.label.meaning().to_owned(),
+            number(Quantity::SlipRate, Some(one.driving)),
+            number(Quantity::Stiffness, Some(one.stiffness)),
+            number(Quantity::Time, one.period),
+            one.criticality.map_or("", criticality).to_owned(),
+        ];
+        if checks.method.is_some() {
+            let difference = checks.differences.get(i).copied().flatten();
+            row.push(difference.map_or(String::new(), |[v, k, t]| {
+                format!("{v:.1e}, {k:.1e}, {t:.1e}")
+            }));
+        }
+        row.push(one.note.clone().unwrap_or_default());
+        table.push(row);
+    }
+    aligned(&table)
+}
+
+/// A value with the bound on its error, if there is any.
+fn written(x: Uncertain) -> String {
+    if x.uncertainty == 0.0 || !x.uncertainty.is_finite() {
+        shortest(x.value)
+    } else {
+        format!("{} ± {:.1e}", shortest(x.value), x.uncertainty)
+    }
+}
+
+/// Columns of equal width, without those in which no row has anything.
+fn aligned(table: &[Vec<String>]) -> Vec<String> {
+    let length = |text: &String| text.chars().count();
+    let columns = table.first().map_or(0, Vec::len);
+    let widths: Vec<usize> = (0..columns)
+        .map(|i| {
+            let rows = table[1..].iter().map(|row| length(&row[i])).max();
+            let widest = table.iter().map(|row| length(&row[i])).max();
+            rows.filter(|&width| width > 0)
+                .and(widest)
+                .unwrap_or_default()
+        })
+        .collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).filter(|&(_, &width)| width > 0);
+        let cells: Vec<String> = cells
+            .map(|(text, &width)| format!("{text:<width$}"))
+            .collect();
+        format!("  {}", cells.join("  ")).trim_end().to_owned()
+    };
+    table.iter().map(line).collect()
+}
