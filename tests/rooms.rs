@@ -39,6 +39,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "bifurcation",
+        &["orbit", "equilibrium", "integrate", "model", "number"],
+    ),
+    (
         "scene",
         &[
             "section",
@@ -55,10 +59,12 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "cli",
         &[
             "scene",
+            "bifurcation",
             "orbit",
             "section",
             "equilibrium",
             "integrate",
+            "model",
             "sundials",
             "friction",
             "number",

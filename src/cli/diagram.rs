@@ -105,8 +105,8 @@ fn lines(
     let kinds = [
         ("symmetric", ALIKE, true),
         ("asymmetric", APART, true),
-        ("symmetric, unstable", ALIKE, false),
-        ("asymmetric, unstable", APART, false),
+        ("unstable", ALIKE, false),
+        ("unstable", APART, false),
     ];
     let part = |(name, colour, stable): (&str, usize, bool)| {
         let (mut xs, mut ys) = (Vec::new(), Vec::new());
@@ -131,7 +131,13 @@ fn lines(
         }
     };
     let series = kinds.into_iter().map(part);
-    series.filter(|series| !series.x.is_empty()).collect()
+    let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
+    // Dashes are told once, for both colours.
+    let dashed = series.iter_mut().filter(|series| series.dashed);
+    dashed
+        .skip(1)
+        .for_each(|series| series.label = String::new());
+    series
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.
