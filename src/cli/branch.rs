@@ -1,20 +1,16 @@
 //! `twinslip branch`.
 
 use super::Ending;
-use super::continuation::{Row, Task};
+use super::continuation::Task;
 use super::diagram;
-use super::equilibria::verdict as verdict_name;
-use super::fields::{Column, Entry};
 use super::following::{self, Following, landings, range};
-use super::resume::unknown;
-use crate::bifurcation::{BranchRequest, BranchRow, Event, Label, Parameter, equilibria, orbits};
-use crate::equilibrium::Verdict;
+use super::rows;
+use crate::bifurcation::{BranchRequest, Parameter, equilibria, orbits};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
-use crate::number::Uncertain;
 use crate::orbit::Slab;
-use crate::scene::{BranchOptions, Quantity, System, Units};
+use crate::scene::{BranchOptions, Quantity, System};
 use serde_json::{Value, json};
 
 pub const EXAMPLE: &str =
@@ -197,7 +193,7 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     };
     let task = Task {
         system: &plan.system,
-        columns: columns(plan.of, plan.system.interfaces),
+        columns: rows::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
         numerics: plan.numerics.clone(),
         second: plan
             .following
@@ -226,152 +222,4 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
         },
         |rows, _| diagram::branches(rows, &plan.along, &plan.request.slab, &plan.system),
     )
-}
-
-fn columns(of: Of, interfaces: usize) -> Vec<Column<BranchRow>> {
-    type Row = BranchRow;
-    let orbits = of == Of::Orbits;
-    // The exponent of an equilibrium is a rate, that of an orbit belongs to its period.
-    let exponent = if orbits {
-        Quantity::Number
-    } else {
-        Quantity::Growth
-    };
-    let mut columns = vec![
-        Column::new("driving", Quantity::SlipRate, |row: &Row| {
-            Entry::Number(Some(row.driving))
-        }),
-        Column::new("stiffness", Quantity::Stiffness, |row: &Row| {
-            Entry::Number(Some(row.stiffness))
-        }),
-        Column::new("stress", Quantity::Stress, |row: &Row| {
-            Entry::Number(Some(row.stress))
-        }),
-        Column::new("stress_min", Quantity::Stress, |row: &Row| {
-            Entry::Number(Some(row.stress_range.0))
-        }),
-        Column::new("stress_max", Quantity::Stress, |row: &Row| {
-            Entry::Number(Some(row.stress_range.1))
-        }),
-        Column::new("period", Quantity::Time, |row: &Row| {
-            Entry::Number(row.period)
-        }),
-        Column::new("state_1", Quantity::State, |row: &Row| {
-            Entry::Number(Some(row.state[0]))
-        }),
-        Column::new("state_2", Quantity::State, |row: &Row| {
-            Entry::Number(Some(row.state[1]))
-        }),
-        Column::new("slip_rate_1", Quantity::SlipRate, |row: &Row| {
-            Entry::Number(Some(row.slip_rate[0]))
-        }),
-        Column::new("slip_rate_2", Quantity::SlipRate, |row: &Row| {
-            Entry::Number(Some(row.slip_rate[1]))
-        }),
-        Column::new("ln_abs_multiplier_1", exponent, |row: &Row| {
-            Entry::Number(row.ln_abs_multiplier[0])
-        }),
-        Column::new("ln_abs_multiplier_2", exponent, |row: &Row| {
-            Entry::Number(row.ln_abs_multiplier[1])
-        }),
-        Column::new("verdict", Quantity::Number, |row: &Row| {
-            Entry::word(Some(verdict_name(row.verdict)))
-        }),
-        Column::new("label", Quantity::Number, |row: &Row| {
-            Entry::word(row.label.map(Label::name))
-        }),
-        Column::new("branch", Quantity::Number, |row: &Row| {
-            Entry::Count(row.branch)
-        }),
-    ];
-    if interfaces == 1 {
-        columns.retain(|column| !column.name.ends_with("_2"));
-    }
-    let hidden: &[&str] = match of {
-        Of::Equilibria => &[
-            "stress_min",
-            "stress_max",
-            "period",
-            "ln_abs_multiplier_1",
-            "ln_abs_multiplier_2",
-        ],
-        Of::Orbits => &[
-            "stress",
-            "slip_rate_1",
-            "slip_rate_2",
-            "ln_abs_multiplier_2",
-        ],
-    };
-    for column in &mut columns {
-        column.in_table = !hidden.contains(&column.name);
-    }
-    columns
-}
-
-impl Row for BranchRow {
-    const WHOLE: &'static str = "branch";
-    const WHOLES: &'static str = "branches";
-
-    fn of(event: Event) -> std::result::Result<Self, Event> {
-        match event {
-            Event::Branch(row) => Ok(row),
-            other => Err(other),
-        }
-    }
-
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
-        let maybe = |name: &str, quantity| {
-            let x = cell(name).parse::<f64>().ok()?;
-            Some(units.inward(quantity, x))
-        };
-        let both = |name: &str, quantity| {
-            let first = maybe(&format!("{name}_1"), quantity)?;
-            // A single interface has one column.
-            Some([
-                first,
-                maybe(&format!("{name}_2"), quantity).unwrap_or(first),
-            ])
-        };
-        let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
-        Some(BranchRow {
-            branch: cell("branch").parse().ok()?,
-            driving: maybe("driving", Quantity::SlipRate)?,
-            stiffness: maybe("stiffness", Quantity::Stiffness)?,
-            stress: maybe("stress", Quantity::Stress)?,
-            stress_range: (
-                maybe("stress_min", Quantity::Stress)?,
-                maybe("stress_max", Quantity::Stress)?,
-            ),
-            period: maybe("period", Quantity::Time),
-            state: both("state", Quantity::State)?,
-            slip_rate: both("slip_rate", Quantity::SlipRate)?,
-            // Not shown but in the line itself, which is kept as it stands.
-            ln_abs_multiplier: [None; 2],
-            verdict: verdicts
-                .into_iter()
-                .find(|&verdict| verdict_name(verdict) == cell("verdict"))?,
-            label: Label::named(cell("label")),
-        })
-    }
-
-    fn number(&self) -> usize {
-        self.branch
-    }
-
-    fn label(&self) -> Option<Label> {
-        self.label
-    }
-
-    fn loading(&self) -> (Uncertain, Uncertain) {
-        (unknown(self.driving), unknown(self.stiffness))
-    }
-
-    fn period(&self) -> Option<f64> {
-        self.period
-    }
-
-    /// At a bifurcation, and where a branch ends in one, there is nothing to decide.
-    fn undecided(&self) -> bool {
-        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
-    }
 }

@@ -4,39 +4,17 @@ use super::fields::{self, Column};
 use super::progress::Progress;
 use super::report::{Report, unit_names};
 use super::resume::Kept;
+use super::rows::Row;
 use super::{Ending, interrupt, special, written};
 use crate::bifurcation::{Criticality, Event, Label, Seen, Special};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
-use crate::number::Uncertain;
-use crate::output::{Format, RowWriter, plot};
-use crate::scene::{OutputOptions, Quantity, System, Units};
+use crate::output::{Format, RowWriter, plot, seven_digits};
+use crate::scene::{OutputOptions, Quantity, System};
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-
-/// A row of a branch or of a curve.
-pub trait Row: Sized {
-    /// What rows of one number make up.
-    const WHOLE: &'static str;
-    /// The same, more of them.
-    const WHOLES: &'static str;
-    /// The row that an event is, or the event again.
-    fn of(event: Event) -> std::result::Result<Self, Event>;
-    /// From the cells of a CSV in the user's units.
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self>;
-    /// The number of the branch or curve.
-    fn number(&self) -> usize;
-    /// What is special.
-    fn label(&self) -> Option<Label>;
-    /// V_H and K.
-    fn loading(&self) -> (Uncertain, Uncertain);
-    /// The period, where there is one.
-    fn period(&self) -> Option<f64>;
-    /// Whether its stability is undecided where it could be told.
-    fn undecided(&self) -> bool;
-}
 
 /// A recomputation of a special point, and by which method.
 pub type Recheck<'a> = &'a dyn Fn(&Special, Choice) -> Result<Option<[f64; 3]>>;
@@ -102,11 +80,9 @@ impl<'a, R: Row> Task<'a, R> {
         let mut out = Out::new(self, report)?;
         interrupt::watch();
         let skipped = std::mem::take(&mut out.skipped);
-        let computed = compute(&skipped, &mut |event| out.take(event));
-        let failure = match computed {
+        let failure = match compute(&skipped, &mut |event| out.take(event)) {
             Err(error) if error.is_input() && out.new == 0 => return Err(error),
-            Err(error) => Some(error),
-            Ok(()) => None,
+            computed => computed.err(),
         };
         if let Err(error) = out.open() {
             out.broken.get_or_insert(error);
@@ -128,15 +104,7 @@ impl<'a, R: Row> Task<'a, R> {
         report.say(out.summary(seconds));
         match failure {
             Some(error) => Err(error),
-            None if interrupt::asked() => {
-                if let (Format::Csv, Some(path)) = (report.format, report.place.path()) {
-                    report.say(format!(
-                        "interrupted; go on with --resume {}",
-                        path.display()
-                    ));
-                }
-                Ok(Ending::Interrupted)
-            }
+            None if interrupt::asked() => Ok(interrupted(report)),
             None if ending == Ending::Done => Ok(out.ending()),
             None => Ok(ending),
         }
@@ -198,6 +166,17 @@ impl<'a, R: Row> Task<'a, R> {
         );
         written(report.place.write(&bytes), &report.place)
     }
+}
+
+/// Says how to go on.
+fn interrupted(report: &Report<'_>) -> Ending {
+    if let (Format::Csv, Some(path)) = (report.format, report.place.path()) {
+        report.say(format!(
+            "interrupted; go on with --resume {}",
+            path.display()
+        ));
+    }
+    Ending::Interrupted
 }
 
 /// Takes what is found: writes it and keeps it.
@@ -274,25 +253,22 @@ impl<'a, R: Row> Out<'a, R> {
     }
 
     fn take(&mut self, event: Event) -> ControlFlow<()> {
-        match R::of(event) {
-            Ok(row) => {
-                if let Err(error) = self.row(&row) {
-                    self.broken = Some(error);
-                    return ControlFlow::Break(());
-                }
-                self.new += 1;
-                let (points, units) = (self.new, &self.task.system.units);
-                let (driving, stiffness) = row.loading();
-                self.progress.reached_at(|| {
-                    let driving = units.outward(Quantity::SlipRate, driving.value);
-                    let stiffness = units.outward(Quantity::Stiffness, stiffness.value);
-                    format!("{points} points, V_H = {driving:.6}, K = {stiffness:.6}")
-                });
-                self.rows.push(row);
+        if let Event::Special(special) = event {
+            self.special.push(special);
+        } else if let Some(row) = R::of(event) {
+            if let Err(error) = self.row(&row) {
+                self.broken = Some(error);
+                return ControlFlow::Break(());
             }
-            Err(Event::Special(special)) => self.special.push(special),
-            // A branch emits no rows of curves, nor a curve those of branches.
-            Err(_) => {}
+            self.new += 1;
+            let (points, units) = (self.new, &self.task.system.units);
+            let (driving, stiffness) = row.loading();
+            self.progress.reached_at(|| {
+                let driving = seven_digits(units.outward(Quantity::SlipRate, driving.value));
+                let stiffness = seven_digits(units.outward(Quantity::Stiffness, stiffness.value));
+                format!("{points} points, V_H = {driving}, K = {stiffness}")
+            });
+            self.rows.push(row);
         }
         if interrupt::asked() {
             ControlFlow::Break(())

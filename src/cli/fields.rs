@@ -18,10 +18,45 @@ pub enum Entry {
     Count(usize),
 }
 
-impl Entry {
-    /// A word of our own.
-    pub fn word(word: Option<&'static str>) -> Self {
+impl From<f64> for Entry {
+    fn from(x: f64) -> Self {
+        Entry::Number(Some(x))
+    }
+}
+
+impl From<Option<f64>> for Entry {
+    fn from(x: Option<f64>) -> Self {
+        Entry::Number(x)
+    }
+}
+
+impl From<Uncertain> for Entry {
+    fn from(x: Uncertain) -> Self {
+        Entry::Uncertain(Some(x))
+    }
+}
+
+impl From<Option<Uncertain>> for Entry {
+    fn from(x: Option<Uncertain>) -> Self {
+        Entry::Uncertain(x)
+    }
+}
+
+impl From<&'static str> for Entry {
+    fn from(word: &'static str) -> Self {
+        Entry::Word(Some(word.to_owned()))
+    }
+}
+
+impl From<Option<&'static str>> for Entry {
+    fn from(word: Option<&'static str>) -> Self {
         Entry::Word(word.map(str::to_owned))
+    }
+}
+
+impl From<usize> for Entry {
+    fn from(n: usize) -> Self {
+        Entry::Count(n)
     }
 }
 

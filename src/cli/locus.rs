@@ -1,17 +1,13 @@
 //! `twinslip locus`.
 
 use super::Ending;
-use super::continuation::{Row, Task};
+use super::continuation::Task;
 use super::diagram;
-use super::fields::{Column, Entry};
-use super::following::{self, Following, criticality, landings, numbers, range};
-use super::resume::unknown;
-use crate::bifurcation::{
-    Criticality, Event, Label, LocusKind, LocusRequest, LocusRow, equilibria, orbits,
-};
+use super::following::{self, Following, landings, numbers, range};
+use super::rows;
+use crate::bifurcation::{LocusKind, LocusRequest, equilibria, orbits};
 use crate::error::{Error, Result};
 use crate::model::Loading;
-use crate::number::Uncertain;
 use crate::orbit::Slab;
 use crate::scene::{LocusOptions, Quantity, System, Units};
 use serde_json::{Value, json};
@@ -210,7 +206,7 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     };
     let task = Task {
         system: &plan.system,
-        columns: columns(),
+        columns: rows::locus_columns(),
         numerics: plan.numerics.clone(),
         second: plan
             .following
@@ -240,91 +236,4 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
         },
         |rows, special| diagram::curves(rows, special, plan.name, &plan.system.units),
     )
-}
-
-fn columns() -> Vec<Column<LocusRow>> {
-    type Row = LocusRow;
-    vec![
-        Column::uncertain("driving", Quantity::SlipRate, |row: &Row| {
-            Entry::Uncertain(Some(row.driving))
-        }),
-        Column::uncertain("stiffness", Quantity::Stiffness, |row: &Row| {
-            Entry::Uncertain(Some(row.stiffness))
-        }),
-        Column::new("period", Quantity::Time, |row: &Row| {
-            Entry::Number(row.period)
-        }),
-        Column::new("angle_over_pi", Quantity::Number, |row: &Row| {
-            Entry::Number(row.angle_over_pi)
-        }),
-        Column::new("criticality", Quantity::Number, |row: &Row| {
-            Entry::word(row.criticality.map(criticality))
-        }),
-        Column::new("label", Quantity::Number, |row: &Row| {
-            Entry::word(row.label.map(Label::name))
-        }),
-        Column::new("curve", Quantity::Number, |row: &Row| {
-            Entry::Count(row.curve)
-        }),
-    ]
-}
-
-impl Row for LocusRow {
-    const WHOLE: &'static str = "curve";
-    const WHOLES: &'static str = "curves";
-
-    fn of(event: Event) -> std::result::Result<Self, Event> {
-        match event {
-            Event::Locus(row) => Ok(row),
-            other => Err(other),
-        }
-    }
-
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
-        let number = |name: &str| cell(name).parse::<f64>().ok();
-        let uncertain = |name: &str, quantity| {
-            let value = units.inward(quantity, number(name)?);
-            let bound = number(&format!("{name}_uncertainty"));
-            Some(bound.map_or(unknown(value), |bound| {
-                Uncertain::new(value, bound / units.factor(quantity))
-            }))
-        };
-        let sides = [
-            Criticality::Supercritical,
-            Criticality::Subcritical,
-            Criticality::Undecided,
-        ];
-        Some(LocusRow {
-            curve: cell("curve").parse().ok()?,
-            driving: uncertain("driving", Quantity::SlipRate)?,
-            stiffness: uncertain("stiffness", Quantity::Stiffness)?,
-            period: number("period").map(|t| units.inward(Quantity::Time, t)),
-            angle_over_pi: number("angle_over_pi"),
-            criticality: sides
-                .into_iter()
-                .find(|&side| criticality(side) == cell("criticality")),
-            label: Label::named(cell("label")),
-        })
-    }
-
-    fn number(&self) -> usize {
-        self.curve
-    }
-
-    fn label(&self) -> Option<Label> {
-        self.label
-    }
-
-    fn loading(&self) -> (Uncertain, Uncertain) {
-        (self.driving, self.stiffness)
-    }
-
-    fn period(&self) -> Option<f64> {
-        self.period
-    }
-
-    /// Points of a curve have no verdict.
-    fn undecided(&self) -> bool {
-        false
-    }
 }

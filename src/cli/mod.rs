@@ -14,6 +14,7 @@ mod orbit;
 mod progress;
 mod report;
 mod resume;
+mod rows;
 mod run;
 mod section;
 mod special;

@@ -1,9 +1,8 @@
 //! Going on with the CSV file of an interrupted run: what is complete in it stays, if it is of the same command and model.
 
-use super::continuation::Row;
+use super::rows::{Row, unknown};
 use crate::bifurcation::{Label, Special};
 use crate::error::{Error, Result};
-use crate::number::Uncertain;
 use crate::output::EarlierRows;
 use crate::scene::Units;
 use std::collections::BTreeMap;
@@ -102,11 +101,6 @@ impl<R: Row> Kept<R> {
         };
         self.rows.iter().filter_map(special).collect()
     }
-}
-
-/// A value whose error budget was not written.
-pub fn unknown(value: f64) -> Uncertain {
-    Uncertain::new(value, f64::INFINITY)
 }
 
 /// Whether a file was written by the same command with the same model; if not, why not.

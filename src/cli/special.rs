@@ -18,29 +18,18 @@ pub struct Checks {
 }
 
 fn columns() -> Vec<Column<Special>> {
+    use Quantity::{Number, SlipRate, Stiffness, Time};
     vec![
-        Column::new("label", Quantity::Number, |one: &Special| {
-            Entry::word(Some(one.label.name()))
+        Column::new("label", Number, |one: &Special| one.label.name().into()),
+        Column::new("name", Number, |one| one.label.meaning().into()),
+        Column::uncertain("driving", SlipRate, |one| one.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
+        Column::uncertain("period", Time, |one| one.period.into()),
+        Column::new("criticality", Number, |one| {
+            one.criticality.map(criticality).into()
         }),
-        Column::new("name", Quantity::Number, |one| {
-            Entry::word(Some(one.label.meaning()))
-        }),
-        Column::uncertain("driving", Quantity::SlipRate, |one| {
-            Entry::Uncertain(Some(one.driving))
-        }),
-        Column::uncertain("stiffness", Quantity::Stiffness, |one| {
-            Entry::Uncertain(Some(one.stiffness))
-        }),
-        Column::uncertain("period", Quantity::Time, |one| Entry::Uncertain(one.period)),
-        Column::new("criticality", Quantity::Number, |one| {
-            Entry::word(one.criticality.map(criticality))
-        }),
-        Column::new("coefficient", Quantity::Number, |one| {
-            Entry::Number(one.coefficient)
-        }),
-        Column::new("note", Quantity::Number, |one| {
-            Entry::Word(one.note.clone())
-        }),
+        Column::new("coefficient", Number, |one| one.coefficient.into()),
+        Column::new("note", Number, |one| Entry::Word(one.note.clone())),
     ]
 }
 

@@ -1,8 +1,9 @@
 //! Panels on a plotters canvas.
 
+use super::marks::marks;
 use super::scale::Scale;
 use super::thin::thinned;
-use super::{FAMILY, FONT, Mark, Panel, Series, Side, names, unrendered};
+use super::{FAMILY, FONT, Panel, Series, Side, names, unrendered};
 use crate::error::Result;
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
@@ -11,7 +12,7 @@ use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// plotters counts whole pixels: drawn this much larger and shown at normal size, curves are smooth.
-const FINE: f64 = 10.0;
+pub const FINE: f64 = 10.0;
 /// Width of one column of panels.
 const COLUMN: f64 = 560.0;
 /// Height of the picture per panel of the highest column.
@@ -23,7 +24,7 @@ const STRIP: f64 = 26.0;
 const LEFT_MARGIN: f64 = 10.0;
 const LEFT_LABELS: f64 = 74.0;
 const BOTTOM_LABELS: f64 = 44.0;
-const TEXT: f64 = 15.0;
+pub const TEXT: f64 = 15.0;
 const LINE: f64 = 1.1;
 const WIDE: f64 = 1.9;
 /// Radius of a point.
@@ -34,12 +35,6 @@ const MARGIN: f64 = 0.04;
 const MARKED_MARGIN: f64 = 0.26;
 /// The same where the names stand where there is room.
 const FREE_MARGIN: f64 = 0.1;
-/// Radius of a point that is pointed out.
-const RADIUS: f64 = 3.4;
-/// Room between a name and its neighbours.
-const AIR: f64 = 4.0;
-/// A name that begins farther than this from its point is tied to it.
-const TIED: f64 = 12.0;
 /// Dashes and the gaps between.
 const DASH: f64 = 6.0;
 const GAP: f64 = 3.5;
@@ -52,18 +47,16 @@ const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
 ];
-/// Points that are pointed out, and their names.
-const MARK: RGBColor = RGBColor(150, 30, 30);
-const INK: RGBColor = RGBColor(40, 40, 40);
+pub const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(228, 228, 228);
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-fn px(x: f64) -> i32 {
+pub fn px(x: f64) -> i32 {
     (x * FINE).round() as i32
 }
 
-fn font(size: f64, colour: RGBColor) -> TextStyle<'static> {
+pub fn font(size: f64, colour: RGBColor) -> TextStyle<'static> {
     // The backend divides by 1.24 what plotters calls the size.
     (FAMILY, size * FINE).into_font().color(&colour)
 }
@@ -157,7 +150,7 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
 }
 
 /// The frame's inside, with our axes.
-type Inside<'a, 'b> = DrawingArea<SVGBackend<'a>, Cartesian2d<Ticked<'b>, Ticked<'b>>>;
+pub type Inside<'a, 'b> = DrawingArea<SVGBackend<'a>, Cartesian2d<Ticked<'b>, Ticked<'b>>>;
 
 /// Draws the curves and gives points along them in pixels of the frame.
 fn curves(
@@ -214,67 +207,8 @@ fn colour(series: &Series, number: usize) -> RGBColor {
     COLOURS[series.colour.unwrap_or(number) % COLOURS.len()]
 }
 
-/// Draws the points that are pointed out, with their names where there is room.
-fn marks(
-    area: &Inside<'_, '_>,
-    panel: &Panel,
-    (x, y): (&Scale, &Scale),
-    curves: &[names::Pixel],
-) -> Result<()> {
-    let (width, height) = area.dim_in_pixel();
-    let frame = (f64::from(width) / FINE, f64::from(height) / FINE);
-    let style = font(TEXT, INK);
-    let shown: Vec<&Mark> = panel
-        .marks
-        .iter()
-        .filter(|mark| x.at(mark.x).is_finite() && y.at(mark.y).is_finite())
-        .collect();
-    let mut named = Vec::new();
-    for mark in &shown {
-        let (wide, high) = area
-            .estimate_text_size(&mark.label, &style)
-            .map_err(unrendered)?;
-        named.push(names::Named {
-            at: (
-                (x.at(mark.x) - x.lo) / (x.hi - x.lo) * frame.0,
-                (y.hi - y.at(mark.y)) / (y.hi - y.lo) * frame.1,
-            ),
-            size: (f64::from(wide) / FINE + AIR, f64::from(high) / FINE + AIR),
-            side: mark.side,
-        });
-    }
-    for ((mark, name), centre) in shown
-        .iter()
-        .zip(&named)
-        .zip(names::placed(&named, curves, frame))
-    {
-        let at = (x.at(mark.x), y.at(mark.y));
-        let off = (centre.0 - name.at.0, centre.1 - name.at.1);
-        let middle = (px(off.0), px(off.1));
-        area.draw(&Circle::new(at, px(RADIUS), MARK.filled()))
-            .map_err(unrendered)?;
-        if mark.label.is_empty() {
-            continue;
-        }
-        // A name that stands far off is tied to its point, up to its edge.
-        let edge = names::edge(off, name.size);
-        if edge.0.hypot(edge.1) > TIED {
-            let tie = PathElement::new(
-                vec![(0, 0), (px(edge.0), px(edge.1))],
-                MARK.mix(0.5).stroke_width(px(0.7) as u32),
-            );
-            area.draw(&(EmptyElement::at(at) + tie))
-                .map_err(unrendered)?;
-        }
-        let text = font(TEXT, MARK).pos(Pos::new(HPos::Center, VPos::Center));
-        area.draw(&(EmptyElement::at(at) + Text::new(mark.label.clone(), middle, text)))
-            .map_err(unrendered)?;
-    }
-    Ok(())
-}
-
 /// An axis of plotters with our ticks.
-struct Ticked<'a>(&'a Scale);
+pub struct Ticked<'a>(&'a Scale);
 
 impl Ranged for Ticked<'_> {
     type FormatOption = NoDefaultFormatting;

@@ -2,6 +2,7 @@
 //! a machine without fonts.
 
 mod draw;
+mod marks;
 mod names;
 mod scale;
 mod thin;
