@@ -102,13 +102,8 @@ fn lines(
     y: &dyn Fn(&BranchRow) -> f64,
     legend: bool,
 ) -> Vec<Series> {
-    let kinds = [
-        ("symmetric", ALIKE, true),
-        ("asymmetric", APART, true),
-        ("unstable", ALIKE, false),
-        ("unstable", APART, false),
-    ];
-    let part = |(name, colour, stable): (&str, usize, bool)| {
+    let kinds = [(ALIKE, true), (APART, true), (ALIKE, false), (APART, false)];
+    let part = |(colour, stable): (usize, bool)| {
         let (mut xs, mut ys) = (Vec::new(), Vec::new());
         for branch in whole(rows).filter(|branch| apart(branch) == (colour == APART)) {
             for pair in branch.windows(2) {
@@ -127,17 +122,31 @@ fn lines(
         Series {
             dashed: !stable,
             colour: Some(colour),
-            ..Series::new(if legend { name } else { "" }, xs, ys)
+            ..Series::new("", xs, ys)
         }
     };
     let series = kinds.into_iter().map(part);
     let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
-    // Dashes are told once, for both colours.
-    let dashed = series.iter_mut().filter(|series| series.dashed);
-    dashed
-        .skip(1)
-        .for_each(|series| series.label = String::new());
+    named(&mut series, legend);
     series
+}
+
+/// The legend: each colour once, dashes once.
+fn named(series: &mut [Series], legend: bool) {
+    let (mut colours, mut dashes) = (Vec::new(), false);
+    for one in series.iter_mut().filter(|_| legend) {
+        let unstable = (one.dashed && !dashes).then_some("unstable");
+        let new = !colours.contains(&one.colour);
+        let name = if one.colour == Some(ALIKE) {
+            "symmetric"
+        } else {
+            "asymmetric"
+        };
+        let words: Vec<&str> = new.then_some(name).into_iter().chain(unstable).collect();
+        one.label = words.join(", ");
+        colours.push(one.colour);
+        dashes |= one.dashed;
+    }
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.

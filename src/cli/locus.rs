@@ -16,44 +16,88 @@ pub const EXAMPLE: &str =
     "Example, the torus bifurcations of the paper's Figs 12 and 14, with their resonances:
   twinslip locus torus --stiffness-range 0.02,0.3 -o torus.csv --plot torus.svg";
 
-/// The curves by name, and whether they are of orbits.
-const KINDS: [(&str, LocusKind, bool); 7] = [
-    ("pitchfork", LocusKind::Pitchfork, false),
-    ("saddle-node", LocusKind::SaddleNode, false),
-    ("hopf", LocusKind::Hopf, false),
-    ("orbit-pitchfork", LocusKind::OrbitPitchfork, true),
-    ("orbit-saddle-node", LocusKind::OrbitSaddleNode, true),
-    ("period-doubling", LocusKind::PeriodDoubling, true),
-    ("torus", LocusKind::Torus, true),
+/// A curve that can be asked for.
+#[derive(Debug, Clone, Copy)]
+struct Curve {
+    /// As the command line has it.
+    name: &'static str,
+    /// As a picture has it.
+    title: &'static str,
+    kind: LocusKind,
+    /// Whether it is of orbits.
+    orbits: bool,
+}
+
+const fn curve(name: &'static str, title: &'static str, kind: LocusKind, orbits: bool) -> Curve {
+    Curve {
+        name,
+        title,
+        kind,
+        orbits,
+    }
+}
+
+const CURVES: [Curve; 7] = [
+    curve(
+        "pitchfork",
+        "pitchforks of equilibria",
+        LocusKind::Pitchfork,
+        false,
+    ),
+    curve(
+        "saddle-node",
+        "folds of equilibria",
+        LocusKind::SaddleNode,
+        false,
+    ),
+    curve("hopf", "Hopf points", LocusKind::Hopf, false),
+    curve(
+        "orbit-pitchfork",
+        "pitchforks of orbits",
+        LocusKind::OrbitPitchfork,
+        true,
+    ),
+    curve(
+        "orbit-saddle-node",
+        "folds of orbits",
+        LocusKind::OrbitSaddleNode,
+        true,
+    ),
+    curve(
+        "period-doubling",
+        "period doublings",
+        LocusKind::PeriodDoubling,
+        true,
+    ),
+    curve("torus", "torus bifurcations", LocusKind::Torus, true),
 ];
 
 /// What is to be done, checked.
 struct Plan {
-    name: &'static str,
-    orbits: bool,
+    curve: Curve,
     system: System,
     request: LocusRequest,
     following: Following,
     numerics: Value,
 }
 
-fn kind(name: Option<&str>) -> Result<(&'static str, LocusKind, bool)> {
-    let known = || KINDS.map(|(name, ..)| name).join(", ");
-    let name = name.ok_or_else(|| {
-        Error::Input(format!(
-            "it is missing of which bifurcation the curve is: locus followed by one of {}",
-            known()
-        ))
-    })?;
-    KINDS
-        .into_iter()
-        .find(|&(known, ..)| known == name)
-        .ok_or_else(|| {
+impl Curve {
+    fn named(name: Option<&str>) -> Result<Self> {
+        let known = || CURVES.map(|curve| curve.name).join(", ");
+        let name = name.ok_or_else(|| {
+            Error::Input(format!(
+                "it is missing of which bifurcation the curve is: locus followed by one of {}",
+                known()
+            ))
+        })?;
+        let found = CURVES.into_iter().find(|curve| curve.name == name);
+        found.ok_or_else(|| {
             Error::Input(format!(
                 "there is no curve of {name:?}; choose one of {}",
                 known()
             ))
         })
+    }
 }
 
 /// A range A,B, dimensionless.
@@ -80,7 +124,7 @@ fn ends(
 
 impl Plan {
     fn new(options: &LocusOptions) -> Result<Self> {
-        let (name, kind, orbits) = kind(options.of.as_deref())?;
+        let curve = Curve::named(options.of.as_deref())?;
         for (name, given) in [
             ("driving", options.model.driving),
             ("stiffness", options.model.stiffness),
@@ -106,14 +150,14 @@ impl Plan {
             stiffnesses,
             following::STIFFNESS,
         )?;
-        let following = Following::new(&options.continuation, orbits)?;
+        let following = Following::new(&options.continuation, curve.orbits)?;
         let request = LocusRequest {
             slab: Slab {
                 law: system.law,
                 interfaces: system.interfaces,
                 loading: Loading::new(driving.0, stiffness.0)?,
             },
-            kind,
+            kind: curve.kind,
             symmetry: following::symmetry(&options.symmetry, system.interfaces)?,
             driving,
             stiffness,
@@ -130,9 +174,8 @@ impl Plan {
             skip: Vec::new(),
         };
         Ok(Plan {
-            numerics: numerics(name, options, &request, &following, &system.units),
-            name,
-            orbits,
+            numerics: numerics(curve.name, options, &request, &following, &system.units),
+            curve,
             system,
             request,
             following,
@@ -142,7 +185,7 @@ impl Plan {
     fn explain(&self) {
         let units = &self.system.units;
         eprintln!("plan of this command");
-        eprintln!("  curve             {}", self.name);
+        eprintln!("  curve             {}", self.curve.name);
         following::explain_symmetry(self.request.symmetry, self.system.interfaces);
         for (name, quantity, (from, to)) in [
             ("V_H", Quantity::SlipRate, self.request.driving),
@@ -154,7 +197,7 @@ impl Plan {
                 units.outward(quantity, to)
             );
         }
-        if self.orbits {
+        if self.curve.orbits {
             eprintln!(
                 "  method            taylor, tangents on, multiple shooting, V_H and K unknown"
             );
@@ -228,12 +271,12 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
                 skip: skip.to_vec(),
                 ..plan.request.clone()
             };
-            if plan.orbits {
+            if plan.curve.orbits {
                 orbits::locus(&request, seen)
             } else {
                 equilibria::locus(&request, seen)
             }
         },
-        |rows, special| diagram::curves(rows, special, plan.name, &plan.system.units),
+        |rows, special| diagram::curves(rows, special, plan.curve.title, &plan.system.units),
     )
 }

@@ -59,6 +59,7 @@ impl<R: Row> Kept<R> {
         same(&earlier, remarks, columns)
             .map_err(|why| Error::Input(format!("--resume {}: {why}", path.display())))?;
         let mut branches: BTreeMap<usize, Vec<(&String, R)>> = BTreeMap::new();
+        let mut last = None;
         for line in &earlier.lines {
             let row = R::read(&|column| earlier.cell(line, column), units).ok_or_else(|| {
                 Error::Input(format!(
@@ -66,15 +67,17 @@ impl<R: Row> Kept<R> {
                     path.display()
                 ))
             })?;
+            last = Some(row.number());
             branches.entry(row.number()).or_default().push((line, row));
         }
         let mut kept = Kept::default();
         for (number, rows) in branches {
-            let complete = rows.len() > 1
-                && rows
-                    .last()
-                    .is_some_and(|(_, row)| row.label() == Some(Label::Ep));
-            if complete {
+            if rows.len() > 1
+                && whole(
+                    rows.last().and_then(|(_, row)| row.label()),
+                    Some(number) == last,
+                )
+            {
                 kept.numbers.push(number);
                 for (line, row) in rows {
                     kept.lines.push(line.clone());
@@ -101,6 +104,12 @@ impl<R: Row> Kept<R> {
         };
         self.rows.iter().filter_map(special).collect()
     }
+}
+
+/// Whether a branch is complete by the label of its last row: one comes after the other, so that it is if another one follows.
+/// What the method gave up is tried again; that a last branch ends in a bifurcation is not told from one that only passes it.
+fn whole(label: Option<Label>, last: bool) -> bool {
+    label == Some(Label::Ep) || (!last && label != Some(Label::Mx))
 }
 
 /// Whether a file was written by the same command with the same model; if not, why not.

@@ -13,6 +13,8 @@ use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// plotters counts whole pixels: drawn this much larger and shown at normal size, curves are smooth.
 pub const FINE: f64 = 10.0;
+/// plotters takes text to be wider than it is drawn, by 1.24; some of that is left for other fonts.
+const WIDER: f64 = 1.15;
 /// Width of one column of panels.
 const COLUMN: f64 = 560.0;
 /// Height of the picture per panel of the highest column.
@@ -282,6 +284,6 @@ fn heading(strip: &Canvas<'_>, panel: &Panel) -> Result<()> {
 fn width(strip: &Canvas<'_>, text: &str, style: &TextStyle<'static>) -> Result<i32> {
     strip
         .estimate_text_size(text, style)
-        .map(|(width, _)| width as i32)
+        .map(|(width, _)| (f64::from(width) / WIDER) as i32)
         .map_err(unrendered)
 }
