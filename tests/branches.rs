@@ -5,6 +5,11 @@ mod command;
 
 use command::{csv, folder, number, object, run, twinslip};
 use serde_json::Value;
+#[cfg(unix)]
+use std::{
+    process::{Command, Stdio},
+    time::Duration,
+};
 
 const EQUILIBRIA: &str = "branch equilibria --stiffness 0.14";
 
@@ -283,6 +288,33 @@ fn an_interrupted_file_is_gone_on_with() {
     }
     let still = std::fs::read_to_string(&path).expect("there");
     assert_eq!(still, whole, "a file that is refused stays as it was");
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
+    let path = folder("branch-interrupt").join("hopf.csv");
+    let long = format!("locus hopf --step-limit 1e-4 -o {}", path.display());
+    let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .args(long.split(' '))
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // Long enough for the handler to be there, and far from the end of a curve in such small steps.
+    std::thread::sleep(Duration::from_millis(1500));
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill");
+    assert!(killed.success());
+    let ended = child.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.code(), Some(130));
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(said.contains("interrupted; go on with --resume"), "{said}");
+    let text = std::fs::read_to_string(&path).expect("kept");
+    assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
+    let table = csv(&text);
+    assert!(table.iter().all(|row| row.len() == table[0].len()));
 }
 
 /// Exit code 2, nothing on standard output, and one sentence.

@@ -5,12 +5,12 @@ use super::continuation::Task;
 use super::diagram;
 use super::following::{self, Following, landings, range};
 use super::rows;
-use crate::bifurcation::{BranchRequest, Parameter, equilibria, orbits};
+use crate::bifurcation::{BranchRequest, BranchRow, Parameter, equilibria, orbits};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
 use crate::orbit::Slab;
-use crate::scene::{BranchOptions, Quantity, System};
+use crate::scene::{BranchOptions, Quantity, System, Units};
 use serde_json::{Value, json};
 
 pub const EXAMPLE: &str =
@@ -50,7 +50,7 @@ impl Of {
 /// What varies, with its name and its default range.
 pub struct Along {
     pub parameter: Parameter,
-    pub name: &'static str,
+    name: &'static str,
     pub quantity: Quantity,
     range: (f64, f64),
 }
@@ -73,6 +73,31 @@ impl Along {
             other => Err(Error::parameter("along", other, "driving or stiffness")),
         }
     }
+
+    /// Its value at a row, in the user's units.
+    pub fn of(&self, row: &BranchRow, units: &Units) -> f64 {
+        let x = match self.parameter {
+            Parameter::Driving => row.driving,
+            Parameter::Stiffness => row.stiffness,
+        };
+        units.outward(self.quantity, x)
+    }
+
+    /// From where to where, dimensionless.
+    fn ends(&self, options: &BranchOptions, units: &Units) -> Result<(f64, f64)> {
+        let end = |name, given: Option<f64>, default| {
+            given.map_or(Ok(default), |x| {
+                Ok(units.inward(self.quantity, positive(name, x)?))
+            })
+        };
+        range(
+            "the range --from --to",
+            (
+                end("from", options.from, self.range.0)?,
+                end("to", options.to, self.range.1)?,
+            ),
+        )
+    }
 }
 
 /// What is to be done, checked.
@@ -91,18 +116,7 @@ impl Plan {
         let along = Along::named(&options.along)?;
         let system = System::new(&options.model)?;
         let units = &system.units;
-        let end = |name, given: Option<f64>, default| {
-            given.map_or(Ok(default), |x| {
-                Ok(units.inward(along.quantity, positive(name, x)?))
-            })
-        };
-        let ends = range(
-            "the range --from --to",
-            (
-                end("from", options.from, along.range.0)?,
-                end("to", options.to, along.range.1)?,
-            ),
-        )?;
+        let ends = along.ends(options, units)?;
         let loading = loading(&system, &along, ends.0)?;
         let following = Following::new(&options.continuation, of == Of::Orbits)?;
         let out = |x| units.outward(along.quantity, x);

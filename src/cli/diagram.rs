@@ -13,56 +13,38 @@ use crate::scene::{Quantity, System, Units};
 const ALIKE: usize = 0;
 const APART: usize = 1;
 
-/// Stress against the parameter, of orbits the least and the largest, with the period below.
+/// Stress against the parameter, of orbits the least and the largest, with the period beside.
 pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System) -> Drawing {
     let units = &system.units;
     let orbits = rows.iter().any(|row| row.period.is_some());
-    let (symbol, fixed, fixed_quantity, value) = match along.parameter {
-        Parameter::Driving => ("V_H", "K", Quantity::Stiffness, slab.loading.stiffness),
-        Parameter::Stiffness => ("K", "V_H", Quantity::SlipRate, slab.loading.driving),
-    };
-    let x = Axis::log(axis_label(symbol, along.quantity, units));
-    let at = |row: &BranchRow| {
-        let (driving, stiffness) = (row.driving, row.stiffness);
-        units.outward(
-            along.quantity,
-            match along.parameter {
-                Parameter::Driving => driving,
-                Parameter::Stiffness => stiffness,
-            },
-        )
-    };
     let stress = |x| units.outward(Quantity::Stress, x);
     let least = |row: &BranchRow| stress(row.stress_range.0);
     let most = |row: &BranchRow| stress(row.stress_range.1);
-    let value = seven_digits(units.outward(fixed_quantity, value));
-    let value = value.trim_end_matches('0').trim_end_matches('.');
-    let what = if orbits { "orbits" } else { "equilibria" };
+    let at = |row: &BranchRow| along.of(row, units);
     let mut series = lines(rows, &at, &most, true);
-    let mut marks = marks(rows, &at, &most, true);
+    let mut points = marks(rows, &at, &most, true);
     if orbits {
         series.extend(lines(rows, &at, &least, false));
-        marks.extend(self::marks(rows, &at, &least, false));
+        points.extend(marks(rows, &at, &least, false));
     }
-    let y = if orbits {
-        "least and largest stress τ"
-    } else {
-        "stress τ"
+    let symbol = match along.parameter {
+        Parameter::Driving => "V_H",
+        Parameter::Stiffness => "K",
     };
-    let panel = |title: String, y, series, marks| Panel {
-        title,
+    let x = Axis::log(axis_label(symbol, along.quantity, units));
+    let (what, tau) = if orbits {
+        ("orbits", "least and largest stress τ")
+    } else {
+        ("equilibria", "stress τ")
+    };
+    let first = Panel {
+        title: format!("{what} at {}", fixed(along, slab, units)),
         x: x.clone(),
-        y,
+        y: Axis::linear(axis_label(tau, Quantity::Stress, units)),
         series,
-        marks,
+        marks: points,
         zero_line: false,
     };
-    let first = panel(
-        format!("{what} at {fixed} = {value}"),
-        Axis::linear(axis_label(y, Quantity::Stress, units)),
-        series,
-        marks,
-    );
     if !orbits {
         return Drawing::columns(vec![vec![first]]);
     }
@@ -70,13 +52,30 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         let period = row.period.unwrap_or(f64::NAN);
         units.outward(Quantity::Time, period)
     };
-    let second = panel(
-        "period".into(),
-        Axis::log(axis_label("period", Quantity::Time, units)),
-        lines(rows, &at, &period, false),
-        self::marks(rows, &at, &period, true),
-    );
+    let second = Panel {
+        title: "period".into(),
+        x,
+        y: Axis::log(axis_label("period", Quantity::Time, units)),
+        series: lines(rows, &at, &period, false),
+        marks: marks(rows, &at, &period, true),
+        zero_line: false,
+    };
     Drawing::columns(vec![vec![first], vec![second]])
+}
+
+/// The parameter that stays fixed, with its value.
+fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
+    let (name, quantity, x) = match along.parameter {
+        Parameter::Driving => ("K", Quantity::Stiffness, slab.loading.stiffness),
+        Parameter::Stiffness => ("V_H", Quantity::SlipRate, slab.loading.driving),
+    };
+    let value = seven_digits(units.outward(quantity, x));
+    let value = if value.contains('e') {
+        &value
+    } else {
+        value.trim_end_matches('0').trim_end_matches('.')
+    };
+    format!("{name} = {value}")
 }
 
 fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {

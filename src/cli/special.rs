@@ -61,44 +61,41 @@ pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<Strin
         return Vec::new();
     }
     let units = &system.units;
-    let unit = |quantity| units.name(quantity);
-    let mut header = vec![
+    let check = checks
+        .method
+        .map(|method| format!("{method} differs in V_H, K, period by"));
+    let header = vec![
         String::new(),
         String::new(),
-        format!("V_H [{}]", unit(Quantity::SlipRate)),
-        format!("K [{}]", unit(Quantity::Stiffness)),
-        format!("period [{}]", unit(Quantity::Time)),
+        format!("V_H [{}]", units.name(Quantity::SlipRate)),
+        format!("K [{}]", units.name(Quantity::Stiffness)),
+        format!("period [{}]", units.name(Quantity::Time)),
+        String::new(),
+        check.unwrap_or_default(),
         String::new(),
     ];
-    if let Some(method) = checks.method {
-        header.push(format!("{method} differs in V_H, K, period by"));
-    }
-    header.push(String::new());
     let mut table = vec![header];
     for (i, one) in special.iter().enumerate() {
-        let number = |quantity, x: Option<Uncertain>| {
-            x.map_or(String::new(), |x| {
-                written(units.outward_uncertain(quantity, x))
-            })
-        };
-        let mut row = vec![
-            one.label.name().to_owned(),
-            one.label.meaning().to_owned(),
-            number(Quantity::SlipRate, Some(one.driving)),
-            number(Quantity::Stiffness, Some(one.stiffness)),
-            number(Quantity::Time, one.period),
-            one.criticality.map_or("", criticality).to_owned(),
-        ];
-        if checks.method.is_some() {
-            let difference = checks.differences.get(i).copied().flatten();
-            row.push(difference.map_or(String::new(), |[v, k, t]| {
-                format!("{v:.1e}, {k:.1e}, {t:.1e}")
-            }));
-        }
-        row.push(one.note.clone().unwrap_or_default());
-        table.push(row);
+        let difference = checks.differences.get(i).copied().flatten();
+        table.push(line(one, difference, units));
     }
     aligned(&table)
+}
+
+fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<String> {
+    let number = |quantity, x| written(units.outward_uncertain(quantity, x));
+    let period = one.period.map(|x| number(Quantity::Time, x));
+    let difference = difference.map(|[v, k, t]| format!("{v:.1e}, {k:.1e}, {t:.1e}"));
+    vec![
+        one.label.name().to_owned(),
+        one.label.meaning().to_owned(),
+        number(Quantity::SlipRate, one.driving),
+        number(Quantity::Stiffness, one.stiffness),
+        period.unwrap_or_default(),
+        one.criticality.map_or("", criticality).to_owned(),
+        difference.unwrap_or_default(),
+        one.note.clone().unwrap_or_default(),
+    ]
 }
 
 /// A value with the bound on its error, if there is any.
