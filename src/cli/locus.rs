@@ -122,19 +122,24 @@ fn ends(
     Ok((from.min(to), from.max(to)))
 }
 
+/// V_H and K both vary along a curve.
+fn not_fixed(options: &LocusOptions) -> Result<()> {
+    let given = [
+        ("driving", options.model.driving),
+        ("stiffness", options.model.stiffness),
+    ];
+    match given.iter().find(|(_, value)| value.is_some()) {
+        None => Ok(()),
+        Some((name, _)) => Err(Error::Input(format!(
+            "--{name} varies along a curve and can't be given; use --{name}-range, or --at-{name} to land on a value"
+        ))),
+    }
+}
+
 impl Plan {
     fn new(options: &LocusOptions) -> Result<Self> {
         let curve = Curve::named(options.of.as_deref())?;
-        for (name, given) in [
-            ("driving", options.model.driving),
-            ("stiffness", options.model.stiffness),
-        ] {
-            if given.is_some() {
-                return Err(Error::Input(format!(
-                    "--{name} varies along a curve and can't be given; use --{name}-range, or --at-{name} to land on a value"
-                )));
-            }
-        }
+        not_fixed(options)?;
         let system = System::new(&options.model)?;
         let rates = (Quantity::SlipRate, &system.units);
         let stiffnesses = (Quantity::Stiffness, &system.units);

@@ -41,17 +41,7 @@ impl<R: Row> Kept<R> {
         columns: &[String],
         units: &Units,
     ) -> Result<Self> {
-        let text = match std::fs::read_to_string(path) {
-            Ok(text) => text,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => String::new(),
-            Err(error) => {
-                return Err(Error::File {
-                    action: "read",
-                    path: path.to_owned(),
-                    reason: error.to_string(),
-                });
-            }
-        };
+        let text = text_of(path)?;
         if text.is_empty() {
             return Ok(Kept::default());
         }
@@ -72,12 +62,8 @@ impl<R: Row> Kept<R> {
         }
         let mut kept = Kept::default();
         for (number, rows) in branches {
-            if rows.len() > 1
-                && whole(
-                    rows.last().and_then(|(_, row)| row.label()),
-                    Some(number) == last,
-                )
-            {
+            let label = rows.last().and_then(|(_, row)| row.label());
+            if rows.len() > 1 && whole(label, Some(number) == last) {
                 kept.numbers.push(number);
                 for (line, row) in rows {
                     kept.lines.push(line.clone());
@@ -103,6 +89,19 @@ impl<R: Row> Kept<R> {
             })
         };
         self.rows.iter().filter_map(special).collect()
+    }
+}
+
+/// What a file holds; nothing if there is none.
+fn text_of(path: &Path) -> Result<String> {
+    match std::fs::read_to_string(path) {
+        Ok(text) => Ok(text),
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
+        Err(error) => Err(Error::File {
+            action: "read",
+            path: path.to_owned(),
+            reason: error.to_string(),
+        }),
     }
 }
 
