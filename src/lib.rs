@@ -17,6 +17,7 @@
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
 //! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
 //! | [`continuation::follow()`] | curves of zeros, by pseudo-arclength |
+//! | [`bifurcation::Event`] | what is found along branches and along the curves of their bifurcations |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!

@@ -325,7 +325,7 @@ fn a_reader_who_leaves_is_no_error() {
 
 #[test]
 fn help_shows_an_example_that_runs() {
-    for command in ["law", "integrate", "equilibria", "run"] {
+    for command in ["law", "integrate", "equilibria", "branch", "locus", "run"] {
         let help = twinslip(&format!("{command} --help"));
         assert_eq!(help.code, 0);
         let (_, example) = help.out.split_once("Example").expect("an example");

@@ -42,11 +42,13 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "bifurcation",
         &[
-            "equilibrium",
             "orbit",
+            "equilibrium",
             "continuation",
+            "integrate",
             "model",
             "field",
+            "series",
             "friction",
             "number",
         ],
@@ -68,10 +70,12 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "cli",
         &[
             "scene",
+            "bifurcation",
             "orbit",
             "section",
             "equilibrium",
             "integrate",
+            "model",
             "sundials",
             "friction",
             "number",

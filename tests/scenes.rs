@@ -46,8 +46,10 @@ fn every_scene_runs_and_can_be_drawn() {
                 .is_some_and(|rows| rows.len() > 10)
         );
         let drawn = std::fs::read_to_string(svg).expect("a picture");
-        let panel = match made["command"][1].as_str() {
-            Some("run") if made["result"].get("regime").is_some() => "return map",
+        let has = |field: &str| made["result"].get(field).is_some();
+        let panel = match (has("regime"), has("special")) {
+            (true, _) => "return map",
+            (_, true) => "V_H [V*]",
             _ => "phase plane",
         };
         assert!(drawn.starts_with("<svg") && drawn.contains(panel), "{name}");

@@ -337,6 +337,124 @@ fn section() {
     assert_eq!(one["result"]["regime"], "periodic");
 }
 
+/// The fields of special points of branches and curves.
+fn specials(made: &Value) {
+    let list = made["result"]["special"].as_array().expect("a list");
+    assert!(!list.is_empty());
+    for one in list {
+        assert_eq!(
+            fields(one)[..8],
+            [
+                "label",
+                "name",
+                "driving",
+                "stiffness",
+                "period",
+                "criticality",
+                "coefficient",
+                "note"
+            ]
+        );
+        uncertain(&one["driving"]);
+        uncertain(&one["stiffness"]);
+        if !one["period"].is_null() {
+            uncertain(&one["period"]);
+        }
+        assert!(one["coefficient"].is_null() || one["coefficient"].is_f64());
+    }
+}
+
+const BRANCH: [&str; 15] = [
+    "driving",
+    "stiffness",
+    "stress",
+    "stress_min",
+    "stress_max",
+    "period",
+    "state_1",
+    "state_2",
+    "slip_rate_1",
+    "slip_rate_2",
+    "ln_abs_multiplier_1",
+    "ln_abs_multiplier_2",
+    "verdict",
+    "label",
+    "branch",
+];
+
+#[test]
+fn branch() {
+    let arguments = "branch equilibria --stiffness 0.14";
+    let made = object(arguments);
+    envelope(&made, "branch");
+    specials(&made);
+    assert_eq!(made["numerics"]["of"], "equilibria");
+    assert_eq!(made["numerics"]["along"], "driving");
+    assert_eq!(made["numerics"]["tolerance"], 1e-11);
+    let rows = made["result"]["rows"].as_array().expect("a list");
+    assert_eq!(fields(&rows[0]), BRANCH);
+    assert!(rows.iter().all(|row| row["period"].is_null()));
+    assert!(rows.iter().all(|row| row["branch"].is_u64()));
+    let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
+    assert_eq!(table[0], BRANCH);
+    assert_eq!(table.len() - 1, rows.len());
+    for (line, row) in table[1..].iter().zip(rows) {
+        assert_eq!(line[0].parse::<f64>().unwrap(), number(row, "/driving"));
+        assert_eq!(line[12], row["verdict"].as_str().unwrap());
+        assert_eq!(line[13], row["label"].as_str().unwrap_or_default());
+    }
+    let orbits =
+        object("branch orbits --stiffness 0.14 --symmetry asymmetric --from 0.06 --to 0.07");
+    specials(&orbits);
+    let rows = orbits["result"]["rows"].as_array().expect("a list");
+    assert_eq!(fields(&rows[0]), BRANCH);
+    assert!(rows.iter().any(|row| row["period"].is_f64()
+        && row["ln_abs_multiplier_1"].is_f64()
+        && number(row, "/stress_min") < number(row, "/stress_max")));
+}
+
+#[test]
+fn locus() {
+    let arguments = "locus hopf --at-stiffness 0.14";
+    let made = object(arguments);
+    envelope(&made, "locus");
+    specials(&made);
+    assert_eq!(made["numerics"]["of"], "hopf");
+    let rows = made["result"]["rows"].as_array().expect("a list");
+    assert_eq!(
+        fields(&rows[0]),
+        [
+            "driving",
+            "stiffness",
+            "period",
+            "angle_over_pi",
+            "criticality",
+            "label",
+            "curve"
+        ]
+    );
+    for row in rows {
+        uncertain(&row["driving"]);
+        uncertain(&row["stiffness"]);
+    }
+    let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
+    assert_eq!(
+        table[0],
+        [
+            "driving",
+            "driving_uncertainty",
+            "stiffness",
+            "stiffness_uncertainty",
+            "period",
+            "angle_over_pi",
+            "criticality",
+            "label",
+            "curve"
+        ]
+    );
+    assert_eq!(table.len() - 1, rows.len());
+}
+
 #[test]
 fn an_undecided_verdict_has_its_own_exit_code() {
     // V_H = 2 V_M to the last digit: which side of the pitchfork it is on can't be told.

@@ -59,6 +59,47 @@ pub enum Label {
 }
 
 impl Label {
+    /// All, in the order of their declaration.
+    pub const ALL: [Label; 21] = [
+        Label::Bp,
+        Label::Lp,
+        Label::Hb,
+        Label::Pd,
+        Label::Tr,
+        Label::Pf,
+        Label::Sn,
+        Label::Uz,
+        Label::Ep,
+        Label::Mx,
+        Label::R1,
+        Label::R2,
+        Label::R3,
+        Label::R4,
+        Label::Gh,
+        Label::Ch,
+        Label::Gpd,
+        Label::Cp,
+        Label::Bt,
+        Label::Zh,
+        Label::Top,
+    ];
+
+    /// The bifurcations of one parameter.
+    pub const BIFURCATIONS: [Label; 7] = [
+        Label::Bp,
+        Label::Lp,
+        Label::Hb,
+        Label::Pd,
+        Label::Tr,
+        Label::Pf,
+        Label::Sn,
+    ];
+
+    /// The label of that name.
+    pub fn named(name: &str) -> Option<Label> {
+        Label::ALL.into_iter().find(|label| label.name() == name)
+    }
+
     /// As tables write it.
     pub fn name(self) -> &'static str {
         match self {
@@ -221,6 +262,8 @@ pub struct BranchRequest {
     pub step: f64,
     /// The accuracy of special points, relative.
     pub tolerance: f64,
+    /// Numbers of branches that are known already and not computed again.
+    pub skip: Vec<usize>,
 }
 
 /// The curves that there are.
@@ -265,4 +308,6 @@ pub struct LocusRequest {
     pub tolerance: f64,
     /// Whether normal form coefficients are computed.
     pub criticality: bool,
+    /// Numbers of curves that are known already and not computed again.
+    pub skip: Vec<usize>,
 }

@@ -215,7 +215,10 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
                 ExtremumKind::Maximum => "maximum V_M".into(),
                 ExtremumKind::Minimum => "minimum V_m".into(),
             },
-            above: extremum.kind == ExtremumKind::Maximum,
+            side: match extremum.kind {
+                ExtremumKind::Maximum => plot::Side::Above,
+                ExtremumKind::Minimum => plot::Side::Below,
+            },
         })
         .collect();
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
@@ -235,7 +238,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
         x: out(Quantity::SlipRate, maximum.slip_rate.value),
         y: out(Quantity::Stiffness, maximum.stiffness.value),
         label: "maximum".into(),
-        above: true,
+        side: plot::Side::Above,
     });
     let stiffness = plot::Panel {
         title: "critical stiffness: a stiffer single interface slides steadily".into(),

@@ -1,21 +1,31 @@
 //! The command line: arguments, messages and exit codes. Data goes to standard output or a file, all talk to standard error.
 
+mod branch;
+mod continuation;
+mod diagram;
 mod equilibria;
+mod fields;
+mod following;
 mod integrate;
 mod interrupt;
 mod law;
+mod locus;
 mod orbit;
 mod progress;
 mod report;
+mod resume;
+mod rows;
 mod run;
 mod section;
+mod special;
 
 use crate::error::Error;
 use clap::{CommandFactory, Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
-/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return maps.
+/// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
+/// maps, branches and their bifurcations.
 ///
 /// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
 /// Data goes to standard output or a file, messages to standard error.
@@ -44,6 +54,12 @@ enum Command {
     /// The return map of a run to a section of constant stress: periodic, a torus, or chaotic; Lyapunov exponents
     #[command(after_help = section::EXAMPLE)]
     Section(Box<crate::scene::SectionOptions>),
+    /// Equilibria or periodic orbits as V_H or K varies, with their bifurcations
+    #[command(after_help = branch::EXAMPLE)]
+    Branch(Box<crate::scene::BranchOptions>),
+    /// A curve of bifurcations in the plane of V_H and K, with its special points
+    #[command(after_help = locus::EXAMPLE)]
+    Locus(Box<crate::scene::LocusOptions>),
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
@@ -56,6 +72,8 @@ pub(crate) enum Ending {
     Done,
     /// All is done, but a verdict could not be reached.
     Undecided,
+    /// A branch went no further than its method could; what was computed is kept, and the reason was told.
+    Stuck,
     /// Ctrl-C; what was computed is kept.
     Interrupted,
 }
@@ -94,10 +112,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Equilibria(options) => equilibria::run(options, &words),
         Command::Orbit(options) => orbit::run(options, &words),
         Command::Section(options) => section::run(options, &words),
+        Command::Branch(options) => branch::run(options, &words),
+        Command::Locus(options) => locus::run(options, &words),
         Command::Run(options) => run::run(options, &words),
     };
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
+        Ok(Ending::Stuck) => ExitCode::from(FAILED),
         Ok(Ending::Undecided) => ExitCode::from(UNDECIDED),
         Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
         Err(error) => {

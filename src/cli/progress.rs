@@ -45,6 +45,20 @@ impl Progress {
         bar.set_position((fraction * TICKS as f64) as u64);
     }
 
+    /// A run whose end can't be foreseen has come so far; each call stands for much work.
+    pub fn reached_at(&mut self, place: impl FnOnce() -> String) {
+        if !self.wanted || self.begun.elapsed() < PATIENCE {
+            return;
+        }
+        let bar = self.bar.get_or_insert_with(|| {
+            let style = ProgressStyle::with_template("{spinner} {msg}  {elapsed}")
+                .expect("the template is valid");
+            ProgressBar::new_spinner().with_style(style)
+        });
+        bar.set_message(place());
+        bar.tick();
+    }
+
     /// Removes the bar.
     pub fn finish(&mut self) -> Duration {
         if let Some(bar) = self.bar.take() {

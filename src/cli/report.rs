@@ -7,7 +7,7 @@ use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows
 use crate::scene::{OutputOptions, Quantity, System, Units};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::path::Path;
 
 /// Where a command's output goes, checked.
@@ -95,6 +95,21 @@ impl<'a> Report<'a> {
             Format::Table => Box::new(TableRows::new(to, columns, units)?),
             Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
         })
+    }
+
+    /// Writes the CSV file of an earlier run anew, with the rows that stay in it, and goes on after them.
+    pub fn rows_after(
+        &self,
+        remarks: &[String],
+        columns: &[String],
+        kept: &[String],
+    ) -> std::io::Result<Box<dyn RowWriter>> {
+        let mut text = Vec::new();
+        CsvRows::new(&mut text, remarks, columns)?;
+        kept.iter().try_for_each(|line| writeln!(text, "{line}"))?;
+        self.place.write(&text)?;
+        let to = self.place.append().map_err(std::io::Error::other)?;
+        Ok(Box::new(CsvRows::continued(to)))
     }
 
     /// The object of a command as one line.

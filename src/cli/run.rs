@@ -1,6 +1,8 @@
 //! `twinslip run SCENE.toml`.
 
-use super::{Command, Ending, equilibria, integrate, law, orbit, parse, program, section};
+use super::{
+    Command, Ending, branch, equilibria, integrate, law, locus, orbit, parse, program, section,
+};
 use crate::error::{Error, Result};
 use crate::scene::SceneFile;
 use std::path::PathBuf;
@@ -65,6 +67,8 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
         Command::Equilibria(options) => equilibria::run(options, words),
         Command::Orbit(options) => orbit::run(options, words),
         Command::Section(options) => section::run(options, words),
+        Command::Branch(options) => branch::run(options, words),
+        Command::Locus(options) => locus::run(options, words),
         Command::Run(_) => unreachable!("a scene file can't name the command run"),
     };
     ended.map_err(|error| match error {

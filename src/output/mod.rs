@@ -6,7 +6,7 @@ mod place;
 pub mod plot;
 mod table;
 
-pub use csv::CsvRows;
+pub use csv::{CsvRows, EarlierRows};
 pub use json::{Envelope, Rows, object, uncertain};
 pub use place::{Place, write_whole};
 pub use table::{TableRows, number as seven_digits};

@@ -74,6 +74,21 @@ impl Place {
         }
     }
 
+    /// A writer of rows after those that are there.
+    ///
+    /// # Errors
+    /// [`Error::File`] if the file can't be opened.
+    pub fn append(&self) -> Result<Box<dyn Write>> {
+        match self {
+            Place::Standard => Ok(Box::new(io::stdout().lock())),
+            Place::File(path) => OpenOptions::new()
+                .append(true)
+                .open(path)
+                .map(|file| Box::new(file) as Box<dyn Write>)
+                .map_err(|error| wrong(path, error)),
+        }
+    }
+
     /// Writes it all at once; a file appears complete or not at all.
     ///
     /// # Errors

@@ -12,6 +12,9 @@ use toml::de::{DeTable, DeValue};
 /// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
 const SIMILAR: f64 = 0.75;
 
+/// The key of the word after the command, as in `branch orbits`.
+const POSITIONAL: &str = "of";
+
 /// A scene file, read.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SceneFile {
@@ -19,6 +22,8 @@ pub struct SceneFile {
     pub name: String,
     /// The subcommand that it sets.
     pub command: String,
+    /// What the subcommand is of, where it takes such a word.
+    of: Option<String>,
     /// Its keys as flags, with the line of each.
     flags: Vec<(String, Option<String>, usize)>,
 }
@@ -51,21 +56,24 @@ impl SceneFile {
         let command = reader.command(table, program)?;
         let options: Vec<&Arg> = command
             .get_arguments()
-            .filter(|arg| arg.get_long().is_some_and(|long| long != "help"))
+            .filter(|arg| key_of(arg).is_some_and(|key| key != "help"))
             .collect();
-        let mut flags = Vec::new();
+        let (mut of, mut flags) = (None, Vec::new());
         for (key, value) in table {
             if key.get_ref() == "command" {
                 continue;
             }
             let line = reader.line(&key.span());
-            if let Some((flag, value)) = reader.flag(key, value, &options)? {
-                flags.push((flag, value, line));
+            match reader.flag(key, value, &options)? {
+                Some((key, value)) if key == POSITIONAL => of = value,
+                Some((flag, value)) => flags.push((flag, value, line)),
+                None => {}
             }
         }
         Ok(SceneFile {
             name: name.to_owned(),
             command: command.get_name().to_owned(),
+            of,
             flags,
         })
     }
@@ -73,6 +81,7 @@ impl SceneFile {
     /// The command line that the scene stands for: subcommand and flags, without the keys in `replaced`.
     pub fn arguments(&self, replaced: &[&str]) -> Vec<String> {
         let mut arguments = vec![self.command.clone()];
+        arguments.extend(self.of.clone());
         for (flag, value, _) in &self.flags {
             if !replaced.contains(&flag.as_str()) {
                 arguments.push(match value {
@@ -157,9 +166,9 @@ impl Reader<'_> {
         options: &[&Arg],
     ) -> Result<Option<(String, Option<String>)>> {
         let name = key.get_ref().as_ref();
-        let longs = || options.iter().filter_map(|arg| arg.get_long());
-        let Some(option) = options.iter().find(|arg| arg.get_long() == Some(name)) else {
-            let hint = did_you_mean(name, longs());
+        let keys = || options.iter().filter_map(|arg| key_of(arg));
+        let Some(option) = options.iter().find(|arg| key_of(arg) == Some(name)) else {
+            let hint = did_you_mean(name, keys());
             return Err(self.wrong(&key.span(), format!("unknown key {name:?}{hint}")));
         };
         let wrong = |must: &str| {
@@ -197,6 +206,15 @@ impl Reader<'_> {
             ));
         }
         Ok(Some((name.to_owned(), Some(text))))
+    }
+}
+
+/// The key that stands for an option: its long name, or that of the word after the command.
+fn key_of(arg: &Arg) -> Option<&str> {
+    if arg.is_positional() {
+        Some(arg.get_id().as_str()).filter(|&id| id == POSITIONAL)
+    } else {
+        arg.get_long()
     }
 }
 

@@ -26,6 +26,7 @@
 //! ```
 
 mod column;
+mod continuation;
 mod estimate;
 mod event;
 mod explain;
@@ -39,6 +40,7 @@ mod system;
 mod units;
 
 pub use column::{Column, Instant};
+pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions};
 pub use event::Event;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;

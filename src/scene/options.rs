@@ -287,7 +287,7 @@ pub struct OrbitOptions {
 }
 
 /// A finite number; the domain of each parameter is checked where it has its meaning.
-fn number(text: &str) -> Result<f64, String> {
+pub(super) fn number(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
         Ok(_) => Err("must be a finite number".into()),

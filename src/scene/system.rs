@@ -85,10 +85,7 @@ impl System {
     /// # Errors
     /// [`Error::Input`] that names the missing option.
     pub fn loading(&self) -> Result<Loading> {
-        Loading::new(
-            self.needed("driving", "V_H", self.driving)?,
-            self.needed("stiffness", "K", self.stiffness)?,
-        )
+        Loading::new(self.needed_driving()?, self.needed_stiffness()?)
     }
 
     /// V_H, needed.
@@ -97,6 +94,14 @@ impl System {
     /// [`Error::Input`] that names the missing option.
     pub fn needed_driving(&self) -> Result<f64> {
         self.needed("driving", "V_H", self.driving)
+    }
+
+    /// K, needed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] that names the missing option.
+    pub fn needed_stiffness(&self) -> Result<f64> {
+        self.needed("stiffness", "K", self.stiffness)
     }
 
     fn needed(&self, name: &str, symbol: &str, value: Option<f64>) -> Result<f64> {

@@ -1,16 +1,20 @@
 //! Panels on a plotters canvas.
 
+use super::marks::marks;
 use super::scale::Scale;
 use super::thin::thinned;
-use super::{FAMILY, FONT, Panel, unrendered};
+use super::{FAMILY, FONT, Panel, Series, Side, names, unrendered};
 use crate::error::Result;
 use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 
 /// plotters counts whole pixels: drawn this much larger and shown at normal size, curves are smooth.
-const FINE: f64 = 10.0;
+pub const FINE: f64 = 10.0;
+/// plotters takes text to be wider than it is drawn, by 1.24; some of that is left for other fonts.
+const WIDER: f64 = 1.15;
 /// Width of one column of panels.
 const COLUMN: f64 = 560.0;
 /// Height of the picture per panel of the highest column.
@@ -22,7 +26,7 @@ const STRIP: f64 = 26.0;
 const LEFT_MARGIN: f64 = 10.0;
 const LEFT_LABELS: f64 = 74.0;
 const BOTTOM_LABELS: f64 = 44.0;
-const TEXT: f64 = 15.0;
+pub const TEXT: f64 = 15.0;
 const LINE: f64 = 1.1;
 const WIDE: f64 = 1.9;
 /// Radius of a point.
@@ -31,6 +35,13 @@ const DOT: f64 = 1.9;
 const MARGIN: f64 = 0.04;
 /// The same where points have names.
 const MARKED_MARGIN: f64 = 0.26;
+/// The same where the names stand where there is room.
+const FREE_MARGIN: f64 = 0.1;
+/// Dashes and the gaps between.
+const DASH: f64 = 6.0;
+const GAP: f64 = 3.5;
+/// Distance of the points along curves that names avoid.
+const SAMPLES: f64 = 2.5;
 /// Okabe and Ito: told apart by all.
 const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 114, 178),
@@ -38,16 +49,16 @@ const COLOURS: [RGBColor; 4] = [
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
 ];
-const INK: RGBColor = RGBColor(40, 40, 40);
+pub const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(228, 228, 228);
 
 type Canvas<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-fn px(x: f64) -> i32 {
+pub fn px(x: f64) -> i32 {
     (x * FINE).round() as i32
 }
 
-fn font(size: f64, colour: RGBColor) -> TextStyle<'static> {
+pub fn font(size: f64, colour: RGBColor) -> TextStyle<'static> {
     // The backend divides by 1.24 what plotters calls the size.
     (FAMILY, size * FINE).into_font().color(&colour)
 }
@@ -88,10 +99,10 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
         .series
         .iter()
         .all(|series| !series.dots && series.x.is_sorted());
-    let margin = if panel.marks.is_empty() {
-        MARGIN
-    } else {
-        MARKED_MARGIN
+    let margin = match panel.marks.first().map(|mark| mark.side) {
+        None => MARGIN,
+        Some(Side::Free) => FREE_MARGIN,
+        Some(_) => MARKED_MARGIN,
     };
     let scales = (
         Scale::new(&panel.x, xs, if tight { 0.0 } else { MARGIN }),
@@ -135,14 +146,29 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
             .draw_series(LineSeries::new(line, INK.stroke_width(px(0.7) as u32)))
             .map_err(unrendered)?;
     }
-    let (width, height) = chart.plotting_area().dim_in_pixel();
+    let area = chart.plotting_area();
+    let seen = curves(area, panel, (&x, &y))?;
+    marks(area, panel, (&x, &y), &seen)
+}
+
+/// The frame's inside, with our axes.
+pub type Inside<'a, 'b> = DrawingArea<SVGBackend<'a>, Cartesian2d<Ticked<'b>, Ticked<'b>>>;
+
+/// Draws the curves and gives points along them in pixels of the frame.
+fn curves(
+    area: &Inside<'_, '_>,
+    panel: &Panel,
+    (x, y): (&Scale, &Scale),
+) -> Result<Vec<names::Pixel>> {
+    let (width, height) = area.dim_in_pixel();
     let per_pixel = (
         (x.hi - x.lo) / (f64::from(width) / FINE),
         (y.hi - y.lo) / (f64::from(height) / FINE),
     );
-    for (i, (series, colour)) in panel.series.iter().zip(COLOURS.iter().cycle()).enumerate() {
+    let mut seen = Vec::new();
+    for (i, series) in panel.series.iter().enumerate() {
         // The curve below is wider where another one follows, so that both are seen where they coincide.
-        let width = if i + 1 < panel.series.len() {
+        let width = if i + 1 < panel.series.len() || series.colour.is_some() {
             WIDE
         } else {
             LINE
@@ -153,41 +179,38 @@ fn draw(area: &Canvas<'_>, panel: &Panel) -> Result<()> {
             .zip(&series.y)
             .map(|(&a, &b)| (x.at(a), y.at(b)));
         if series.dots {
-            let seen = points.filter(|(a, b)| a.is_finite() && b.is_finite());
-            let dots = seen.map(|at| Circle::new(at, px(DOT), colour.filled()));
-            chart.draw_series(dots).map_err(unrendered)?;
+            let shown = points.filter(|(a, b)| a.is_finite() && b.is_finite());
+            let dots = shown.map(|at| Circle::new(at, px(DOT), colour(series, i).filled()));
+            dots.into_iter()
+                .try_for_each(|dot| area.draw(&dot))
+                .map_err(unrendered)?;
             continue;
         }
+        let style = colour(series, i).stroke_width(px(width) as u32);
         for piece in thinned(points, per_pixel, series.x.is_sorted()) {
-            chart
-                .draw_series(LineSeries::new(
-                    piece,
-                    colour.stroke_width(px(width) as u32),
-                ))
-                .map_err(unrendered)?;
+            let pixels =
+                |&(a, b): &(f64, f64)| ((a - x.lo) / per_pixel.0, (y.hi - b) / per_pixel.1);
+            let piece_in_pixels: Vec<names::Pixel> = piece.iter().map(pixels).collect();
+            seen.extend(names::along(&piece_in_pixels, SAMPLES));
+            if series.dashed {
+                let dashes = DashedLineSeries::new(piece, px(DASH), px(GAP), style);
+                dashes.into_iter().try_for_each(|dash| area.draw(&dash))
+            } else {
+                let line = LineSeries::new(piece, style);
+                line.into_iter().try_for_each(|line| area.draw(&line))
+            }
+            .map_err(unrendered)?;
         }
     }
-    for mark in &panel.marks {
-        let at = (x.at(mark.x), y.at(mark.y));
-        let dot = Circle::new(at, px(3.8), COLOURS[1].filled());
-        let above = mark.above;
-        let style = font(TEXT, COLOURS[1]).pos(Pos::new(
-            HPos::Center,
-            if above { VPos::Bottom } else { VPos::Top },
-        ));
-        let offset = if above { px(-10.0) } else { px(10.0) };
-        let label = EmptyElement::at(at) + Text::new(mark.label.clone(), (0, offset), style);
-        chart
-            .plotting_area()
-            .draw(&dot)
-            .and_then(|()| chart.plotting_area().draw(&label))
-            .map_err(unrendered)?;
-    }
-    Ok(())
+    Ok(seen)
+}
+
+fn colour(series: &Series, number: usize) -> RGBColor {
+    COLOURS[series.colour.unwrap_or(number) % COLOURS.len()]
 }
 
 /// An axis of plotters with our ticks.
-struct Ticked<'a>(&'a Scale);
+pub struct Ticked<'a>(&'a Scale);
 
 impl Ranged for Ticked<'_> {
     type FormatOption = NoDefaultFormatting;
@@ -227,16 +250,25 @@ fn heading(strip: &Canvas<'_>, panel: &Panel) -> Result<()> {
         ))
         .map_err(unrendered)?;
     left += width(strip, &panel.title, &title)? + px(28.0);
-    for (series, colour) in panel.series.iter().zip(COLOURS.iter().cycle()) {
+    for (i, series) in panel.series.iter().enumerate() {
         if series.label.is_empty() {
             continue;
         }
-        let line = vec![(left, middle), (left + px(22.0), middle)];
-        strip
-            .draw(&PathElement::new(line, colour.stroke_width(px(2.2) as u32)))
-            .map_err(unrendered)?;
+        let colour = colour(series, i);
+        let style = colour.stroke_width(px(2.2) as u32);
+        let ends: &[(f64, f64)] = if series.dashed {
+            &[(0.0, 6.0), (9.0, 15.0), (18.0, 24.0)]
+        } else {
+            &[(0.0, 22.0)]
+        };
+        for (from, to) in ends {
+            let line = vec![(left + px(*from), middle), (left + px(*to), middle)];
+            strip
+                .draw(&PathElement::new(line, style))
+                .map_err(unrendered)?;
+        }
         left += px(28.0);
-        let style = centred(font(TEXT, *colour));
+        let style = centred(font(TEXT, colour));
         strip
             .draw(&Text::new(
                 series.label.clone(),
@@ -252,6 +284,6 @@ fn heading(strip: &Canvas<'_>, panel: &Panel) -> Result<()> {
 fn width(strip: &Canvas<'_>, text: &str, style: &TextStyle<'static>) -> Result<i32> {
     strip
         .estimate_text_size(text, style)
-        .map(|(width, _)| width as i32)
+        .map(|(width, _)| (f64::from(width) / WIDER) as i32)
         .map_err(unrendered)
 }

@@ -2,6 +2,8 @@
 //! a machine without fonts.
 
 mod draw;
+mod marks;
+mod names;
 mod scale;
 mod thin;
 
@@ -82,6 +84,10 @@ pub struct Series {
     pub y: Vec<f64>,
     /// Whether its points stand for themselves, without a line.
     pub dots: bool,
+    /// Whether its line is dashed.
+    pub dashed: bool,
+    /// Which of the colours; the next one without.
+    pub colour: Option<usize>,
 }
 
 impl Series {
@@ -92,6 +98,8 @@ impl Series {
             x,
             y,
             dots: false,
+            dashed: false,
+            colour: None,
         }
     }
 
@@ -104,6 +112,17 @@ impl Series {
     }
 }
 
+/// Where the name of a point stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+    /// Where there is room.
+    Free,
+}
+
 /// A point that is pointed out.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
@@ -111,10 +130,10 @@ pub struct Mark {
     pub x: f64,
     /// Ordinate.
     pub y: f64,
-    /// Its name.
+    /// Its name; empty for none.
     pub label: String,
-    /// Whether the name stands above the point, or below: outside of the curve's bend.
-    pub above: bool,
+    /// Where that stands: outside of the curve's bend.
+    pub side: Side,
 }
 
 /// One pair of axes with curves.

@@ -1,0 +1,327 @@
+//! What `branch` and `locus` share: rows on their way out, special points, how a run ends.
+
+use super::fields::{self, Column};
+use super::progress::Progress;
+use super::report::{Report, unit_names};
+use super::resume::Kept;
+use super::rows::Row;
+use super::{Ending, interrupt, special, written};
+use crate::bifurcation::{Criticality, Event, Label, Seen, Special};
+use crate::error::{Error, Result};
+use crate::integrate::Choice;
+use crate::output::{Format, RowWriter, plot, seven_digits};
+use crate::scene::{OutputOptions, Quantity, System};
+use serde_json::{Value, json};
+use std::io::{self, IsTerminal};
+use std::ops::ControlFlow;
+use std::path::{Path, PathBuf};
+
+/// A recomputation of a special point, and by which method.
+pub type Recheck<'a> = &'a dyn Fn(&Special, Choice) -> Result<Option<[f64; 3]>>;
+
+/// Everything that a run needs.
+pub struct Task<'a, R> {
+    /// What slides.
+    pub system: &'a System,
+    /// The columns of rows.
+    pub columns: Vec<Column<R>>,
+    /// What was asked for.
+    pub numerics: Value,
+    /// The second method.
+    pub second: Option<(Choice, Recheck<'a>)>,
+    /// The file to go on with.
+    pub resume: Option<&'a PathBuf>,
+    /// The picture.
+    pub plot: Option<&'a PathBuf>,
+    /// Where results go.
+    pub output: &'a OutputOptions,
+    /// The command line.
+    pub words: &'a [String],
+}
+
+impl<'a, R: Row> Task<'a, R> {
+    /// Files and format, checked before anything is computed.
+    pub fn report(&self) -> Result<Report<'a>> {
+        if let Some(path) = self.plot {
+            plot::Kind::of(path)?;
+        }
+        let others: Vec<&Path> = self.plot.into_iter().map(PathBuf::as_path).collect();
+        let Some(resumed) = self.resume else {
+            return Report::new(self.output, self.words, &others);
+        };
+        let output = self.output.output.as_ref();
+        if output.is_some_and(|output| output != resumed) {
+            return Err(Error::Input(format!(
+                "--resume {} writes into that file; leave out --output",
+                resumed.display()
+            )));
+        }
+        let output = OutputOptions {
+            output: Some(resumed.clone()),
+            ..self.output.clone()
+        };
+        let report = Report::new(&output, self.words, &others)?;
+        if report.format != Format::Csv {
+            return Err(Error::Input(format!(
+                "--resume {}: only CSV can be gone on with; leave out --format, and name a file that does not end in .json",
+                resumed.display()
+            )));
+        }
+        Ok(report)
+    }
+
+    /// Computes, writes, draws; says how it ended.
+    pub fn run(
+        &self,
+        report: &Report<'_>,
+        compute: impl FnOnce(&[usize], Seen<'_>) -> Result<()>,
+        picture: impl Fn(&[R], &[Special]) -> plot::Drawing,
+    ) -> Result<Ending> {
+        let mut out = Out::new(self, report)?;
+        interrupt::watch();
+        let skipped = std::mem::take(&mut out.skipped);
+        let failure = match compute(&skipped, &mut |event| out.take(event)) {
+            Err(error) if error.is_input() && out.new == 0 => return Err(error),
+            computed => computed.err(),
+        };
+        if let Err(error) = out.open() {
+            out.broken.get_or_insert(error);
+        }
+        let checks = self.recheck(report, &out.special, failure.is_some());
+        interrupt::unwatch();
+        let seconds = out.progress.finish().as_secs_f64();
+        if let Some(error) = out.broken.take() {
+            return written(Err(error), &report.place);
+        }
+        let ending = self.write(report, &out, &checks, failure.as_ref())?;
+        match self.plot {
+            Some(path) if !out.rows.is_empty() => {
+                plot::write(path, &picture(&out.rows, &out.special))?;
+            }
+            Some(_) => report.say("there is no point to draw"),
+            None => {}
+        }
+        report.say(out.summary(seconds));
+        match failure {
+            Some(error) => Err(error),
+            None if interrupt::asked() => Ok(interrupted(report)),
+            None if ending == Ending::Done => Ok(out.ending()),
+            None => Ok(ending),
+        }
+    }
+
+    /// Every special point by the second method.
+    fn recheck(&self, report: &Report<'_>, special: &[Special], failed: bool) -> special::Checks {
+        let mut checks = special::Checks::default();
+        let Some((method, recheck)) = self.second.filter(|_| !failed) else {
+            return checks;
+        };
+        checks.method = Some(method.name());
+        for one in special {
+            if interrupt::asked() {
+                break;
+            }
+            let difference = recheck(one, method).unwrap_or_else(|error| {
+                let (label, driving) = (one.label.name(), one.driving.value);
+                report.say(format!(
+                    "the crosscheck of {label} at V_H = {driving} by {} failed: {error}",
+                    method.name()
+                ));
+                None
+            });
+            checks.differences.push(difference);
+        }
+        checks
+    }
+
+    /// The object, or the special points in words.
+    fn write(
+        &self,
+        report: &Report<'_>,
+        out: &Out<'_, R>,
+        checks: &special::Checks,
+        failure: Option<&Error>,
+    ) -> Result<Ending> {
+        if report.format != Format::Json {
+            for line in special::lines(&out.special, checks, self.system) {
+                report.say(line);
+            }
+            return Ok(Ending::Done);
+        }
+        let units = &self.system.units;
+        let rows = out.rows.iter();
+        let rows: Vec<Value> = rows
+            .map(|row| Value::Object(fields::object(&self.columns, row, units)))
+            .collect();
+        let result = json!({
+            "rows": rows,
+            "special": special::objects(&out.special, checks, units),
+        });
+        let bytes = report.envelope(
+            self.system,
+            self.numerics.clone(),
+            result,
+            json!({"points": out.new}),
+            failure,
+        );
+        written(report.place.write(&bytes), &report.place)
+    }
+}
+
+/// Says how to go on.
+fn interrupted(report: &Report<'_>) -> Ending {
+    if let (Format::Csv, Some(path)) = (report.format, report.place.path()) {
+        report.say(format!(
+            "interrupted; go on with --resume {}",
+            path.display()
+        ));
+    }
+    Ending::Interrupted
+}
+
+/// Takes what is found: writes it and keeps it.
+struct Out<'a, R> {
+    task: &'a Task<'a, R>,
+    report: &'a Report<'a>,
+    remarks: Vec<String>,
+    names: Vec<(String, Quantity)>,
+    /// Opened with the first row: a request that is refused leaves no file.
+    writer: Option<Box<dyn RowWriter>>,
+    broken: Option<io::Error>,
+    kept: Vec<String>,
+    skipped: Vec<usize>,
+    rows: Vec<R>,
+    new: usize,
+    special: Vec<Special>,
+    progress: Progress,
+}
+
+impl<'a, R: Row> Out<'a, R> {
+    fn new(task: &'a Task<'a, R>, report: &'a Report<'a>) -> Result<Self> {
+        let remarks = report.remarks(task.system, &task.numerics);
+        let table = report.format == Format::Table;
+        let names = fields::names(&task.columns, table);
+        let mut kept = Kept::default();
+        if let Some(path) = task.resume {
+            let plain: Vec<String> = names.iter().map(|(name, _)| name.clone()).collect();
+            kept = Kept::read(path, &remarks, &plain, &task.system.units)?;
+        }
+        // Rows that scroll by on the terminal are progress enough.
+        let scrolling = report.format != Format::Json
+            && report.place.path().is_none()
+            && io::stdout().is_terminal();
+        Ok(Out {
+            task,
+            report,
+            remarks,
+            names,
+            writer: None,
+            broken: None,
+            special: kept.special(),
+            kept: kept.lines,
+            skipped: kept.numbers,
+            rows: kept.rows,
+            new: 0,
+            progress: Progress::new(report.quiet || scrolling),
+        })
+    }
+
+    /// Opens the table or CSV, once.
+    fn open(&mut self) -> io::Result<()> {
+        if self.writer.is_some() || self.report.format == Format::Json {
+            return Ok(());
+        }
+        let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
+        self.writer = Some(if self.task.resume.is_some() {
+            self.report.rows_after(&self.remarks, &names, &self.kept)?
+        } else {
+            let quantities = self.names.iter().map(|(_, quantity)| *quantity);
+            let units = unit_names(&self.task.system.units, quantities);
+            let stream = self.report.place.stream().map_err(io::Error::other)?;
+            self.report.rows(stream, &self.remarks, &names, &units)?
+        });
+        Ok(())
+    }
+
+    fn row(&mut self, row: &R) -> io::Result<()> {
+        self.open()?;
+        let table = self.report.format == Format::Table;
+        let cells = fields::cells(&self.task.columns, row, &self.task.system.units, table);
+        self.writer
+            .as_mut()
+            .map_or(Ok(()), |writer| writer.row(&cells))
+    }
+
+    fn take(&mut self, event: Event) -> ControlFlow<()> {
+        if let Event::Special(special) = event {
+            self.special.push(special);
+        } else if let Some(row) = R::of(event) {
+            if let Err(error) = self.row(&row) {
+                self.broken = Some(error);
+                return ControlFlow::Break(());
+            }
+            self.new += 1;
+            let (points, units) = (self.new, &self.task.system.units);
+            let (driving, stiffness) = row.loading();
+            self.progress.reached_at(|| {
+                let driving = seven_digits(units.outward(Quantity::SlipRate, driving.value));
+                let stiffness = seven_digits(units.outward(Quantity::Stiffness, stiffness.value));
+                format!("{points} points, V_H = {driving}, K = {stiffness}")
+            });
+            self.rows.push(row);
+        }
+        if interrupt::asked() {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    fn summary(&self, seconds: f64) -> String {
+        let mut numbers: Vec<usize> = self.rows.iter().map(R::number).collect();
+        numbers.sort_unstable();
+        numbers.dedup();
+        let count = |n: usize, one: &str, more: &str| match n {
+            1 => format!("1 {one}"),
+            n => format!("{n} {more}"),
+        };
+        let mut text = format!(
+            "{} on {}, {}, {seconds:.3} s",
+            count(self.rows.len(), "point", "points"),
+            count(numbers.len(), R::WHOLE, R::WHOLES),
+            count(self.special.len(), "special point", "special points")
+        );
+        if self.task.resume.is_some() {
+            let kept = self.rows.len() - self.new;
+            text += &format!("; {} kept", count(kept, "point", "points"));
+        }
+        text
+    }
+
+    /// How it ended, if nothing failed outright.
+    fn ending(&self) -> Ending {
+        let stuck = self.special.iter().filter(|one| one.label == Label::Mx);
+        let mut ending = Ending::Done;
+        for one in stuck {
+            let units = &self.task.system.units;
+            let note = one.note.as_deref().unwrap_or("the method goes no further");
+            eprintln!(
+                "error: a {} ends at V_H = {}, K = {}: {note}",
+                R::WHOLE,
+                units.outward(Quantity::SlipRate, one.driving.value),
+                units.outward(Quantity::Stiffness, one.stiffness.value)
+            );
+            ending = Ending::Stuck;
+        }
+        // Where a coefficient is zero by definition, as at GH, nothing is left to decide.
+        let side = |one: &Special| {
+            one.criticality == Some(Criticality::Undecided)
+                && Label::BIFURCATIONS.contains(&one.label)
+        };
+        let undecided = self.rows.iter().any(R::undecided) || self.special.iter().any(side);
+        if ending == Ending::Done && undecided {
+            return Ending::Undecided;
+        }
+        ending
+    }
+}

@@ -1,0 +1,241 @@
+//! Bifurcation diagrams, and curves in the plane of V_H and K.
+
+use super::branch::Along;
+use super::report;
+use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
+use crate::equilibrium::Verdict;
+use crate::orbit::Slab;
+use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Side};
+use crate::output::seven_digits;
+use crate::scene::{Quantity, System, Units};
+
+/// Colours of branches on which both interfaces move alike, and of the others.
+const ALIKE: usize = 0;
+const APART: usize = 1;
+
+/// Stress against the parameter, of orbits the least and the largest, with the period beside.
+pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System) -> Drawing {
+    let units = &system.units;
+    let orbits = rows.iter().any(|row| row.period.is_some());
+    let stress = |x| units.outward(Quantity::Stress, x);
+    let least = |row: &BranchRow| stress(row.stress_range.0);
+    let most = |row: &BranchRow| stress(row.stress_range.1);
+    let at = |row: &BranchRow| along.of(row, units);
+    let mut series = lines(rows, &at, &most, true);
+    let mut points = marks(rows, &at, &most, true);
+    if orbits {
+        series.extend(lines(rows, &at, &least, false));
+        points.extend(marks(rows, &at, &least, false));
+    }
+    let symbol = match along.parameter {
+        Parameter::Driving => "V_H",
+        Parameter::Stiffness => "K",
+    };
+    let x = Axis::log(axis_label(symbol, along.quantity, units));
+    let (what, tau) = if orbits {
+        ("orbits", "least and largest stress τ")
+    } else {
+        ("equilibria", "stress τ")
+    };
+    let first = Panel {
+        title: format!("{what} at {}", fixed(along, slab, units)),
+        x: x.clone(),
+        y: Axis::linear(axis_label(tau, Quantity::Stress, units)),
+        series,
+        marks: points,
+        zero_line: false,
+    };
+    if !orbits {
+        return Drawing::columns(vec![vec![first]]);
+    }
+    let period = |row: &BranchRow| {
+        let period = row.period.unwrap_or(f64::NAN);
+        units.outward(Quantity::Time, period)
+    };
+    let second = Panel {
+        title: "period".into(),
+        x,
+        y: Axis::log(axis_label("period", Quantity::Time, units)),
+        series: lines(rows, &at, &period, false),
+        marks: marks(rows, &at, &period, true),
+        zero_line: false,
+    };
+    Drawing::columns(vec![vec![first], vec![second]])
+}
+
+/// The parameter that stays fixed, with its value.
+fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
+    let (name, quantity, x) = match along.parameter {
+        Parameter::Driving => ("K", Quantity::Stiffness, slab.loading.stiffness),
+        Parameter::Stiffness => ("V_H", Quantity::SlipRate, slab.loading.driving),
+    };
+    let value = seven_digits(units.outward(quantity, x));
+    let value = if value.contains('e') {
+        &value
+    } else {
+        value.trim_end_matches('0').trim_end_matches('.')
+    };
+    format!("{name} = {value}")
+}
+
+fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
+    format!("{name} [{}]", report::short_unit(units, quantity))
+}
+
+/// Consecutive rows of the same branch.
+fn whole(rows: &[BranchRow]) -> impl Iterator<Item = &[BranchRow]> {
+    rows.chunk_by(|a, b| a.branch == b.branch)
+}
+
+/// Whether the interfaces differ somewhere on a branch.
+fn apart(branch: &[BranchRow]) -> bool {
+    branch
+        .iter()
+        .any(|row| row.slip_rate[0] != row.slip_rate[1])
+}
+
+/// Stable parts solid, all others dashed; in two colours.
+fn lines(
+    rows: &[BranchRow],
+    x: &dyn Fn(&BranchRow) -> f64,
+    y: &dyn Fn(&BranchRow) -> f64,
+    legend: bool,
+) -> Vec<Series> {
+    let kinds = [(ALIKE, true), (APART, true), (ALIKE, false), (APART, false)];
+    let part = |(colour, stable): (usize, bool)| {
+        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        for branch in whole(rows).filter(|branch| apart(branch) == (colour == APART)) {
+            for pair in branch.windows(2) {
+                let (a, b) = (&pair[0], &pair[1]);
+                if solid(a, b) != stable {
+                    continue;
+                }
+                if xs.last() != Some(&x(a)) || ys.last() != Some(&y(a)) {
+                    xs.extend([f64::NAN, x(a)]);
+                    ys.extend([f64::NAN, y(a)]);
+                }
+                xs.push(x(b));
+                ys.push(y(b));
+            }
+        }
+        Series {
+            dashed: !stable,
+            colour: Some(colour),
+            ..Series::new("", xs, ys)
+        }
+    };
+    let series = kinds.into_iter().map(part);
+    let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
+    named(&mut series, legend);
+    series
+}
+
+/// The legend: each colour once, dashes once.
+fn named(series: &mut [Series], legend: bool) {
+    let (mut colours, mut dashes) = (Vec::new(), false);
+    for one in series.iter_mut().filter(|_| legend) {
+        let unstable = (one.dashed && !dashes).then_some("unstable");
+        let new = !colours.contains(&one.colour);
+        let name = if one.colour == Some(ALIKE) {
+            "symmetric"
+        } else {
+            "asymmetric"
+        };
+        let words: Vec<&str> = new.then_some(name).into_iter().chain(unstable).collect();
+        one.label = words.join(", ");
+        colours.push(one.colour);
+        dashes |= one.dashed;
+    }
+}
+
+/// Between two points: stable if one is, and the other is, or is a bifurcation.
+fn solid(a: &BranchRow, b: &BranchRow) -> bool {
+    let verdicts = [a.verdict, b.verdict];
+    verdicts.contains(&Verdict::Stable) && !verdicts.contains(&Verdict::Unstable)
+}
+
+/// The special points of branches, but their ends; several branches may pass the same one.
+fn marks(
+    rows: &[BranchRow],
+    x: &dyn Fn(&BranchRow) -> f64,
+    y: &dyn Fn(&BranchRow) -> f64,
+    named: bool,
+) -> Vec<Mark> {
+    let special = rows.iter().filter_map(|row| {
+        let label = row.label.filter(|&label| label != Label::Ep)?;
+        Some((label, x(row), y(row)))
+    });
+    distinct(special, named)
+}
+
+/// The points with their labels, each once.
+fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec<Mark> {
+    /// Points nearer than this, relatively, are drawn as one.
+    const SAME: f64 = 1e-6;
+    let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());
+    let mut marks: Vec<(Label, Mark)> = Vec::new();
+    for (label, x, y) in points {
+        let known =
+            |(other, mark): &(Label, Mark)| *other == label && near(mark.x, x) && near(mark.y, y);
+        if !marks.iter().any(known) {
+            let text = if named { label.name() } else { "" };
+            let mark = Mark {
+                x,
+                y,
+                label: text.to_owned(),
+                side: Side::Free,
+            };
+            marks.push((label, mark));
+        }
+    }
+    marks.into_iter().map(|(_, mark)| mark).collect()
+}
+
+/// K against V_H; where multipliers have an angle, that beside it.
+pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units) -> Drawing {
+    let driving = |x| units.outward(Quantity::SlipRate, x);
+    let stiffness = |x| units.outward(Quantity::Stiffness, x);
+    let x = Axis::log(axis_label("V_H", Quantity::SlipRate, units));
+    let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<Series> {
+        let pieces = rows.chunk_by(|a, b| a.curve == b.curve);
+        pieces
+            .map(|curve| Series {
+                colour: Some(curve[0].curve),
+                ..Series::new(
+                    "",
+                    curve.iter().map(|row| driving(row.driving.value)).collect(),
+                    curve.iter().map(y).collect(),
+                )
+            })
+            .collect()
+    };
+    let special = special.iter().filter(|one| one.label != Label::Ep);
+    let points = special.map(|one| {
+        let (v, k) = (one.driving.value, one.stiffness.value);
+        (one.label, driving(v), stiffness(k))
+    });
+    let plane = Panel {
+        title: name.to_owned(),
+        x: x.clone(),
+        y: Axis::linear(axis_label("K", Quantity::Stiffness, units)),
+        series: series(&|row| stiffness(row.stiffness.value)),
+        marks: distinct(points, true),
+        zero_line: false,
+    };
+    if rows.iter().all(|row| row.angle_over_pi.is_none()) {
+        return Drawing::columns(vec![vec![plane]]);
+    }
+    let labelled = rows.iter().filter_map(|row| {
+        let label = row.label.filter(|&label| label != Label::Ep)?;
+        Some((label, driving(row.driving.value), row.angle_over_pi?))
+    });
+    let angle = Panel {
+        title: "angle θ of the multipliers".into(),
+        x,
+        y: Axis::linear("θ/π"),
+        series: series(&|row| row.angle_over_pi.unwrap_or(f64::NAN)),
+        marks: distinct(labelled, true),
+        zero_line: false,
+    };
+    Drawing::columns(vec![vec![plane], vec![angle]])
+}

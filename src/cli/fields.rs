@@ -1,0 +1,144 @@
+//! The columns of a row, declared once with what they show: CSV, tables and objects follow from them.
+
+use super::report;
+use crate::number::Uncertain;
+use crate::output::Cell;
+use crate::scene::{Quantity, Units};
+use serde_json::{Map, Value, json};
+
+/// What a row has in a column, dimensionless.
+pub enum Entry {
+    /// A number, where there is one.
+    Number(Option<f64>),
+    /// A number with its error budget.
+    Uncertain(Option<Uncertain>),
+    /// A word.
+    Word(Option<String>),
+    /// A count.
+    Count(usize),
+}
+
+impl From<f64> for Entry {
+    fn from(x: f64) -> Self {
+        Entry::Number(Some(x))
+    }
+}
+
+impl From<Option<f64>> for Entry {
+    fn from(x: Option<f64>) -> Self {
+        Entry::Number(x)
+    }
+}
+
+impl From<Uncertain> for Entry {
+    fn from(x: Uncertain) -> Self {
+        Entry::Uncertain(Some(x))
+    }
+}
+
+impl From<Option<Uncertain>> for Entry {
+    fn from(x: Option<Uncertain>) -> Self {
+        Entry::Uncertain(x)
+    }
+}
+
+impl From<&'static str> for Entry {
+    fn from(word: &'static str) -> Self {
+        Entry::Word(Some(word.to_owned()))
+    }
+}
+
+impl From<Option<&'static str>> for Entry {
+    fn from(word: Option<&'static str>) -> Self {
+        Entry::Word(word.map(str::to_owned))
+    }
+}
+
+impl From<usize> for Entry {
+    fn from(n: usize) -> Self {
+        Entry::Count(n)
+    }
+}
+
+/// A column of rows of the kind R.
+pub struct Column<R> {
+    /// Its name in CSV and JSON.
+    pub name: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Whether it has an error budget.
+    pub uncertain: bool,
+    /// Whether a table, which has less room, shows it.
+    pub in_table: bool,
+    /// What a row has in it.
+    pub entry: fn(&R) -> Entry,
+}
+
+impl<R> Column<R> {
+    /// A column that tables show too.
+    pub fn new(name: &'static str, quantity: Quantity, entry: fn(&R) -> Entry) -> Self {
+        Column {
+            name,
+            quantity,
+            uncertain: false,
+            in_table: true,
+            entry,
+        }
+    }
+
+    /// With an error budget.
+    pub fn uncertain(name: &'static str, quantity: Quantity, entry: fn(&R) -> Entry) -> Self {
+        Column {
+            uncertain: true,
+            ..Column::new(name, quantity, entry)
+        }
+    }
+}
+
+/// The names as written, error budgets in columns of their own but in tables.
+pub fn names<R>(columns: &[Column<R>], table: bool) -> Vec<(String, Quantity)> {
+    let mut names = Vec::new();
+    for column in columns.iter().filter(|column| column.in_table || !table) {
+        names.push((column.name.to_owned(), column.quantity));
+        if column.uncertain && !table {
+            names.push((format!("{}_uncertainty", column.name), column.quantity));
+        }
+    }
+    names
+}
+
+/// A row in the user's units.
+pub fn cells<R>(columns: &[Column<R>], row: &R, units: &Units, table: bool) -> Vec<Cell> {
+    let mut cells = Vec::new();
+    for column in columns.iter().filter(|column| column.in_table || !table) {
+        match (column.entry)(row) {
+            Entry::Number(x) => cells.push(x.map(|x| units.outward(column.quantity, x)).into()),
+            Entry::Uncertain(x) => {
+                let x = x.map(|x| units.outward_uncertain(column.quantity, x));
+                cells.push(x.map(|x| x.value).into());
+                if !table {
+                    cells.push(x.map(|x| x.uncertainty).into());
+                }
+            }
+            Entry::Word(word) => cells.push(word.map_or(Cell::Missing, Cell::Text)),
+            Entry::Count(n) => cells.push(Cell::Text(n.to_string())),
+        }
+    }
+    cells
+}
+
+/// A row as an object.
+pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, Value> {
+    let value = |column: &Column<R>| match (column.entry)(row) {
+        Entry::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
+        Entry::Uncertain(x) => x.map_or(Value::Null, |x| {
+            report::uncertain(units, column.quantity, x)
+        }),
+        Entry::Word(word) => json!(word),
+        Entry::Count(n) => json!(n),
+    };
+    let pairs = columns.iter();
+    pairs
+        .map(|column| (column.name.to_owned(), value(column)))
+        .collect()
+}

@@ -1,0 +1,241 @@
+//! The rows of branches and of curves: their columns, and the way back from CSV.
+
+use super::equilibria::verdict as verdict_name;
+use super::fields::Column;
+use super::following::criticality;
+use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow};
+use crate::equilibrium::Verdict;
+use crate::number::Uncertain;
+use crate::scene::{Quantity, Units};
+
+/// A row of a branch or of a curve.
+pub trait Row: Sized {
+    /// What rows of one number make up.
+    const WHOLE: &'static str;
+    /// The same, more of them.
+    const WHOLES: &'static str;
+    /// The row that an event is, if it is one of these.
+    fn of(event: Event) -> Option<Self>;
+    /// From the cells of a CSV in the user's units.
+    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self>;
+    /// The number of the branch or curve.
+    fn number(&self) -> usize;
+    /// What is special.
+    fn label(&self) -> Option<Label>;
+    /// V_H and K.
+    fn loading(&self) -> (Uncertain, Uncertain);
+    /// The period, where there is one.
+    fn period(&self) -> Option<f64>;
+    /// Whether its stability is undecided where it could be told.
+    fn undecided(&self) -> bool;
+}
+
+/// A value whose error budget was not written.
+pub fn unknown(value: f64) -> Uncertain {
+    Uncertain::new(value, f64::INFINITY)
+}
+
+/// The columns of branches of orbits or of equilibria; a table leaves out what is less looked at.
+pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>> {
+    use Quantity::{Growth, Number, SlipRate, State, Stiffness, Stress, Time};
+    type Row = BranchRow;
+    // The exponent of an equilibrium is a rate, that of an orbit belongs to its period.
+    let exponent = if orbits { Number } else { Growth };
+    let mut columns = vec![
+        Column::new("driving", SlipRate, |row: &Row| row.driving.into()),
+        Column::new("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
+        Column::new("stress", Stress, |row: &Row| row.stress.into()),
+        Column::new("stress_min", Stress, |row: &Row| row.stress_range.0.into()),
+        Column::new("stress_max", Stress, |row: &Row| row.stress_range.1.into()),
+        Column::new("period", Time, |row: &Row| row.period.into()),
+        Column::new("state_1", State, |row: &Row| row.state[0].into()),
+        Column::new("state_2", State, |row: &Row| row.state[1].into()),
+        Column::new("slip_rate_1", SlipRate, |row: &Row| row.slip_rate[0].into()),
+        Column::new("slip_rate_2", SlipRate, |row: &Row| row.slip_rate[1].into()),
+        Column::new("ln_abs_multiplier_1", exponent, |row: &Row| {
+            row.ln_abs_multiplier[0].into()
+        }),
+        Column::new("ln_abs_multiplier_2", exponent, |row: &Row| {
+            row.ln_abs_multiplier[1].into()
+        }),
+        Column::new("verdict", Number, |row: &Row| {
+            verdict_name(row.verdict).into()
+        }),
+        Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }),
+        Column::new("branch", Number, |row: &Row| row.branch.into()),
+    ];
+    if interfaces == 1 {
+        columns.retain(|column| !column.name.ends_with("_2"));
+    }
+    let left_out: &[&str] = if orbits {
+        &[
+            "stress",
+            "slip_rate_1",
+            "slip_rate_2",
+            "ln_abs_multiplier_2",
+        ]
+    } else {
+        &[
+            "stress_min",
+            "stress_max",
+            "period",
+            "ln_abs_multiplier_1",
+            "ln_abs_multiplier_2",
+        ]
+    };
+    for column in &mut columns {
+        column.in_table = !left_out.contains(&column.name);
+    }
+    columns
+}
+
+/// The columns of curves.
+pub fn locus_columns() -> Vec<Column<LocusRow>> {
+    use Quantity::{Number, SlipRate, Stiffness, Time};
+    type Row = LocusRow;
+    vec![
+        Column::uncertain("driving", SlipRate, |row: &Row| row.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
+        Column::new("period", Time, |row: &Row| row.period.into()),
+        Column::new("angle_over_pi", Number, |row: &Row| {
+            row.angle_over_pi.into()
+        }),
+        Column::new("criticality", Number, |row: &Row| {
+            row.criticality.map(criticality).into()
+        }),
+        Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }),
+        Column::new("curve", Number, |row: &Row| row.curve.into()),
+    ]
+}
+
+impl Row for BranchRow {
+    const WHOLE: &'static str = "branch";
+    const WHOLES: &'static str = "branches";
+
+    fn of(event: Event) -> Option<Self> {
+        match event {
+            Event::Branch(row) => Some(row),
+            _ => None,
+        }
+    }
+
+    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
+        let maybe = |name: &str, quantity| {
+            let x = cell(name).parse::<f64>().ok()?;
+            Some(units.inward(quantity, x))
+        };
+        let both = |name: &str, quantity| {
+            let first = maybe(&format!("{name}_1"), quantity)?;
+            // A single interface has one column.
+            Some([
+                first,
+                maybe(&format!("{name}_2"), quantity).unwrap_or(first),
+            ])
+        };
+        let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
+        Some(BranchRow {
+            branch: cell("branch").parse().ok()?,
+            driving: maybe("driving", Quantity::SlipRate)?,
+            stiffness: maybe("stiffness", Quantity::Stiffness)?,
+            stress: maybe("stress", Quantity::Stress)?,
+            stress_range: (
+                maybe("stress_min", Quantity::Stress)?,
+                maybe("stress_max", Quantity::Stress)?,
+            ),
+            period: maybe("period", Quantity::Time),
+            state: both("state", Quantity::State)?,
+            slip_rate: both("slip_rate", Quantity::SlipRate)?,
+            // Not shown but in the line itself, which is kept as it stands.
+            ln_abs_multiplier: [None; 2],
+            verdict: verdicts
+                .into_iter()
+                .find(|&verdict| verdict_name(verdict) == cell("verdict"))?,
+            label: Label::named(cell("label")),
+        })
+    }
+
+    fn number(&self) -> usize {
+        self.branch
+    }
+
+    fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    fn loading(&self) -> (Uncertain, Uncertain) {
+        (unknown(self.driving), unknown(self.stiffness))
+    }
+
+    fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// At a bifurcation, and where a branch ends in one, there is nothing to decide.
+    fn undecided(&self) -> bool {
+        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
+    }
+}
+
+impl Row for LocusRow {
+    const WHOLE: &'static str = "curve";
+    const WHOLES: &'static str = "curves";
+
+    fn of(event: Event) -> Option<Self> {
+        match event {
+            Event::Locus(row) => Some(row),
+            _ => None,
+        }
+    }
+
+    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
+        let number = |name: &str| cell(name).parse::<f64>().ok();
+        let uncertain = |name: &str, quantity| {
+            let value = units.inward(quantity, number(name)?);
+            let bound = number(&format!("{name}_uncertainty"));
+            Some(bound.map_or(unknown(value), |bound| {
+                Uncertain::new(value, bound / units.factor(quantity))
+            }))
+        };
+        let sides = [
+            Criticality::Supercritical,
+            Criticality::Subcritical,
+            Criticality::Undecided,
+        ];
+        Some(LocusRow {
+            curve: cell("curve").parse().ok()?,
+            driving: uncertain("driving", Quantity::SlipRate)?,
+            stiffness: uncertain("stiffness", Quantity::Stiffness)?,
+            period: number("period").map(|t| units.inward(Quantity::Time, t)),
+            angle_over_pi: number("angle_over_pi"),
+            criticality: sides
+                .into_iter()
+                .find(|&side| criticality(side) == cell("criticality")),
+            label: Label::named(cell("label")),
+        })
+    }
+
+    fn number(&self) -> usize {
+        self.curve
+    }
+
+    fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    fn loading(&self) -> (Uncertain, Uncertain) {
+        (self.driving, self.stiffness)
+    }
+
+    fn period(&self) -> Option<f64> {
+        self.period
+    }
+
+    /// Points of a curve have no verdict.
+    fn undecided(&self) -> bool {
+        false
+    }
+}

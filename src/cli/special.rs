@@ -1,0 +1,131 @@
+//! Special points as objects and as a short table.
+
+use super::fields::{self, Column, Entry};
+use super::following::criticality;
+use crate::bifurcation::Special;
+use crate::number::Uncertain;
+use crate::output::shortest;
+use crate::scene::{Quantity, System, Units};
+use serde_json::{Value, json};
+
+/// What a second method says of the special points.
+#[derive(Default)]
+pub struct Checks {
+    /// Its name, if there is one.
+    pub method: Option<&'static str>,
+    /// Relative differences in V_H, K and the period, of the first so many points.
+    pub differences: Vec<Option<[f64; 3]>>,
+}
+
+fn columns() -> Vec<Column<Special>> {
+    use Quantity::{Number, SlipRate, Stiffness, Time};
+    vec![
+        Column::new("label", Number, |one: &Special| one.label.name().into()),
+        Column::new("name", Number, |one| one.label.meaning().into()),
+        Column::uncertain("driving", SlipRate, |one| one.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
+        Column::uncertain("period", Time, |one| one.period.into()),
+        Column::new("criticality", Number, |one| {
+            one.criticality.map(criticality).into()
+        }),
+        Column::new("coefficient", Number, |one| one.coefficient.into()),
+        Column::new("note", Number, |one| Entry::Word(one.note.clone())),
+    ]
+}
+
+/// `result.special`.
+pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value> {
+    let columns = columns();
+    let object = |(i, one): (usize, &Special)| {
+        let mut object = fields::object(&columns, one, units);
+        if let Some(method) = checks.method {
+            let difference = checks.differences.get(i).copied().flatten();
+            let check = difference.map(|[driving, stiffness, period]| {
+                json!({
+                    "method": method,
+                    "driving_difference": driving,
+                    "stiffness_difference": stiffness,
+                    "period_difference": period,
+                })
+            });
+            object.insert("crosscheck".to_owned(), json!(check));
+        }
+        Value::Object(object)
+    };
+    special.iter().enumerate().map(object).collect()
+}
+
+/// The table, a line each with the header first; none where there is no special point.
+pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<String> {
+    if special.is_empty() {
+        return Vec::new();
+    }
+    let units = &system.units;
+    let check = checks
+        .method
+        .map(|method| format!("{method} differs in V_H, K, period by"));
+    let header = vec![
+        String::new(),
+        String::new(),
+        format!("V_H [{}]", units.name(Quantity::SlipRate)),
+        format!("K [{}]", units.name(Quantity::Stiffness)),
+        format!("period [{}]", units.name(Quantity::Time)),
+        String::new(),
+        check.unwrap_or_default(),
+        String::new(),
+    ];
+    let mut table = vec![header];
+    for (i, one) in special.iter().enumerate() {
+        let difference = checks.differences.get(i).copied().flatten();
+        table.push(line(one, difference, units));
+    }
+    aligned(&table)
+}
+
+fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<String> {
+    let number = |quantity, x| written(units.outward_uncertain(quantity, x));
+    let period = one.period.map(|x| number(Quantity::Time, x));
+    let difference = difference.map(|[v, k, t]| format!("{v:.1e}, {k:.1e}, {t:.1e}"));
+    vec![
+        one.label.name().to_owned(),
+        one.label.meaning().to_owned(),
+        number(Quantity::SlipRate, one.driving),
+        number(Quantity::Stiffness, one.stiffness),
+        period.unwrap_or_default(),
+        one.criticality.map_or("", criticality).to_owned(),
+        difference.unwrap_or_default(),
+        one.note.clone().unwrap_or_default(),
+    ]
+}
+
+/// A value with the bound on its error, if there is any.
+fn written(x: Uncertain) -> String {
+    if x.uncertainty == 0.0 || !x.uncertainty.is_finite() {
+        shortest(x.value)
+    } else {
+        format!("{} ± {:.1e}", shortest(x.value), x.uncertainty)
+    }
+}
+
+/// Columns of equal width, without those in which no row has anything.
+fn aligned(table: &[Vec<String>]) -> Vec<String> {
+    let length = |text: &String| text.chars().count();
+    let columns = table.first().map_or(0, Vec::len);
+    let widths: Vec<usize> = (0..columns)
+        .map(|i| {
+            let rows = table[1..].iter().map(|row| length(&row[i])).max();
+            let widest = table.iter().map(|row| length(&row[i])).max();
+            rows.filter(|&width| width > 0)
+                .and(widest)
+                .unwrap_or_default()
+        })
+        .collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).filter(|&(_, &width)| width > 0);
+        let cells: Vec<String> = cells
+            .map(|(text, &width)| format!("{text:<width$}"))
+            .collect();
+        format!("  {}", cells.join("  ")).trim_end().to_owned()
+    };
+    table.iter().map(line).collect()
+}

@@ -1,0 +1,167 @@
+//! Where the names of points stand: where they cover neither each other nor the curves, as near as that allows.
+
+use super::Side;
+
+/// A place in pixels, y downwards.
+pub type Pixel = (f64, f64);
+
+/// A point with the size of its name.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Named {
+    /// The point.
+    pub at: Pixel,
+    /// Width and height of the name.
+    pub size: (f64, f64),
+    /// Where it may stand.
+    pub side: Side,
+}
+
+/// Gaps between a point and its name that are tried.
+const GAPS: [f64; 6] = [6.0, 16.0, 28.0, 42.0, 60.0, 82.0];
+/// Directions that are tried, the most usual first.
+const DIRECTIONS: [(f64, f64); 8] = [
+    (0.0, -1.0),
+    (0.0, 1.0),
+    (0.7, -0.7),
+    (-0.7, -0.7),
+    (0.7, 0.7),
+    (-0.7, 0.7),
+    (1.0, 0.0),
+    (-1.0, 0.0),
+];
+/// Price of covering another name.
+const NAME: f64 = 1000.0;
+/// Of leaving the frame.
+const FRAME: f64 = 1000.0;
+/// Of covering another point.
+const POINT: f64 = 60.0;
+/// Of covering a stretch of curve.
+const CURVE: f64 = 12.0;
+/// Price of a pixel of distance.
+const FAR: f64 = 0.25;
+/// Of being later in the list of directions.
+const UNUSUAL: f64 = 0.05;
+
+/// The centres of the names, in order; `curves` are points along all curves, densely.
+pub fn placed(names: &[Named], curves: &[Pixel], frame: (f64, f64)) -> Vec<Pixel> {
+    let mut taken: Vec<Area> = Vec::new();
+    for (i, name) in names.iter().enumerate() {
+        let candidates = candidates(name);
+        let others = || names.iter().enumerate().filter(move |&(j, _)| j != i);
+        let price = |(number, place): (usize, &Area)| {
+            let covered = taken.iter().filter(|other| place.meets(other)).count() as f64;
+            let outside = f64::from(u8::from(!place.within(frame)));
+            let points = others().filter(|(_, other)| place.holds(other.at)).count() as f64;
+            let curve = curves.iter().filter(|&&at| place.holds(at)).count() as f64;
+            let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
+            NAME * covered
+                + FRAME * outside
+                + POINT * points
+                + CURVE * curve
+                + FAR * dx.hypot(dy)
+                + UNUSUAL * number as f64
+        };
+        let best = candidates
+            .iter()
+            .enumerate()
+            .map(|candidate| (price(candidate), *candidate.1))
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        taken.extend(best.map(|(_, place)| place));
+    }
+    taken.into_iter().map(|place| place.centre).collect()
+}
+
+fn candidates(name: &Named) -> Vec<Area> {
+    let directions = match name.side {
+        Side::Above => &DIRECTIONS[..1],
+        Side::Below => &DIRECTIONS[1..2],
+        Side::Free => &DIRECTIONS[..],
+    };
+    let gaps = match name.side {
+        Side::Free => &GAPS[..],
+        _ => &GAPS[..1],
+    };
+    let half = (0.5 * name.size.0, 0.5 * name.size.1);
+    gaps.iter()
+        .flat_map(|gap| directions.iter().map(move |direction| (gap, direction)))
+        .map(|(gap, (dx, dy))| Area {
+            centre: (
+                name.at.0 + dx * gap + dx.signum() * half.0 * f64::from(u8::from(*dx != 0.0)),
+                name.at.1 + dy * gap + dy.signum() * half.1 * f64::from(u8::from(*dy != 0.0)),
+            ),
+            half,
+        })
+        .collect()
+}
+
+/// The area of a name.
+#[derive(Debug, Clone, Copy)]
+struct Area {
+    centre: Pixel,
+    half: (f64, f64),
+}
+
+impl Area {
+    fn meets(&self, other: &Area) -> bool {
+        (self.centre.0 - other.centre.0).abs() < self.half.0 + other.half.0
+            && (self.centre.1 - other.centre.1).abs() < self.half.1 + other.half.1
+    }
+
+    fn holds(&self, at: Pixel) -> bool {
+        (self.centre.0 - at.0).abs() < self.half.0 && (self.centre.1 - at.1).abs() < self.half.1
+    }
+
+    fn within(&self, (width, height): (f64, f64)) -> bool {
+        self.centre.0 > self.half.0
+            && self.centre.1 > self.half.1
+            && self.centre.0 + self.half.0 < width
+            && self.centre.1 + self.half.1 < height
+    }
+}
+
+/// Where the line from a point to the middle of its name, `off` away, meets the name; the point itself if it lies inside.
+pub fn edge(off: (f64, f64), size: (f64, f64)) -> (f64, f64) {
+    let inside = (0.5 * size.0 / off.0.abs()).min(0.5 * size.1 / off.1.abs());
+    let part = (1.0 - inside).max(0.0);
+    (part * off.0, part * off.1)
+}
+
+/// Points along a curve, no farther apart than this many pixels.
+pub fn along(curve: &[Pixel], spacing: f64) -> Vec<Pixel> {
+    let mut points: Vec<Pixel> = curve.first().copied().into_iter().collect();
+    for pair in curve.windows(2) {
+        let ((x, y), (to_x, to_y)) = (pair[0], pair[1]);
+        let pieces = ((to_x - x).hypot(to_y - y) / spacing).ceil().max(1.0);
+        points.extend((1..=pieces as usize).map(|i| {
+            let part = i as f64 / pieces;
+            (x + part * (to_x - x), y + part * (to_y - y))
+        }));
+    }
+    points
+}
+
+#[cfg(test)]
+mod test {
+    use super::*;
+
+    #[test]
+    fn names_of_a_crowd_cover_neither_each_other_nor_the_curve() {
+        let curve = along(&[(0.0, 100.0), (400.0, 100.0)], 3.0);
+        let names: Vec<Named> = (0..9)
+            .map(|i| Named {
+                at: (200.0 + 5.0 * f64::from(i), 100.0),
+                size: (24.0, 14.0),
+                side: Side::Free,
+            })
+            .collect();
+        let centres = placed(&names, &curve, (400.0, 200.0));
+        for (i, a) in centres.iter().enumerate() {
+            assert!((a.1 - 100.0).abs() >= 7.0, "{a:?} is on the curve");
+            assert!(a.0 > 12.0 && a.0 < 388.0 && a.1 > 7.0 && a.1 < 193.0);
+            for b in &centres[..i] {
+                let apart = (a.0 - b.0).abs() >= 24.0 || (a.1 - b.1).abs() >= 14.0;
+                assert!(apart, "{a:?} covers {b:?}");
+            }
+        }
+    }
+}

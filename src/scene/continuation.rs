@@ -1,0 +1,145 @@
+//! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
+
+use super::options::{ModelOptions, OutputOptions, number};
+use std::path::PathBuf;
+
+#[cfg(feature = "sundials")]
+const SECOND_METHOD: &str = "cvode-bdf";
+#[cfg(not(feature = "sundials"))]
+const SECOND_METHOD: &str = "rodas5p";
+
+/// How branches and curves are followed.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Numerics")]
+pub struct ContinuationOptions {
+    /// Factor on the limits of continuation steps: below 1 there are more points, above 1 fewer
+    #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = number, allow_negative_numbers = true)]
+    pub step_limit: f64,
+    /// Relative accuracy of special points, and of all points of a curve
+    #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
+    pub tolerance: f64,
+    /// Compute each special point of orbits once more with a second method and tell the difference [METHOD: cvode-bdf
+    /// unless given; rodas5p in a build without SUNDIALS]
+    #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD)]
+    pub crosscheck: Option<String>,
+}
+
+/// `branch`: equilibria or periodic orbits as a parameter varies.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct BranchOptions {
+    /// Of what the branches are; in a scene file the key `of`
+    #[arg(value_name = "equilibria|orbits")]
+    pub of: Option<String>,
+    /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// What varies: driving (V_H) or stiffness (K)
+    #[arg(
+        long,
+        value_name = "PARAMETER",
+        default_value = "driving",
+        help_heading = "Branch"
+    )]
+    pub along: String,
+    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L]
+    #[arg(long, value_name = "A", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
+    pub from: Option<f64>,
+    /// Where they end; it may be the smaller one [default: V_H = 1e6 V*; K = 1 a sigma/L]
+    #[arg(long, value_name = "B", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
+    pub to: Option<f64>,
+    /// symmetric (both interfaces alike), asymmetric or both
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "both",
+        help_heading = "Branch"
+    )]
+    pub symmetry: String,
+    /// Values of the parameter to land on exactly, comma-separated; their rows have the label UZ
+    #[arg(
+        long,
+        value_name = "V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Branch"
+    )]
+    pub at: Option<String>,
+    /// How they are followed.
+    #[command(flatten)]
+    pub continuation: ContinuationOptions,
+    /// Go on with FILE, the CSV of an interrupted run of the same command: branches that are complete in it are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Draw stress (and period) against the parameter, stable parts solid, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// `locus`: a curve of bifurcations in the plane of V_H and K.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct LocusOptions {
+    /// Of which bifurcation the curve is: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
+    /// period-doubling or torus of periodic orbits; in a scene file the key `of`
+    #[arg(value_name = "BIFURCATION")]
+    pub of: Option<String>,
+    /// What slides; V_H and K vary both and are not given.
+    #[command(flatten)]
+    pub model: ModelOptions,
+    /// symmetric (both interfaces alike), asymmetric or both, where there are both
+    #[arg(
+        long,
+        value_name = "NAME",
+        default_value = "both",
+        help_heading = "Curve"
+    )]
+    pub symmetry: String,
+    /// V_H from A to B [default: 1e-3,1e6 V*]
+    #[arg(
+        long,
+        value_name = "A,B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub driving_range: Option<String>,
+    /// K from A to B [default: 1e-3,1 a sigma/L]
+    #[arg(
+        long,
+        value_name = "A,B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub stiffness_range: Option<String>,
+    /// Values of V_H to land on exactly, comma-separated, at every crossing
+    #[arg(
+        long,
+        value_name = "V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at_driving: Option<String>,
+    /// Values of K to land on exactly, comma-separated, at every crossing
+    #[arg(
+        long,
+        value_name = "K1,K2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at_stiffness: Option<String>,
+    /// Tell of every point to which side the bifurcating solutions lie
+    #[arg(long, help_heading = "Curve")]
+    pub criticality: bool,
+    /// How it is followed.
+    #[command(flatten)]
+    pub continuation: ContinuationOptions,
+    /// Go on with FILE, the CSV of an interrupted run of the same command: curves that are complete in it are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
