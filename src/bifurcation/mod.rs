@@ -183,6 +183,24 @@ pub struct Special {
     pub coefficient: Option<f64>,
     /// Why the branch ends here, or what else is to be said.
     pub note: Option<String>,
+    /// The orbit there, where it is one of an orbit: what a second method begins with.
+    pub orbit: Option<orbits::SpecialOrbit>,
+}
+
+impl Special {
+    /// A special point of which no more is known yet than where it is.
+    pub fn new(label: Label, driving: Uncertain, stiffness: Uncertain) -> Self {
+        Special {
+            label,
+            driving,
+            stiffness,
+            period: None,
+            criticality: None,
+            coefficient: None,
+            note: None,
+            orbit: None,
+        }
+    }
 }
 
 /// A point of a branch.

@@ -86,6 +86,7 @@ impl<R: Row> Kept<R> {
                 criticality: None,
                 coefficient: None,
                 note: Some("of the earlier run".into()),
+                orbit: None,
             })
         };
         self.rows.iter().filter_map(special).collect()

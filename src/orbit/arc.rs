@@ -106,6 +106,11 @@ impl<const N: usize> Tracer<N> {
         self.name
     }
 
+    /// Whether arcs come with derivatives in the parameters.
+    pub fn differentiates(&self) -> bool {
+        matches!(self.method, Method::Taylor(_))
+    }
+
     /// All work so far.
     pub fn work(&self) -> Work {
         self.work

@@ -9,6 +9,7 @@ use super::family::Family;
 use super::indicator::{Indicator, Spectrum};
 use super::linear::Linear;
 use super::motion::{Motion, Site};
+use super::polygon::Polygon;
 use nalgebra::{Matrix2, Vector2};
 
 /// What an orbit is to meet.
@@ -97,6 +98,45 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         })
     }
 
+    /// With any method. Where it makes no derivatives in the parameters they are differences of its flows, which Newton's method
+    /// needs but to converge.
+    pub fn by(family: &'a F, tracer: Tracer<N>) -> Self {
+        Corrector { family, tracer }
+    }
+
+    /// The linearisation at a site, with the derivatives in the parameters.
+    fn linear(&mut self, site: &Site<N>) -> Option<Linear<N>> {
+        let field = self.family.field(site.at);
+        let mut linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
+        drop(field);
+        if !self.tracer.differentiates() {
+            self.difference(site, &mut linear)?;
+        }
+        Some(linear)
+    }
+
+    /// The derivatives in the parameters by central differences.
+    fn difference(&mut self, site: &Site<N>, linear: &mut Linear<N>) -> Option<()> {
+        /// In the coordinates of the parameters.
+        const APART: f64 = 1e-5;
+        let scale = self.family.scale(site.at);
+        for i in 0..2 {
+            let beside = |step: f64| {
+                let mut at = site.at;
+                at[i] += step;
+                self.family.field(at)
+            };
+            let (below, above) = (beside(-APART), beside(APART));
+            let Polygon { nodes, durations } = &site.polygon;
+            for (k, (x, &duration)) in nodes.iter().zip(durations).enumerate() {
+                let low = self.tracer.flow(&*below, x, duration, None).ok()?;
+                let high = self.tracer.flow(&*above, x, duration, None).ok()?;
+                linear.arcs[k].parameters[i] = (high - low) / (2.0 * APART * scale[i]);
+            }
+        }
+        Some(())
+    }
+
     /// The orbit near `guess` that meets the conditions, one for each of the free parameters; `None` where Newton's method
     /// finds none.
     pub fn correct(
@@ -110,9 +150,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         let mut gradients: Option<Vec<Motion<N>>> = None;
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         for iterations in 1..=goal.iterations {
-            let field = self.family.field(site.at);
-            let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
-            drop(field);
+            let linear = self.linear(&site)?;
             let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
             let spectrum = Spectrum::new(&linear);
             let known = match gradients.take() {
@@ -171,9 +209,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         free: &[usize],
         conditions: &[Condition<'_, N>],
     ) -> Option<Regular<N>> {
-        let field = self.family.field(site.at);
-        let linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
-        drop(field);
+        let linear = self.linear(&site)?;
         let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
         let spectrum = Spectrum::new(&linear);
         let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions)?;

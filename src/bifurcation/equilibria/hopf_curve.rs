@@ -279,6 +279,7 @@ impl Trace<'_, '_> {
             driving,
             stiffness,
             note: Some("a curve of Hopf points ends here".into()),
+            orbit: None,
             ..Special::at(Label::Bt, place.driving, k)
         })
     }

@@ -44,6 +44,7 @@ impl Special {
             criticality: None,
             coefficient: None,
             note: None,
+            orbit: None,
         }
     }
 }

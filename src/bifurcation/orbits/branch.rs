@@ -3,16 +3,16 @@
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::rows::row;
-use super::sharp::{Sharp, sharpened};
+use super::sharp::{Exactly, rough, sharpened};
 use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::State;
-use crate::model::{Loading, Parameter};
+use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Condition, Corrector, Family, HopfPoint, Indicator, OverLoadings, Path, Polygon, Regular, Site,
-    Slab, Walk, hopf_points,
+    Corrector, Family, HopfPoint, Indicator, OverLoadings, Path, Polygon, Regular, Site, Walk,
+    hopf_points,
 };
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -48,7 +48,6 @@ pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
 /// The branches of one symmetry.
 struct Branches<'r, const N: usize> {
     request: &'r BranchRequest,
-    symmetry: Symmetry,
     family: OverLoadings,
     /// The free parameter's place and the range of its coordinate.
     free: usize,
@@ -87,7 +86,6 @@ where
         let (a, b) = (request.range.0.ln(), request.range.1.ln());
         let mut branches = Branches {
             request,
-            symmetry,
             family: OverLoadings(request.slab),
             free,
             range: (a.min(b), a.max(b)),
@@ -100,6 +98,10 @@ where
             }
             let number = *count;
             *count += 1;
+            if request.skip.contains(&number) {
+                branches.reached[i] = true;
+                continue;
+            }
             if branches.from_hopf(i, number, seen)?.is_break() {
                 return Ok(Break(()));
             }
@@ -172,7 +174,7 @@ where
         }
         if end != End::Told && course.inside {
             let site = &walk.pace.here.site;
-            let mut special = self.rough(Label::Mx, site);
+            let mut special = rough(Label::Mx, site);
             special.note = Some(
                 match end {
                     End::Count => "as many orbits as are allowed on a branch",
@@ -285,14 +287,14 @@ where
             return Ok(Continue(()));
         }
         let condition = match watch {
-            Watch::Value(i, value) => Condition::Parameter(i, value),
-            Watch::Turn(_) => Condition::Indicator(Indicator::Fold),
-            Watch::Indicator(indicator) => Condition::Indicator(indicator),
+            Watch::Value(i, value) => Exactly::Parameter(i, value),
+            Watch::Turn(_) => Exactly::Indicator(Indicator::Fold),
+            Watch::Indicator(indicator) => Exactly::Indicator(indicator),
         };
         let sharp = sharpened(walk.corrector.family, &at.site, &walk.path.free, &[condition]);
         let special = match &sharp {
-            Some(sharp) => self.special(label, sharp),
-            None => self.rough(label, &at.site),
+            Some(sharp) => sharp.special(label),
+            None => rough(label, &at.site),
         };
         let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
         let mut row = row(&self.request.slab, course.number, orbit, Some(label))?;
@@ -312,47 +314,14 @@ where
         Ok(if ends { Break(()) } else { Continue(()) })
     }
 
-    fn special(&self, label: Label, sharp: &Sharp<N>) -> Special {
-        let [driving, stiffness] = sharp.at;
-        Special {
-            label,
-            driving,
-            stiffness,
-            period: Some(sharp.period),
-            criticality: None,
-            coefficient: None,
-            note: None,
-        }
-    }
-
-    /// A point of which no more is claimed than that it lies on the walk.
-    fn rough(&self, label: Label, site: &Site<N>) -> Special {
-        let [driving, stiffness] = site.at.map(f64::exp);
-        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
-        Special {
-            label,
-            driving: unknown(driving),
-            stiffness: unknown(stiffness),
-            period: Some(unknown(site.polygon.period())),
-            criticality: None,
-            coefficient: None,
-            note: None,
-        }
-    }
-
     fn hopf(&self, hopf: &HopfPoint) -> Special {
         /// Of the bisection, relative.
         const KNOWN: f64 = 1e-12;
         let known = |x: f64| Uncertain::new(x, KNOWN * x);
         let of = |i: usize, x: f64| if self.free == i { known(x) } else { Uncertain::new(x, 0.0) };
         Special {
-            label: Label::Hb,
-            driving: of(0, hopf.driving),
-            stiffness: of(1, hopf.stiffness),
             period: Some(known(std::f64::consts::TAU / hopf.frequency)),
-            criticality: None,
-            coefficient: None,
-            note: None,
+            ..Special::new(Label::Hb, of(0, hopf.driving), of(1, hopf.stiffness))
         }
     }
 
@@ -366,18 +335,9 @@ where
             },
             at: near.at,
         };
-        let across = [Condition::Indicator(Indicator::Across)];
+        let across = [Exactly::Indicator(Indicator::Across)];
         let sharp = sharpened::<_, 2>(&self.family, &site, &[self.free], &across)?;
-        let [driving, stiffness] = sharp.at;
-        Some(Special {
-            label: Label::Pf,
-            driving,
-            stiffness,
-            period: Some(sharp.period),
-            criticality: None,
-            coefficient: None,
-            note: None,
-        })
+        Some(sharp.special(Label::Pf))
     }
 }
 

@@ -4,7 +4,7 @@ use super::branch::{ROUGH, crosses};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::locus::{Locus, tell};
-use super::sharp::{Sharp, sharpened};
+use super::sharp::{Exactly, rough, sharpened};
 use super::top::top;
 use crate::bifurcation::{Event, Label, LocusRow, Seen, Special};
 use crate::error::Result;
@@ -155,7 +155,7 @@ where
             }
         });
         if end != End::Told {
-            let mut special = self.rough(Label::Mx, &walk.pace.here.site);
+            let mut special = rough(Label::Mx, &walk.pace.here.site);
             special.note = Some(
                 match end {
                     End::Count => "as many orbits as are allowed on a curve",
@@ -205,29 +205,29 @@ where
                 let range = [self.locus.request.driving, self.locus.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();
                 let label = if end { Label::Ep } else { Label::Uz };
-                (label, Condition::Parameter(i, value), end)
+                (label, Exactly::Parameter(i, value), end)
             }
             Watch::Turn(_) => return self.turn(walk, at),
             Watch::Indicator(other @ Indicator::Trace(value)) => {
                 let (label, _) = RESONANCES[RESONANCES.iter().position(|r| r.1 == value).unwrap_or(0)];
-                (label, Condition::Indicator(other), value.abs() == 2.0)
+                (label, Exactly::Indicator(other), value.abs() == 2.0)
             }
             // Both multipliers are -1, or 1.
             Watch::Indicator(other) if indicator == Indicator::Doubling && trace < 0.0 => {
-                (Label::R2, Condition::Indicator(other), false)
+                (Label::R2, Exactly::Indicator(other), false)
             }
             Watch::Indicator(other) if indicator == Indicator::Fold && trace > 0.0 => {
-                (Label::R1, Condition::Indicator(other), false)
+                (Label::R1, Exactly::Indicator(other), false)
             }
             Watch::Indicator(_) => return Continue(()),
         };
         let _ = torus;
-        let conditions = walk.path.and(condition);
-        let sharp = sharpened(walk.corrector.family, &at.site, &walk.path.free, &conditions);
+        let meets = [Exactly::Indicator(indicator), condition];
+        let sharp = sharpened(walk.corrector.family, &at.site, &walk.path.free, &meets);
         let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
         let mut special = match &sharp {
-            Some(sharp) => self.special(label, sharp),
-            None => self.rough(label, &at.site),
+            Some(sharp) => sharp.special(label),
+            None => rough(label, &at.site),
         };
         let _ = self.row(orbit, Some(label));
         if let Watch::Value(i, value) = watch {
@@ -274,13 +274,8 @@ where
                 let _ = self.row(&top.orbit, Some(Label::Top));
                 let [driving, stiffness] = top.at;
                 self.events.push(Event::Special(Special {
-                    label: Label::Top,
-                    driving,
-                    stiffness,
                     period: Some(top.period),
-                    criticality: None,
-                    coefficient: None,
-                    note: None,
+                    ..Special::new(Label::Top, driving, stiffness)
                 }));
             }
             _ => {}
@@ -290,36 +285,9 @@ where
 
     /// A curve of asymmetric orbits has come to symmetric ones.
     fn merged(&mut self) -> ControlFlow<()> {
-        let mut special = self.rough(Label::Cp, &self.last);
+        let mut special = rough(Label::Cp, &self.last);
         special.note = Some("the curve ends on that of the pitchforks of orbits".into());
         self.events.push(Event::Special(special));
         Break(())
-    }
-
-    fn special(&self, label: Label, sharp: &Sharp<N>) -> Special {
-        let [driving, stiffness] = sharp.at;
-        Special {
-            label,
-            driving,
-            stiffness,
-            period: Some(sharp.period),
-            criticality: None,
-            coefficient: None,
-            note: None,
-        }
-    }
-
-    fn rough(&self, label: Label, site: &Site<N>) -> Special {
-        let [driving, stiffness] = site.at.map(f64::exp);
-        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
-        Special {
-            label,
-            driving: unknown(driving),
-            stiffness: unknown(stiffness),
-            period: Some(unknown(site.polygon.period())),
-            criticality: None,
-            coefficient: None,
-            note: None,
-        }
     }
 }

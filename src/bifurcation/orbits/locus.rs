@@ -113,6 +113,9 @@ where
                 }
                 let number = *count;
                 *count += 1;
+                if request.skip.contains(&number) {
+                    continue;
+                }
                 let Some(curve) = Curve::through(&mut locus, number, seed)? else {
                     *count -= 1;
                     continue;

@@ -12,3 +12,4 @@ mod top;
 
 pub use branch::branch;
 pub use locus::locus;
+pub use sharp::{SpecialOrbit, crosscheck};

@@ -1,10 +1,48 @@
-//! A special orbit to the last digits, with its error budget.
+//! A special orbit to the last digits, with its error budget; and once more by an unlike method.
 //!
 //! It is solved several times, with other nodes and other tolerances: what the solutions differ by, and what the last
 //! corrections still were, bounds what rounding and the method do. What can't be solved more than once claims nothing.
 
+use crate::bifurcation::{Label, Special};
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::field::State;
+use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Family, Goal, Regular, Site};
+use crate::orbit::{
+    Condition, Corrector, Family, Goal, Indicator, OverLoadings, Polygon, Regular, Site, Slab,
+    Tracer,
+};
+
+/// What a special orbit meets, by itself: no plane of a walk.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Exactly {
+    /// A bifurcation.
+    Indicator(Indicator),
+    /// The coordinate of this parameter has this value.
+    Parameter(usize, f64),
+}
+
+impl Exactly {
+    fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
+        match self {
+            Exactly::Indicator(indicator) => Condition::Indicator(indicator),
+            Exactly::Parameter(i, value) => Condition::Parameter(i, value),
+        }
+    }
+}
+
+/// The orbit of a special point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpecialOrbit {
+    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2).
+    nodes: Vec<Vec<f64>>,
+    durations: Vec<f64>,
+    at: [f64; 2],
+    /// What makes it special, and the parameters that are free for it.
+    meets: Vec<Exactly>,
+    free: Vec<usize>,
+}
 
 /// A special orbit.
 #[derive(Debug, Clone)]
@@ -15,6 +53,8 @@ pub struct Sharp<const N: usize> {
     pub at: [Uncertain; 2],
     /// The period.
     pub period: Uncertain,
+    meets: Vec<Exactly>,
+    free: Vec<usize>,
 }
 
 /// Tolerances of the solutions, and the part of their arcs by which the nodes of all but the first are moved.
@@ -24,30 +64,28 @@ const SAFETY: f64 = 4.0;
 /// Rounding, in units of the value.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
-/// The orbit near a site that meets the conditions, in the last digits. Conditions of pace are of no use here: the nodes move.
+/// The orbit near a site that meets the conditions, in the last digits.
 pub fn sharpened<F: Family<N>, const N: usize>(
     family: &F,
     near: &Site<N>,
     free: &[usize],
-    conditions: &[Condition<'_, N>],
+    meets: &[Exactly],
 ) -> Option<Sharp<N>> {
+    let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
     let mut solutions: Vec<Regular<N>> = Vec::new();
     for (tolerance, part) in SOLUTIONS {
         let mut corrector = Corrector::new(family, tolerance).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
-        let field = family.field(begin.at);
         let mut polygon = begin.polygon.clone();
-        if solutions.is_empty() {
-            polygon = polygon.meshed(&mut corrector.tracer, &*field).ok()?;
-        } else {
+        if !solutions.is_empty() {
+            let field = family.field(begin.at);
             polygon = polygon.shifted(&mut corrector.tracer, &*field, part).ok()?;
         }
-        drop(field);
         let site = Site {
             polygon,
             at: begin.at,
         };
-        match corrector.correct(site, free, conditions, Goal::SHARP) {
+        match corrector.correct(site, free, &conditions, Goal::SHARP) {
             Some(solution) => solutions.push(solution),
             None if solutions.is_empty() => return None,
             None => {}
@@ -65,13 +103,124 @@ pub fn sharpened<F: Family<N>, const N: usize>(
         let alone = solutions.len() < SOLUTIONS.len();
         Uncertain::new(first, if alone { f64::INFINITY } else { uncertainty })
     };
-    let parameter = |i: usize| {
-        let of = |s: &Regular<N>| family.parameters(s.site.at)[i];
-        all(&of, !free.contains(&i))
+    let fixed = |i: usize| {
+        let by_value = meets.iter().any(|m| matches!(m, Exactly::Parameter(j, _) if *j == i));
+        by_value || !free.contains(&i)
     };
+    let parameter = |i: usize| all(&|s| family.parameters(s.site.at)[i], fixed(i));
     Some(Sharp {
         at: [parameter(0), parameter(1)],
         period: all(&|s| s.site.polygon.period(), false),
+        meets: meets.to_vec(),
+        free: free.to_vec(),
         orbit: solutions.swap_remove(0),
     })
+}
+
+impl<const N: usize> Sharp<N> {
+    /// As a special point of a slab.
+    pub fn special(&self, label: Label) -> Special {
+        let Site { polygon, at } = &self.orbit.site;
+        Special {
+            period: Some(self.period),
+            orbit: Some(SpecialOrbit {
+                nodes: polygon.nodes.iter().map(|x| x.iter().copied().collect()).collect(),
+                durations: polygon.durations.clone(),
+                at: *at,
+                meets: self.meets.clone(),
+                free: self.free.clone(),
+            }),
+            ..Special::new(label, self.at[0], self.at[1])
+        }
+    }
+}
+
+/// A point of which no more is claimed than that it lies on the walk.
+pub(super) fn rough<const N: usize>(label: Label, site: &Site<N>) -> Special {
+    let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
+    let [driving, stiffness] = site.at.map(|x| unknown(x.exp()));
+    Special {
+        period: Some(unknown(site.polygon.period())),
+        ..Special::new(label, driving, stiffness)
+    }
+}
+
+/// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
+const DIGITS: [i32; 3] = [4, 6, 8];
+/// What the second method is asked for in a step.
+const TOLERANCE: f64 = 1e-12;
+
+/// Relative differences in V_H, K and the period between a special point of orbits and the same one by another method. That
+/// begins from the first one's nodes, cut to a few digits, and shares nothing else with it. `None` for points that are no
+/// orbit's, and for tops, which have no condition of their own.
+///
+/// # Errors
+/// [`Error::NotConverged`] where the second method does not find the point; those of the method.
+pub fn crosscheck(
+    slab: &Slab,
+    _: Option<Symmetry>,
+    special: &Special,
+    method: Choice,
+) -> Result<Option<[f64; 3]>> {
+    let Some(orbit) = &special.orbit else {
+        return Ok(None);
+    };
+    let period = special.period.map_or(f64::NAN, |period| period.value);
+    let first = [special.driving.value, special.stiffness.value, period];
+    let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
+    let second = if planar {
+        second::<2>(slab, orbit, method)?
+    } else {
+        second::<3>(slab, orbit, method)?
+    };
+    Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
+}
+
+fn second<const N: usize>(slab: &Slab, orbit: &SpecialOrbit, method: Choice) -> Result<[f64; 3]>
+where
+    OverLoadings: Family<N>,
+{
+    let family = OverLoadings(*slab);
+    let conditions: Vec<_> = orbit.meets.iter().map(|exactly| exactly.condition()).collect();
+    let tolerances = Tolerances::equal(TOLERANCE)?;
+    let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
+    for digits in DIGITS {
+        let site = cut::<N>(orbit, digits);
+        if let Some(again) = corrector.correct(site, &orbit.free, &conditions, Goal::SHARP) {
+            let [driving, stiffness] = family.parameters(again.site.at);
+            return Ok([driving, stiffness, again.site.polygon.period()]);
+        }
+    }
+    Err(Error::NotConverged {
+        what: "the special orbit, by the second method",
+        iterations: Goal::SHARP.iterations,
+        residual: f64::INFINITY,
+        tolerance: Goal::SHARP.done,
+    })
+}
+
+/// The orbit with only so many digits left.
+fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
+    let cut = |x: f64| {
+        if x == 0.0 {
+            return 0.0;
+        }
+        let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
+        (x / unit).round() * unit
+    };
+    let nodes = orbit.nodes.iter();
+    let mut at = orbit.at.map(cut);
+    // What is not free is given.
+    for (i, at) in at.iter_mut().enumerate() {
+        if !orbit.free.contains(&i) {
+            *at = orbit.at[i];
+        }
+    }
+    Site {
+        polygon: Polygon {
+            nodes: nodes.map(|x| State::<N>::from_fn(|i, _| cut(x[i]))).collect(),
+            durations: orbit.durations.iter().map(|&t| cut(t)).collect(),
+        },
+        at,
+    }
 }
