@@ -304,7 +304,7 @@ fn along_the_stiffness() {
     for (v, k, symmetry) in [
         (0.1652651673598698, 0.14, Symmetry::Symmetric),
         (231.30931024233874, 0.14, Symmetry::Asymmetric),
-        (0.12797183059424950, 0.3, Symmetry::Asymmetric),
+        (0.1279718305942495, 0.3, Symmetry::Asymmetric),
     ] {
         let request = BranchRequest {
             slab: slab(spinodal(), 2, v, 1.0),

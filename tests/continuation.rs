@@ -120,7 +120,7 @@ fn the_same_special_points_whatever_the_steps() {
         settings.wanted = vec![0.2];
         // a parabola of the unknown that is negative over 0.02 only: two zeros that a long step contains both
         let mut watch = look(|p| vec![p.lambda_slope(), (p.u[0] + 0.31) * (p.u[0] + 0.33)]);
-        let begin = start(1.3247179572447461, -1.0, [0.0, 1.0]);
+        let begin = start(1.324717957244746, -1.0, [0.0, 1.0]);
         let branch = follow(&Scalar(s_shaped), &begin, &settings, &mut watch).unwrap();
         assert_eq!(branch.stopped, Stop::RangeEnd);
         let special: Vec<_> = branch
@@ -138,7 +138,7 @@ fn the_same_special_points_whatever_the_steps() {
         };
         let on = |u: f64| u - u * u * u;
         let expected = [
-            (Mark::Begin, 1.3247179572447461, -1.0),
+            (Mark::Begin, 1.324717957244746, -1.0),
             (Mark::Wanted(0), root(0.9), 0.2),
             (Mark::Zero(0), fold, fold_lambda),
             (Mark::Wanted(0), root(0.2), 0.2),
@@ -146,7 +146,7 @@ fn the_same_special_points_whatever_the_steps() {
             (Mark::Zero(1), -0.33, on(-0.33)),
             (Mark::Zero(0), -fold, -fold_lambda),
             (Mark::Wanted(0), root(-1.1), 0.2),
-            (Mark::Highest, -1.3247179572447461, 1.0),
+            (Mark::Highest, -1.324717957244746, 1.0),
         ];
         assert_eq!(
             special.len(),

@@ -189,12 +189,11 @@ impl Step<'_> {
                 }
                 Err(error) => return Err(error),
             };
-            let c;
-            if x.values[i].signum() == a.values[i].signum() {
-                c = std::mem::replace(&mut a, x);
+            let c = if x.values[i].signum() == a.values[i].signum() {
+                std::mem::replace(&mut a, x)
             } else {
-                c = std::mem::replace(&mut b, std::mem::replace(&mut a, x));
-            }
+                std::mem::replace(&mut b, std::mem::replace(&mut a, x))
+            };
             best = if a.values[i].abs() < b.values[i].abs() {
                 a.clone()
             } else {

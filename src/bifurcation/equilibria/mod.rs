@@ -17,7 +17,9 @@ mod pieces;
 mod rates;
 mod special;
 mod stationary;
+mod trace;
 mod vertical;
+mod walk;
 
 use super::{BranchRequest, LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;
