@@ -18,6 +18,7 @@
 //! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
 //! | [`continuation::follow()`] | curves of zeros, by pseudo-arclength |
 //! | [`bifurcation::Event`] | what is found along branches and along the curves of their bifurcations |
+//! | [`bifurcation::equilibria`] | branches of equilibria, and curves of their bifurcations in the (V_H, K) plane |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
 //!

@@ -59,6 +59,7 @@ fn start(u: f64, lambda: f64, direction: [f64; 2]) -> Start {
         u: DVector::from_element(1, u),
         lambda,
         direction: DVector::from_row_slice(&direction),
+        across: false,
     }
 }
 
@@ -119,7 +120,7 @@ fn the_same_special_points_whatever_the_steps() {
         settings.wanted = vec![0.2];
         // a parabola of the unknown that is negative over 0.02 only: two zeros that a long step contains both
         let mut watch = look(|p| vec![p.lambda_slope(), (p.u[0] + 0.31) * (p.u[0] + 0.33)]);
-        let begin = start(1.3247179572447461, -1.0, [0.0, 1.0]);
+        let begin = start(1.324717957244746, -1.0, [0.0, 1.0]);
         let branch = follow(&Scalar(s_shaped), &begin, &settings, &mut watch).unwrap();
         assert_eq!(branch.stopped, Stop::RangeEnd);
         let special: Vec<_> = branch
@@ -137,7 +138,7 @@ fn the_same_special_points_whatever_the_steps() {
         };
         let on = |u: f64| u - u * u * u;
         let expected = [
-            (Mark::Begin, 1.3247179572447461, -1.0),
+            (Mark::Begin, 1.324717957244746, -1.0),
             (Mark::Wanted(0), root(0.9), 0.2),
             (Mark::Zero(0), fold, fold_lambda),
             (Mark::Wanted(0), root(0.2), 0.2),
@@ -145,7 +146,7 @@ fn the_same_special_points_whatever_the_steps() {
             (Mark::Zero(1), -0.33, on(-0.33)),
             (Mark::Zero(0), -fold, -fold_lambda),
             (Mark::Wanted(0), root(-1.1), 0.2),
-            (Mark::Highest, -1.3247179572447461, 1.0),
+            (Mark::Highest, -1.324717957244746, 1.0),
         ];
         assert_eq!(
             special.len(),
@@ -221,6 +222,43 @@ fn straight_through_a_pitchfork() {
     assert_eq!(zeros.len(), 1);
     assert!(zeros[0].0.lambda.abs() < 1e-15);
     assert_eq!(branch.points.last().unwrap().0.lambda, 1.03);
+}
+
+/// A branch point on a curved branch, u = lambda^2 + sin lambda: next to it the equations are singular.
+#[test]
+fn a_branch_point_on_a_curved_branch() {
+    let problem = Scalar(|u: f64, l: f64| {
+        let (w, w_l) = (u - l * l - l.sin(), -2.0 * l - l.cos());
+        let v = l - 0.5 - w * w;
+        [w * v, v - 2.0 * w * w, w_l * v + w * (1.0 - 2.0 * w * w_l)]
+    });
+    for longest in [0.5, 0.1, 0.03] {
+        let settings = Settings::new((-1.0, 1.5), longest).unwrap();
+        // the determinant of the equation's derivatives over the tangent
+        let mut watch = look(|p| {
+            let [_, by_u, by_l] = (problem.0)(p.u[0], p.lambda);
+            vec![by_u * p.tangent[1] - by_l * p.tangent[0]]
+        });
+        let u = 1.0 - 1.0_f64.sin();
+        let branch = follow(&problem, &start(u, -1.0, [0.0, 1.0]), &settings, &mut watch).unwrap();
+        assert_eq!(branch.stopped, Stop::RangeEnd, "longest {longest}");
+        let zeros: Vec<_> = branch
+            .points
+            .iter()
+            .filter(|(_, m)| *m == Mark::Zero(0))
+            .collect();
+        assert_eq!(zeros.len(), 1);
+        assert!(
+            (zeros[0].0.lambda - 0.5).abs() < 1e-9,
+            "{}",
+            zeros[0].0.lambda
+        );
+        let end = &branch.points.last().unwrap().0;
+        assert!(
+            (end.u[0] - 2.25 - 1.5_f64.sin()).abs() < 1e-12,
+            "still on its branch"
+        );
+    }
 }
 
 #[test]

@@ -70,6 +70,13 @@ fn failed(iterations: usize, residual: f64, tolerance: f64) -> Error {
     }
 }
 
+/// Whether what is left of every equation is what rounding of x alone makes.
+fn satisfied(matrix: &DMatrix<f64>, x: &DVector<f64>, left: &DVector<f64>) -> bool {
+    let sizes = matrix.abs() * x.abs();
+    let mut both = left.iter().zip(sizes.iter());
+    both.all(|(g, size)| g.abs() <= f64::EPSILON * size)
+}
+
 /// The point of the curve in the plane, near `guess`, with the number of Newton steps.
 pub(super) fn onto(
     problem: &dyn ZeroProblem,
@@ -84,6 +91,10 @@ pub(super) fn onto(
         let g = problem.residual(&x.rows(0, n).into_owned(), x[n])?;
         let right = joined(&-g, plane.offset - plane.normal.dot(&x));
         let matrix = bordered(problem, &x, &plane.normal)?;
+        // Next to a branch point the matrix is singular, and a correction of rounding would lead anywhere.
+        if satisfied(&matrix, &x, &right) {
+            return Ok((x, iteration));
+        }
         let Some(change) = matrix.lu().solve(&right) else {
             return Err(failed(iteration, last, tolerance));
         };

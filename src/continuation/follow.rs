@@ -18,8 +18,7 @@ const FINE: f64 = 0.01;
 
 /// Follows the curve of zeros through `start`.
 ///
-/// The first point is corrected at fixed lambda if it can be, else across the direction. Points come to `watch` in the order of
-/// the curve.
+/// Points come to `watch` in the order of the curve.
 ///
 /// # Errors
 /// [`Error::Parameter`] for settings that make no sense or a start outside the range; [`Error::NotConverged`], or the problem's
@@ -59,8 +58,8 @@ fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Resul
         offset: start.direction.dot(&guess),
         normal: start.direction.clone(),
     };
-    let (mut x, _) = onto(problem, &guess, &fixed, settings.tolerance)
-        .or_else(|_| onto(problem, &guess, &across, settings.tolerance))?;
+    let plane = if start.across { &across } else { &fixed };
+    let (mut x, _) = onto(problem, &guess, plane, settings.tolerance)?;
     x[n] = x[n].clamp(settings.range.0, settings.range.1);
     Ok(Point {
         u: x.rows(0, n).into_owned(),

@@ -11,6 +11,9 @@ const LOOKS: usize = 12;
 const DIP: f64 = 0.5;
 /// Nearer to a known value than this part of the step nothing is looked at.
 const NEAR: f64 = 0.01;
+/// Where points can no longer be corrected, as next to a branch point, the chord of a bracket narrower than this part of the
+/// step is as good.
+const NARROW: f64 = 1e-4;
 /// Evaluations for one zero: the bracket at least halves with every third.
 const EVALUATIONS: usize = 100;
 
@@ -40,47 +43,64 @@ pub(super) struct Met {
 }
 
 impl Step<'_> {
-    /// The point at distance s along the tangent of the first.
-    fn at(&self, s: f64) -> Result<Point> {
-        if s == 0.0 || s == self.length {
-            return Ok(if s == 0.0 { self.from } else { self.to }.clone());
-        }
-        // Hermite's cubic between both ends
-        let h = self.length;
-        let (x0, x1) = (
-            joined(&self.from.u, self.from.lambda),
-            joined(&self.to.u, self.to.lambda),
-        );
-        let (d0, d1) = (
-            &self.from.tangent * h,
-            &self.to.tangent * (h / self.to.tangent.dot(&self.from.tangent)),
-        );
-        let t = s / h;
-        let (a, b) = (t * t * (3.0 - 2.0 * t), t * (1.0 - t));
-        let guess = &x0 * (1.0 - a) + &x1 * a + d0 * (b * (1.0 - t)) - d1 * (b * t);
-        let plane = Plane::ahead(self.from, s);
-        self.corrected(&guess, &plane, s)
+    /// Both ends.
+    fn ends(&self, watch: &dyn Watch) -> Result<[Sample; 2]> {
+        let sample = |s: f64, point: &Point| {
+            let values = values(self.settings, watch, point)?;
+            let point = point.clone();
+            Ok(Sample { s, point, values })
+        };
+        Ok([sample(0.0, self.from)?, sample(self.length, self.to)?])
     }
 
-    fn corrected(&self, guess: &DVector<f64>, plane: &Plane, s: f64) -> Result<Point> {
-        let n = self.problem.dimension();
-        let (x, _) = onto(self.problem, guess, plane, self.settings.tolerance)?;
-        Ok(Point {
-            u: x.rows(0, n).into_owned(),
-            lambda: x[n],
-            tangent: tangent(self.problem, &x, &self.from.tangent)?,
-            arclength: self.from.arclength + s,
-        })
-    }
-
-    fn sample(&self, watch: &dyn Watch, s: f64) -> Result<Sample> {
-        let point = self.at(s)?;
+    /// At distance s along the tangent of the first point, between two places that are known.
+    fn sample(&self, watch: &dyn Watch, a: &Sample, b: &Sample, s: f64) -> Result<Sample> {
+        let (guess, along) = self.between(a, b, s);
+        let point = self.corrected(&guess, &Plane::ahead(self.from, s), s, &along)?;
         let values = values(self.settings, watch, &point)?;
         Ok(Sample { s, point, values })
     }
 
+    /// Hermite's cubic between two samples, and its direction.
+    fn between(&self, a: &Sample, b: &Sample, s: f64) -> (DVector<f64>, DVector<f64>) {
+        let h = b.s - a.s;
+        let (t, r) = ((s - a.s) / h, (b.s - s) / h);
+        let [x0, x1] = [a, b].map(|x| joined(&x.point.u, x.point.lambda));
+        let slope = |x: &Sample| &x.point.tangent * (h / x.point.tangent.dot(&self.from.tangent));
+        let (d0, d1) = (slope(a), slope(b));
+        let across = x1 - &x0;
+        let place =
+            x0 + &across * (t * t * (3.0 - 2.0 * t)) + &d0 * (t * r * r) - &d1 * (t * t * r);
+        let direction =
+            across * (6.0 * t * r) + d0 * (r * (1.0 - 3.0 * t)) - d1 * (t * (2.0 - 3.0 * t));
+        let length = direction.norm().copysign(h);
+        (place, direction / length)
+    }
+
+    fn corrected(
+        &self,
+        guess: &DVector<f64>,
+        plane: &Plane,
+        s: f64,
+        along: &DVector<f64>,
+    ) -> Result<Point> {
+        let n = self.problem.dimension();
+        let (x, _) = onto(self.problem, guess, plane, self.settings.tolerance)?;
+        // at a branch point there is more than one tangent: the interpolant's is that of this curve
+        let tangent = tangent(self.problem, &x, along)
+            .ok()
+            .filter(|t| t.dot(along) > self.settings.largest_turn.cos())
+            .unwrap_or_else(|| along.clone());
+        Ok(Point {
+            u: x.rows(0, n).into_owned(),
+            lambda: x[n],
+            tangent,
+            arclength: self.from.arclength + s,
+        })
+    }
+
     /// Where the step comes back to the curve's first point.
-    fn closing(&self, first: &Point) -> Option<Met> {
+    fn closing(&self, [a, b]: [&Sample; 2], first: &Point) -> Option<Met> {
         /// Two points are one if they differ by no more than this many tolerances.
         const SAME: f64 = 1e5;
         let x = joined(&first.u, first.lambda);
@@ -92,25 +112,29 @@ impl Step<'_> {
         if !(onward && s > 0.0 && s <= self.length) {
             return None;
         }
-        let point = self.at(s).ok()?;
-        let apart = (x - joined(&point.u, point.lambda)).amax();
-        let mark = Mark::Begin;
-        (apart <= SAME * self.settings.tolerance * (1.0 + first.u.amax())).then_some(Met {
+        let (guess, along) = self.between(a, b, s);
+        let plane = Plane::ahead(self.from, s);
+        let point = self.corrected(&guess, &plane, s, &along).ok()?;
+        let apart = (&x - joined(&point.u, point.lambda)).amax();
+        let same = apart <= SAME * self.settings.tolerance * (1.0 + x.amax());
+        same.then_some(Met {
             s,
             point,
-            mark,
+            mark: Mark::Begin,
         })
     }
 
     /// All that the step meets, in order; `first` is where the curve began, unless it begins here.
     pub fn met(&self, watch: &dyn Watch, first: Option<&Point>) -> Result<Vec<Met>> {
-        let mut samples = vec![self.sample(watch, 0.0)?];
-        samples.push(self.sample(watch, 0.5 * self.length)?);
-        samples.push(self.sample(watch, self.length)?);
+        let [from, to] = self.ends(watch)?;
+        let closing = first.and_then(|first| self.closing([&from, &to], first));
+        let middle = self.sample(watch, &from, &to, 0.5 * self.length)?;
+        let mut samples = vec![from, middle, to];
         for _ in 0..LOOKS {
             let Some(s) = self.dip(&samples) else { break };
             let place = samples.partition_point(|x| x.s < s);
-            samples.insert(place, self.sample(watch, s)?);
+            let new = self.sample(watch, &samples[place - 1], &samples[place], s)?;
+            samples.insert(place, new);
         }
         let mut found = Vec::new();
         for pair in samples.windows(2) {
@@ -121,7 +145,7 @@ impl Step<'_> {
                 }
             }
         }
-        found.extend(first.and_then(|first| self.closing(first)));
+        found.extend(closing);
         // the curve's end last, so that what lies on it is met
         let after = |mark: Mark| matches!(mark, Mark::Lowest | Mark::Highest | Mark::Begin);
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(after(a.mark).cmp(&after(b.mark))));
@@ -158,13 +182,18 @@ impl Step<'_> {
         }
         let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(NEAR, 1.0 - NEAR);
         for _ in 0..EVALUATIONS {
-            let x = self.sample(watch, a.s + t * (b.s - a.s))?;
-            let c;
-            if x.values[i].signum() == a.values[i].signum() {
-                c = std::mem::replace(&mut a, x);
+            let x = match self.sample(watch, &a, &b, a.s + t * (b.s - a.s)) {
+                Ok(x) => x,
+                Err(_) if (b.s - a.s).abs() < NARROW * self.length => {
+                    return self.landed(i, chord(&a, &b, i));
+                }
+                Err(error) => return Err(error),
+            };
+            let c = if x.values[i].signum() == a.values[i].signum() {
+                std::mem::replace(&mut a, x)
             } else {
-                c = std::mem::replace(&mut b, std::mem::replace(&mut a, x));
-            }
+                std::mem::replace(&mut b, std::mem::replace(&mut a, x))
+            };
             best = if a.values[i].abs() < b.values[i].abs() {
                 a.clone()
             } else {
@@ -190,12 +219,29 @@ impl Step<'_> {
             let guess = joined(&point.u, value);
             let plane = Plane::lambda(self.problem.dimension(), value);
             // at a fold lambda alone does not say where; the point is there already
-            if let Ok(exact) = self.corrected(&guess, &plane, s) {
+            if let Ok(exact) = self.corrected(&guess, &plane, s, &point.tangent) {
                 point = exact;
             }
             point.lambda = value;
         }
         Ok(Met { s, point, mark })
+    }
+}
+
+/// Where the i-th function is zero on the chord between two samples.
+fn chord(a: &Sample, b: &Sample, i: usize) -> Sample {
+    let t = a.values[i] / (a.values[i] - b.values[i]);
+    let mix = |x: f64, y: f64| x + t * (y - x);
+    let point = Point {
+        u: &a.point.u + (&b.point.u - &a.point.u) * t,
+        lambda: mix(a.point.lambda, b.point.lambda),
+        tangent: a.point.tangent.clone(),
+        arclength: mix(a.point.arclength, b.point.arclength),
+    };
+    Sample {
+        s: mix(a.s, b.s),
+        point,
+        values: a.values.clone(),
     }
 }
 

@@ -67,6 +67,8 @@ pub struct Start {
     pub lambda: f64,
     /// The tangent's scalar product with this, N + 1 long, is positive at first.
     pub direction: DVector<f64>,
+    /// Whether the guess is corrected across the direction, as beside a branch point, and not at its lambda.
+    pub across: bool,
 }
 
 /// Why a point is shown.

@@ -9,10 +9,7 @@ use super::curves::Curve;
 use super::inputs::rounding;
 use crate::equilibrium::Interface;
 use crate::friction::AnyLaw;
-use crate::number::{
-    DoubleDouble, Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius,
-};
-use nalgebra::DMatrix;
+use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain, bracketed_root};
 use std::f64::consts::TAU;
 
 /// A Hopf point.

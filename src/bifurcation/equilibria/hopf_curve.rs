@@ -5,25 +5,24 @@
 //!
 //! Looked for on the way: the largest K; zeros of l_1; omega = 0 (Bogdanov-Takens) and a third eigenvalue zero (zero-Hopf).
 //! On the symmetric curve there is neither of the last two, as the third eigenvalue is k_c / F_V = 2 K / F_V > 0 (27) and
-//! omega^2 = 2 K G_psi / F_V > 0. On the asymmetric one omega^2 = K c_0/(K c_2) vanishes only with c_0, at a fold. With
+//! omega^2 = 2 K G_psi / F_V > 0. On the asymmetric one omega^2 = c_1 = c_0 / c_2 of (30) vanishes only with c_0, at a fold. With
 //! the paper's parameters all curves end at K = 0: at 2 V_M and 2 V_m the symmetric one, at 2 V_M and where V_fast = V_m
 //! the asymmetric one, but for one of no consequence that leaves the Bogdanov-Takens point of V_sn at K = 4.4e-13. l_1 has
-//! no zero there either (see the tests).
+//! no zero there either (tests/branches_equilibria.rs; a search over 1293 other sets of parameters of (35) found none either).
 
 use super::crossing::Root;
 use super::curves::{AlongDriving, Curve};
-use super::hopf::{Hopf, HopfPoints};
+use super::hopf::HopfPoints;
 use super::pieces::{Begin, Ends};
 use super::special::Teller;
-use super::stationary::fold;
-use crate::bifurcation::{Label, LocusRequest, LocusRow, Special};
-use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
-use crate::equilibrium::{Interface, Symmetry, routh_hurwitz};
-use crate::error::Result;
-use crate::number::Uncertain;
+use super::trace::Trace;
+use crate::bifurcation::LocusRequest;
+use crate::continuation::{Settings, Stop, follow};
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
 use std::ops::ControlFlow;
 
-/// The longest step in ln V_H, and the largest change of ln K in one.
+/// The longest step in ln V_H.
 const LONGEST: f64 = 0.1;
 
 pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<ControlFlow<()>> {
@@ -33,6 +32,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
     let law = &request.slab.law;
     let wants = |s: Symmetry| request.symmetry.is_none_or(|wanted| wanted == s);
     let mut curves = 0;
+    // one curve of equilibria from its begin to its end; nothing where the observer has seen enough
     let mut piece = |curve: Curve, root: Root, begin: &Begin| {
         let mut trace = Trace {
             request,
@@ -48,19 +48,15 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
             &settings,
             &mut trace,
         )?;
-        if let Stop::StepTooSmall {
-            because: Some(error),
-            ..
-        } = branch.stopped
-        {
-            return Err(error);
-        }
-        Ok(branch)
+        let observer = branch.stopped == Stop::Observer;
+        let gave_up = matches!(branch.stopped, Stop::StepTooSmall { .. } | Stop::MaxPoints);
+        let ended = observer || gave_up && trace.gave_up(&branch).is_break();
+        Ok::<_, Error>((!ended).then_some(branch))
     };
     if wants(Symmetry::Symmetric) {
         let curve = Curve::Symmetric { interfaces };
         let begin = Begin::at_range_end(curve, from, from < to, [from / interfaces as f64; 2]);
-        if piece(curve, Root::Larger, &begin)?.stopped == Stop::Observer {
+        if piece(curve, Root::Larger, &begin)?.is_none() {
             return Ok(ControlFlow::Break(()));
         }
     }
@@ -68,11 +64,10 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
         for root in [Root::Larger, Root::Smaller] {
             let mut ends = Ends::of(law, (from, to))?;
             while let Some(begin) = ends.next() {
-                let branch = piece(Curve::Asymmetric, root, &begin)?;
-                if branch.stopped == Stop::Observer {
-                    return Ok(ControlFlow::Break(()));
+                match piece(Curve::Asymmetric, root, &begin)? {
+                    Some(branch) => ends.reached(&branch),
+                    None => return Ok(ControlFlow::Break(())),
                 }
-                ends.reached(&branch);
             }
         }
     }
@@ -88,273 +83,4 @@ fn settings(request: &LocusRequest) -> Result<Settings> {
         ..Settings::new((a.min(b).ln(), a.max(b).ln()), LONGEST * request.step)?
     }
     .checked()
-}
-
-/// What a test function is zero at.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Meaning {
-    /// K is this end of its range.
-    Limit(f64),
-    /// K is this wanted value.
-    Wanted(f64),
-    Top,
-    Degenerate,
-    BogdanovTakens,
-    ZeroHopf,
-    /// The asymmetric states end at a pitchfork.
-    Pitchfork,
-}
-
-struct Trace<'a, 'b> {
-    request: &'a LocusRequest,
-    points: HopfPoints<'a>,
-    begin: &'a Begin,
-    teller: &'a mut Teller<'b>,
-    /// How many there have been.
-    curves: &'a mut usize,
-    /// Whether Hopf points within the range of K are passed.
-    inside: bool,
-}
-
-/// A place on the curve of equilibria.
-#[derive(Debug, Clone, Copy)]
-struct Place {
-    driving: f64,
-    rates: [f64; 2],
-}
-
-impl Trace<'_, '_> {
-    fn meanings(&self) -> Vec<Meaning> {
-        let (a, b) = self.request.stiffness;
-        let (low, high) = (a.min(b), a.max(b));
-        let mut all = vec![Meaning::Limit(low), Meaning::Limit(high)];
-        let wanted = self.request.at_stiffness.iter();
-        all.extend(
-            wanted
-                .filter(|k| (low..=high).contains(*k))
-                .map(|&k| Meaning::Wanted(k)),
-        );
-        all.extend([Meaning::Top, Meaning::Degenerate]);
-        if self.points.curve == Curve::Asymmetric {
-            all.extend([
-                Meaning::BogdanovTakens,
-                Meaning::ZeroHopf,
-                Meaning::Pitchfork,
-            ]);
-        }
-        all
-    }
-
-    fn place(&self, point: &Point, driving: f64) -> Place {
-        let near = self.points.curve.rates(point, driving);
-        Place {
-            driving,
-            rates: self.points.curve.rates_at(self.points.law, driving, near),
-        }
-    }
-
-    /// K of a Hopf point within the range.
-    fn stiffness(&self, place: &Place) -> Option<f64> {
-        let (a, b) = self.request.stiffness;
-        let within = |k: &f64| *k >= a.min(b) && *k <= a.max(b);
-        self.points.stiffness(place.rates).filter(within)
-    }
-
-    fn test(&self, meaning: Meaning, point: &Point, place: &Place, k: f64) -> f64 {
-        let points = &self.points;
-        match meaning {
-            Meaning::Limit(value) | Meaning::Wanted(value) => k / value - 1.0,
-            Meaning::Pitchfork => point.u[0],
-            _ if points.stiffness(place.rates).is_none() && meaning != Meaning::BogdanovTakens => {
-                f64::NAN
-            }
-            Meaning::Top => {
-                points.stiffness_slope(place.driving, place.rates) * point.lambda_slope()
-            }
-            Meaning::Degenerate => {
-                let l_1 = points.lyapunov(place.driving, place.rates);
-                l_1.sign().map_or(f64::NAN, |_| l_1.value / l_1.scale)
-            }
-            Meaning::BogdanovTakens => points.frequency_squared(place.rates, k) / k,
-            Meaning::ZeroHopf => {
-                let [one, two] = place.rates.map(|v| Interface::at(points.law, v));
-                routh_hurwitz(&one, &two, k)[0]
-            }
-        }
-    }
-
-    fn row(&mut self, point: &Hopf, label: Option<Label>) -> ControlFlow<()> {
-        let criticality = self
-            .request
-            .criticality
-            .then(|| self.points.criticality(point));
-        self.teller.locus(LocusRow {
-            curve: self.curves.saturating_sub(1),
-            driving: point.driving,
-            stiffness: point.stiffness,
-            period: Some(point.period.value),
-            angle_over_pi: None,
-            criticality,
-            label,
-        })
-    }
-
-    fn labelled(&mut self, point: Hopf, label: Label) -> ControlFlow<()> {
-        let point = self.points.crosschecked(point);
-        self.row(&point, Some(label))?;
-        let l_1 = self.points.lyapunov(point.driving.value, point.rates);
-        let asked = self.request.criticality && label != Label::Gh;
-        self.teller.special(Special {
-            driving: point.driving,
-            stiffness: point.stiffness,
-            period: Some(point.period),
-            criticality: asked.then(|| self.points.criticality(&point)),
-            coefficient: Some(l_1.value),
-            ..Special::at(label, point.driving.value, point.stiffness.value)
-        })
-    }
-
-    fn enter(&mut self) {
-        self.inside = true;
-        *self.curves += 1;
-    }
-
-    /// At exactly this V_H.
-    fn landed(&mut self, place: &Place, label: Label) -> ControlFlow<()> {
-        match self.points.at_driving(place.driving, place.rates) {
-            Some(point) if self.inside => self.labelled(point, label),
-            _ => ControlFlow::Continue(()),
-        }
-    }
-
-    /// K passes an end of its range.
-    fn limit(&mut self, place: &Place, k: f64) -> ControlFlow<()> {
-        let Some(point) = self.points.at_stiffness(k, place.driving, place.rates) else {
-            return ControlFlow::Continue(());
-        };
-        let leaves = self.inside;
-        if !leaves {
-            self.enter();
-        }
-        let shown = self.labelled(point, Label::Ep);
-        self.inside = !leaves;
-        shown
-    }
-
-    fn met(&mut self, meaning: Meaning, place: &Place) -> ControlFlow<()> {
-        let (points, Place { driving, rates }) = (self.points, *place);
-        let found = match meaning {
-            Meaning::Limit(k) => return self.limit(place, k),
-            Meaning::Wanted(k) => (points.at_stiffness(k, driving, rates), Label::Uz),
-            Meaning::Top => (points.top(driving, rates), Label::Top),
-            Meaning::Degenerate => (points.degenerate(driving, rates), Label::Gh),
-            Meaning::BogdanovTakens => return self.bogdanov_takens(place),
-            Meaning::ZeroHopf => (points.at_driving(driving, rates).map(unbounded), Label::Zh),
-            Meaning::Pitchfork => (None, Label::Bp),
-        };
-        match found {
-            (Some(point), label) if self.inside => self.labelled(point, label),
-            _ => ControlFlow::Continue(()),
-        }
-    }
-
-    /// omega^2 changes its sign: the curve ends here, or begins.
-    fn bogdanov_takens(&mut self, place: &Place) -> ControlFlow<()> {
-        let k = self.points.closed_form(place.rates);
-        let (a, b) = self.request.stiffness;
-        if !(k >= a.min(b) && k <= a.max(b)) {
-            return ControlFlow::Continue(());
-        }
-        let leaves = self.inside;
-        if !leaves {
-            self.enter();
-        }
-        self.inside = !leaves;
-        // omega^2 = c_0 / c_2 there: it is the fold's point
-        let fold = fold(self.points.law, place.rates);
-        let at = fold.and_then(|f| Some((f.driving, f.bogdanov_takens(self.points.law)?)));
-        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
-        let (driving, stiffness) = at.unwrap_or((unknown(place.driving), unknown(k)));
-        self.teller.special(Special {
-            driving,
-            stiffness,
-            note: Some("a curve of Hopf points ends here".into()),
-            orbit: None,
-            ..Special::at(Label::Bt, place.driving, k)
-        })
-    }
-
-    fn step(&mut self, place: &Place) -> ControlFlow<()> {
-        let within = self.stiffness(place).is_some();
-        if within && !self.inside {
-            self.enter();
-        }
-        self.inside = within;
-        match self.points.at_driving(place.driving, place.rates) {
-            Some(point) if within => self.row(&point, None),
-            _ => ControlFlow::Continue(()),
-        }
-    }
-
-    /// V_H as it was asked for where it was.
-    fn value(&self, point: &Point, mark: Mark) -> f64 {
-        let (a, b) = self.request.driving;
-        let near = |x: &&f64| (x.ln() - point.lambda).abs() < 1e-12;
-        match mark {
-            Mark::Begin => self.begin.value,
-            Mark::Lowest => a.min(b),
-            Mark::Highest => a.max(b),
-            Mark::Wanted(_) => *self
-                .request
-                .at_driving
-                .iter()
-                .find(near)
-                .unwrap_or(&point.lambda.exp()),
-            Mark::Step | Mark::Zero(_) => point.lambda.exp(),
-        }
-    }
-}
-
-/// The place is good, but how good is not known.
-fn unbounded(mut point: Hopf) -> Hopf {
-    point.driving.uncertainty = f64::INFINITY;
-    point.stiffness.uncertainty = f64::INFINITY;
-    point
-}
-
-impl Watch for Trace<'_, '_> {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
-        let place = self.place(point, point.lambda.exp());
-        let k = self.points.closed_form(place.rates);
-        let all = self.meanings();
-        Ok(all
-            .iter()
-            .map(|&m| self.test(m, point, &place, k))
-            .collect())
-    }
-
-    fn ends(&self, test: usize) -> bool {
-        self.meanings()[test] == Meaning::Pitchfork
-    }
-
-    fn too_far(&self, from: &Point, to: &Point) -> bool {
-        let [a, b] = [from, to].map(|p| self.stiffness(&self.place(p, p.lambda.exp())));
-        matches!((a, b), (Some(a), Some(b)) if (a / b).ln().abs() > LONGEST * self.request.step)
-    }
-
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
-        let place = self.place(point, self.value(point, mark));
-        match mark {
-            Mark::Step => self.step(&place),
-            Mark::Begin => {
-                if self.stiffness(&place).is_some() {
-                    self.enter();
-                }
-                self.landed(&place, Label::Ep)
-            }
-            Mark::Lowest | Mark::Highest => self.landed(&place, Label::Ep),
-            Mark::Wanted(_) => self.landed(&place, Label::Uz),
-            Mark::Zero(i) => self.met(self.meanings()[i], &place),
-        }
-    }
 }

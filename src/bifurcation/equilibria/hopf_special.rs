@@ -7,7 +7,7 @@ use super::curves::Curve;
 use super::hopf::{Hopf, HopfPoints, certain_zero, straddling};
 use super::lyapunov::{Lyapunov, first_lyapunov};
 use crate::bifurcation::Criticality;
-use crate::field::{State, VectorField};
+use crate::field::State;
 use crate::friction::{Law, steady_stress};
 use crate::model::{Loading, single_interface, two_interfaces};
 use crate::number::{DoubleDouble, Real, bracketed_root};
@@ -132,5 +132,59 @@ impl HopfPoints<'_> {
             point.stiffness.uncertainty = point.stiffness.uncertainty.max(apart);
         }
         point
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::bifurcation::equilibria::crossing::Root;
+    use crate::equilibrium::{Solver, Symmetry, steady_states};
+    use crate::friction::{AnyLaw, Parameters};
+
+    /// (29) and (34) against the Jacobian of the vector field, over the whole curves.
+    #[test]
+    fn closed_forms_and_the_jacobian_agree() {
+        let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
+        let mut compared = 0;
+        for i in 0..60 {
+            let v = 0.0505 * (403.0_f64 / 0.0505).powf(f64::from(i) / 59.0);
+            for state in steady_states(&law, v, 2, Solver::Newton)
+                .unwrap()
+                .equilibria
+            {
+                let curve = match state.symmetry {
+                    Symmetry::Symmetric => Curve::Symmetric { interfaces: 2 },
+                    Symmetry::Asymmetric => Curve::Asymmetric,
+                };
+                let points = HopfPoints {
+                    law: &law,
+                    curve,
+                    root: Root::Larger,
+                };
+                let rates = [state.slip_rate[0], state.slip_rate[1]];
+                let point = points.at_driving(v, rates).expect("a Hopf point");
+                let closed = point.stiffness.value;
+                let numerical = points.numerical(point.rates, closed).expect("another one");
+                let apart = (numerical / closed - 1.0).abs();
+                assert!(apart < 1e-11, "V_H = {v}, {curve:?}: {apart:e}");
+                let widened = points.crosschecked(point).stiffness;
+                assert!((numerical - closed).abs() <= widened.uncertainty);
+                compared += 1;
+            }
+        }
+        assert_eq!(compared, 120);
+    }
+
+    #[test]
+    fn a_zero_is_as_certain_as_its_signs() {
+        let found = certain_zero("test", 1.414, |x| {
+            (x * x - 2.0, (x * x - 2.0).abs() > 1e-12)
+        });
+        let (zero, radius) = found.unwrap();
+        let off = (zero - std::f64::consts::SQRT_2).abs();
+        assert!(off <= radius && radius < 2e-12, "{off:e} {radius:e}");
+        assert!(certain_zero("test", 1.0, |x| (x * x + 1.0, true)).is_none());
+        assert!(certain_zero("test", 1.0, |x| (x - 1.001, false)).is_none());
     }
 }

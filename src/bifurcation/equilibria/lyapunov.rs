@@ -125,29 +125,25 @@ fn first(x: &Cubic, i: usize) -> Number {
     x.value.value.gradient[i]
 }
 
+/// The gradient's components along a vector.
+fn along<T: Copy>(gradient: &[T; 2], a: [Complex; 2], of: impl Fn(&T) -> Complex) -> Complex {
+    a[0] * of(&gradient[0]) + a[1] * of(&gradient[1])
+}
+
 /// The second derivative applied to two vectors.
 fn bilinear(x: &Cubic, a: [Complex; 2], b: [Complex; 2]) -> Complex {
-    let mut sum = Complex::ZERO;
-    for i in 0..2 {
-        for j in 0..2 {
-            sum = sum + (a[i] * b[j]).times(x.value.gradient[i].gradient[j]);
-        }
-    }
-    sum
+    along(&x.value.gradient, a, |x| {
+        along(&x.gradient, b, |&x| Complex::real(x))
+    })
 }
 
 /// The third derivative applied to three vectors.
 fn trilinear(x: &Cubic, a: [Complex; 2], b: [Complex; 2], c: [Complex; 2]) -> Complex {
-    let mut sum = Complex::ZERO;
-    for i in 0..2 {
-        for j in 0..2 {
-            for k in 0..2 {
-                let third = x.gradient[i].gradient[j].gradient[k];
-                sum = sum + (a[i] * b[j] * c[k]).times(third);
-            }
-        }
-    }
-    sum
+    along(&x.gradient, a, |x| {
+        along(&x.gradient, b, |x| {
+            along(&x.gradient, c, |&x| Complex::real(x))
+        })
+    })
 }
 
 /// The linearised system (19), or (11), and its nonlinear terms: dtau/dt = K (V_H - sum v_i), dpsi_i/dt = g_i.

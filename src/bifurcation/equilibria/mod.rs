@@ -3,9 +3,11 @@
 //! Equilibria are the steady states (20); their pitchforks, folds and Hopf points are found by [`continuation`](crate::continuation)
 //! and then computed from closed forms and one-dimensional zeros, to the last digits and with error budgets.
 
+mod bialternate;
 mod branch;
 mod crossing;
 mod curves;
+pub mod generic;
 mod hopf;
 mod hopf_curve;
 mod hopf_special;
@@ -15,7 +17,9 @@ mod pieces;
 mod rates;
 mod special;
 mod stationary;
+mod trace;
 mod vertical;
+mod walk;
 
 use super::{BranchRequest, LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;

@@ -31,6 +31,7 @@ impl Begin {
                 u,
                 lambda: value.ln(),
                 direction,
+                across: false,
             },
             value,
             pitchfork: false,
@@ -48,6 +49,8 @@ impl Begin {
                 u: DVector::zeros(1),
                 lambda: driving.ln(),
                 direction: DVector::from_row_slice(&[1.0, 0.0]),
+                // at a pitchfork lambda does not say where
+                across: true,
             },
             value: driving,
             pitchfork: true,

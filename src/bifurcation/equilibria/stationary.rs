@@ -58,6 +58,8 @@ pub(super) fn pitchforks(law: &AnyLaw) -> Vec<Pitchfork> {
 pub(super) struct Fold {
     pub driving: Uncertain,
     pub rates: [f64; 2],
+    /// Which of the rates is the one nearer to its extremum.
+    unknown: usize,
 }
 
 /// The rate near `guess` with the same stress as `rate`, and how far off it may be.
@@ -118,30 +120,32 @@ fn of_law(law: &AnyLaw, near: [f64; 2]) -> Option<Fold> {
             },
         ),
         rates,
+        unknown,
     })
 }
 
 impl Fold {
     /// The stiffness at which a second eigenvalue is zero (Bogdanov-Takens): c_1 = 0 beside c_0 = 0. None where it isn't positive.
     pub fn bogdanov_takens(&self, law: &AnyLaw) -> Option<Uncertain> {
-        let k_of = |law: &AnyLaw, rates: [Interval; 2]| {
-            let [one, two] = rates.map(|v| Interface::at(law, v));
-            // c_1 is linear in K
-            let [at_0, at_1] =
-                [0.0, 1.0].map(|k| routh_hurwitz(&one, &two, Interval::constant(k))[1]);
-            -at_0 / (at_1 - at_0)
-        };
-        let reach = self
-            .driving
-            .uncertainty
-            .max(self.driving.value * f64::EPSILON);
-        let bounds = k_of(
-            law,
-            self.rates
-                .map(|v| Interval::around(v, v * reach / self.driving.value)),
-        );
-        let value = bounds.leading();
-        (value > 0.0 && value.is_finite()).then(|| Uncertain::new(value, bound(value, bounds)))
+        let value = self.second_zero(law, self.rates);
+        let reach = self.driving.uncertainty / self.driving.value;
+        let bounds = self.second_zero(law, self.rates.map(|v| Interval::around(v, v * reach)));
+        let of_inputs = rounding(law, |law| {
+            let fold = of_law(law, self.rates)?;
+            Some(fold.second_zero(law, fold.rates))
+        });
+        let within = Uncertain::new(value, bound(value, bounds) + of_inputs);
+        (value > 0.0 && value.is_finite()).then_some(within)
+    }
+
+    /// K where c_1 of (30), which is linear in K, is zero.
+    fn second_zero<T: Real>(&self, law: &AnyLaw, rates: [T; 2]) -> T {
+        let mut pair = rates.map(|v| Interface::at(law, v));
+        // tau_ss' next to its zero has few digits, but at a fold it is that of the other rate
+        let (p, d) = (self.unknown, 1 - self.unknown);
+        pair[p].s = pair[p].g_psi * pair[p].compliance * steady_slope(law, rates[d]);
+        let [at_0, at_1] = [0.0, 1.0].map(|k| routh_hurwitz(&pair[0], &pair[1], T::constant(k))[1]);
+        -at_0 / (at_1 - at_0)
     }
 }
 

@@ -10,7 +10,7 @@ use super::special::Teller;
 use super::stationary::{Fold, fold, pitchforks};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
 use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::number::Uncertain;
 use std::ops::ControlFlow;
@@ -149,12 +149,13 @@ fn folds(law: &AnyLaw, (from, to): (f64, f64)) -> Result<Vec<Fold>> {
     let mut ends = Ends::of(law, (from, to))?;
     while let Some(begin) = ends.next() {
         let branch = follow(&problem, &begin.start, &settings, &mut hunt)?;
-        if let Stop::StepTooSmall {
-            because: Some(error),
-            ..
-        } = branch.stopped
-        {
-            return Err(error);
+        if let Stop::StepTooSmall { because, .. } = branch.stopped {
+            return Err(because.unwrap_or(Error::NotConverged {
+                what: "the curve of asymmetric states on which folds are looked for",
+                iterations: branch.points.len(),
+                residual: f64::INFINITY,
+                tolerance: settings.tolerance,
+            }));
         }
         ends.reached(&branch);
     }

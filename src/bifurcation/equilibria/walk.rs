@@ -1,0 +1,306 @@
+//! What is told of a branch of equilibria while it is followed: rows, and what is special on it.
+
+use super::crossing::{Root, oscillation, symmetric};
+use super::curves::Curve;
+use super::hopf::{Hopf, HopfPoints};
+use super::pieces::Begin;
+use super::special::Teller;
+use super::stationary::{fold, pitchforks};
+use crate::bifurcation::{BranchRequest, BranchRow, Label, Parameter, Special};
+use crate::continuation::{Branch, Mark, Point, Stop, Watch};
+use crate::equilibrium::{Equilibrium, Interface, stability};
+use crate::error::{Error, Result};
+use crate::friction::{steady_slope, steady_stress};
+use std::ops::ControlFlow;
+
+/// The largest change of the stress in a step.
+const LARGEST: f64 = 0.2;
+
+/// What looks on along one branch: names what is special, and hands on.
+pub(super) struct Walk<'a, 'b> {
+    pub request: &'a BranchRequest,
+    pub curve: Curve,
+    /// The slip rates along K, where they don't change.
+    pub rates: Option<[f64; 2]>,
+    pub begin: &'a Begin,
+    pub number: usize,
+    pub teller: &'a mut Teller<'b>,
+    pub failure: Option<Error>,
+}
+
+/// Where on the branch.
+#[derive(Debug, Clone, Copy)]
+struct Place {
+    driving: f64,
+    stiffness: f64,
+    rates: [f64; 2],
+}
+
+impl Walk<'_, '_> {
+    fn place(&self, point: &Point, value: f64) -> Place {
+        let loading = self.request.slab.loading;
+        match self.rates {
+            Some(rates) => Place {
+                driving: loading.driving,
+                stiffness: value,
+                rates,
+            },
+            None => Place {
+                driving: value,
+                stiffness: loading.stiffness,
+                rates: self.curve.rates(point, value),
+            },
+        }
+    }
+
+    /// The varied parameter: as it was asked for where it was.
+    fn value(&self, point: &Point, mark: Mark) -> f64 {
+        let (a, b) = self.request.range;
+        match mark {
+            Mark::Begin => self.begin.value,
+            Mark::Lowest => a.min(b),
+            Mark::Highest => a.max(b),
+            Mark::Wanted(_) => {
+                let near = |x: &&f64| (x.ln() - point.lambda).abs() < 1e-12;
+                *self
+                    .request
+                    .at
+                    .iter()
+                    .find(near)
+                    .unwrap_or(&point.lambda.exp())
+            }
+            Mark::Step | Mark::Zero(_) => point.lambda.exp(),
+        }
+    }
+
+    /// What the zeros of the test functions mean.
+    fn labels(&self) -> &'static [Label] {
+        match (self.rates, self.curve) {
+            (Some(_), _) | (_, Curve::Symmetric { interfaces: 1 }) => &[Label::Hb],
+            (_, Curve::Symmetric { .. }) => &[Label::Hb, Label::Bp],
+            (_, Curve::Asymmetric) => &[Label::Hb, Label::Bp, Label::Lp],
+        }
+    }
+
+    fn oscillation(&self, place: &Place) -> f64 {
+        let law = &self.request.slab.law;
+        match self.curve {
+            Curve::Symmetric { interfaces } => {
+                symmetric(law, place.rates[0], interfaces) / place.stiffness - 1.0
+            }
+            Curve::Asymmetric => {
+                let [one, two] = place.rates.map(|v| Interface::at(law, v));
+                oscillation(&one, &two, place.stiffness)
+            }
+        }
+    }
+
+    fn row(&self, place: &Place, label: Option<Label>) -> Result<BranchRow> {
+        let slab = &self.request.slab;
+        let distinct = place.rates[0] < place.rates[1];
+        let state = match self.curve {
+            Curve::Asymmetric if distinct => {
+                let [slow, _] = self.curve.rates_at(&slab.law, place.driving, place.rates);
+                Equilibrium::asymmetric(&slab.law, place.driving, slow)
+            }
+            _ => Equilibrium::symmetric(&slab.law, place.driving, slab.interfaces),
+        };
+        let stress = state.stress.value;
+        let pair = |all: &[f64]| [all[0], *all.last().unwrap_or(&all[0])];
+        Ok(BranchRow {
+            branch: self.number,
+            driving: place.driving,
+            stiffness: place.stiffness,
+            stress,
+            stress_range: (stress, stress),
+            period: None,
+            state: pair(&state.state()),
+            slip_rate: pair(&state.slip_rate),
+            ln_abs_multiplier: [None; 2],
+            verdict: stability(&slab.law, &state, place.stiffness)?.verdict,
+            label,
+        })
+    }
+
+    fn hand_on(&mut self, place: &Place, special: Special) -> Result<ControlFlow<()>> {
+        let row = self.row(place, Some(special.label))?;
+        if self.teller.branch(row).is_break() {
+            return Ok(ControlFlow::Break(()));
+        }
+        Ok(self.teller.special(special))
+    }
+
+    fn plain(&mut self, place: &Place, label: Label, note: &str) -> Result<ControlFlow<()>> {
+        let mut special = Special::at(label, place.driving, place.stiffness);
+        special.note = (!note.is_empty()).then(|| note.to_string());
+        self.hand_on(place, special)
+    }
+
+    fn special(&mut self, label: Label, place: &Place) -> Result<ControlFlow<()>> {
+        match label {
+            Label::Bp => self.pitchfork(place),
+            Label::Lp => self.fold(place),
+            _ => self.hopf(place),
+        }
+    }
+
+    fn pitchfork(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+        let all = pitchforks(&self.request.slab.law);
+        let far = |v: f64| (v / place.driving).ln().abs();
+        let nearest = all
+            .iter()
+            .min_by(|a, b| far(a.driving.value).total_cmp(&far(b.driving.value)));
+        let Some(pitchfork) = nearest else {
+            return Ok(ControlFlow::Continue(()));
+        };
+        let driving = pitchfork.driving.value;
+        let at = Place {
+            driving,
+            rates: [0.5 * driving; 2],
+            ..*place
+        };
+        // the symmetric branch has told of it already, if it was followed
+        if self.curve == Curve::Asymmetric && self.request.symmetry.is_none() {
+            let row = self.row(&at, Some(Label::Bp))?;
+            return Ok(self.teller.branch(row));
+        }
+        let special = Special {
+            driving: pitchfork.driving,
+            criticality: Some(pitchfork.criticality),
+            coefficient: Some(pitchfork.coefficient),
+            note: Some(
+                "coefficient: -3 tau''/tau''' of (24); asymmetric states at larger V_H if positive"
+                    .into(),
+            ),
+            ..Special::at(Label::Bp, driving, place.stiffness)
+        };
+        self.hand_on(&at, special)
+    }
+
+    fn fold(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+        let Some(fold) = fold(&self.request.slab.law, place.rates) else {
+            return self.plain(place, Label::Lp, "not refined");
+        };
+        let at = Place {
+            driving: fold.driving.value,
+            rates: fold.rates,
+            ..*place
+        };
+        let special = Special {
+            driving: fold.driving,
+            ..Special::at(Label::Lp, at.driving, at.stiffness)
+        };
+        self.hand_on(&at, special)
+    }
+
+    fn hopf(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+        let slab = &self.request.slab;
+        for root in [Root::Larger, Root::Smaller] {
+            let points = HopfPoints {
+                law: &slab.law,
+                curve: self.curve,
+                root,
+            };
+            let found = match self.request.along {
+                Parameter::Driving => {
+                    points.at_stiffness(place.stiffness, place.driving, place.rates)
+                }
+                Parameter::Stiffness => points.at_driving(place.driving, place.rates),
+            };
+            let Some(point) = found.filter(|point| close(point, place)) else {
+                continue;
+            };
+            let point = points.crosschecked(point);
+            let l_1 = points.lyapunov(point.driving.value, point.rates);
+            let special = Special {
+                driving: point.driving,
+                stiffness: point.stiffness,
+                period: Some(point.period),
+                criticality: Some(points.criticality(&point)),
+                coefficient: Some(l_1.value),
+                ..Special::at(Label::Hb, point.driving.value, point.stiffness.value)
+            };
+            let at = Place {
+                driving: point.driving.value,
+                stiffness: point.stiffness.value,
+                rates: point.rates,
+            };
+            return self.hand_on(&at, special);
+        }
+        // two real eigenvalues of opposite sign: no bifurcation
+        Ok(ControlFlow::Continue(()))
+    }
+
+    /// Why the branch was followed no further.
+    pub fn gave_up(&mut self, branch: &Branch) -> ControlFlow<()> {
+        let Some((point, mark)) = branch.points.last() else {
+            return ControlFlow::Continue(());
+        };
+        let place = self.place(point, self.value(point, *mark));
+        let mut special = Special::at(Label::Mx, place.driving, place.stiffness);
+        special.note = Some(match &branch.stopped {
+            Stop::StepTooSmall {
+                because: Some(error),
+                ..
+            } => format!("no step is short enough: {error}"),
+            Stop::StepTooSmall { .. } => "no step is short enough".into(),
+            _ => "as many points as allowed".into(),
+        });
+        self.teller.special(special)
+    }
+
+    fn shown(&mut self, point: &Point, mark: Mark) -> Result<ControlFlow<()>> {
+        let place = self.place(point, self.value(point, mark));
+        match mark {
+            Mark::Step => {
+                let row = self.row(&place, None)?;
+                Ok(self.teller.branch(row))
+            }
+            Mark::Begin if self.begin.pitchfork => self.special(Label::Bp, &place),
+            Mark::Begin => self.plain(&place, Label::Ep, "begin of the range"),
+            Mark::Wanted(_) => self.plain(&place, Label::Uz, ""),
+            Mark::Lowest | Mark::Highest => self.plain(&place, Label::Ep, "end of the range"),
+            Mark::Zero(i) => self.special(self.labels()[i], &place),
+        }
+    }
+}
+
+/// Whether a Hopf point is the one that a test function saw.
+fn close(point: &Hopf, place: &Place) -> bool {
+    let near = |a: f64, b: f64| (a / b).ln().abs() < 1e-6;
+    near(point.driving.value, place.driving) && near(point.stiffness.value, place.stiffness)
+}
+
+impl Watch for Walk<'_, '_> {
+    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+        let place = self.place(point, point.lambda.exp());
+        let law = &self.request.slab.law;
+        let tests = self.labels().iter().map(|label| match (label, self.curve) {
+            (Label::Hb, _) => self.oscillation(&place),
+            (Label::Bp, Curve::Asymmetric) => point.u[0],
+            (Label::Bp, _) => steady_slope(law, place.rates[0]) * place.rates[0],
+            // even in z, so that a pitchfork is no fold
+            _ => point.lambda_slope() / point.u[0],
+        });
+        Ok(tests.collect())
+    }
+
+    fn ends(&self, test: usize) -> bool {
+        self.curve == Curve::Asymmetric && self.labels()[test] == Label::Bp
+    }
+
+    fn too_far(&self, from: &Point, to: &Point) -> bool {
+        let stress = |point: &Point| {
+            let place = self.place(point, point.lambda.exp());
+            steady_stress(&self.request.slab.law, place.rates[0])
+        };
+        (stress(from) - stress(to)).abs() > LARGEST * self.request.step
+    }
+
+    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
+        self.shown(point, mark).unwrap_or_else(|error| {
+            self.failure = Some(error);
+            ControlFlow::Break(())
+        })
+    }
+}

@@ -1,0 +1,201 @@
+//! Equilibria of textbook systems along a parameter: known pitchforks, folds and Hopf points.
+#![allow(missing_docs)]
+
+use nalgebra::Complex;
+use std::ops::ControlFlow;
+use twinslip::bifurcation::Label;
+use twinslip::bifurcation::equilibria::generic::{Family, Found, Onward};
+use twinslip::continuation::{Settings, Stop};
+use twinslip::field::{Jacobian, State, VectorField};
+
+/// Lorenz (1963), sigma = 10, beta = 8/3.
+struct Lorenz {
+    rho: f64,
+}
+
+impl VectorField<3> for Lorenz {
+    fn f(&self, y: &State<3>) -> State<3> {
+        State::<3>::new(
+            10.0 * (y[1] - y[0]),
+            y[0] * (self.rho - y[2]) - y[1],
+            y[0] * y[1] - 8.0 / 3.0 * y[2],
+        )
+    }
+    fn jacobian(&self, y: &State<3>) -> Jacobian<3> {
+        #[rustfmt::skip]
+        let j = Jacobian::<3>::new(
+            -10.0,           10.0, 0.0,
+            self.rho - y[2], -1.0, -y[0],
+            y[1],            y[0], -8.0 / 3.0,
+        );
+        j
+    }
+    fn second_derivative(&self, _: &State<3>, u: &State<3>, v: &State<3>) -> State<3> {
+        State::<3>::new(0.0, -(u[0] * v[2] + u[2] * v[0]), u[0] * v[1] + u[1] * v[0])
+    }
+}
+
+/// x' = A - (B + 1) x + x^2 y, y' = B x - x^2 y.
+struct Brusselator {
+    a: f64,
+    b: f64,
+}
+
+impl VectorField<2> for Brusselator {
+    fn f(&self, y: &State<2>) -> State<2> {
+        let cubic = y[0] * y[0] * y[1];
+        State::<2>::new(
+            self.a - (self.b + 1.0) * y[0] + cubic,
+            self.b * y[0] - cubic,
+        )
+    }
+    fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
+        let (by_x, by_y) = (2.0 * y[0] * y[1], y[0] * y[0]);
+        Jacobian::<2>::new(by_x - self.b - 1.0, by_y, self.b - by_x, -by_y)
+    }
+    fn second_derivative(&self, y: &State<2>, u: &State<2>, v: &State<2>) -> State<2> {
+        let s = 2.0 * y[1] * u[0] * v[0] + 2.0 * y[0] * (u[0] * v[1] + u[1] * v[0]);
+        State::<2>::new(s, -s)
+    }
+}
+
+/// y' = p + y^2 - y^3 / 3: folds at y = 0 (p = 0) and y = 2 (p = -4/3).
+struct Folded {
+    p: f64,
+}
+
+impl VectorField<1> for Folded {
+    fn f(&self, y: &State<1>) -> State<1> {
+        State::<1>::new(self.p + y[0] * y[0] - y[0].powi(3) / 3.0)
+    }
+    fn jacobian(&self, y: &State<1>) -> Jacobian<1> {
+        Jacobian::<1>::new(2.0 * y[0] - y[0] * y[0])
+    }
+    fn second_derivative(&self, y: &State<1>, u: &State<1>, v: &State<1>) -> State<1> {
+        State::<1>::new((2.0 - 2.0 * y[0]) * u[0] * v[0])
+    }
+}
+
+fn all<const N: usize>(
+    family: &Family<'_, N>,
+    onward: &Onward<N>,
+    settings: &Settings,
+) -> Vec<Found<N>> {
+    let mut found = Vec::new();
+    let branch = family
+        .follow(onward, settings, &mut |point| {
+            found.push(point.clone());
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert_eq!(branch.stopped, Stop::RangeEnd);
+    found
+}
+
+fn only<const N: usize>(points: &[Found<N>], label: Label) -> Vec<Found<N>> {
+    points
+        .iter()
+        .filter(|p| p.label == Some(label))
+        .cloned()
+        .collect()
+}
+
+#[test]
+fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
+    let fields = |p: [f64; 2]| Box::new(Lorenz { rho: p[0] }) as Box<dyn VectorField<3>>;
+    let family = Family {
+        fields: &fields,
+        parameters: [0.0, 0.0],
+        varied: 0,
+    };
+    for longest in [0.5, 2.0] {
+        let settings = Settings::new((0.0, 30.0), longest).unwrap();
+        let origin = all(
+            &family,
+            &Onward::along(State::zeros(), 0.0, true),
+            &settings,
+        );
+        assert!(only(&origin, Label::Hb).is_empty() && only(&origin, Label::Lp).is_empty());
+        let pitchforks = only(&origin, Label::Bp);
+        assert_eq!(pitchforks.len(), 1);
+        assert!((pitchforks[0].parameter - 1.0).abs() < 1e-11);
+
+        for onward in family.switch(&pitchforks[0], 1e-3).unwrap() {
+            let side = all(&family, &onward, &settings);
+            // x = y = +-sqrt(beta (rho - 1)), z = rho - 1
+            for point in &side {
+                let excess = point.parameter - 1.0;
+                assert!((point.state[2] - excess).abs() < 1e-10);
+                assert!((point.state[0].powi(2) - 8.0 / 3.0 * excess).abs() < 1e-9);
+            }
+            let hopf = only(&side, Label::Hb);
+            assert_eq!(hopf.len(), 1, "longest {longest}");
+            // rho_H = sigma (sigma + beta + 3) / (sigma - beta - 1) = 470/19, omega^2 = beta (sigma + rho)
+            let rho = 470.0 / 19.0;
+            assert!(
+                (hopf[0].parameter - rho).abs() < 1e-9,
+                "{}",
+                hopf[0].parameter
+            );
+            let omega = (8.0 / 3.0 * (10.0 + rho)).sqrt();
+            assert!((hopf[0].period.unwrap() * omega / std::f64::consts::TAU - 1.0).abs() < 1e-9);
+            assert!(
+                hopf[0].coefficient.unwrap() > 0.0,
+                "subcritical (Marsden and McCracken 1976)"
+            );
+        }
+    }
+}
+
+#[test]
+fn the_brusselator_oscillates_beyond_its_hopf_point() {
+    let fields =
+        |p: [f64; 2]| Box::new(Brusselator { a: p[0], b: p[1] }) as Box<dyn VectorField<2>>;
+    for a in [0.7, 1.0, 2.0] {
+        let family = Family {
+            fields: &fields,
+            parameters: [a, 0.0],
+            varied: 1,
+        };
+        let settings = Settings::new((0.5, 8.0), 0.3).unwrap();
+        let start = State::<2>::new(a, 0.5 / a);
+        let points = all(&family, &Onward::along(start, 0.5, true), &settings);
+        let hopf = only(&points, Label::Hb);
+        assert_eq!(hopf.len(), 1);
+        assert!((hopf[0].parameter - (1.0 + a * a)).abs() < 1e-10);
+        assert!((hopf[0].period.unwrap() - std::f64::consts::TAU / a).abs() < 1e-9);
+        // supercritical for every A (Kuznetsov 2004, exercises to chapter 3)
+        assert!(hopf[0].coefficient.unwrap() < 0.0);
+        let on_axis = hopf[0].eigenvalues[0] - Complex::new(0.0, a);
+        assert!(on_axis.norm() < 1e-9, "{on_axis}");
+    }
+}
+
+#[test]
+fn both_folds_of_a_cubic() {
+    let fields = |p: [f64; 2]| Box::new(Folded { p: p[0] }) as Box<dyn VectorField<1>>;
+    let family = Family {
+        fields: &fields,
+        parameters: [0.0, 0.0],
+        varied: 0,
+    };
+    let mut settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
+    settings.wanted = vec![-0.5];
+    let start = State::<1>::new(-1.2);
+    let points = all(&family, &Onward::along(start, -2.0, true), &settings);
+    let folds: Vec<_> = only(&points, Label::Lp)
+        .iter()
+        .map(|f| (f.state[0], f.parameter))
+        .collect();
+    assert_eq!(folds.len(), 2, "{folds:?}");
+    for ((y, p), (y_0, p_0)) in folds.iter().zip([(0.0, 0.0), (2.0, -4.0 / 3.0)]) {
+        assert!(
+            (y - y_0).abs() < 1e-10 && (p - p_0).abs() < 1e-12,
+            "{y} {p}"
+        );
+    }
+    // the S is crossed three times at p = -1/2
+    let wanted = only(&points, Label::Uz);
+    assert_eq!(wanted.len(), 3);
+    assert!(wanted.iter().all(|point| point.parameter == -0.5));
+}
