@@ -30,30 +30,13 @@ fn slab(law: AnyLaw, interfaces: usize, driving: f64, stiffness: f64) -> Slab {
 }
 
 fn along_driving(stiffness: f64) -> BranchRequest {
-    BranchRequest {
-        slab: slab(spinodal(), 2, 1.0, stiffness),
-        along: Parameter::Driving,
-        range: (1e-4, 1e7),
-        symmetry: None,
-        at: Vec::new(),
-        step: 1.0,
-        tolerance: 1e-11,
-    }
+    let slab = slab(spinodal(), 2, 1.0, stiffness);
+    BranchRequest::new(slab, Parameter::Driving, (1e-4, 1e7))
 }
 
 fn hopf_curves(interfaces: usize, stiffness: (f64, f64)) -> LocusRequest {
-    LocusRequest {
-        slab: slab(spinodal(), interfaces, 1.0, 1.0),
-        kind: LocusKind::Hopf,
-        symmetry: None,
-        driving: (1e-4, 1e7),
-        stiffness,
-        at_driving: Vec::new(),
-        at_stiffness: Vec::new(),
-        step: 1.0,
-        tolerance: 1e-11,
-        criticality: false,
-    }
+    let slab = slab(spinodal(), interfaces, 1.0, 1.0);
+    LocusRequest::new(slab, LocusKind::Hopf, (1e-4, 1e7), stiffness)
 }
 
 #[derive(Default)]
@@ -307,13 +290,9 @@ fn along_the_stiffness() {
         (0.1279718305942495, 0.3, Symmetry::Asymmetric),
     ] {
         let request = BranchRequest {
-            slab: slab(spinodal(), 2, v, 1.0),
-            along: Parameter::Stiffness,
-            range: (1e-3, 1.0),
             symmetry: Some(symmetry),
             at: vec![0.5],
-            step: 1.0,
-            tolerance: 1e-11,
+            ..BranchRequest::new(slab(spinodal(), 2, v, 1.0), Parameter::Stiffness, (1e-3, 1.0))
         };
         let heard = branches(&request);
         let hopf = heard.only(Label::Hb);

@@ -282,7 +282,48 @@ pub struct BranchRequest {
     pub tolerance: f64,
     /// Numbers of branches that are known already and not computed again.
     pub skip: Vec<usize>,
+    /// How many times orbits may double their period: the branches of all these are followed too.
+    pub doublings: usize,
 }
+
+impl BranchRequest {
+    /// A range of a parameter, with everything else as it is by default.
+    pub fn new(slab: Slab, along: Parameter, range: (f64, f64)) -> Self {
+        BranchRequest {
+            slab,
+            along,
+            range,
+            symmetry: None,
+            at: Vec::new(),
+            step: 1.0,
+            tolerance: TOLERANCE,
+            skip: Vec::new(),
+            doublings: 0,
+        }
+    }
+}
+
+impl LocusRequest {
+    /// Ranges of V_H and K, with everything else as it is by default.
+    pub fn new(slab: Slab, kind: LocusKind, driving: (f64, f64), stiffness: (f64, f64)) -> Self {
+        LocusRequest {
+            slab,
+            kind,
+            symmetry: None,
+            driving,
+            stiffness,
+            at_driving: Vec::new(),
+            at_stiffness: Vec::new(),
+            step: 1.0,
+            tolerance: TOLERANCE,
+            criticality: false,
+            skip: Vec::new(),
+        }
+    }
+}
+
+/// Accuracy of special points where nobody says otherwise.
+const TOLERANCE: f64 = 1e-11;
 
 /// The curves that there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -130,6 +130,7 @@ impl Plan {
             "at": at.iter().map(|&x| out(x)).collect::<Vec<f64>>(),
             "step_limit": following.step,
             "tolerance": following.tolerance,
+            "doublings": options.doublings,
             "crosscheck": following.second.map(|second| second.name()),
         });
         let request = BranchRequest {
@@ -145,6 +146,7 @@ impl Plan {
             step: following.step,
             tolerance: following.tolerance,
             skip: Vec::new(),
+            doublings: options.doublings,
         };
         Ok(Plan {
             of,

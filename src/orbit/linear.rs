@@ -104,6 +104,11 @@ impl<const N: usize> Linear<N> {
         Some(self.motion(&u, |k| gaps[k]))
     }
 
+    /// Nodes and durations from displacements in the planes that the maps carry from one to the next.
+    pub fn carried(&self, u: &[State<N>]) -> (Vec<State<N>>, Vec<f64>) {
+        self.motion(u, |_| State::zeros())
+    }
+
     /// Nodes and durations from the displacements in the planes.
     fn motion(
         &self,

@@ -20,6 +20,7 @@ mod shooting;
 mod slab;
 mod solve;
 mod space;
+mod switch;
 mod walk;
 
 pub use arc::{Arc, Tracer};
@@ -36,6 +37,7 @@ pub use profile::{Profile, profile};
 pub use shooting::{Closed, close, newton_step};
 pub use slab::Slab;
 pub use solve::{Accuracy, Orbit};
+pub use switch::Switch;
 pub use walk::{Pace, Path, Walk};
 
 use crate::error::Error;

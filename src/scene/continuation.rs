@@ -63,6 +63,9 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub at: Option<String>,
+    /// How often orbits may double their period: the branches of doubled orbits are followed too
+    #[arg(long, value_name = "N", default_value = "0", help_heading = "Branch")]
+    pub doublings: usize,
     /// How they are followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,

@@ -1,6 +1,7 @@
 //! One curve of bifurcations, followed both ways from a point on it.
 
-use super::branch::{ROUGH, crosses};
+use super::branch::ROUGH;
+use super::course::crosses;
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::locus::{Locus, tell};
@@ -26,7 +27,6 @@ pub(super) struct Curve {
 struct Leg<'l, 'r, const N: usize> {
     locus: &'l Locus<'r, N>,
     number: usize,
-    begin: Site<N>,
     last: Site<N>,
     events: Vec<Event>,
     /// Whether it came back to where it began.
@@ -66,7 +66,6 @@ impl Curve {
             let mut leg = Leg {
                 locus: &*locus,
                 number,
-                begin: here.site.clone(),
                 last: here.site.clone(),
                 events: Vec::new(),
                 closed: false,
@@ -156,13 +155,7 @@ where
         });
         if end != End::Told {
             let mut special = rough(Label::Mx, &walk.pace.here.site);
-            special.note = Some(
-                match end {
-                    End::Count => "as many orbits as are allowed on a curve",
-                    _ => "Newton's method finds no next orbit however short the step",
-                }
-                .into(),
-            );
+            special.note = Some(end.words().into());
             self.events.push(Event::Special(special));
         }
     }

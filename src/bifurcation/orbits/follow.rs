@@ -23,6 +23,17 @@ pub enum End {
     Count,
 }
 
+impl End {
+    /// In words.
+    pub fn words(self) -> &'static str {
+        match self {
+            End::Told => "no more was asked for",
+            End::Stuck => "Newton's method finds no next orbit however short the step",
+            End::Count => "as many orbits as are allowed",
+        }
+    }
+}
+
 /// Follows the walk, past all that is watched.
 pub fn follow<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,

@@ -3,7 +3,8 @@
 //! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
 //! through resonances, to where the bifurcation ceases to be one.
 
-use super::branch::{ROUGH, crosses};
+use super::branch::ROUGH;
+use super::course::crosses;
 use super::curve::Curve;
 use super::detect::Watch;
 use super::follow::{Met, follow};

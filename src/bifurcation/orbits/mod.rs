@@ -4,6 +4,7 @@ mod detect;
 mod follow;
 mod sharp;
 mod branch;
+mod course;
 mod curve;
 mod locus;
 pub mod normal_form;
