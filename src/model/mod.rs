@@ -5,6 +5,7 @@
 
 pub mod classics;
 pub mod normal_form;
+mod parted;
 mod response;
 pub mod scales;
 mod series;
@@ -15,6 +16,7 @@ mod tangent;
 mod trajectories;
 mod two_interfaces;
 
+pub use parted::{Parted, parted, united};
 pub use single_interface::SingleInterface;
 pub use smooth::Smooth;
 pub use symmetric::Symmetric;

@@ -42,6 +42,23 @@ impl<S: Equations<N>, const N: usize> Smooth<S, N> {
         let x = y.data.0[0].map(constant);
         State::from(self.equations.rates(x, parameters).map(|f| f.gradient[0]))
     }
+
+    /// dJ/dp of the i-th parameter.
+    pub fn parameter_jacobian(&self, y: &State<N>, i: usize) -> Jacobian<N> {
+        let inner = |value: f64| Jet::<f64, N> {
+            value,
+            gradient: [0.0; N],
+        };
+        let fixed = |value| Jet {
+            value,
+            gradient: [inner(0.0)],
+        };
+        let mut parameters = self.parameters.map(|p| fixed(inner(p)));
+        parameters[i].gradient = [inner(1.0)];
+        let x = Jet::variables(y.data.0[0]).map(fixed);
+        let rates = self.equations.rates(x, parameters);
+        Jacobian::from_fn(|i, j| rates[i].gradient[0].gradient[j])
+    }
 }
 
 /// A number that does not vary.
@@ -106,7 +123,7 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
         Box::new(Plain::<_, _, N, REFERENCE_ROOM>::new(
             self.equations,
             self.parameters,
-            DoubleDouble::ZERO,
+            Array([DoubleDouble::ZERO]),
         ))
     }
 
@@ -125,7 +142,7 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
         Box::new(Variational::<_, _, _, N, ROOM>::new(
             self.equations,
             self.parameters,
-            0.0,
+            Array([0.0]),
             Array([0.0; 8]),
         ))
     }
@@ -134,7 +151,7 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
         Box::new(Variational::<_, _, _, N, REFERENCE_ROOM>::new(
             self.equations,
             self.parameters,
-            DoubleDouble::ZERO,
+            Array([DoubleDouble::ZERO]),
             Array([DoubleDouble::ZERO; 8]),
         ))
     }

@@ -8,8 +8,12 @@ use super::Real;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `first`, `second` and `gap` = first - second.
+///
+/// The addition theorems are left where values are so far apart, or of such signs, that subtraction does as well. Not so if
+/// they are ORDERED: where a formula takes logarithms and powers of numbers with first > second > 0 only, and magnitudes of
+/// two that have the same sign, the theorems serve at any distance, and the same operations are done whatever the numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Difference<T> {
+pub struct Difference<T, const ORDERED: bool = false> {
     /// Value at the first point.
     pub first: T,
     /// Value at the second point.
@@ -20,16 +24,38 @@ pub struct Difference<T> {
 
 impl<T: Real> Difference<T> {
     /// Two points whose difference is known.
+    #[inline(always)]
     pub fn new(first: T, second: T, gap: T) -> Self {
         Difference { first, second, gap }
     }
+}
 
+impl<T: Real> Difference<T, true> {
+    /// Two points in a formula whose logarithms and powers are of ordered numbers.
+    #[inline(always)]
+    pub fn ordered(first: T, second: T, gap: T) -> Self {
+        Difference { first, second, gap }
+    }
+}
+
+impl<T: Real, const ORDERED: bool> Difference<T, ORDERED> {
     /// Where the values are far apart subtraction is as good as an addition theorem, and can't overflow.
+    #[inline(always)]
     fn far_apart(&self) -> bool {
+        if ORDERED {
+            return false;
+        }
         let (a, b) = (self.first.leading(), self.second.leading());
         !(a * b > 0.0 && (0.25..4.0).contains(&(a / b)))
     }
 
+    /// ln(first / second) where they are not far apart.
+    #[inline(always)]
+    fn log_ratio(self) -> T {
+        (self.gap / self.second).ln_1p()
+    }
+
+    #[inline(always)]
     fn direct(self, g: impl Fn(T) -> T) -> Self {
         let (first, second) = (g(self.first), g(self.second));
         Difference {
@@ -40,8 +66,9 @@ impl<T: Real> Difference<T> {
     }
 }
 
-impl<T: Real> Neg for Difference<T> {
+impl<T: Real, const ORDERED: bool> Neg for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn neg(self) -> Self {
         Difference {
             first: -self.first,
@@ -51,8 +78,9 @@ impl<T: Real> Neg for Difference<T> {
     }
 }
 
-impl<T: Real> Add for Difference<T> {
+impl<T: Real, const ORDERED: bool> Add for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, o: Self) -> Self {
         Difference {
             first: self.first + o.first,
@@ -62,28 +90,37 @@ impl<T: Real> Add for Difference<T> {
     }
 }
 
-impl<T: Real> Sub for Difference<T> {
+impl<T: Real, const ORDERED: bool> Sub for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, o: Self) -> Self {
         self + -o
     }
 }
 
-impl<T: Real> Mul for Difference<T> {
+impl<T: Real, const ORDERED: bool> Mul for Difference<T, ORDERED> {
     type Output = Self;
-    // a1 a2 - b1 b2 = (a1 - b1) a2 + b1 (a2 - b2)
+    // a1 a2 - b1 b2 = (a1 - b1) a2 + b1 (a2 - b2) = (a1 - b1) b2 + a1 (a2 - b2)
+    #[inline(always)]
     fn mul(self, o: Self) -> Self {
+        // Of a slip rate that falls and a state that rises, no part of the latter is larger than the products.
+        let gap = if ORDERED {
+            self.gap * o.second + self.first * o.gap
+        } else {
+            self.gap * o.first + self.second * o.gap
+        };
         Difference {
             first: self.first * o.first,
             second: self.second * o.second,
-            gap: self.gap * o.first + self.second * o.gap,
+            gap,
         }
     }
 }
 
-impl<T: Real> Div for Difference<T> {
+impl<T: Real, const ORDERED: bool> Div for Difference<T, ORDERED> {
     type Output = Self;
     // a1 / a2 - b1 / b2 = ((a1 - b1) - (b1 / b2) (a2 - b2)) / a2
+    #[inline(always)]
     fn div(self, o: Self) -> Self {
         let second = self.second / o.second;
         Difference {
@@ -94,8 +131,9 @@ impl<T: Real> Div for Difference<T> {
     }
 }
 
-impl<T: Real> Add<f64> for Difference<T> {
+impl<T: Real, const ORDERED: bool> Add<f64> for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn add(self, x: f64) -> Self {
         Difference {
             first: self.first + x,
@@ -105,8 +143,9 @@ impl<T: Real> Add<f64> for Difference<T> {
     }
 }
 
-impl<T: Real> Sub<f64> for Difference<T> {
+impl<T: Real, const ORDERED: bool> Sub<f64> for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn sub(self, x: f64) -> Self {
         Difference {
             first: self.first - x,
@@ -116,8 +155,9 @@ impl<T: Real> Sub<f64> for Difference<T> {
     }
 }
 
-impl<T: Real> Mul<f64> for Difference<T> {
+impl<T: Real, const ORDERED: bool> Mul<f64> for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn mul(self, x: f64) -> Self {
         Difference {
             first: self.first * x,
@@ -127,8 +167,9 @@ impl<T: Real> Mul<f64> for Difference<T> {
     }
 }
 
-impl<T: Real> Div<f64> for Difference<T> {
+impl<T: Real, const ORDERED: bool> Div<f64> for Difference<T, ORDERED> {
     type Output = Self;
+    #[inline(always)]
     fn div(self, x: f64) -> Self {
         Difference {
             first: self.first / x,
@@ -138,7 +179,8 @@ impl<T: Real> Div<f64> for Difference<T> {
     }
 }
 
-impl<T: Real> Real for Difference<T> {
+impl<T: Real, const ORDERED: bool> Real for Difference<T, ORDERED> {
+    #[inline(always)]
     fn constant(x: f64) -> Self {
         Difference {
             first: T::constant(x),
@@ -146,12 +188,14 @@ impl<T: Real> Real for Difference<T> {
             gap: T::constant(0.0),
         }
     }
+    #[inline(always)]
     fn leading(self) -> f64 {
         self.first.leading()
     }
     // e^a - e^b = e^b (e^(a-b) - 1)
+    #[inline(always)]
     fn exp(self) -> Self {
-        if self.gap.leading().abs() > 1.0 {
+        if !ORDERED && self.gap.leading().abs() > 1.0 {
             return self.direct(T::exp);
         }
         let second = self.second.exp();
@@ -161,6 +205,7 @@ impl<T: Real> Real for Difference<T> {
             gap: second * self.gap.exp_m1(),
         }
     }
+    #[inline(always)]
     fn exp_m1(self) -> Self {
         Difference {
             first: self.first.exp_m1(),
@@ -169,6 +214,7 @@ impl<T: Real> Real for Difference<T> {
         }
     }
     // ln a - ln b = ln(1 + (a - b) / b)
+    #[inline(always)]
     fn ln(self) -> Self {
         if self.far_apart() {
             return self.direct(T::ln);
@@ -176,9 +222,10 @@ impl<T: Real> Real for Difference<T> {
         Difference {
             first: self.first.ln(),
             second: self.second.ln(),
-            gap: (self.gap / self.second).ln_1p(),
+            gap: self.log_ratio(),
         }
     }
+    #[inline(always)]
     fn ln_1p(self) -> Self {
         Difference {
             first: self.first.ln_1p(),
@@ -187,6 +234,7 @@ impl<T: Real> Real for Difference<T> {
         }
     }
     // a^p - b^p = b^p (e^(p (ln a - ln b)) - 1)
+    #[inline(always)]
     fn powf(self, p: f64) -> Self {
         if self.far_apart() {
             return self.direct(|x| x.powf(p));
@@ -195,10 +243,11 @@ impl<T: Real> Real for Difference<T> {
         Difference {
             first: self.first.powf(p),
             second,
-            gap: second * (self.ln().gap * p).exp_m1(),
+            gap: second * (self.log_ratio() * p).exp_m1(),
         }
     }
     // sqrt a - sqrt b = (a - b) / (sqrt a + sqrt b)
+    #[inline(always)]
     fn sqrt(self) -> Self {
         let (first, second) = (self.first.sqrt(), self.second.sqrt());
         Difference {
@@ -208,6 +257,7 @@ impl<T: Real> Real for Difference<T> {
         }
     }
     // sinh a - sinh b = 2 cosh((a + b) / 2) sinh((a - b) / 2)
+    #[inline(always)]
     fn sinh(self) -> Self {
         let (mean, half) = ((self.first + self.second) * 0.5, self.gap * 0.5);
         Difference {
@@ -217,6 +267,7 @@ impl<T: Real> Real for Difference<T> {
         }
     }
     // cosh a - cosh b = 2 sinh((a + b) / 2) sinh((a - b) / 2)
+    #[inline(always)]
     fn cosh(self) -> Self {
         let (mean, half) = ((self.first + self.second) * 0.5, self.gap * 0.5);
         Difference {
@@ -226,6 +277,7 @@ impl<T: Real> Real for Difference<T> {
         }
     }
     // asinh a - asinh b = asinh(a sqrt(1+b^2) - b sqrt(1+a^2)), and the argument is (a-b)(a+b) / (a sqrt(1+b^2) + b sqrt(1+a^2))
+    #[inline(always)]
     fn asinh(self) -> Self {
         if self.far_apart() {
             return self.direct(T::asinh);
@@ -239,7 +291,15 @@ impl<T: Real> Real for Difference<T> {
             gap: argument.asinh(),
         }
     }
+    #[inline(always)]
     fn abs(self) -> Self {
+        if ORDERED {
+            return Difference {
+                first: self.first.abs(),
+                second: self.second.abs(),
+                gap: self.gap * self.second.sign(),
+            };
+        }
         match (self.first.leading() < 0.0, self.second.leading() < 0.0) {
             (false, false) => self,
             (true, true) => -self,

@@ -3,6 +3,7 @@
 
 use super::element::Element;
 use crate::number::DoubleDouble;
+use pulp::NullaryFnOnce;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// M numbers that have nothing to do with each other.
@@ -59,6 +60,11 @@ macro_rules! functions {
 
 impl<T: Element, const M: usize> Element for Array<T, M> {
     const LANES: usize = M;
+    const CALLED: bool = true;
+    #[inline(never)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        f.call()
+    }
     functions! { abs sign exp exp_m1 ln ln_1p rough_log2 rough_exp2 }
     fn like(self, x: f64) -> Self {
         Array([self.0[0].like(x); M])

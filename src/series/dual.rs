@@ -118,6 +118,7 @@ macro_rules! functions {
 
 impl<T: Element, X: Element> Element for Dual<T, X> {
     const LANES: usize = 1;
+    const CALLED: bool = true;
     #[inline(always)]
     fn like(self, x: f64) -> Self {
         self.constant(self.value.like(x))

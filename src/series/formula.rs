@@ -104,6 +104,21 @@ fn run_level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
     })
 }
 
+/// A level in loops.
+#[inline(always)]
+fn running_level<E: Element, F: Formula<E, C>, const C: usize>(
+    formula: &F,
+    memory: &[Cell<E>],
+    order: Running,
+    unit: E,
+) -> [Option<usize>; WATCHED] {
+    if E::CALLED {
+        run_level(formula, memory, order, unit)
+    } else {
+        level(formula, memory, order, unit)
+    }
+}
+
 /// The first level alone: the rates at the first coefficients, in that unit of time.
 #[inline(always)]
 pub(super) fn first_level<E: Element, F: Formula<E, C>, const C: usize>(
@@ -112,7 +127,7 @@ pub(super) fn first_level<E: Element, F: Formula<E, C>, const C: usize>(
     room: usize,
     unit: E,
 ) {
-    level(formula, memory, Running { room, index: 0 }, unit);
+    running_level(formula, memory, Running { room, index: 0 }, unit);
 }
 
 /// The series, in that unit of time, of the solution whose first coefficients stand in the memory, to an order of 12, 16 or [`super::MAX_ORDER`].
@@ -154,7 +169,7 @@ pub(super) fn expand_running<E: Element, F: Formula<E, C>, const C: usize>(
 ) -> [Option<usize>; WATCHED] {
     let mut watched = [None; WATCHED];
     for index in 0..order {
-        watched = level(formula, memory, Running { room, index }, unit);
+        watched = running_level(formula, memory, Running { room, index }, unit);
     }
     watched
 }

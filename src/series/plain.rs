@@ -47,6 +47,7 @@ macro_rules! functions {
 
 impl<T: Element> Element for Both<T> {
     const LANES: usize = 2 * T::LANES;
+    const CALLED: bool = T::CALLED;
     // Where there are vector instructions this is for the few processors without them.
     const UNROLLED: bool = T::UNROLLED && cfg!(not(target_arch = "x86_64"));
     #[inline(always)]

@@ -1,0 +1,102 @@
+//! Two interfaces (19) in variables that do not lose their asymmetry.
+//!
+//! Along cycles at small stiffness the interfaces come so near each other that psi_1 - psi_2 falls to e^-100, and part again:
+//! a difference of two doubles has long lost it. It never changes sign, and D' = (difference of the rates) is D times a
+//! smooth function. So the state here is (tau, ln psi_2, ln D) with D = psi_1 - psi_2 > 0, and the difference of the rates
+//! comes from the laws' own formulas in [`Difference`], to full relative accuracy down to D = e^-700. To other charts, such as
+//! ln ln(psi_1 / psi_2), it is preferred because psi_1 = psi_2 + D costs nothing, and since no state comes near the end of its
+//! range.
+
+use super::{Driven, Loading, Parameter, Smooth, stress_rate};
+use crate::field::{Jacobian, State};
+use crate::friction::Law;
+use crate::number::{Difference, Real};
+use crate::series::Equations;
+
+/// dtau/dt = K (V_H - v_1 - v_2), dw_2/dt = g(v_2, w_2), d(ln D)/dt = (dpsi_1/dt - dpsi_2/dt) / D, in the parameters
+/// (V_H, K), from (19).
+///
+/// For tau of one sign: series take the sign of the slip rates at the beginning of a step. With the slip law, whose evolution
+/// takes the logarithm of v psi, digits are lost where v_1 psi_1 is far below v_2 psi_2; with the others nowhere.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Parted<L> {
+    /// The law of both interfaces.
+    pub law: L,
+}
+
+impl<L: Law> Parted<L> {
+    /// The field at a loading.
+    pub fn at(self, loading: &Loading) -> Smooth<Self, 3> {
+        Smooth {
+            equations: self,
+            parameters: [loading.driving, loading.stiffness],
+        }
+    }
+}
+
+impl<L: Law> Equations<3> for Parted<L> {
+    #[inline(always)]
+    fn rates<T: Real>(
+        &self,
+        [tau, log_second, log_gap]: [T; 3],
+        [driving, stiffness]: [T; 2],
+    ) -> [T; 3] {
+        let (second, gap) = (log_second.exp(), log_gap.exp());
+        let psi = Difference::ordered(second + gap, second, gap);
+        let activation = self.law.activation(tau);
+        // The stress is the same in both.
+        let activation = Difference::ordered(activation, activation, T::constant(0.0));
+        let v = self.law.slip_rate(activation, psi);
+        let rate = self.law.evolution(v, psi);
+        [
+            stress_rate((driving, stiffness), v.first + v.second),
+            rate.second / second,
+            rate.gap / gap,
+        ]
+    }
+}
+
+/// From (tau, ln psi_1, ln psi_2) to (tau, ln psi_2, ln D); `None` unless psi_1 > psi_2. Of ln psi_1 - ln psi_2 it keeps the
+/// digits that this difference has.
+pub fn parted(y: &State<3>) -> Option<State<3>> {
+    let ratio = y[1] - y[2];
+    // ln(e^ratio - 1)
+    let log_excess = if ratio > 40.0 {
+        ratio
+    } else {
+        ratio.exp_m1().ln()
+    };
+    (ratio > 0.0).then(|| State::<3>::new(y[0], y[2], y[2] + log_excess))
+}
+
+/// From (tau, ln psi_2, ln D) to (tau, ln psi_1, ln psi_2).
+pub fn united(x: &State<3>) -> State<3> {
+    let excess = x[2] - x[1];
+    // ln(1 + e^excess)
+    let ratio = excess.max(0.0) + (-excess.abs()).exp().ln_1p();
+    State::<3>::new(x[0], x[1] + ratio, x[1])
+}
+
+impl<L: Law> Driven<3> for Smooth<Parted<L>, 3> {
+    fn parameter_derivative(&self, y: &State<3>, p: Parameter) -> State<3> {
+        Smooth::parameter_derivative(self, y, index(p))
+    }
+
+    fn parameter_jacobian(&self, y: &State<3>, p: Parameter) -> Jacobian<3> {
+        Smooth::parameter_jacobian(self, y, index(p))
+    }
+
+    fn slip_rates(&self, x: &State<3>) -> [f64; 2] {
+        let law = &self.equations.law;
+        let (second, gap) = (x[1].exp(), x[2].exp());
+        [second + gap, second].map(|psi| law.slip_rate(law.activation(x[0]), psi))
+    }
+}
+
+/// The place of a parameter.
+fn index(p: Parameter) -> usize {
+    match p {
+        Parameter::Driving => 0,
+        Parameter::Stiffness => 1,
+    }
+}
