@@ -25,7 +25,7 @@ pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
-use crate::friction::{AnyLaw, positive, with_law};
+use crate::friction::{AnyLaw, Law, positive, with_law};
 use std::ops::{Mul, Sub};
 
 /// The two control parameters of the paper.
@@ -79,6 +79,11 @@ fn stress_rate<T: Sub<Output = T> + Mul<Output = T>>(
 /// Two interfaces (19) with a law chosen at run time, compiled for that law.
 pub fn two_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
     with_law!(law, law => Box::new(TwoInterfaces { law, loading }))
+}
+
+/// Two interfaces (19) in (tau, ln psi_2, ln(psi_1 - psi_2)) with a law chosen at run time.
+pub fn parted_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
+    with_law!(law, law => Box::new(Parted { law: law.core() }.at(&loading)))
 }
 
 /// The symmetric subspace of (19) with a law chosen at run time.

@@ -1,8 +1,10 @@
 //! Vector fields that depend on two parameters, along which orbits are continued.
 
+use super::motion::Site;
+use super::polygon::Polygon;
 use super::slab::Slab;
-use crate::field::VectorField;
-use crate::model::Loading;
+use crate::field::{State, VectorField};
+use crate::model::{Loading, parted, united};
 
 /// Vector fields over a plane of two parameters.
 ///
@@ -60,5 +62,54 @@ impl Family<2> for OverLoadings {
 
     fn scale(&self, at: [f64; 2]) -> [f64; 2] {
         at.map(f64::exp)
+    }
+}
+
+/// Two interfaces over (ln V_H, ln K), in the variables that do not lose their difference.
+///
+/// Slower than [`OverLoadings`], for orbits along which the interfaces come near each other.
+#[derive(Debug, Clone, Copy)]
+pub struct OverParted(pub OverLoadings);
+
+impl Family<3> for OverParted {
+    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
+        self.0.slab(at).parted()
+    }
+
+    fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        at.map(f64::exp)
+    }
+
+    fn scale(&self, at: [f64; 2]) -> [f64; 2] {
+        at.map(f64::exp)
+    }
+}
+
+impl OverParted {
+    /// An orbit in these variables; `None` where the interfaces do not differ everywhere, or not always in the same sense.
+    pub fn parted(site: &Site<3>) -> Option<Site<3>> {
+        let exchange = |x: &State<3>| State::<3>::new(x[0], x[2], x[1]);
+        let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
+            site.polygon.nodes.iter().map(each).collect::<Option<Vec<_>>>()
+        };
+        let nodes = nodes(&parted).or_else(|| nodes(&|x| parted(&exchange(x))))?;
+        Some(Site {
+            polygon: Polygon {
+                nodes,
+                durations: site.polygon.durations.clone(),
+            },
+            at: site.at,
+        })
+    }
+
+    /// The orbit in (tau, ln psi_1, ln psi_2).
+    pub fn united(site: &Site<3>) -> Site<3> {
+        Site {
+            polygon: Polygon {
+                nodes: site.polygon.nodes.iter().map(united).collect(),
+                durations: site.polygon.durations.clone(),
+            },
+            at: site.at,
+        }
     }
 }

@@ -1,7 +1,9 @@
 //! What slides: one or two interfaces with a law and a loading, and its vector fields.
 
 use crate::friction::{AnyLaw, Law, steady_stress};
-use crate::model::{Driven, Loading, single_interface, symmetric, two_interfaces};
+use crate::model::{
+    Driven, Loading, parted_interfaces, single_interface, symmetric, two_interfaces,
+};
 
 /// One or two interfaces between elastic slabs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -18,6 +20,11 @@ impl Slab {
     /// The system (19) in (tau, ln psi_1, ln psi_2).
     pub fn whole(&self) -> Box<dyn Driven<3>> {
         two_interfaces(self.law, self.loading)
+    }
+
+    /// The same in (tau, ln psi_2, ln(psi_1 - psi_2)), for psi_1 > psi_2: there small differences keep all their digits.
+    pub fn parted(&self) -> Box<dyn Driven<3>> {
+        parted_interfaces(self.law, self.loading)
     }
 
     /// In (tau, ln psi): the symmetric subspace of (19), or a single interface (11).
