@@ -4,7 +4,8 @@ use super::motion::Site;
 use super::polygon::Polygon;
 use super::slab::Slab;
 use crate::field::{State, VectorField};
-use crate::model::{Loading, parted, united};
+use crate::model::{Loading, Smooth, parted, united};
+use crate::series::Equations;
 
 /// Vector fields over a plane of two parameters.
 ///
@@ -19,6 +20,33 @@ pub trait Family<const N: usize>: Sync {
     /// Of each parameter, its derivative in its coordinate.
     fn scale(&self, at: [f64; 2]) -> [f64; 2];
 }
+
+/// Any small system over its two parameters as they are.
+#[derive(Debug, Clone, Copy)]
+pub struct OverParameters<S>(pub S);
+
+macro_rules! over_parameters {
+    ($n:literal) => {
+        impl<S: Equations<$n>> Family<$n> for OverParameters<S> {
+            fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<$n> + '_> {
+                Box::new(Smooth {
+                    equations: self.0,
+                    parameters: at,
+                })
+            }
+
+            fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+                at
+            }
+
+            fn scale(&self, _: [f64; 2]) -> [f64; 2] {
+                [1.0; 2]
+            }
+        }
+    };
+}
+over_parameters!(2);
+over_parameters!(3);
 
 /// A slab over (ln V_H, ln K).
 #[derive(Debug, Clone, Copy)]

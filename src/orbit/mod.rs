@@ -26,7 +26,7 @@ mod walk;
 pub use arc::{Arc, Tracer};
 pub use correct::{Condition, Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck};
-pub use family::{Family, OverLoadings, OverParted};
+pub use family::{Family, OverLoadings, OverParameters, OverParted};
 pub use find::{Begin, Found, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
 pub use hopf::{HopfPoint, hopf_points};

@@ -117,6 +117,40 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         })
     }
 
+    /// From an orbit, in the direction that looks so from afar: after a change of variables.
+    pub fn resumed(
+        corrector: &'c mut Corrector<'f, F, N>,
+        path: Path,
+        site: Site<N>,
+        afar: [f64; 3],
+        length: f64,
+    ) -> Option<Self> {
+        // Closed in the new variables, with the parameter in which it moves most held.
+        let fixed = if afar[1].abs() > afar[0].abs() && path.free.contains(&1) { 1 } else { path.free[0] };
+        let held = Condition::Parameter(fixed, site.at[fixed]);
+        let here = corrector.correct(site, &path.free, &path.and(held), Goal::STEP)?;
+        let mut walk = Walk {
+            pace: Pace {
+                direction: here.along[0].clone(),
+                here,
+            },
+            corrector,
+            path,
+            length,
+            fresh: false,
+        };
+        let site = walk.pace.here.site.clone();
+        walk.pace = walk.arrived(site, afar)?;
+        walk.cut()?;
+        Some(walk)
+    }
+
+    /// What of the walk's direction does not depend on the variables: the change of the parameters and of ln T.
+    pub fn afar(&self) -> [f64; 3] {
+        let Pace { here, direction } = &self.pace;
+        direction.seen_from_afar(&here.site.polygon)
+    }
+
     /// The same, backwards.
     pub fn turned(mut self) -> Self {
         self.pace.direction = self.pace.direction.scaled(-1.0);

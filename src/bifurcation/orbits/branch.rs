@@ -1,6 +1,7 @@
 //! Branches of periodic orbits along V_H or K: from every Hopf point, through folds, and where asked for onto the branches of
 //! doubled periods.
 
+use super::chart::Chart;
 use super::course::Course;
 use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special};
 use crate::equilibrium::Symmetry;
@@ -8,7 +9,7 @@ use crate::error::Result;
 use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Corrector, Family, HopfPoint, OverLoadings, Path, Regular, Switch, Walk, hopf_points,
+    Corrector, HopfPoint, OverLoadings, Path, Regular, Switch, Walk, hopf_points,
 };
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -143,7 +144,7 @@ impl<'r> Branches<'r> {
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>>
     where
-        OverLoadings: Family<N>,
+        OverLoadings: Chart<N>,
     {
         let free = self.free;
         self.hopfs = hopf_points(&self.request.slab, symmetry, self.request.along)?;
@@ -174,7 +175,7 @@ impl<'r> Branches<'r> {
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>>
     where
-        OverLoadings: Family<N>,
+        OverLoadings: Chart<N>,
     {
         let hopf = self.hopfs[i].clone();
         let family = self.family;

@@ -1,15 +1,17 @@
 //! One branch of periodic orbits, followed to its end.
 
-use super::branch::{Branches, Doubling};
+use super::branch::{Branches, Doubling, ROUGH};
+use super::chart::{Chart, embedded, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::normal_form::{Form, normal_form};
 use super::rows::row;
-use super::sharp::{Exactly, Sharp, rough, sharpened};
+use super::sharp::{Exactly, Sharp, rough, sharpened, special};
 use crate::bifurcation::{Event, Label, Seen, Special};
 use crate::error::Result;
-use crate::field::State;
-use crate::orbit::{Family, Indicator, OverLoadings, Polygon, Regular, Site, Walk};
+use crate::orbit::{
+    Corrector, Family, Indicator, OverParted, Regular, Site, Walk,
+};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -30,17 +32,14 @@ pub(super) struct Course<'b, 'r, const N: usize> {
     pub times: usize,
 }
 
-type Walker<'w, 'c, 'f, const N: usize> = &'w mut Walk<'c, 'f, OverLoadings, N>;
+type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Walk<'c, 'f, F, N>;
 
-impl<'b, 'r, const N: usize> Course<'b, 'r, N>
-where
-    OverLoadings: Family<N>,
-{
-    pub fn new(
+impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
+    pub fn new<F: Family<N>>(
         branches: &'b mut Branches<'r>,
         number: usize,
         inside: bool,
-        walk: &Walk<'_, '_, OverLoadings, N>,
+        walk: &Walk<'_, '_, F, N>,
     ) -> Self {
         let free = branches.free;
         Course {
@@ -54,14 +53,51 @@ where
         }
     }
 
-    /// To the end; breaks where whoever is told had enough.
-    pub fn go(
+    /// To the end, in other variables where these lose digits; breaks where whoever is told had enough.
+    pub fn go<F: Chart<N>>(
         mut self,
-        walk: Walker<'_, '_, '_, N>,
+        walk: Walker<'_, '_, '_, F, N>,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
+        let end = self.along(walk, seen)?;
+        if end == End::Told {
+            return Ok(if self.told { Break(()) } else { Continue(()) });
+        }
+        let site = &walk.pace.here.site;
+        let (family, path, length) = (*walk.corrector.family, walk.path.clone(), walk.length);
+        let kept = family.keeping(site);
+        if let Some((parted, there)) = kept {
+            let afar = walk.afar();
+            let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
+            if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
+                let course = Course::<3> {
+                    last: walk.pace.here.site.clone(),
+                    branches: self.branches,
+                    number: self.number,
+                    slope: self.slope,
+                    inside: self.inside,
+                    told: false,
+                    times: self.times,
+                };
+                return course.go::<OverParted>(&mut walk, seen);
+            }
+        }
+        if self.inside {
+            let mut special = rough(Label::Mx, &family.usual(site));
+            special.note = Some(end.words().into());
+            let _ = self.tell(Event::Special(special), seen);
+        }
+        Ok(if self.told { Break(()) } else { Continue(()) })
+    }
+
+    fn along<F: Chart<N>>(
+        &mut self,
+        walk: Walker<'_, '_, '_, F, N>,
+        seen: Seen<'_>,
+    ) -> Result<End> {
         let watches = self.watches();
         let mut failed = None;
+        let mut lost = false;
         let end = follow(walk, &watches, STEPS, &mut |walk, met| {
             let met = match met {
                 Met::Zero(watch, at) => self.zero(walk, watch, at, seen),
@@ -69,7 +105,11 @@ where
                     let met = self.orbit(walk, &pace.here, seen);
                     self.last = pace.here.site.clone();
                     self.slope = pace.direction.parameters[self.branches.free];
-                    met
+                    lost = walk.corrector.family.loses(&self.last);
+                    match met {
+                        Ok(Continue(())) if lost => Ok(Break(())),
+                        met => met,
+                    }
                 }
             };
             met.unwrap_or_else(|error| {
@@ -77,15 +117,11 @@ where
                 Break(())
             })
         });
-        if let Some(error) = failed {
-            return Err(error);
+        match failed {
+            Some(error) => Err(error),
+            None if lost && !self.told => Ok(End::Stuck),
+            None => Ok(end),
         }
-        if end != End::Told && self.inside {
-            let mut special = rough(Label::Mx, &walk.pace.here.site);
-            special.note = Some(end.words().into());
-            let _ = self.tell(Event::Special(special), seen);
-        }
-        Ok(if self.told { Break(()) } else { Continue(()) })
     }
 
     fn watches(&self) -> Vec<Watch> {
@@ -115,9 +151,9 @@ where
     }
 
     /// The next orbit: its row, and whether the branch goes on.
-    fn orbit(
+    fn orbit<F: Chart<N>>(
         &mut self,
-        walk: &Walk<'_, '_, OverLoadings, N>,
+        walk: &Walk<'_, '_, F, N>,
         here: &Regular<N>,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
@@ -129,8 +165,9 @@ where
             self.shrunk(i, seen);
             return Ok(Break(()));
         }
-        if N == 3 && crosses(site, &self.last) {
-            self.merged(seen);
+        let family = walk.corrector.family;
+        if family.merges(site, &self.last) {
+            self.merged(&family.usual(&self.last), seen);
             return Ok(Break(()));
         }
         if self.times > 0 && self.back(walk.pace.direction.parameters[self.branches.free], site) {
@@ -140,7 +177,7 @@ where
             return Ok(Continue(()));
         }
         self.inside = true;
-        let row = row(&self.branches.request.slab, self.number, here, None)?;
+        let row = row(family, self.number, here, None)?;
         Ok(self.tell(Event::Branch(row), seen))
     }
 
@@ -167,16 +204,8 @@ where
     }
 
     /// An asymmetric branch has met the symmetric one.
-    fn merged(&mut self, seen: Seen<'_>) {
-        let nodes = self.last.polygon.nodes.iter();
-        let middle = |x: &State<N>| State::<2>::new(x[0], 0.5 * (x[1] + x[N - 1]));
-        let site = Site {
-            polygon: Polygon {
-                nodes: nodes.map(middle).collect(),
-                durations: self.last.polygon.durations.clone(),
-            },
-            at: self.last.at,
-        };
+    fn merged(&mut self, last: &Site<N>, seen: Seen<'_>) {
+        let site = middle(last);
         let across = [Exactly::Indicator(Indicator::Across)];
         let free = self.branches.free;
         let family = self.branches.family;
@@ -214,9 +243,9 @@ where
     }
 
     /// Something that is watched is zero here.
-    fn zero(
+    fn zero<F: Chart<N>>(
         &mut self,
-        walk: Walker<'_, '_, '_, N>,
+        walk: Walker<'_, '_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
         seen: Seen<'_>,
@@ -232,13 +261,11 @@ where
             Watch::Turn(_) => Exactly::Indicator(Indicator::Fold),
             Watch::Indicator(indicator) => Exactly::Indicator(indicator),
         };
-        let sharp = sharpened(walk.corrector.family, &at.site, &walk.path.free, &[meets]);
+        let family = walk.corrector.family;
+        let sharp = sharpened(family, &at.site, &walk.path.free, &[meets]);
         let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
-        let mut row = row(&self.branches.request.slab, self.number, orbit, Some(label))?;
-        let mut special = match &sharp {
-            Some(sharp) => sharp.special(label),
-            None => rough(label, &at.site),
-        };
+        let mut row = row(family, self.number, orbit, Some(label))?;
+        let mut special = special(family, label, sharp.as_ref(), &at.site);
         if let Watch::Value(_, value) = watch {
             let (exact, place) = self.exactly(value);
             if let Some(exact) = exact {
@@ -249,7 +276,7 @@ where
             }
         }
         if let Some(sharp) = &sharp {
-            self.remember(label, sharp, &mut special);
+            self.remember(family, label, sharp, &mut special);
         }
         if self.tell(Event::Special(special), seen).is_break()
             || self.tell(Event::Branch(row), seen).is_break()
@@ -260,15 +287,15 @@ where
     }
 
     /// What a zero means here; nothing, or nothing new, for some.
-    fn label(
+    fn label<F: Chart<N>>(
         &self,
-        walk: &Walk<'_, '_, OverLoadings, N>,
+        walk: &Walk<'_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
     ) -> Option<Label> {
         let Branches { range, .. } = *self.branches;
         let turn = matches!(watch, Watch::Turn(_));
-        if N == 3 && turn && crosses(&walk.pace.here.site, &self.last) {
+        if turn && walk.corrector.family.merges(&walk.pace.here.site, &self.last) {
             // At the pitchfork, where the branch meets its mirror image.
             return None;
         }
@@ -295,7 +322,13 @@ where
     }
 
     /// Which way it goes, and that branches begin here.
-    fn remember(&mut self, label: Label, sharp: &Sharp<N>, special: &mut Special) {
+    fn remember<F: Chart<N>>(
+        &mut self,
+        family: &F,
+        label: Label,
+        sharp: &Sharp<N>,
+        special: &mut Special,
+    ) {
         let orbit: &dyn Any = &sharp.orbit;
         let form = match label {
             Label::Pd => Form::Doubling,
@@ -312,8 +345,12 @@ where
         let Some(orbit) = orbit.downcast_ref::<Regular<3>>() else {
             return;
         };
-        self.criticality(special, &orbit.site, form);
-        if label == Label::Pd {
+        let site: &dyn Any = &family.usual(&sharp.orbit.site);
+        let Some(site) = site.downcast_ref::<Site<3>>() else {
+            return;
+        };
+        self.criticality(special, site, form);
+        if label == Label::Pd && !family.loses(&sharp.orbit.site) {
             self.branches.doublings.push(Doubling {
                 orbit: orbit.clone(),
                 before: self.times,
@@ -323,15 +360,7 @@ where
     }
 
     fn criticality_of_pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
-        let nodes = orbit.site.polygon.nodes.iter();
-        let site = Site {
-            polygon: Polygon {
-                nodes: nodes.map(|x| State::<3>::new(x[0], x[1], x[1])).collect(),
-                durations: orbit.site.polygon.durations.clone(),
-            },
-            at: orbit.site.at,
-        };
-        self.criticality(special, &site, Form::Pitchfork);
+        self.criticality(special, &embedded(&orbit.site), Form::Pitchfork);
     }
 
     fn criticality(&self, special: &mut Special, site: &Site<3>, form: Form) {
@@ -340,15 +369,4 @@ where
         special.criticality = Some(criticality);
         special.coefficient = coefficient.uncertainty.is_finite().then_some(coefficient.value);
     }
-}
-
-/// Whether the walk has gone through a symmetric orbit.
-pub(super) fn crosses<const N: usize>(here: &Site<N>, last: &Site<N>) -> bool {
-    asymmetry(here) * asymmetry(last) <= 0.0
-}
-
-/// The mean of ln psi_1 - ln psi_2, which has one sign all along an asymmetric orbit.
-fn asymmetry<const N: usize>(site: &Site<N>) -> f64 {
-    let apart = site.polygon.nodes.iter().map(|x| x[1] - x[N - 1]);
-    apart.sum::<f64>() / site.polygon.nodes.len() as f64
 }

@@ -4,17 +4,15 @@
 //! through resonances, to where the bifurcation ceases to be one.
 
 use super::branch::ROUGH;
-use super::course::crosses;
-use super::curve::Curve;
+use super::chart::Chart;
+use super::curve::through;
 use super::detect::Watch;
 use super::follow::{Met, follow};
-use crate::bifurcation::{Event, LocusKind, LocusRequest, Seen};
+use crate::bifurcation::{LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::model::Parameter;
-use crate::orbit::{
-    Corrector, Family, Indicator, OverLoadings, Path, Site, Walk, hopf_points,
-};
+use crate::orbit::{Corrector, Indicator, OverLoadings, Path, Site, Walk, hopf_points};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
@@ -26,8 +24,8 @@ pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
     let mut count = 0;
     for symmetry in symmetries(request)? {
         let told = match symmetry {
-            Symmetry::Symmetric => Locus::<2>::follow(request, symmetry, &mut count, seen)?,
-            Symmetry::Asymmetric => Locus::<3>::follow(request, symmetry, &mut count, seen)?,
+            Symmetry::Symmetric => Locus::<2>::all(request, symmetry, &mut count, seen)?,
+            Symmetry::Asymmetric => Locus::<3>::all(request, symmetry, &mut count, seen)?,
         };
         if told.is_break() {
             break;
@@ -86,9 +84,9 @@ pub(super) struct Locus<'r, const N: usize> {
 
 impl<'r, const N: usize> Locus<'r, N>
 where
-    OverLoadings: Family<N>,
+    OverLoadings: Chart<N>,
 {
-    fn follow(
+    fn all(
         request: &'r LocusRequest,
         symmetry: Symmetry,
         count: &mut usize,
@@ -117,14 +115,14 @@ where
                 if request.skip.contains(&number) {
                     continue;
                 }
-                let Some(curve) = Curve::through(&mut locus, number, seed)? else {
+                let Some(curve) = through(&locus, number, seed, seen)? else {
                     *count -= 1;
                     continue;
                 };
-                if curve.told(seen).is_break() {
+                if curve.told.is_break() {
                     return Ok(Break(()));
                 }
-                locus.known.push(curve.course());
+                locus.known.push(curve.course);
             }
             stiffness /= APART;
         }
@@ -158,7 +156,7 @@ where
             follow(&mut walk, &[watch], STEPS, &mut |walk, met| match met {
                 Met::Zero(_, at) => {
                     let inside = (from..=to).contains(&at.site.at[0]);
-                    let pitchfork = N == 3 && crosses(&walk.pace.here.site, &last);
+                    let pitchfork = family.merges(&walk.pace.here.site, &last);
                     let torus = self.indicator != Indicator::Torus || at.spectrum.trace.abs() < 2.0;
                     if inside && torus && !(pitchfork && self.indicator == Indicator::Fold) {
                         seeds.push(at.site.clone());
@@ -172,7 +170,7 @@ where
                     been |= inside;
                     let vanishes = walk.vanishes(&last);
                     ends.extend(vanishes);
-                    let merged = N == 3 && crosses(here, &last);
+                    let merged = family.merges(here, &last) || family.loses(here);
                     last = here.clone();
                     if left || vanishes.is_some() || merged {
                         Break(())
@@ -207,12 +205,4 @@ where
     pub fn longest(&self) -> f64 {
         LONGEST * self.request.step
     }
-}
-
-/// What was found on a curve, told in order.
-pub(super) fn tell(events: impl IntoIterator<Item = Event>, seen: Seen<'_>) -> ControlFlow<()> {
-    for event in events {
-        seen(event)?;
-    }
-    Continue(())
 }

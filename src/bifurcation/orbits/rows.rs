@@ -1,33 +1,34 @@
 //! What is said of an orbit on a branch.
 
+use super::chart::Chart;
 use crate::bifurcation::{BranchRow, Label};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
-use crate::orbit::{OverLoadings, Profile, Regular, Slab, profile};
+use crate::orbit::{Profile, Regular, profile};
 
-/// An orbit of a slab, in either space.
-pub(super) fn row<const N: usize>(
-    slab: &Slab,
+/// An orbit of a slab, in any of its variables.
+pub(super) fn row<F: Chart<N>, const N: usize>(
+    family: &F,
     branch: usize,
     orbit: &Regular<N>,
     label: Option<Label>,
 ) -> Result<BranchRow> {
     /// ln |mu| that is zero within the accuracy of a walk.
     const NEUTRAL: f64 = 1e-6;
-    let here = OverLoadings(*slab).slab(orbit.site.at);
+    let here = family.slab().slab(orbit.site.at);
     let Profile {
         mean_stress,
         stress_range,
         state,
         slip_rate,
-    } = profile(&here, &orbit.site.polygon)?;
+    } = profile(&here, &family.usual(&orbit.site).polygon)?;
     let spectrum = &orbit.spectrum;
     let logs = if N == 3 {
         spectrum.log_multipliers().map(Some)
     } else {
         // Within the plane, and across it.
         let mut both = vec![spectrum.volume];
-        both.extend((slab.interfaces == 2).then_some(spectrum.across));
+        both.extend((here.interfaces == 2).then_some(spectrum.across));
         both.sort_by(|a, b| b.total_cmp(a));
         [both.first().copied(), both.get(1).copied()]
     };

@@ -3,6 +3,7 @@
 //! It is solved several times, with other nodes and other tolerances: what the solutions differ by, and what the last
 //! corrections still were, bounds what rounding and the method do. What can't be solved more than once claims nothing.
 
+use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -115,6 +116,24 @@ pub fn sharpened<F: Family<N>, const N: usize>(
         free: free.to_vec(),
         orbit: solutions.swap_remove(0),
     })
+}
+
+/// A special point of a slab: the best that could be done, or a place on the walk.
+pub(super) fn special<F: Chart<N>, const N: usize>(
+    family: &F,
+    label: Label,
+    sharp: Option<&Sharp<N>>,
+    near: &Site<N>,
+) -> Special {
+    let Some(sharp) = sharp else {
+        return rough(label, &family.usual(near));
+    };
+    let mut special = sharp.special(label);
+    // A second method knows the usual variables only.
+    if family.keeping(near).is_none() && N == 3 {
+        special.orbit = None;
+    }
+    special
 }
 
 impl<const N: usize> Sharp<N> {
