@@ -292,7 +292,11 @@ fn along_the_stiffness() {
         let request = BranchRequest {
             symmetry: Some(symmetry),
             at: vec![0.5],
-            ..BranchRequest::new(slab(spinodal(), 2, v, 1.0), Parameter::Stiffness, (1e-3, 1.0))
+            ..BranchRequest::new(
+                slab(spinodal(), 2, v, 1.0),
+                Parameter::Stiffness,
+                (1e-3, 1.0),
+            )
         };
         let heard = branches(&request);
         let hopf = heard.only(Label::Hb);

@@ -139,7 +139,8 @@ mod tests {
 
     #[test]
     fn hopf_points_are_where_they_are_known_to_be() {
-        let fast = |symmetry| hopf_points(&slab(200.0), symmetry, Parameter::Driving).unwrap()[0].driving;
+        let fast =
+            |symmetry| hopf_points(&slab(200.0), symmetry, Parameter::Driving).unwrap()[0].driving;
         assert!((fast(Symmetry::Asymmetric) - 231.309).abs() < 5e-4);
         assert!((fast(Symmetry::Symmetric) - 190.983).abs() < 5e-4);
     }

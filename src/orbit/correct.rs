@@ -155,9 +155,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             let spectrum = Spectrum::new(&linear);
             let known = match gradients.take() {
                 Some(known) => known,
-                None => {
-                    self.gradients(&site, &linear, &along, &spectrum, conditions)?
-                }
+                None => self.gradients(&site, &linear, &along, &spectrum, conditions)?,
             };
             let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions)?;
             let known_here = Known {
@@ -274,7 +272,10 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         let direction = closing.clone().scaled(1.0 / length);
         let change = self.change(site, linear, &direction, spectrum)?;
         let each = indicators.iter();
-        Some(each.map(|i| length * i.change_along::<N>(spectrum, &change)).collect())
+        Some(
+            each.map(|i| length * i.change_along::<N>(spectrum, &change))
+                .collect(),
+        )
     }
 
     /// How the spectrum of an orbit changes in a direction.
@@ -292,7 +293,9 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     ) -> Option<Spectrum> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
-        let moved = linear.beside(&mut self.tracer, &*field, &beside.polygon).ok()?;
+        let moved = linear
+            .beside(&mut self.tracer, &*field, &beside.polygon)
+            .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }
 }

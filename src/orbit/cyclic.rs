@@ -137,7 +137,8 @@ impl<const N: usize, const C: usize> Stacked<N, C> {
                     *block -= v * along.transpose();
                 }
             }
-            let along = (self.right[0].tr_mul(&v[0]) + self.right[1].tr_mul(&v[1])) * (2.0 / squared);
+            let along =
+                (self.right[0].tr_mul(&v[0]) + self.right[1].tr_mul(&v[1])) * (2.0 / squared);
             for (right, v) in self.right.iter_mut().zip(&v) {
                 *right -= v * along.transpose();
             }

@@ -118,7 +118,11 @@ impl OverParted {
     pub fn parted(site: &Site<3>) -> Option<Site<3>> {
         let exchange = |x: &State<3>| State::<3>::new(x[0], x[2], x[1]);
         let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
-            site.polygon.nodes.iter().map(each).collect::<Option<Vec<_>>>()
+            site.polygon
+                .nodes
+                .iter()
+                .map(each)
+                .collect::<Option<Vec<_>>>()
         };
         let nodes = nodes(&parted).or_else(|| nodes(&|x| parted(&exchange(x))))?;
         Some(Site {

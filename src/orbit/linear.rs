@@ -110,11 +110,7 @@ impl<const N: usize> Linear<N> {
     }
 
     /// Nodes and durations from the displacements in the planes.
-    fn motion(
-        &self,
-        u: &[State<N>],
-        gap: impl Fn(usize) -> State<N>,
-    ) -> (Vec<State<N>>, Vec<f64>) {
+    fn motion(&self, u: &[State<N>], gap: impl Fn(usize) -> State<N>) -> (Vec<State<N>>, Vec<f64>) {
         let count = self.frames.len();
         let nodes: Vec<State<N>> = (0..count).map(|k| self.frames[k] * u[k]).collect();
         let durations = (0..count).map(|k| {

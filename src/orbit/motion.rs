@@ -28,7 +28,8 @@ impl<const N: usize> Motion<N> {
     /// them the period stay out of it: near homoclinic orbits and canards they would drown everything else.
     pub fn dot(&self, other: &Self) -> f64 {
         let nodes = self.nodes.iter().zip(&other.nodes).map(|(a, b)| a.dot(b));
-        let parameters = self.parameters[0] * other.parameters[0] + self.parameters[1] * other.parameters[1];
+        let parameters =
+            self.parameters[0] * other.parameters[0] + self.parameters[1] * other.parameters[1];
         nodes.sum::<f64>() / self.nodes.len() as f64 + parameters
     }
 
@@ -96,7 +97,10 @@ impl<const N: usize> Site<N> {
         }
         let pairs = motion.durations.iter().zip(&self.polygon.durations);
         let stretch = pairs.map(|(dt, t)| (dt / t).abs()).fold(0.0, f64::max);
-        let parameters = motion.parameters.iter().fold(0.0, |a: f64, p| a.max(p.abs()));
+        let parameters = motion
+            .parameters
+            .iter()
+            .fold(0.0, |a: f64, p| a.max(p.abs()));
         (nodes.max(parameters), stretch)
     }
 }

@@ -40,12 +40,25 @@ pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Prof
     let both = |tau: f64, w: [f64; 2]| field.slip_rates(&State::<3>::new(tau, w[0], w[1]));
     slip_rate = &both;
     if N == 3 {
-        whole = polygon.nodes.iter().map(|x| State::<3>::new(x[0], x[1], x[N - 1]));
-        seen.go(&*field, whole, &polygon.durations, &mut Tracer::taylor(ROUGH)?)?;
+        whole = polygon
+            .nodes
+            .iter()
+            .map(|x| State::<3>::new(x[0], x[1], x[N - 1]));
+        seen.go(
+            &*field,
+            whole,
+            &polygon.durations,
+            &mut Tracer::taylor(ROUGH)?,
+        )?;
     } else {
         let inner = slab.plane();
         plane = polygon.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
-        seen.go(&*inner, plane, &polygon.durations, &mut Tracer::taylor(ROUGH)?)?;
+        seen.go(
+            &*inner,
+            plane,
+            &polygon.durations,
+            &mut Tracer::taylor(ROUGH)?,
+        )?;
     }
     let (top, w) = seen.top;
     Ok(Profile {
@@ -96,7 +109,9 @@ impl Seen {
                     };
                     turns.clear();
                     series.crossings(&section, None, &mut zeros, &mut turns);
-                    turns.iter().for_each(|turn| self.see(&State::from(turn.state)));
+                    turns
+                        .iter()
+                        .for_each(|turn| self.see(&State::from(turn.state)));
                     // tau stands first, in the variables as in the state.
                     let mut terms = series.variables[0];
                     for (j, c) in terms.iter_mut().enumerate() {

@@ -22,7 +22,13 @@ impl Regular<3> {
             [product[(1, 1)] + 1.0, product[(1, 2)]],
             [product[(2, 1)], product[(2, 2)] + 1.0],
         ];
-        let larger = |a: [f64; 2], b: [f64; 2]| if a[0].hypot(a[1]) > b[0].hypot(b[1]) { a } else { b };
+        let larger = |a: [f64; 2], b: [f64; 2]| {
+            if a[0].hypot(a[1]) > b[0].hypot(b[1]) {
+                a
+            } else {
+                b
+            }
+        };
         let row = larger(shifted[0], shifted[1]);
         let mut u = State::<3>::new(0.0, -row[1], row[0]).normalize();
         let mut round = Vec::with_capacity(maps.len());
@@ -33,7 +39,10 @@ impl Regular<3> {
         let (nodes, durations) = self.linear.carried(&round);
         let polygon = &self.site.polygon;
         let twice = |x: &[State<3>], sign: f64| -> Vec<State<3>> {
-            x.iter().copied().chain(x.iter().map(|x| x * sign)).collect()
+            x.iter()
+                .copied()
+                .chain(x.iter().map(|x| x * sign))
+                .collect()
         };
         let site = Site {
             polygon: Polygon {
@@ -44,7 +53,11 @@ impl Regular<3> {
         };
         let motion = Motion {
             nodes: twice(&nodes, -1.0),
-            durations: durations.iter().copied().chain(durations.iter().map(|t| -t)).collect(),
+            durations: durations
+                .iter()
+                .copied()
+                .chain(durations.iter().map(|t| -t))
+                .collect(),
             parameters: [0.0; 2],
         };
         Some((site, motion.normalised()?))
@@ -67,7 +80,10 @@ impl Regular<2> {
             durations: vec![0.0; polygon.durations.len()],
             parameters: [0.0; 2],
         };
-        let embedded = polygon.nodes.iter().map(|x| State::<3>::new(x[0], x[1], x[1]));
+        let embedded = polygon
+            .nodes
+            .iter()
+            .map(|x| State::<3>::new(x[0], x[1], x[1]));
         let site = Site {
             polygon: Polygon {
                 nodes: embedded.collect(),

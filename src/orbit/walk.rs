@@ -92,7 +92,11 @@ impl Path {
             }
             _ => return None,
         };
-        let sign = if direction.dot(before) < 0.0 { -1.0 } else { 1.0 };
+        let sign = if direction.dot(before) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
         Some(direction.scaled(sign))
     }
 }
@@ -126,7 +130,11 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         length: f64,
     ) -> Option<Self> {
         // Closed in the new variables, with the parameter in which it moves most held.
-        let fixed = if afar[1].abs() > afar[0].abs() && path.free.contains(&1) { 1 } else { path.free[0] };
+        let fixed = if afar[1].abs() > afar[0].abs() && path.free.contains(&1) {
+            1
+        } else {
+            path.free[0]
+        };
         let held = Condition::Parameter(fixed, site.at[fixed]);
         let here = corrector.correct(site, &path.free, &path.and(held), Goal::STEP)?;
         let mut walk = Walk {
@@ -169,12 +177,9 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         let predicted = here.site.moved(direction, length);
         let conditions = self.path.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
-        let next = self.corrector.correct(
-            predicted.clone(),
-            &self.path.free,
-            &conditions,
-            Goal::STEP,
-        )?;
+        let next =
+            self.corrector
+                .correct(predicted.clone(), &self.path.free, &conditions, Goal::STEP)?;
         let along = self.path.direction(&next, direction)?;
         Some(Pace {
             here: next,
@@ -307,11 +312,16 @@ const HALVINGS: usize = 6;
 /// motion that grows by many decades nothing is found.
 fn most_moved<const N: usize>(orbit: &Regular<N>) -> usize {
     let moved = |k: usize| -> f64 {
-        let each = orbit.along.iter().map(|motion| motion.nodes[k].norm_squared());
+        let each = orbit
+            .along
+            .iter()
+            .map(|motion| motion.nodes[k].norm_squared());
         each.sum()
     };
     let count = orbit.site.polygon.nodes.len();
-    (0..count).max_by(|&a, &b| moved(a).total_cmp(&moved(b))).unwrap_or(0)
+    (0..count)
+        .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
+        .unwrap_or(0)
 }
 
 /// ln of the largest growth along every arc.

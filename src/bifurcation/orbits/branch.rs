@@ -8,9 +8,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
 use crate::number::Uncertain;
-use crate::orbit::{
-    Corrector, HopfPoint, OverLoadings, Path, Regular, Switch, Walk, hopf_points,
-};
+use crate::orbit::{Corrector, HopfPoint, OverLoadings, Path, Regular, Switch, Walk, hopf_points};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Tolerance of the walk.
@@ -221,7 +219,13 @@ impl<'r> Branches<'r> {
         const KNOWN: f64 = 1e-12;
         let hopf = &self.hopfs[i];
         let known = |x: f64| Uncertain::new(x, KNOWN * x);
-        let of = |i: usize, x: f64| if self.free == i { known(x) } else { Uncertain::new(x, 0.0) };
+        let of = |i: usize, x: f64| {
+            if self.free == i {
+                known(x)
+            } else {
+                Uncertain::new(x, 0.0)
+            }
+        };
         Special {
             period: Some(known(std::f64::consts::TAU / hopf.frequency)),
             ..Special::new(Label::Hb, of(0, hopf.driving), of(1, hopf.stiffness))

@@ -9,9 +9,7 @@ use super::rows::row;
 use super::sharp::{Exactly, Sharp, rough, sharpened, special};
 use crate::bifurcation::{Event, Label, Seen, Special};
 use crate::error::Result;
-use crate::orbit::{
-    Corrector, Family, Indicator, OverParted, Regular, Site, Walk,
-};
+use crate::orbit::{Corrector, Family, Indicator, OverParted, Regular, Site, Walk};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -269,9 +267,17 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         if let Watch::Value(_, value) = watch {
             let (exact, place) = self.exactly(value);
             if let Some(exact) = exact {
-                let of_row = if place == 0 { &mut row.driving } else { &mut row.stiffness };
+                let of_row = if place == 0 {
+                    &mut row.driving
+                } else {
+                    &mut row.stiffness
+                };
                 *of_row = exact;
-                let of_special = if place == 0 { &mut special.driving } else { &mut special.stiffness };
+                let of_special = if place == 0 {
+                    &mut special.driving
+                } else {
+                    &mut special.stiffness
+                };
                 (of_special.value, of_special.uncertainty) = (exact, 0.0);
             }
         }
@@ -295,12 +301,19 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
     ) -> Option<Label> {
         let Branches { range, .. } = *self.branches;
         let turn = matches!(watch, Watch::Turn(_));
-        if turn && walk.corrector.family.merges(&walk.pace.here.site, &self.last) {
+        if turn
+            && walk
+                .corrector
+                .family
+                .merges(&walk.pace.here.site, &self.last)
+        {
             // At the pitchfork, where the branch meets its mirror image.
             return None;
         }
         let label = match watch {
-            Watch::Value(_, value) if value == range.0 || value == range.1 => return Some(Label::Ep),
+            Watch::Value(_, value) if value == range.0 || value == range.1 => {
+                return Some(Label::Ep);
+            }
             Watch::Value(..) => Label::Uz,
             Watch::Turn(_) => Label::Sn,
             Watch::Indicator(Indicator::Doubling) => Label::Pd,
@@ -367,6 +380,9 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         let field = self.branches.family.slab(site.at).whole();
         let (coefficient, criticality) = normal_form(&*field, &site.polygon, form);
         special.criticality = Some(criticality);
-        special.coefficient = coefficient.uncertainty.is_finite().then_some(coefficient.value);
+        special.coefficient = coefficient
+            .uncertainty
+            .is_finite()
+            .then_some(coefficient.value);
     }
 }

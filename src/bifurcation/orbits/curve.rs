@@ -34,8 +34,12 @@ where
         return Ok(None);
     };
     let mut back = Leg::new(locus, number, None);
-    if let Some(mut walk) = Walk::from(&mut corrector, path.clone(), here.clone(), direction.clone())
-    {
+    if let Some(mut walk) = Walk::from(
+        &mut corrector,
+        path.clone(),
+        here.clone(),
+        direction.clone(),
+    ) {
         back.go(&mut walk)?;
     }
     let (mut course, events) = back.kept();
@@ -70,7 +74,11 @@ where
 {
     let fixed = path.and(Condition::Parameter(1, seed.at[1]));
     let closed: Regular<N> = corrector.correct(seed, &path.free, &fixed, Goal::STEP)?;
-    let own: Vec<_> = path.indicator.map(Condition::Indicator).into_iter().collect();
+    let own: Vec<_> = path
+        .indicator
+        .map(Condition::Indicator)
+        .into_iter()
+        .collect();
     let here = corrector.look(closed.site, &path.free, &own)?;
     let direction = path.direction(&here, &here.along[0])?;
     Some((here.site, direction))

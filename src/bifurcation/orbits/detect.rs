@@ -43,11 +43,7 @@ const BENT: f64 = 0.6;
 
 impl Watch {
     /// The value, scaled to be of order one, and its slope where there is one.
-    fn value<const N: usize>(
-        self,
-        pace: &Pace<N>,
-        slope: Option<&Spectrum>,
-    ) -> (f64, Option<f64>) {
+    fn value<const N: usize>(self, pace: &Pace<N>, slope: Option<&Spectrum>) -> (f64, Option<f64>) {
         match self {
             Watch::Turn(i) => (pace.direction.parameters[i], None),
             Watch::Value(i, value) => (
@@ -132,7 +128,11 @@ fn look<F: Family<N>, const N: usize>(
             found.push(Zero {
                 watch: watches[i],
                 at: a.at + part * length,
-                near: if part < 0.5 { a.pace.clone() } else { b.pace.clone() },
+                near: if part < 0.5 {
+                    a.pace.clone()
+                } else {
+                    b.pace.clone()
+                },
             });
         }
     }
@@ -155,7 +155,11 @@ fn suspicious(a: (f64, Option<f64>), b: (f64, Option<f64>), length: f64) -> bool
         return false;
     }
     let root = discriminant.sqrt();
-    let turns = [(-c + root) / (3.0 * d), (-c - root) / (3.0 * d), -0.5 * u / c];
+    let turns = [
+        (-c + root) / (3.0 * d),
+        (-c - root) / (3.0 * d),
+        -0.5 * u / c,
+    ];
     turns.into_iter().any(|s| {
         let inside = s > 0.0 && s < 1.0;
         let value = p + s * (u + s * (c + s * d));
@@ -193,7 +197,9 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
     for _ in 0..12 {
         let guess = walk.beyond(before, at);
         let start = guess.as_ref().unwrap_or(&near);
-        let found = walk.corrector.correct(start.here.site.clone(), &free, &conditions, goal);
+        let found = walk
+            .corrector
+            .correct(start.here.site.clone(), &free, &conditions, goal);
         if let Some(found) = found {
             let there = before.direction.dot(&found.site.from(&before.here.site));
             if there > -0.1 * length && there < 1.1 * length {

@@ -88,7 +88,9 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         let drivings = [a, b].into_iter().chain(request.at_driving.iter().copied());
         watches.extend(drivings.map(|x| Watch::Value(0, x.ln())));
         let (a, b) = request.stiffness;
-        let stiffnesses = [a, b].into_iter().chain(request.at_stiffness.iter().copied());
+        let stiffnesses = [a, b]
+            .into_iter()
+            .chain(request.at_stiffness.iter().copied());
         watches.extend(stiffnesses.map(|x| Watch::Value(1, x.ln())));
         watches
     }
@@ -158,7 +160,10 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         // The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
         let uncertainty = LEFT * here.residual + 100.0 * ROUGH;
-        let at = here.site.at.map(|x| Uncertain::new(x.exp(), uncertainty * x.exp()));
+        let at = here
+            .site
+            .at
+            .map(|x| Uncertain::new(x.exp(), uncertainty * x.exp()));
         let criticality = if self.request.criticality {
             self.criticality(family, here)
         } else {
@@ -264,7 +269,11 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         let (range, asked, place) = if i == 0 {
             (request.driving, &request.at_driving, &mut special.driving)
         } else {
-            (request.stiffness, &request.at_stiffness, &mut special.stiffness)
+            (
+                request.stiffness,
+                &request.at_stiffness,
+                &mut special.stiffness,
+            )
         };
         let mut values = [range.0, range.1].into_iter().chain(asked.iter().copied());
         if let Some(exact) = values.find(|x| x.ln() == value) {

@@ -1,16 +1,16 @@
 //! Branches of periodic orbits and the curves of their bifurcations.
 
-mod detect;
-mod follow;
-mod sharp;
 mod branch;
 mod chart;
 mod course;
 mod curve;
+mod detect;
+mod follow;
 mod leg;
 mod locus;
 pub mod normal_form;
 mod rows;
+mod sharp;
 mod top;
 
 pub use branch::branch;

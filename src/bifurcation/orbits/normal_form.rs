@@ -112,11 +112,7 @@ impl<'a> ReturnMap<'a> {
     ///
     /// # Errors
     /// Those of [`Tracer::new`].
-    pub fn new(
-        field: &'a dyn VectorField<3>,
-        polygon: &Polygon<3>,
-        node: usize,
-    ) -> Result<Self> {
+    pub fn new(field: &'a dyn VectorField<3>, polygon: &Polygon<3>, node: usize) -> Result<Self> {
         let origin = polygon.nodes[node];
         let along = field.f(&origin).normalize();
         // The axis least along the flow, made orthogonal to it.
@@ -141,7 +137,10 @@ impl<'a> ReturnMap<'a> {
         const FAR: f64 = 0.1;
         let normal = self.frame.column(0).into_owned();
         let start = self.origin + self.frame.column(1) * x[0] + self.frame.column(2) * x[1];
-        let mut y = self.tracer.flow(self.field, &start, self.period, None).ok()?;
+        let mut y = self
+            .tracer
+            .flow(self.field, &start, self.period, None)
+            .ok()?;
         for _ in 0..LANDINGS {
             let off = normal.dot(&(y - self.origin));
             let dt = -off / normal.dot(&self.field.f(&y));
@@ -242,7 +241,9 @@ impl Derivatives {
         let conjugate = q.map(|x| x.conj());
         let a = a.map(Complex::from);
         let one = Matrix2::<Complex<f64>>::identity();
-        let invert = |m: Matrix2<Complex<f64>>, b: C2| m.lu().solve(&b).unwrap_or(b * Complex::from(f64::NAN));
+        let invert = |m: Matrix2<Complex<f64>>, b: C2| {
+            m.lu().solve(&b).unwrap_or(b * Complex::from(f64::NAN))
+        };
         let first = invert(one - a, self.second(&q, &conjugate));
         let second = invert(one * turn * turn - a, self.second(&q, &q));
         let sum = self.third(&q, &q, &conjugate)
@@ -257,7 +258,11 @@ fn eigenvectors(a: &Matrix2<f64>, mu: Complex<f64>) -> (C2, C2) {
     let kernel = |m: Matrix2<Complex<f64>>| {
         // Orthogonal to the larger row.
         let rows = [m.row(0).transpose(), m.row(1).transpose()];
-        let row = if rows[0].norm() > rows[1].norm() { rows[0] } else { rows[1] };
+        let row = if rows[0].norm() > rows[1].norm() {
+            rows[0]
+        } else {
+            rows[1]
+        };
         C2::new(-row[1], row[0]).normalize()
     };
     let shifted = |m: Matrix2<f64>, mu: Complex<f64>| {
@@ -271,7 +276,11 @@ fn eigenvectors(a: &Matrix2<f64>, mu: Complex<f64>) -> (C2, C2) {
 
 fn solve(m: &Matrix2<f64>, b: &C2, singular: bool) -> C2 {
     let svd = m.svd(true, true);
-    let small = if singular { 1e-4 * svd.singular_values.max() } else { 0.0 };
+    let small = if singular {
+        1e-4 * svd.singular_values.max()
+    } else {
+        0.0
+    };
     let part = |b: Vector2<f64>| svd.solve(&b, small).unwrap_or(b * f64::NAN);
     let (re, im) = (part(b.map(|x| x.re)), part(b.map(|x| x.im)));
     C2::new(Complex::new(re[0], im[0]), Complex::new(re[1], im[1]))
@@ -293,7 +302,11 @@ fn weights() -> [[f64; POINTS]; 4] {
         }
         let mut next = [0.0; 4];
         for a in 0..4 {
-            let slope = if a == 0 { 0.0 } else { 2.0 * a as f64 * here[a - 1] };
+            let slope = if a == 0 {
+                0.0
+            } else {
+                2.0 * a as f64 * here[a - 1]
+            };
             next[a] = slope - before[a];
         }
         (before, here) = (here, next);

@@ -105,7 +105,9 @@ pub fn sharpened<F: Family<N>, const N: usize>(
         Uncertain::new(first, if alone { f64::INFINITY } else { uncertainty })
     };
     let fixed = |i: usize| {
-        let by_value = meets.iter().any(|m| matches!(m, Exactly::Parameter(j, _) if *j == i));
+        let by_value = meets
+            .iter()
+            .any(|m| matches!(m, Exactly::Parameter(j, _) if *j == i));
         by_value || !free.contains(&i)
     };
     let parameter = |i: usize| all(&|s| family.parameters(s.site.at)[i], fixed(i));
@@ -143,7 +145,11 @@ impl<const N: usize> Sharp<N> {
         Special {
             period: Some(self.period),
             orbit: Some(SpecialOrbit {
-                nodes: polygon.nodes.iter().map(|x| x.iter().copied().collect()).collect(),
+                nodes: polygon
+                    .nodes
+                    .iter()
+                    .map(|x| x.iter().copied().collect())
+                    .collect(),
                 durations: polygon.durations.clone(),
                 at: *at,
                 meets: self.meets.clone(),
@@ -200,7 +206,11 @@ where
     OverLoadings: Family<N>,
 {
     let family = OverLoadings(*slab);
-    let conditions: Vec<_> = orbit.meets.iter().map(|exactly| exactly.condition()).collect();
+    let conditions: Vec<_> = orbit
+        .meets
+        .iter()
+        .map(|exactly| exactly.condition())
+        .collect();
     let tolerances = Tolerances::equal(TOLERANCE)?;
     let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
     for digits in DIGITS {
@@ -237,7 +247,9 @@ fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
     }
     Site {
         polygon: Polygon {
-            nodes: nodes.map(|x| State::<N>::from_fn(|i, _| cut(x[i]))).collect(),
+            nodes: nodes
+                .map(|x| State::<N>::from_fn(|i, _| cut(x[i])))
+                .collect(),
             durations: orbit.durations.iter().map(|&t| cut(t)).collect(),
         },
         at,

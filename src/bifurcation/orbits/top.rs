@@ -39,7 +39,13 @@ pub fn top<F: Family<N>, const N: usize>(
     let direction = path.direction(&here, &any)?;
     let mut found = Vec::new();
     for width in WIDTHS {
-        found.push(stationary(&mut corrector, near, &direction, width, indicator)?);
+        found.push(stationary(
+            &mut corrector,
+            near,
+            &direction,
+            width,
+            indicator,
+        )?);
     }
     let [first, second] = [&found[0], &found[1]];
     let at = near.moved(&direction, second.s);

@@ -1,0 +1,76 @@
+//! Branches and curves of periodic orbits: what the paper's figures take, on one core, without drawing.
+//!
+//! `figure-7`: both branches of orbits at K = 0.14 with all special points. `figure-12/...`: the curves of torus bifurcations
+//! and period doublings with their resonances, K from 0.05 to the top, every point to 1e-9 or better; then the same with the
+//! pitchforks and folds of orbits, down to K = 0.01. `pitchforks`: from the top to K = 0.005, at slow driving.
+#![allow(missing_docs)]
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use std::hint::black_box;
+use std::ops::ControlFlow::Continue;
+use std::time::Duration;
+use twinslip::bifurcation::{BranchRequest, Event, LocusKind, LocusRequest, Parameter, orbits};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::model::Loading;
+use twinslip::orbit::Slab;
+
+fn slab(stiffness: f64) -> Slab {
+    Slab {
+        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+        interfaces: 2,
+        loading: Loading::new(1.0, stiffness).expect("positive"),
+    }
+}
+
+fn branches(stiffness: f64) -> usize {
+    let request = BranchRequest::new(slab(stiffness), Parameter::Driving, (1e-3, 1e4));
+    let mut special = 0;
+    orbits::branch(&request, &mut |event| {
+        special += usize::from(matches!(event, Event::Special(_)));
+        Continue(())
+    })
+    .expect("branches");
+    special
+}
+
+fn curve(kind: LocusKind, driving: (f64, f64), stiffness: (f64, f64)) -> usize {
+    let request = LocusRequest::new(slab(0.1), kind, driving, stiffness);
+    let mut points = 0;
+    orbits::locus(&request, &mut |event| {
+        points += usize::from(matches!(event, Event::Locus(_)));
+        Continue(())
+    })
+    .expect("a curve");
+    points
+}
+
+const ALL: (f64, f64) = (1e-3, 1e4);
+
+fn figures(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("continuation");
+    group
+        .sample_size(10)
+        .measurement_time(Duration::from_secs(10));
+    group.bench_function("figure-7", |b| b.iter(|| branches(black_box(0.14))));
+    let both = |stiffness| {
+        curve(LocusKind::Torus, ALL, stiffness) + curve(LocusKind::PeriodDoubling, ALL, stiffness)
+    };
+    group.bench_function("figure-12/torus+doubling", |b| {
+        b.iter(|| both(black_box((0.05, 0.4))));
+    });
+    group.bench_function("figure-12/all-to-0.01", |b| {
+        b.iter(|| {
+            let range = black_box((0.01, 0.4));
+            both(range)
+                + curve(LocusKind::OrbitPitchfork, ALL, range)
+                + curve(LocusKind::OrbitSaddleNode, ALL, range)
+        });
+    });
+    group.bench_function("pitchforks", |b| {
+        b.iter(|| curve(LocusKind::OrbitPitchfork, black_box((1e-3, 1.25)), (0.005, 0.4)));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, figures);
+criterion_main!(benches);

@@ -1,0 +1,409 @@
+//! Branches of periodic orbits and the curves of their bifurcations, against points known to twenty digits.
+#![allow(missing_docs)]
+
+use serde_json::Value;
+use std::ops::ControlFlow::Continue;
+use twinslip::bifurcation::{
+    BranchRequest, BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, LocusRow,
+    Parameter, Special, orbits,
+};
+use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::Choice;
+use twinslip::model::Loading;
+use twinslip::number::Uncertain;
+use twinslip::orbit::Slab;
+
+/// Relative bar for parameters, and for periods at small stiffness.
+const BAR: f64 = 1e-10;
+const BAR_OF_PERIOD: f64 = 1e-8;
+
+fn slab(driving: f64, stiffness: f64) -> Slab {
+    Slab {
+        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+        interfaces: 2,
+        loading: Loading::new(driving, stiffness).expect("a loading"),
+    }
+}
+
+fn along_driving(stiffness: f64) -> BranchRequest {
+    BranchRequest::new(slab(1.0, stiffness), Parameter::Driving, (1e-3, 1e4))
+}
+
+fn curve(kind: LocusKind, stiffness: (f64, f64)) -> LocusRequest {
+    LocusRequest::new(slab(1.0, 0.1), kind, (1e-3, 1e4), stiffness)
+}
+
+#[derive(Default)]
+struct Heard {
+    rows: Vec<BranchRow>,
+    points: Vec<LocusRow>,
+    special: Vec<Special>,
+}
+
+impl Heard {
+    fn hear(&mut self, event: Event) {
+        match event {
+            Event::Branch(row) => self.rows.push(row),
+            Event::Locus(row) => self.points.push(row),
+            Event::Special(special) => self.special.push(special),
+        }
+    }
+
+    fn of(&self, label: Label) -> Vec<&Special> {
+        self.special.iter().filter(|s| s.label == label).collect()
+    }
+}
+
+fn branch(request: &BranchRequest) -> Heard {
+    let mut heard = Heard::default();
+    orbits::branch(request, &mut |event| {
+        heard.hear(event);
+        Continue(())
+    })
+    .expect("branches");
+    heard
+}
+
+fn locus(request: &LocusRequest) -> Heard {
+    let mut heard = Heard::default();
+    orbits::locus(request, &mut |event| {
+        heard.hear(event);
+        Continue(())
+    })
+    .expect("curves");
+    heard
+}
+
+fn reference(name: &str) -> Value {
+    let path = format!("{}/tests/data/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(path).expect("the reference");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+fn number(value: &Value) -> f64 {
+    value.as_str().expect("digits").parse().expect("a number")
+}
+
+/// Within the bar, and within what is claimed.
+fn assert_known(what: &str, found: Uncertain, exact: f64, bar: f64) {
+    let error = (found.value - exact).abs();
+    assert!(error <= bar * exact.abs(), "{what}: {found:?}, not {exact}");
+    assert!(
+        error <= found.uncertainty + f64::EPSILON * exact.abs(),
+        "{what}: {found:?} claims too much, {exact}"
+    );
+}
+
+/// The one of this label nearest to a V_H.
+fn nearest<'h>(heard: &'h Heard, label: Label, driving: f64) -> &'h Special {
+    let far = |s: &&&Special| (s.driving.value / driving).ln().abs();
+    let all = heard.of(label);
+    let nearest = all
+        .iter()
+        .min_by(|a, b| far(a).total_cmp(&far(b)))
+        .unwrap_or_else(|| panic!("no {} near {driving}", label.name()));
+    heard
+        .special
+        .iter()
+        .find(|s| std::ptr::eq(*s, **nearest))
+        .expect("it is among them")
+}
+
+fn label(name: &str) -> Label {
+    Label::named(name.split(' ').next().expect("a word")).expect("a label")
+}
+
+#[test]
+fn bifurcations_along_branches_are_where_they_are_known_to_be() {
+    let known = reference("orbit_bifurcations.json");
+    let heard = branch(&along_driving(0.14));
+    for point in known["K=0.14"].as_array().expect("points") {
+        let (name, exact) = (
+            point["type"].as_str().expect("a name"),
+            number(&point["V_H"]),
+        );
+        let found = nearest(&heard, label(name), exact);
+        assert_known(name, found.driving, exact, BAR);
+        assert_known(
+            name,
+            found.period.expect("a period"),
+            number(&point["period"]),
+            BAR,
+        );
+    }
+    for stiffness in [0.13, 0.05] {
+        let heard = branch(&along_driving(stiffness));
+        for point in known["PF"][stiffness.to_string()]["PF"]
+            .as_array()
+            .expect("points")
+        {
+            let exact = number(&point["V_H"]);
+            let found = nearest(&heard, Label::Pf, exact);
+            assert_known("PF", found.driving, exact, BAR);
+            assert_known(
+                "PF",
+                found.period.expect("a period"),
+                number(&point["period"]),
+                BAR,
+            );
+        }
+        if stiffness == 0.05 {
+            let exact = number(&known["SN"][0]["V_H"]);
+            assert_known("SN", nearest(&heard, Label::Sn, exact).driving, exact, BAR);
+        }
+    }
+}
+
+fn names(heard: &Heard) -> Vec<(Label, String)> {
+    let names = heard.special.iter().filter(|s| s.label != Label::Ep);
+    names
+        .map(|s| (s.label, format!("{:.6e}", s.driving.value)))
+        .collect()
+}
+
+#[test]
+fn step_limits_change_no_list() {
+    for stiffness in [0.14, 0.13, 0.1] {
+        let list = |step: f64| {
+            let request = BranchRequest {
+                step,
+                ..along_driving(stiffness)
+            };
+            names(&branch(&request))
+        };
+        let usual = list(1.0);
+        assert_eq!(usual, list(4.0), "K = {stiffness}, longer steps");
+        assert_eq!(usual, list(0.25), "K = {stiffness}, shorter steps");
+        assert!(
+            usual.iter().all(|(label, _)| *label != Label::Mx),
+            "{usual:?}"
+        );
+    }
+}
+
+#[test]
+fn nothing_is_invented() {
+    for stiffness in [0.14, 0.135] {
+        let request = BranchRequest {
+            symmetry: Some(Symmetry::Symmetric),
+            ..along_driving(stiffness)
+        };
+        let heard = branch(&request);
+        assert!(heard.of(Label::Pf).is_empty(), "K = {stiffness}");
+        assert_eq!(heard.of(Label::Hb).len(), 2, "K = {stiffness}");
+    }
+    assert!(branch(&along_driving(0.45)).special.is_empty());
+    // No symmetric orbit, and on the asymmetric branch nothing but its two ends.
+    let heard = branch(&along_driving(0.3));
+    let labels: Vec<Label> = heard.special.iter().map(|s| s.label).collect();
+    assert_eq!(labels, [Label::Hb, Label::Hb]);
+}
+
+#[test]
+fn rows_are_orbits() {
+    use twinslip::orbit::{Accuracy, Begin, Query, find};
+    let request = BranchRequest {
+        at: vec![0.2, 10.0],
+        symmetry: Some(Symmetry::Asymmetric),
+        ..along_driving(0.14)
+    };
+    let heard = branch(&request);
+    for &driving in &request.at {
+        let row = heard
+            .rows
+            .iter()
+            .find(|row| row.driving == driving)
+            .expect("a row");
+        assert_eq!(row.label, Some(Label::Uz));
+        let query = Query {
+            symmetry: Symmetry::Asymmetric,
+            begin: Begin::Anywhere,
+        };
+        let accuracy = Accuracy::of(Choice::Taylor);
+        let orbit = find(&slab(driving, 0.14), &query, &accuracy)
+            .expect("an orbit")
+            .orbit;
+        let period = row.period.expect("a period");
+        assert!((period / orbit.period.value - 1.0).abs() < 1e-12);
+        assert!((row.stress_range.0 - orbit.stress_min.value).abs() < 1e-6);
+        assert!((row.stress_range.1 - orbit.stress_max.value).abs() < 1e-6);
+        let logs = &orbit.floquet.multipliers;
+        for (found, exact) in row.ln_abs_multiplier.iter().zip(logs) {
+            assert!((found.expect("ln |mu|") - exact.ln_abs.value).abs() < 1e-6);
+        }
+        assert_eq!(row.verdict, orbit.verdict());
+    }
+}
+
+#[test]
+fn branches_along_the_stiffness_meet_those_along_the_driving_velocity() {
+    let known = reference("orbit_bifurcations.json");
+    let torus = &known["K=0.14"][0];
+    let driving = number(&torus["V_H"]);
+    let request = BranchRequest {
+        symmetry: Some(Symmetry::Asymmetric),
+        ..BranchRequest::new(slab(driving, 1.0), Parameter::Stiffness, (0.08, 0.4))
+    };
+    let heard = branch(&request);
+    let found = heard.of(Label::Tr);
+    let here = found
+        .iter()
+        .find(|s| (s.stiffness.value - 0.14).abs() < 1e-6);
+    assert_known("K", here.expect("the torus").stiffness, 0.14, BAR);
+}
+
+#[test]
+fn resonances_and_tops_are_where_they_are_known_to_be() {
+    let known = reference("orbit_bifurcations.json");
+    let heard = locus(&curve(LocusKind::Torus, (0.03, 0.4)));
+    for point in known["resonances"].as_array().expect("points") {
+        let name = match point["name"].as_str().expect("a name") {
+            "1:4" => Label::R4,
+            "1:3" => Label::R3,
+            _ => Label::R2,
+        };
+        let exact = number(&point["V_H"]);
+        let found = nearest(&heard, name, exact);
+        assert_known("V_H", found.driving, exact, BAR);
+        assert_known("K", found.stiffness, number(&point["K"]), BAR);
+        assert_known(
+            "T",
+            found.period.expect("a period"),
+            number(&point["period"]),
+            BAR,
+        );
+    }
+    let top = &known["TR_top"];
+    let found = nearest(&heard, Label::Top, 0.1139);
+    assert_known("V_H of the top", found.driving, number(&top["V_H"]), BAR);
+    assert_known("K of the top", found.stiffness, number(&top["K"]), BAR);
+    // The same resonance on the other curve that ends there.
+    let doublings = locus(&curve(LocusKind::PeriodDoubling, (0.09, 0.4)));
+    let (here, there) = (
+        nearest(&heard, Label::R2, 0.099),
+        nearest(&doublings, Label::R2, 0.099),
+    );
+    assert!((here.stiffness.value / there.stiffness.value - 1.0).abs() < BAR);
+    // The angle falls to pi at the resonance 1:2.
+    let angles = heard.points.iter().filter_map(|point| point.angle_over_pi);
+    assert!(angles.clone().fold(0.0, f64::max) > 0.999);
+    // Pitchforks of orbits: K = 0.134253359245 at V_H = 1.250228463, by an independent computation to so many digits.
+    let pitchforks = locus(&curve(LocusKind::OrbitPitchfork, (0.1, 0.4)));
+    let top = nearest(&pitchforks, Label::Top, 1.25);
+    assert!((top.driving.value / 1.250228463 - 1.0).abs() < 1e-9);
+    assert!((top.stiffness.value / 0.134253359245 - 1.0).abs() < 1e-11);
+    assert!(top.driving.uncertainty < BAR * top.driving.value, "{top:?}");
+}
+
+#[test]
+fn curves_go_down_to_small_stiffness() {
+    let known = reference("small_stiffness.json");
+    let kinds = [
+        (LocusKind::Torus, "TR"),
+        (LocusKind::PeriodDoubling, "PD"),
+        (LocusKind::OrbitPitchfork, "PF"),
+        (LocusKind::OrbitSaddleNode, "SN"),
+    ];
+    for (kind, name) in kinds {
+        let request = LocusRequest {
+            at_stiffness: vec![0.1, 0.05, 0.02],
+            ..curve(kind, (0.005, 0.4))
+        };
+        let heard = locus(&request);
+        for point in known["points"].as_array().expect("points") {
+            if point["type"] != name {
+                continue;
+            }
+            let (stiffness, exact) = (number(&point["K"]), number(&point["V_H"]));
+            let what = format!("{} at K = {stiffness}", point["curve"]);
+            let here = |s: &&Special| {
+                s.stiffness.value == stiffness
+                    && (s.driving.value / exact - 1.0).abs() < 1e-7
+                    && (s.period.map_or(0.0, |t| t.value) / number(&point["period"]) - 1.0).abs()
+                        < 1e-3
+            };
+            let Some(found) = heard.special.iter().find(here) else {
+                // There the pitchfork is 2.6e-24 away.
+                assert_eq!(what, "\"PD right\" at K = 0.005", "missing");
+                continue;
+            };
+            assert_known(&what, found.driving, exact, BAR);
+            let period = number(&point["period"]);
+            assert_known(
+                &what,
+                found.period.expect("a period"),
+                period,
+                BAR_OF_PERIOD,
+            );
+        }
+    }
+}
+
+#[test]
+fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
+    let request = BranchRequest {
+        symmetry: Some(Symmetry::Asymmetric),
+        doublings: 1,
+        ..along_driving(0.14)
+    };
+    let heard = branch(&request);
+    let torus = nearest(&heard, Label::Tr, 0.0767);
+    assert_eq!(torus.criticality, Some(Criticality::Supercritical));
+    for driving in [0.0884, 0.0998] {
+        let doubling = nearest(&heard, Label::Pd, driving);
+        assert_eq!(doubling.criticality, Some(Criticality::Subcritical));
+    }
+    // Between both doublings the orbit is unstable by a multiplier below -1. The orbits of twice the period lie outside,
+    // where it is not, and are unstable themselves.
+    let known = nearest(&heard, Label::Pd, 0.0884);
+    let twice = 2.0 * known.period.expect("a period").value;
+    let doubled: Vec<&BranchRow> = heard
+        .rows
+        .iter()
+        .filter(|row| (row.period.expect("a period") / twice - 1.0).abs() < 1e-3)
+        .collect();
+    assert!(!doubled.is_empty());
+    for row in doubled {
+        assert!(row.driving < known.driving.value, "{row:?}");
+        assert_eq!(row.verdict, Verdict::Unstable);
+    }
+}
+
+#[test]
+fn a_second_method_finds_the_same_points() {
+    let request = BranchRequest {
+        symmetry: Some(Symmetry::Asymmetric),
+        ..along_driving(0.14)
+    };
+    let heard = branch(&request);
+    let mut checked = 0;
+    for special in &heard.special {
+        let difference =
+            orbits::crosscheck(&request.slab, None, special, Choice::Rodas5p).expect("a point");
+        if let Some([driving, stiffness, period]) = difference {
+            assert!(
+                driving.abs() < 1e-8 && period.abs() < 1e-8,
+                "{special:?}: {difference:?}"
+            );
+            assert_eq!(stiffness, 0.0);
+            checked += 1;
+        }
+    }
+    assert_eq!(checked, 4);
+}
+
+#[test]
+fn who_has_heard_enough_is_left_alone() {
+    let mut rows = 0;
+    orbits::branch(&along_driving(0.14), &mut |event| {
+        rows += usize::from(matches!(event, Event::Branch(_)));
+        if rows == 5 {
+            std::ops::ControlFlow::Break(())
+        } else {
+            Continue(())
+        }
+    })
+    .expect("branches");
+    assert_eq!(rows, 5);
+}
