@@ -298,6 +298,26 @@ fn ranges_are_honoured_and_may_run_backwards() {
     assert!(ends.iter().all(|s| s.driving.value == 1000.0));
 }
 
+/// A Hopf point next to the pitchfork, from whichever side the branch comes: it ends just behind.
+#[test]
+fn a_hopf_point_next_to_the_end_of_a_branch() {
+    for stiffness in [1e-4, 2e-4, 5e-4, 1e-3] {
+        for range in [(1e-3, 10.0), (10.0, 1e-3), (1e6, 1e-4)] {
+            for step in [0.5, 1.0, 8.0] {
+                let heard = branches(&BranchRequest {
+                    range,
+                    step,
+                    symmetry: Some(Symmetry::Asymmetric),
+                    ..along_driving(stiffness)
+                });
+                let below = |s: &&&Special| s.driving.value < 1.0;
+                let found = heard.only(Label::Hb).iter().filter(below).count();
+                assert_eq!(found, 1, "K = {stiffness}, {range:?}, step {step}");
+            }
+        }
+    }
+}
+
 #[test]
 fn along_the_stiffness() {
     // the Hopf points of the other direction, met crosswise

@@ -265,7 +265,7 @@ fn unbounded(mut point: Hopf) -> Hopf {
 impl Watch for Trace<'_, '_> {
     fn tests(&self, point: &Point) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
-        let k = self.points.closed_form(place.rates);
+        let k = self.points.along(point, place.rates);
         let all = self.meanings();
         Ok(all
             .iter()
