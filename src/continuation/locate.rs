@@ -1,6 +1,7 @@
 //! What lies within one step: zeros of the test functions, wanted values, the ends of the range.
 
 use super::correct::{Plane, joined, onto, tangent};
+use super::signs::{crosses, next_fraction, vertex};
 use super::{Mark, Point, Settings, Watch, ZeroProblem};
 use crate::error::Result;
 use nalgebra::DVector;
@@ -9,8 +10,10 @@ use nalgebra::DVector;
 const LOOKS: usize = 12;
 /// A dip is looked at where the parabola falls below this part of the value in the middle.
 const DIP: f64 = 0.5;
-/// Nearer to a known value than this part of the step nothing is looked at.
-const NEAR: f64 = 0.01;
+/// And where it falls below this part of both values outside: the parabola itself errs by some of these.
+const DEEP: f64 = 0.02;
+/// Nearer to a known value than this part of the step nothing is looked at: two zeros closer than that stay unseen.
+const NEAR: f64 = 1e-7;
 /// Where points can no longer be corrected, as next to a branch point, the chord of a bracket narrower than this part of the
 /// step is as good.
 const NARROW: f64 = 1e-4;
@@ -211,7 +214,8 @@ impl Step<'_> {
                 let Some((at, value)) = vertex(s, f) else {
                     continue;
                 };
-                let low = value * f[1].signum() < DIP * f[1].abs();
+                let low = value * f[1].signum() < DIP * f[1].abs()
+                    || value.abs() < DEEP * f[0].abs().min(f[2].abs());
                 let fresh = samples
                     .iter()
                     .all(|x| (x.s - at).abs() > NEAR * self.length);
@@ -227,10 +231,12 @@ impl Step<'_> {
     fn zero(&self, watch: &dyn Watch, i: usize, a: &Sample, b: &Sample) -> Result<Sample> {
         let (mut a, mut b) = (b.clone(), a.clone());
         let mut best = a.clone();
-        if best.values[i] == 0.0 {
+        // both ends may be one point, where another function was found to be zero
+        let apart = (a.s - b.s).abs() > 8.0 * f64::EPSILON * self.length;
+        if best.values[i] == 0.0 || !apart {
             return Ok(best);
         }
-        let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(NEAR, 1.0 - NEAR);
+        let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(0.01, 0.99);
         for _ in 0..EVALUATIONS {
             let x = match self.sample(watch, &a, &b, a.s + t * (b.s - a.s)) {
                 Ok(x) => x,
@@ -278,11 +284,6 @@ impl Step<'_> {
     }
 }
 
-/// Whether a function has a zero after one value and up to the other: one at the first belongs to what came before.
-fn crosses(a: f64, b: f64) -> bool {
-    a * b < 0.0 || (b == 0.0 && a != 0.0 && a.is_finite())
-}
-
 /// Where the i-th function is zero on the chord between two samples.
 fn chord(a: &Sample, b: &Sample, i: usize) -> Sample {
     let t = a.values[i] / (a.values[i] - b.values[i]);
@@ -321,33 +322,5 @@ fn meaning(settings: &Settings, i: usize, count: usize) -> (Mark, Option<f64>) {
         (Mark::Lowest, Some(settings.range.0))
     } else {
         (Mark::Highest, Some(settings.range.1))
-    }
-}
-
-/// Place and value of the extremum, inside, of the parabola through three values of one sign.
-fn vertex(s: [f64; 3], f: [f64; 3]) -> Option<(f64, f64)> {
-    let one_sign = f[0] * f[1] > 0.0 && f[1] * f[2] > 0.0;
-    if !one_sign {
-        return None;
-    }
-    let left = (f[1] - f[0]) / (s[1] - s[0]);
-    let right = (f[2] - f[1]) / (s[2] - s[1]);
-    let curvature = (right - left) / (s[2] - s[0]);
-    let slope = left + curvature * (s[1] - s[0]);
-    let towards = -0.5 * slope / curvature;
-    let at = s[1] + towards;
-    let value = f[1] + 0.5 * slope * towards;
-    let inside = at > s[0] && at < s[2] && value.is_finite() && curvature * f[1] > 0.0;
-    inside.then_some((at, value))
-}
-
-/// Where in the bracket to look next, as a part of it from its first end.
-fn next_fraction([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> f64 {
-    let xi = (a - b) / (c - b);
-    let phi = (fa - fb) / (fc - fb);
-    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
-        fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    } else {
-        0.5
     }
 }

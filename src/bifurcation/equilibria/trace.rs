@@ -100,7 +100,8 @@ impl Trace<'_, '_> {
                 let l_1 = points.lyapunov(place.driving, place.rates);
                 l_1.sign().map_or(f64::NAN, |_| l_1.value / l_1.scale)
             }
-            Meaning::BogdanovTakens => points.frequency_squared(place.rates, k) / k,
+            Meaning::BogdanovTakens if k > 0.0 => points.frequency_squared(place.rates, k) / k,
+            Meaning::BogdanovTakens => f64::NAN,
             Meaning::ZeroHopf => {
                 let [one, two] = place.rates.map(|v| Interface::at(points.law, v));
                 routh_hurwitz(&one, &two, k)[0]
