@@ -281,6 +281,47 @@ fn ranges_are_honoured_and_may_run_backwards() {
     assert!(ends.iter().all(|s| s.driving.value == 1000.0));
 }
 
+/// Just below the top of the symmetric curve, by 2e-12, there are two Hopf points that differ by 2e-5 of V_H.
+#[test]
+fn two_hopf_points_next_to_each_other() {
+    for step in [0.5, 1.0, 3.0] {
+        let request = BranchRequest {
+            symmetry: Some(Symmetry::Symmetric),
+            step,
+            ..along_driving(0.196846504445)
+        };
+        let heard = branches(&request);
+        let found: Vec<_> = heard
+            .only(Label::Hb)
+            .iter()
+            .map(|s| s.driving.value)
+            .collect();
+        assert_eq!(found.len(), 2, "step {step}");
+        let apart = found[1] / found[0] - 1.0;
+        assert!(apart > 1e-6 && apart < 1e-4, "{found:?}");
+    }
+}
+
+/// A Hopf point next to the pitchfork, from whichever side the branch comes: it ends just behind.
+#[test]
+fn a_hopf_point_next_to_the_end_of_a_branch() {
+    for stiffness in [1e-4, 2e-4, 5e-4, 1e-3] {
+        for range in [(1e-3, 10.0), (10.0, 1e-3), (1e6, 1e-4)] {
+            for step in [0.5, 1.0, 8.0] {
+                let heard = branches(&BranchRequest {
+                    range,
+                    step,
+                    symmetry: Some(Symmetry::Asymmetric),
+                    ..along_driving(stiffness)
+                });
+                let below = |s: &&&Special| s.driving.value < 1.0;
+                let found = heard.only(Label::Hb).iter().filter(below).count();
+                assert_eq!(found, 1, "K = {stiffness}, {range:?}, step {step}");
+            }
+        }
+    }
+}
+
 #[test]
 fn along_the_stiffness() {
     // the Hopf points of the other direction, met crosswise

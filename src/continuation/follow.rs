@@ -116,7 +116,7 @@ impl Walk<'_> {
     fn step(&mut self, here: &Point) -> ControlFlow<Stop, Point> {
         loop {
             match self.tried(here) {
-                Ok(Some((next, met))) => return self.taken(here, next, met),
+                Ok(Some((next, met))) => return self.taken(next, met),
                 Ok(None) if self.length > self.settings.shortest_step => self.length *= SHORTER,
                 Err(_) if self.length > self.settings.shortest_step => self.length *= SHORTER,
                 failed => {
@@ -169,7 +169,7 @@ impl Walk<'_> {
         Ok(Some((next, met)))
     }
 
-    fn taken(&mut self, here: &Point, next: Point, met: Vec<Met>) -> ControlFlow<Stop, Point> {
+    fn taken(&mut self, next: Point, met: Vec<Met>) -> ControlFlow<Stop, Point> {
         for Met { point, mark, .. } in met {
             if let ControlFlow::Break(stop) = self.show(&point, mark) {
                 return ControlFlow::Break(stop);
@@ -184,7 +184,6 @@ impl Walk<'_> {
         let (lowest, highest) = self.settings.range;
         if !(lowest..=highest).contains(&next.lambda) {
             // The curve left the range at the point where it began.
-            debug_assert!(!(here.lambda > lowest && here.lambda < highest));
             return ControlFlow::Break(Stop::RangeEnd);
         }
         if let ControlFlow::Break(stop) = self.show(&next, Mark::Step) {

@@ -1,6 +1,7 @@
 //! What lies within one step: zeros of the test functions, wanted values, the ends of the range.
 
 use super::correct::{Plane, joined, onto, tangent};
+use super::signs::{crosses, next_fraction, vertex};
 use super::{Mark, Point, Settings, Watch, ZeroProblem};
 use crate::error::Result;
 use nalgebra::DVector;
@@ -9,8 +10,10 @@ use nalgebra::DVector;
 const LOOKS: usize = 12;
 /// A dip is looked at where the parabola falls below this part of the value in the middle.
 const DIP: f64 = 0.5;
-/// Nearer to a known value than this part of the step nothing is looked at.
-const NEAR: f64 = 0.01;
+/// And where it falls below this part of both values outside: the parabola itself errs by some of these.
+const DEEP: f64 = 0.02;
+/// Nearer to a known value than this part of the step nothing is looked at: two zeros closer than that stay unseen.
+const NEAR: f64 = 1e-7;
 /// Where points can no longer be corrected, as next to a branch point, the chord of a bracket narrower than this part of the
 /// step is as good.
 const NARROW: f64 = 1e-4;
@@ -61,7 +64,7 @@ impl Step<'_> {
         Ok(Sample { s, point, values })
     }
 
-    /// Hermite's cubic between two samples, and its direction.
+    /// Hermite's cubic between two samples, and the mean of their tangents.
     fn between(&self, a: &Sample, b: &Sample, s: f64) -> (DVector<f64>, DVector<f64>) {
         let h = b.s - a.s;
         let (t, r) = ((s - a.s) / h, (b.s - s) / h);
@@ -69,11 +72,10 @@ impl Step<'_> {
         let slope = |x: &Sample| &x.point.tangent * (h / x.point.tangent.dot(&self.from.tangent));
         let (d0, d1) = (slope(a), slope(b));
         let across = x1 - &x0;
-        let place =
-            x0 + &across * (t * t * (3.0 - 2.0 * t)) + &d0 * (t * r * r) - &d1 * (t * t * r);
-        let direction =
-            across * (6.0 * t * r) + d0 * (r * (1.0 - 3.0 * t)) - d1 * (t * (2.0 - 3.0 * t));
-        let length = direction.norm().copysign(h);
+        let place = x0 + &across * (t * t * (3.0 - 2.0 * t)) + d0 * (t * r * r) - d1 * (t * t * r);
+        // of places that differ by rounding the difference has no direction
+        let direction = &a.point.tangent * r + &b.point.tangent * t;
+        let length = direction.norm();
         (place, direction / length)
     }
 
@@ -126,9 +128,13 @@ impl Step<'_> {
 
     /// All that the step meets, in order; `first` is where the curve began, unless it begins here.
     pub fn met(&self, watch: &dyn Watch, first: Option<&Point>) -> Result<Vec<Met>> {
-        let [from, to] = self.ends(watch)?;
+        let [from, mut to] = self.ends(watch)?;
         let closing = first.and_then(|first| self.closing([&from, &to], first));
-        let middle = self.sample(watch, &from, &to, 0.5 * self.length)?;
+        // what lies behind an end of the curve is of no interest, and its mirror image before it may hide in it
+        if let Some(end) = self.end(watch, &from, &to)? {
+            to = end;
+        }
+        let middle = self.sample(watch, &from, &to, 0.5 * to.s)?;
         let mut samples = vec![from, middle, to];
         for _ in 0..LOOKS {
             let Some(s) = self.dip(&samples) else { break };
@@ -136,19 +142,66 @@ impl Step<'_> {
             let new = self.sample(watch, &samples[place - 1], &samples[place], s)?;
             samples.insert(place, new);
         }
-        let mut found = Vec::new();
-        for pair in samples.windows(2) {
-            for i in 0..pair[0].values.len() {
-                let (a, b) = (pair[0].values[i], pair[1].values[i]);
-                if a * b < 0.0 || (b == 0.0 && a != 0.0 && a.is_finite()) {
-                    found.push(self.zero(watch, i, &pair[0], &pair[1])?);
-                }
-            }
-        }
+        let mut found = self.zeros(watch, samples)?;
         found.extend(closing);
         // the curve's end last, so that what lies on it is met
         let after = |mark: Mark| matches!(mark, Mark::Lowest | Mark::Highest | Mark::Begin);
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(after(a.mark).cmp(&after(b.mark))));
+        Ok(found)
+    }
+
+    /// The first end of the curve, moved behind by next to nothing, so that it is found again.
+    fn end(&self, watch: &dyn Watch, from: &Sample, to: &Sample) -> Result<Option<Sample>> {
+        /// Part of the step.
+        const BEHIND: f64 = 1e-3;
+        let functions = from.values.len();
+        let mut nearest = None;
+        for i in 0..functions {
+            let ends = match meaning(self.settings, i, functions).0 {
+                Mark::Zero(i) => watch.ends(i),
+                mark => matches!(mark, Mark::Lowest | Mark::Highest),
+            };
+            if ends && crosses(from.values[i], to.values[i]) {
+                let s = self.zero(watch, i, from, to)?.s + BEHIND * self.length;
+                nearest = Some(nearest.map_or(s, |other: f64| other.min(s)));
+            }
+        }
+        let within = nearest.filter(|s| *s < self.length);
+        within.map(|s| self.sample(watch, from, to, s)).transpose()
+    }
+
+    /// The zeros of all functions. At each one all others are looked at too.
+    fn zeros(&self, watch: &dyn Watch, samples: Vec<Sample>) -> Result<Vec<Met>> {
+        /// New zeros come to light by others, and these by others again: not often.
+        const ROUNDS: usize = 4;
+        let functions = samples[0].values.len();
+        // with each sample the function of which it is a zero: that one's sign there is rounding
+        let mut known: Vec<(Sample, Option<usize>)> =
+            samples.into_iter().map(|x| (x, None)).collect();
+        let mut found = Vec::new();
+        for _ in 0..ROUNDS {
+            let mut new = Vec::new();
+            for i in 0..functions {
+                let others: Vec<_> = known.iter().filter(|(_, of)| *of != Some(i)).collect();
+                for pair in others.windows(2) {
+                    let (a, b) = (&pair[0].0, &pair[1].0);
+                    let inside = |(x, of): &(Sample, Option<usize>)| {
+                        *of == Some(i) && x.s > a.s && x.s <= b.s
+                    };
+                    if crosses(a.values[i], b.values[i]) && !known.iter().any(inside) {
+                        new.push((self.zero(watch, i, a, b)?, Some(i)));
+                    }
+                }
+            }
+            if new.is_empty() {
+                break;
+            }
+            for (sample, of) in &new {
+                found.push(self.landed(of.unwrap_or(0), sample.clone())?);
+            }
+            known.extend(new);
+            known.sort_by(|(a, _), (b, _)| a.s.total_cmp(&b.s));
+        }
         Ok(found)
     }
 
@@ -161,7 +214,8 @@ impl Step<'_> {
                 let Some((at, value)) = vertex(s, f) else {
                     continue;
                 };
-                let low = value * f[1].signum() < DIP * f[1].abs();
+                let low = value * f[1].signum() < DIP * f[1].abs()
+                    || value.abs() < DEEP * f[0].abs().min(f[2].abs());
                 let fresh = samples
                     .iter()
                     .all(|x| (x.s - at).abs() > NEAR * self.length);
@@ -174,18 +228,20 @@ impl Step<'_> {
     }
 
     /// The zero of one function between two samples, by inverse quadratic interpolation in a bracket (Chandrupatla 1997).
-    fn zero(&self, watch: &dyn Watch, i: usize, a: &Sample, b: &Sample) -> Result<Met> {
+    fn zero(&self, watch: &dyn Watch, i: usize, a: &Sample, b: &Sample) -> Result<Sample> {
         let (mut a, mut b) = (b.clone(), a.clone());
         let mut best = a.clone();
-        if best.values[i] == 0.0 {
-            return self.landed(i, best);
+        // both ends may be one point, where another function was found to be zero
+        let apart = (a.s - b.s).abs() > 8.0 * f64::EPSILON * self.length;
+        if best.values[i] == 0.0 || !apart {
+            return Ok(best);
         }
-        let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(NEAR, 1.0 - NEAR);
+        let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(0.01, 0.99);
         for _ in 0..EVALUATIONS {
             let x = match self.sample(watch, &a, &b, a.s + t * (b.s - a.s)) {
                 Ok(x) => x,
                 Err(_) if (b.s - a.s).abs() < NARROW * self.length => {
-                    return self.landed(i, chord(&a, &b, i));
+                    return Ok(chord(&a, &b, i));
                 }
                 Err(error) => return Err(error),
             };
@@ -208,7 +264,7 @@ impl Step<'_> {
             let margin = (limit / width).min(0.5);
             t = t.clamp(margin, 1.0 - margin);
         }
-        self.landed(i, best)
+        Ok(best)
     }
 
     /// A zero as what it means; with exactly the value of lambda where it means one.
@@ -266,33 +322,5 @@ fn meaning(settings: &Settings, i: usize, count: usize) -> (Mark, Option<f64>) {
         (Mark::Lowest, Some(settings.range.0))
     } else {
         (Mark::Highest, Some(settings.range.1))
-    }
-}
-
-/// Place and value of the extremum, inside, of the parabola through three values of one sign.
-fn vertex(s: [f64; 3], f: [f64; 3]) -> Option<(f64, f64)> {
-    let one_sign = f[0] * f[1] > 0.0 && f[1] * f[2] > 0.0;
-    if !one_sign {
-        return None;
-    }
-    let left = (f[1] - f[0]) / (s[1] - s[0]);
-    let right = (f[2] - f[1]) / (s[2] - s[1]);
-    let curvature = (right - left) / (s[2] - s[0]);
-    let slope = left + curvature * (s[1] - s[0]);
-    let towards = -0.5 * slope / curvature;
-    let at = s[1] + towards;
-    let value = f[1] + 0.5 * slope * towards;
-    let inside = at > s[0] && at < s[2] && value.is_finite() && curvature * f[1] > 0.0;
-    inside.then_some((at, value))
-}
-
-/// Where in the bracket to look next, as a part of it from its first end.
-fn next_fraction([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> f64 {
-    let xi = (a - b) / (c - b);
-    let phi = (fa - fb) / (fc - fb);
-    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
-        fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
-    } else {
-        0.5
     }
 }

@@ -12,6 +12,7 @@ mod correct;
 mod follow;
 mod locate;
 mod settings;
+mod signs;
 
 pub use follow::follow;
 pub use settings::Settings;

@@ -51,9 +51,3 @@ pub(super) fn symmetric_frequency<T: Real>(one: &Interface<T>, k: T, interfaces:
 pub(super) fn asymmetric_frequency<T: Real>(one: &Interface<T>, two: &Interface<T>, k: T) -> T {
     routh_hurwitz(one, two, k)[1]
 }
-
-/// c_2 c_1 - c_0, which changes its sign where a pair of eigenvalues crosses; divided by the size of its terms.
-pub(super) fn oscillation(one: &Interface<f64>, two: &Interface<f64>, k: f64) -> f64 {
-    let [c_2, c_1, c_0] = routh_hurwitz(one, two, k);
-    (c_2 * c_1 - c_0) / ((c_2 * c_1).abs() + c_0.abs())
-}

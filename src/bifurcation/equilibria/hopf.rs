@@ -7,6 +7,7 @@
 use super::crossing::{self, Root};
 use super::curves::Curve;
 use super::inputs::rounding;
+use crate::continuation::Point;
 use crate::equilibrium::Interface;
 use crate::friction::AnyLaw;
 use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain, bracketed_root};
@@ -39,6 +40,16 @@ impl HopfPoints<'_> {
                 crossing::asymmetric(&one, &two, self.root)
             }
         }
+    }
+
+    /// K of the closed form, as it is watched along a curve: where nothing but rounding is left of it, at a pitchfork, its limit.
+    pub fn along(&self, point: &Point, rates: [f64; 2]) -> f64 {
+        /// z this close to a pitchfork; K is a quadratic function of it.
+        const CLOSE: f64 = 1e-6;
+        if self.curve == Curve::Asymmetric && point.u[0].abs() < CLOSE {
+            return 0.0;
+        }
+        self.closed_form(rates)
     }
 
     /// K of the closed form with its derivative in V_H.

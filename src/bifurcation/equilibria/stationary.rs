@@ -3,6 +3,7 @@
 use super::hopf::bound;
 use super::inputs::rounding;
 use crate::bifurcation::Criticality;
+use crate::continuation::Point;
 use crate::equilibrium::{Interface, routh_hurwitz};
 use crate::friction::{AnyLaw, Extremum, Law, steady_slope, steady_stress};
 use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
@@ -60,6 +61,18 @@ pub(super) struct Fold {
     pub rates: [f64; 2],
     /// Which of the rates is the one nearer to its extremum.
     unknown: usize,
+}
+
+/// Changes its sign at a fold of the asymmetric states and, as it is even in z, not at a pitchfork. Nothing but rounding so
+/// close to one that it is not told.
+pub(super) fn fold_test(point: &Point) -> f64 {
+    const CLOSE: f64 = 1e-6;
+    let z = point.u[0];
+    if z.abs() < CLOSE {
+        f64::NAN
+    } else {
+        point.lambda_slope() / z
+    }
 }
 
 /// The rate near `guess` with the same stress as `rate`, and how far off it may be.

@@ -100,7 +100,8 @@ impl Trace<'_, '_> {
                 let l_1 = points.lyapunov(place.driving, place.rates);
                 l_1.sign().map_or(f64::NAN, |_| l_1.value / l_1.scale)
             }
-            Meaning::BogdanovTakens => points.frequency_squared(place.rates, k) / k,
+            Meaning::BogdanovTakens if k > 0.0 => points.frequency_squared(place.rates, k) / k,
+            Meaning::BogdanovTakens => f64::NAN,
             Meaning::ZeroHopf => {
                 let [one, two] = place.rates.map(|v| Interface::at(points.law, v));
                 routh_hurwitz(&one, &two, k)[0]
@@ -265,7 +266,7 @@ fn unbounded(mut point: Hopf) -> Hopf {
 impl Watch for Trace<'_, '_> {
     fn tests(&self, point: &Point) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
-        let k = self.points.closed_form(place.rates);
+        let k = self.points.along(point, place.rates);
         let all = self.meanings();
         Ok(all
             .iter()

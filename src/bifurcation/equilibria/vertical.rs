@@ -7,7 +7,7 @@
 use super::curves::{AlongDriving, Curve};
 use super::pieces::Ends;
 use super::special::Teller;
-use super::stationary::{Fold, fold, pitchforks};
+use super::stationary::{Fold, fold, fold_test, pitchforks};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
 use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
 use crate::error::{Error, Result};
@@ -124,7 +124,7 @@ struct Hunt {
 
 impl Watch for Hunt {
     fn tests(&self, point: &Point) -> Result<Vec<f64>> {
-        Ok(vec![point.u[0], point.lambda_slope() / point.u[0]])
+        Ok(vec![point.u[0], fold_test(point)])
     }
     fn ends(&self, test: usize) -> bool {
         test == 0

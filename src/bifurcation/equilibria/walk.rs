@@ -1,14 +1,14 @@
 //! What is told of a branch of equilibria while it is followed: rows, and what is special on it.
 
-use super::crossing::{Root, oscillation, symmetric};
+use super::crossing::Root;
 use super::curves::Curve;
 use super::hopf::{Hopf, HopfPoints};
 use super::pieces::Begin;
 use super::special::Teller;
-use super::stationary::{fold, pitchforks};
+use super::stationary::{fold, fold_test, pitchforks};
 use crate::bifurcation::{BranchRequest, BranchRow, Label, Parameter, Special};
 use crate::continuation::{Branch, Mark, Point, Stop, Watch};
-use crate::equilibrium::{Equilibrium, Interface, stability};
+use crate::equilibrium::{Equilibrium, stability};
 use crate::error::{Error, Result};
 use crate::friction::{steady_slope, steady_stress};
 use std::ops::ControlFlow;
@@ -76,22 +76,25 @@ impl Walk<'_, '_> {
     /// What the zeros of the test functions mean.
     fn labels(&self) -> &'static [Label] {
         match (self.rates, self.curve) {
-            (Some(_), _) | (_, Curve::Symmetric { interfaces: 1 }) => &[Label::Hb],
-            (_, Curve::Symmetric { .. }) => &[Label::Hb, Label::Bp],
-            (_, Curve::Asymmetric) => &[Label::Hb, Label::Bp, Label::Lp],
+            (_, Curve::Symmetric { interfaces: 1 }) => &[Label::Hb],
+            (Some(_), Curve::Symmetric { .. }) => &[Label::Hb],
+            (None, Curve::Symmetric { .. }) => &[Label::Hb, Label::Bp],
+            // one for each root of (42)
+            (Some(_), Curve::Asymmetric) => &[Label::Hb, Label::Hb],
+            (None, Curve::Asymmetric) => &[Label::Hb, Label::Hb, Label::Bp, Label::Lp],
         }
     }
 
-    fn oscillation(&self, place: &Place) -> f64 {
-        let law = &self.request.slab.law;
-        match self.curve {
-            Curve::Symmetric { interfaces } => {
-                symmetric(law, place.rates[0], interfaces) / place.stiffness - 1.0
-            }
-            Curve::Asymmetric => {
-                let [one, two] = place.rates.map(|v| Interface::at(law, v));
-                oscillation(&one, &two, place.stiffness)
-            }
+    /// How far K of a Hopf point is above the actual one, relative.
+    fn oscillation(&self, point: &Point, place: &Place, root: Root) -> f64 {
+        let points = HopfPoints {
+            law: &self.request.slab.law,
+            curve: self.curve,
+            root,
+        };
+        match self.rates {
+            Some(rates) => points.closed_form(rates) / place.stiffness - 1.0,
+            None => points.along(point, place.rates) / place.stiffness - 1.0,
         }
     }
 
@@ -275,12 +278,12 @@ impl Watch for Walk<'_, '_> {
     fn tests(&self, point: &Point) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
         let law = &self.request.slab.law;
-        let tests = self.labels().iter().map(|label| match (label, self.curve) {
-            (Label::Hb, _) => self.oscillation(&place),
+        let labels = self.labels().iter().enumerate();
+        let tests = labels.map(|(i, label)| match (label, self.curve) {
+            (Label::Hb, _) => self.oscillation(point, &place, [Root::Larger, Root::Smaller][i]),
             (Label::Bp, Curve::Asymmetric) => point.u[0],
             (Label::Bp, _) => steady_slope(law, place.rates[0]) * place.rates[0],
-            // even in z, so that a pitchfork is no fold
-            _ => point.lambda_slope() / point.u[0],
+            _ => fold_test(point),
         });
         Ok(tests.collect())
     }
