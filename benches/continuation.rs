@@ -67,7 +67,13 @@ fn figures(criterion: &mut Criterion) {
         });
     });
     group.bench_function("pitchforks", |b| {
-        b.iter(|| curve(LocusKind::OrbitPitchfork, black_box((1e-3, 1.25)), (0.005, 0.4)));
+        b.iter(|| {
+            curve(
+                LocusKind::OrbitPitchfork,
+                black_box((1e-3, 1.25)),
+                (0.005, 0.4),
+            )
+        });
     });
     group.finish();
 }

@@ -48,7 +48,6 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "integrate",
             "model",
             "field",
-            "series",
             "friction",
             "number",
         ],

@@ -38,8 +38,10 @@ pub struct Regular<const N: usize> {
     pub iterations: usize,
     /// The first correction: how far the guess was off.
     pub first: f64,
-    /// The last correction.
+    /// The last correction: the largest of a node, a duration and a parameter's coordinate.
     pub residual: f64,
+    /// The last correction of the parameters' coordinates.
+    pub of_parameters: f64,
     pub(super) linear: Linear<N>,
 }
 
@@ -58,7 +60,7 @@ impl Goal {
     /// For the steps of a continuation.
     pub const STEP: Goal = Goal {
         done: 1e-6,
-        iterations: 7,
+        iterations: 12,
         largest: 1.0,
     };
     /// To the last digits.
@@ -73,6 +75,8 @@ impl Goal {
 const NOISE: f64 = 1e-8;
 /// The step by which indicators are differentiated.
 const STEP: f64 = 1e-6;
+/// Indicators that are farther from zero than this ask for them too.
+const NEAR: f64 = 1.0;
 /// What a relative change of an arc's duration counts, where steps are chosen: the shortest arcs change by most.
 const STRETCH: f64 = 0.1;
 /// A correction that shrinks by less than this asks for new gradients.
@@ -177,6 +181,10 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             }
             let size = size.max(stretch);
             let done = size < goal.done || (size < NOISE && size > 0.3 * last);
+            let of_parameters = correction
+                .parameters
+                .iter()
+                .fold(0.0, |a: f64, p| a.max(p.abs()));
             site = site.moved(&correction, 1.0);
             if site.polygon.durations.iter().any(|&t| t <= 0.0) {
                 return None;
@@ -190,11 +198,17 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                     iterations,
                     first,
                     residual: size,
+                    of_parameters,
                     linear,
                 });
             }
-            // Old gradients serve as long as the corrections shrink.
-            gradients = (size < SLOW * last).then_some(known);
+            // Old gradients serve as long as the corrections shrink, and the indicators are no longer far from zero.
+            let off = conditions
+                .iter()
+                .filter_map(indicator)
+                .map(|i| i.of::<N>(&spectrum).abs());
+            let near = off.fold(0.0, f64::max) < NEAR;
+            gradients = (near && size < SLOW * last).then_some(known);
             last = size;
         }
         None
@@ -214,6 +228,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         Some(Regular {
             first: site.size(&closing).0,
             residual: site.size(&closing).0,
+            of_parameters: 0.0,
             site,
             along,
             spectrum,
@@ -271,11 +286,8 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         }
         let direction = closing.clone().scaled(1.0 / length);
         let change = self.change(site, linear, &direction, spectrum)?;
-        let each = indicators.iter();
-        Some(
-            each.map(|i| length * i.change_along::<N>(spectrum, &change))
-                .collect(),
-        )
+        let of = |i: &Indicator| length * i.change_along::<N>(spectrum, &change);
+        Some(indicators.iter().map(of).collect())
     }
 
     /// How the spectrum of an orbit changes in a direction.

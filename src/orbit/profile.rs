@@ -34,13 +34,9 @@ pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Prof
         bottom: f64::INFINITY,
         integral: 0.0,
     };
-    let (whole, plane);
-    let slip_rate: &dyn Fn(f64, [f64; 2]) -> [f64; 2];
     let field = slab.whole();
-    let both = |tau: f64, w: [f64; 2]| field.slip_rates(&State::<3>::new(tau, w[0], w[1]));
-    slip_rate = &both;
     if N == 3 {
-        whole = polygon
+        let whole = polygon
             .nodes
             .iter()
             .map(|x| State::<3>::new(x[0], x[1], x[N - 1]));
@@ -52,7 +48,7 @@ pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Prof
         )?;
     } else {
         let inner = slab.plane();
-        plane = polygon.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
+        let plane = polygon.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
         seen.go(
             &*inner,
             plane,
@@ -65,7 +61,7 @@ pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Prof
         mean_stress: seen.integral / polygon.period(),
         stress_range: (seen.bottom, top),
         state: w.map(f64::exp),
-        slip_rate: slip_rate(top, w),
+        slip_rate: field.slip_rates(&State::<3>::new(top, w[0], w[1])),
     })
 }
 

@@ -4,7 +4,6 @@ use super::arc::{Arc, Tracer};
 use super::floquet::{Floquet, floquet, symmetric_floquet};
 use super::polygon::Polygon;
 use super::shooting::Closed;
-use super::slab::Slab;
 use super::solve::Accuracy;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
@@ -15,8 +14,6 @@ use crate::integrate::Work;
 pub(super) trait Space<const N: usize> {
     /// The vector field.
     fn field(&self) -> &dyn VectorField<N>;
-    /// That of another slab in this space.
-    fn field_at(&self, slab: &Slab) -> Box<dyn VectorField<N>>;
     /// A node and its arc in the space of all multipliers: the arc's end and the digits that it loses.
     fn loss(
         &self,
@@ -64,10 +61,6 @@ pub(super) struct Whole<'a>(pub &'a dyn VectorField<3>);
 impl Space<3> for Whole<'_> {
     fn field(&self) -> &dyn VectorField<3> {
         self.0
-    }
-
-    fn field_at(&self, slab: &Slab) -> Box<dyn VectorField<3>> {
-        slab.whole()
     }
 
     fn loss(
@@ -119,10 +112,6 @@ impl Plane<'_> {
 impl Space<2> for Plane<'_> {
     fn field(&self) -> &dyn VectorField<2> {
         self.plane
-    }
-
-    fn field_at(&self, slab: &Slab) -> Box<dyn VectorField<2>> {
-        slab.plane()
     }
 
     fn loss(

@@ -28,7 +28,10 @@ pub struct Path {
 
 /// Lengths of steps.
 const FIRST: f64 = 0.02;
-const SHORTEST: f64 = 1e-9;
+const SHORTEST: f64 = 1e-7;
+/// So many steps in a row below this length are no way to go.
+const CRAWL: f64 = 3e-3;
+const CRAWLS: usize = 8;
 /// What a prediction may be off by, which grows with the square of the step; and the least and largest ratio of one step to
 /// the one before.
 const OFF: f64 = 0.03;
@@ -50,6 +53,8 @@ pub struct Walk<'c, 'f, F, const N: usize> {
     pub length: f64,
     /// Whether the nodes have been cut anew where it stands.
     fresh: bool,
+    /// How many of the last steps were very short.
+    crawls: usize,
 }
 
 impl Path {
@@ -118,6 +123,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             length: FIRST.min(path.longest),
             path,
             fresh: false,
+            crawls: 0,
         })
     }
 
@@ -146,6 +152,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             path,
             length,
             fresh: false,
+            crawls: 0,
         };
         let site = walk.pace.here.site.clone();
         walk.pace = walk.arrived(site, afar)?;
@@ -190,6 +197,14 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     /// The next orbit, which the walk then stands at; returns where it stood and how far that was. `None` where the steps
     /// shrink to nothing.
     pub fn step(&mut self) -> Option<(Pace<N>, f64)> {
+        self.crawls = if self.length < CRAWL {
+            self.crawls + 1
+        } else {
+            0
+        };
+        if self.crawls > CRAWLS {
+            return None;
+        }
         loop {
             let length = self.length;
             let next = self

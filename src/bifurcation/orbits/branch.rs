@@ -95,14 +95,11 @@ impl<'r> Branches<'r> {
     }
 
     fn symmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
-        self.from_hopf_points::<2>(Symmetry::Symmetric, seen)
+        self.all_of::<2>(Symmetry::Symmetric, seen)
     }
 
     fn asymmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
-        if self
-            .from_hopf_points::<3>(Symmetry::Asymmetric, seen)?
-            .is_break()
-        {
+        if self.all_of::<3>(Symmetry::Asymmetric, seen)?.is_break() {
             return Ok(Break(()));
         }
         for i in 0..self.pitchforks.len() {
@@ -136,7 +133,7 @@ impl<'r> Branches<'r> {
         Ok(Continue(()))
     }
 
-    fn from_hopf_points<const N: usize>(
+    fn all_of<const N: usize>(
         &mut self,
         symmetry: Symmetry,
         seen: Seen<'_>,
@@ -155,7 +152,7 @@ impl<'r> Branches<'r> {
             }
             self.reached[i] = true;
             let (number, wanted) = self.next();
-            if wanted && self.from_hopf::<N>(i, number, seen)?.is_break() {
+            if wanted && self.one_of::<N>(i, number, seen)?.is_break() {
                 return Ok(Break(()));
             }
         }
@@ -166,7 +163,7 @@ impl<'r> Branches<'r> {
         Path::branch(self.free, LONGEST * self.request.step)
     }
 
-    fn from_hopf<const N: usize>(
+    fn one_of<const N: usize>(
         &mut self,
         i: usize,
         number: usize,

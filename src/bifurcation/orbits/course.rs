@@ -263,7 +263,13 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         let sharp = sharpened(family, &at.site, &walk.path.free, &[meets]);
         let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
         let mut row = row(family, self.number, orbit, Some(label))?;
-        let mut special = special(family, label, sharp.as_ref(), &at.site);
+        let mut special = special(
+            family,
+            label,
+            sharp.as_ref(),
+            &at.site,
+            (&walk.path.free, &[meets]),
+        );
         if let Watch::Value(_, value) = watch {
             let (exact, place) = self.exactly(value);
             if let Some(exact) = exact {

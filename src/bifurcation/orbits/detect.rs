@@ -161,13 +161,11 @@ fn suspicious(a: (f64, Option<f64>), b: (f64, Option<f64>), length: f64) -> bool
         -0.5 * u / c,
     ];
     turns.into_iter().any(|s| {
-        let inside = s > 0.0 && s < 1.0;
         let value = p + s * (u + s * (c + s * d));
-        // Away from the straight way between both ends, at zero or beyond.
-        inside
-            && (value * p < 0.0 && p * q > 0.0
-                || value.abs() < DIP * least && p * q > 0.0
-                || p * q < 0.0 && value.abs() > p.abs().max(q.abs()))
+        // Away from the straight way between both ends: at zero or beyond, or farther out than both.
+        let dips = value * p < DIP * least * p.abs();
+        let overshoots = value.abs() > p.abs().max(q.abs());
+        s > 0.0 && s < 1.0 && if p * q > 0.0 { dips } else { overshoots }
     })
 }
 

@@ -246,7 +246,13 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         let family = walk.corrector.family;
         let sharp = sharpened(family, &at.site, &walk.path.free, &meets);
         let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
-        let mut special = special(family, label, sharp.as_ref(), &at.site);
+        let mut special = special(
+            family,
+            label,
+            sharp.as_ref(),
+            &at.site,
+            (&walk.path.free, &meets),
+        );
         if let Watch::Value(i, value) = watch {
             self.exactly(i, value, &mut special);
         }

@@ -64,7 +64,7 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
 }
 
 /// The longest step along a curve, and along the branches where curves are looked for.
-const LONGEST: f64 = 0.3;
+const LONGEST: f64 = 0.2;
 const LONGEST_OF_BRANCH: f64 = 0.7;
 /// Steps on such a branch.
 const STEPS: usize = 2000;
@@ -170,7 +170,7 @@ where
                     been |= inside;
                     let vanishes = walk.vanishes(&last);
                     ends.extend(vanishes);
-                    let merged = family.merges(here, &last) || family.loses(here);
+                    let merged = family.merges(here, &last);
                     last = here.clone();
                     if left || vanishes.is_some() || merged {
                         Break(())
@@ -186,7 +186,7 @@ where
     /// Whether a curve that was followed passes there.
     fn is_known(&self, seed: &Site<N>) -> bool {
         /// What the straight way between two of its points may err by, in ln V_H and ln T.
-        const NEAR: (f64, f64) = (2e-3, 2e-2);
+        const NEAR: (f64, f64) = (0.02, 0.05);
         let [v, k] = seed.at;
         let t = seed.polygon.period().ln();
         let passes = |pair: &[[f64; 3]]| {

@@ -31,13 +31,15 @@ pub enum Form {
 /// Points of the grid in each direction.
 const POINTS: usize = 7;
 /// Half widths of the grids, in the plane's coordinates, and the second width that each is held against, as a part of it.
-const WIDTHS: [f64; 4] = [0.04, 0.013, 0.004, 0.0013];
+const WIDTHS: [f64; 4] = [0.013, 0.004, 0.0013, 0.0004];
 const NARROWER: f64 = 0.7;
 /// Planes that are tried. Where the orbit is about to jump the map is far from its polynomials; where it has jumped it is
 /// tame.
 const PLANES: usize = 8;
-/// A relative uncertainty with which nothing better is looked for.
+/// A relative uncertainty with which nothing better is looked for, and one with which a plane has a say; how many must agree.
 const ENOUGH: f64 = 0.02;
+const DECIDED: f64 = 0.03;
+const AGREE: i32 = 3;
 /// Tolerance of the flow.
 const FINE: f64 = 1e-16;
 
@@ -51,22 +53,34 @@ pub fn normal_form(
     let mut best = Uncertain::new(0.0, f64::INFINITY);
     let relative = |x: &Uncertain| x.uncertainty / x.value.abs();
     let count = polygon.nodes.len();
+    // The sign must not depend on the plane.
+    let (mut positive, mut negative) = (0, 0);
     for plane in 0..PLANES.min(count) {
-        for width in WIDTHS {
-            let node = plane * count / PLANES.min(count);
-            // A map that can't be had somewhere on the grid says nothing.
-            let Some(coefficient) = coefficient(field, polygon, node, form, width) else {
-                continue;
-            };
-            if coefficient.value.is_finite()
-                && (best.uncertainty.is_infinite() || relative(&coefficient) < relative(&best))
-            {
-                best = coefficient;
-            }
+        let node = plane * count / PLANES.min(count);
+        // A map that can't be had somewhere on the grid says nothing.
+        let all = WIDTHS
+            .iter()
+            .filter_map(|&width| coefficient(field, polygon, node, form, width));
+        let finite = all.filter(|c| c.value.is_finite() && c.uncertainty.is_finite());
+        let Some(here) = finite.min_by(|a, b| relative(a).total_cmp(&relative(b))) else {
+            continue;
+        };
+        if relative(&here) < DECIDED {
+            *(if here.value > 0.0 {
+                &mut positive
+            } else {
+                &mut negative
+            }) += 1;
         }
-        if relative(&best) < ENOUGH {
+        if best.uncertainty.is_infinite() || relative(&here) < relative(&best) {
+            best = here;
+        }
+        if relative(&best) < ENOUGH && positive + negative >= AGREE {
             break;
         }
+    }
+    if positive.min(negative) > 0 || positive + negative < AGREE {
+        return (best, Criticality::Undecided);
     }
     let criticality = match form {
         _ if best.value.abs() <= best.uncertainty => Criticality::Undecided,
@@ -77,7 +91,7 @@ pub fn normal_form(
     (best, criticality)
 }
 
-pub fn coefficient(
+fn coefficient(
     field: &dyn VectorField<3>,
     polygon: &Polygon<3>,
     node: usize,
@@ -144,7 +158,7 @@ impl<'a> ReturnMap<'a> {
         for _ in 0..LANDINGS {
             let off = normal.dot(&(y - self.origin));
             let dt = -off / normal.dot(&self.field.f(&y));
-            if !(dt.abs() < FAR * self.period) {
+            if dt.is_nan() || dt.abs() > FAR * self.period {
                 return None;
             }
             if dt.abs() < 1e-15 * self.period {
@@ -169,13 +183,11 @@ impl Derivatives {
     fn of(map: &mut ReturnMap<'_>, width: f64) -> Option<Self> {
         let angle = |i: usize| (i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64;
         let mut values = [[[0.0; POINTS]; POINTS]; 2];
-        for i in 0..POINTS {
-            for j in 0..POINTS {
-                let x = Vector2::new(angle(i).cos(), angle(j).cos()) * width;
-                let y = map.at(x)?;
-                values[0][i][j] = y[0];
-                values[1][i][j] = y[1];
-            }
+        for at in 0..POINTS * POINTS {
+            let (i, j) = (at / POINTS, at % POINTS);
+            let x = Vector2::new(angle(i).cos(), angle(j).cos()) * width;
+            let y = map.at(x)?;
+            (values[0][i][j], values[1][i][j]) = (y[0], y[1]);
         }
         // The derivative of order a at 0 of the interpolating polynomial is this sum over the values.
         let weights = weights();
@@ -294,10 +306,10 @@ fn weights() -> [[f64; POINTS]; 4] {
     let mut here = [0.0, 1.0, 0.0, 0.0];
     for n in 0..POINTS {
         let scale = if n == 0 { 1.0 } else { 2.0 } / POINTS as f64;
-        for i in 0..POINTS {
-            let angle = (i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64;
-            for a in 0..4 {
-                weights[a][i] += scale * (n as f64 * angle).cos() * before[a];
+        for (a, weights) in weights.iter_mut().enumerate() {
+            for (i, weight) in weights.iter_mut().enumerate() {
+                let angle = (i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64;
+                *weight += scale * (n as f64 * angle).cos() * before[a];
             }
         }
         let mut next = [0.0; 4];

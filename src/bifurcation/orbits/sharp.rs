@@ -62,6 +62,8 @@ pub struct Sharp<const N: usize> {
 const SOLUTIONS: [(f64, f64); 3] = [(1e-16, 0.0), (1e-15, 0.37), (4e-15, 0.71)];
 /// The solutions' largest difference, and the last corrections, times this.
 const SAFETY: f64 = 4.0;
+/// A relative uncertainty of V_H with which no other variables are tried.
+const ENOUGH: f64 = 1e-11;
 /// Rounding, in units of the value.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -77,11 +79,15 @@ pub fn sharpened<F: Family<N>, const N: usize>(
     for (tolerance, part) in SOLUTIONS {
         let mut corrector = Corrector::new(family, tolerance).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
-        let mut polygon = begin.polygon.clone();
-        if !solutions.is_empty() {
-            let field = family.field(begin.at);
-            polygon = polygon.shifted(&mut corrector.tracer, &*field, part).ok()?;
-        }
+        let field = family.field(begin.at);
+        // Few long arcs round least often.
+        let polygon = if solutions.is_empty() {
+            begin.polygon.meshed(&mut corrector.tracer, &*field).ok()?
+        } else {
+            let shifted = begin.polygon.shifted(&mut corrector.tracer, &*field, part);
+            shifted.ok()?
+        };
+        drop(field);
         let site = Site {
             polygon,
             at: begin.at,
@@ -92,16 +98,13 @@ pub fn sharpened<F: Family<N>, const N: usize>(
             None => {}
         }
     }
-    let all = |of: &dyn Fn(&Regular<N>) -> f64, fixed: bool| {
+    let alone = solutions.len() < SOLUTIONS.len();
+    let all = |of: &dyn Fn(&Regular<N>) -> f64, last: &dyn Fn(&Regular<N>) -> f64| {
         let first = of(&solutions[0]);
-        if fixed {
-            return Uncertain::new(first, ROUNDING * first.abs());
-        }
         let spread = solutions.iter().map(|s| (of(s) - first).abs());
         let spread = spread.fold(0.0, f64::max);
-        let last = solutions.iter().map(|s| s.residual).fold(0.0, f64::max);
+        let last = solutions.iter().map(last).fold(0.0, f64::max);
         let uncertainty = SAFETY * spread + (last + ROUNDING) * first.abs();
-        let alone = solutions.len() < SOLUTIONS.len();
         Uncertain::new(first, if alone { f64::INFINITY } else { uncertainty })
     };
     let fixed = |i: usize| {
@@ -110,10 +113,18 @@ pub fn sharpened<F: Family<N>, const N: usize>(
             .any(|m| matches!(m, Exactly::Parameter(j, _) if *j == i));
         by_value || !free.contains(&i)
     };
-    let parameter = |i: usize| all(&|s| family.parameters(s.site.at)[i], fixed(i));
+    let parameter = |i: usize| {
+        let of = |s: &Regular<N>| family.parameters(s.site.at)[i];
+        if fixed(i) {
+            let given = of(&solutions[0]);
+            return Uncertain::new(given, ROUNDING * given.abs());
+        }
+        let scale = family.scale(solutions[0].site.at)[i] / of(&solutions[0]);
+        all(&of, &|s| s.of_parameters * scale.abs())
+    };
     Some(Sharp {
         at: [parameter(0), parameter(1)],
-        period: all(&|s| s.site.polygon.period(), false),
+        period: all(&|s| s.site.polygon.period(), &|s| s.residual),
         meets: meets.to_vec(),
         free: free.to_vec(),
         orbit: solutions.swap_remove(0),
@@ -126,16 +137,38 @@ pub(super) fn special<F: Chart<N>, const N: usize>(
     label: Label,
     sharp: Option<&Sharp<N>>,
     near: &Site<N>,
+    (free, meets): (&[usize], &[Exactly]),
 ) -> Special {
     let Some(sharp) = sharp else {
-        return rough(label, &family.usual(near));
+        let kept = kept(family, label, near, free, meets);
+        return kept.unwrap_or_else(|| rough(label, &family.usual(near)));
     };
     let mut special = sharp.special(label);
+    if special.driving.uncertainty > ENOUGH * special.driving.value.abs()
+        && let Some(better) = kept(family, label, near, free, meets)
+        && better.driving.uncertainty < special.driving.uncertainty
+    {
+        return better;
+    }
     // A second method knows the usual variables only.
     if family.keeping(near).is_none() && N == 3 {
         special.orbit = None;
     }
     special
+}
+
+/// The same in the variables that keep small differences, if there are such.
+fn kept<F: Chart<N>, const N: usize>(
+    family: &F,
+    label: Label,
+    near: &Site<N>,
+    free: &[usize],
+    meets: &[Exactly],
+) -> Option<Special> {
+    let (parted, there) = family.keeping(near)?;
+    let mut special = sharpened(&parted, &there, free, meets)?.special(label);
+    special.orbit = None;
+    Some(special)
 }
 
 impl<const N: usize> Sharp<N> {

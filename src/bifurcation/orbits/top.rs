@@ -21,7 +21,7 @@ pub struct Top<const N: usize> {
 
 /// Points of the interpolation, and the half widths of its two intervals.
 const POINTS: usize = 9;
-const WIDTHS: [f64; 2] = [0.06, 0.04];
+const WIDTHS: [f64; 2] = [0.04, 0.027];
 /// Tolerance of the points.
 const FINE: f64 = 1e-16;
 
@@ -54,7 +54,8 @@ pub fn top<F: Family<N>, const N: usize>(
     let (parameters, scale) = (family.parameters(second.at), family.scale(second.at));
     // The value at a stationary point is known far better than its place.
     let uncertain = |i: usize| {
-        let apart = 3.0 * (first.at[i] - second.at[i]).abs() + orbit.residual;
+        let apart =
+            3.0 * (first.at[i] - second.at[i]).abs() + second.errors[i] + orbit.of_parameters;
         let rounding = 8.0 * f64::EPSILON * parameters[i].abs();
         Uncertain::new(parameters[i], scale[i].abs() * apart + rounding)
     };
@@ -72,6 +73,8 @@ struct Stationary {
     at: [f64; 2],
     period: f64,
     bend: f64,
+    /// What the points' own noise makes of both coordinates.
+    errors: [f64; 2],
 }
 
 fn stationary<F: Family<N>, const N: usize>(
@@ -106,7 +109,21 @@ fn stationary<F: Family<N>, const N: usize>(
     }
     let (top, _, bend) = value(&k, x);
     let inside = x.abs() < 1.0 && top.is_finite();
+    // The last coefficients are noise, or what is left of the curve: so much every one of them may err by, and the slope by n^2
+    // of it.
+    let noise = |c: &[f64; POINTS]| {
+        let last = c[POINTS - 1].abs().max(c[POINTS - 2].abs());
+        last.max(f64::EPSILON * c[0].abs())
+    };
+    let powers = (POINTS * POINTS) as f64;
+    let off = powers * noise(&k) / bend.abs();
+    let (_, slope_of_v, _) = value(&v, x);
+    let errors = [
+        slope_of_v.abs() * off + POINTS as f64 * noise(&v),
+        POINTS as f64 * noise(&k) + 0.5 * bend.abs() * off * off,
+    ];
     inside.then(|| Stationary {
+        errors,
         s: width * x,
         at: [value(&v, x).0, top],
         period: value(&t, x).0,
