@@ -1,18 +1,20 @@
 //! Branches of periodic orbits and the curves of their bifurcations, against points known to twenty digits.
 #![allow(missing_docs)]
 
+use nalgebra::Vector2;
 use serde_json::Value;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{
     BranchRequest, BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, LocusRow,
-    Parameter, Special, orbits,
+    Parameter, Special, orbits, orbits::normal_form::ReturnMap,
 };
 use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
 use twinslip::number::Uncertain;
-use twinslip::orbit::Slab;
+use twinslip::orbit::{Polygon, Slab};
 
 /// Relative bar for parameters, and for periods at small stiffness.
 const BAR: f64 = 1e-10;
@@ -96,7 +98,7 @@ fn assert_known(what: &str, found: Uncertain, exact: f64, bar: f64) {
 }
 
 /// The one of this label nearest to a V_H.
-fn nearest<'h>(heard: &'h Heard, label: Label, driving: f64) -> &'h Special {
+fn nearest(heard: &Heard, label: Label, driving: f64) -> &Special {
     let far = |s: &&Special| (s.driving.value / driving).ln().abs();
     let all = heard.special.iter().filter(|s| s.label == label);
     all.min_by(|a, b| far(a).total_cmp(&far(b)))
@@ -346,8 +348,8 @@ fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
         let doubling = nearest(&heard, Label::Pd, driving);
         assert_eq!(doubling.criticality, Some(Criticality::Subcritical));
     }
-    // Between both doublings the orbit is unstable by a multiplier below -1. The orbits of twice the period lie outside,
-    // where it is not, and are unstable themselves.
+    // The orbits of twice the period that part from it are unstable in the direction in which they part: by their smaller
+    // multiplier.
     let known = nearest(&heard, Label::Pd, 0.0884);
     let twice = 2.0 * known.period.expect("a period").value;
     let doubled: Vec<&BranchRow> = heard
@@ -357,9 +359,44 @@ fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
         .collect();
     assert!(!doubled.is_empty());
     for row in doubled {
-        assert!(row.driving < known.driving.value, "{row:?}");
         assert_eq!(row.verdict, Verdict::Unstable);
+        assert!(row.ln_abs_multiplier[1].expect("ln |mu|") > 0.0, "{row:?}");
     }
+    // Where the multipliers of the orbit itself are of modulus 1 the returns of a point beside it come nearer, slowly.
+    let (early, late) = returns(torus);
+    assert!(late < early * (1.0 - 1e-3), "{early} then {late}");
+    assert!(late > 0.5 * early, "{early} then {late}");
+}
+
+/// The greatest distance from the orbit among the first returns and among the last of some thousands.
+fn returns(special: &Special) -> (f64, f64) {
+    const RETURNS: usize = 4000;
+    const WINDOW: usize = 500;
+    let (nodes, durations) = special.orbit.as_ref().expect("an orbit").nodes();
+    let polygon = Polygon {
+        nodes: nodes
+            .iter()
+            .map(|x| State::<3>::from_fn(|i, _| x[i]))
+            .collect(),
+        durations: durations.to_vec(),
+    };
+    let field = slab(special.driving.value, special.stiffness.value).whole();
+    let run = |node: usize| {
+        let mut map = ReturnMap::new(&*field, &polygon, node).expect("a map");
+        let mut x = Vector2::new(0.01, 0.0);
+        let mut distances = Vec::with_capacity(RETURNS);
+        for _ in 0..RETURNS {
+            x = map.at(x).filter(|x| x.norm() < 0.2)?;
+            distances.push(x.norm());
+        }
+        let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
+        Some((
+            largest(&distances[..WINDOW]),
+            largest(&distances[RETURNS - WINDOW..]),
+        ))
+    };
+    // A plane where the orbit is not about to jump.
+    (0..polygon.nodes.len()).find_map(run).expect("a plane")
 }
 
 #[test]

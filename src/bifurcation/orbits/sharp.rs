@@ -45,6 +45,13 @@ pub struct SpecialOrbit {
     free: Vec<usize>,
 }
 
+impl SpecialOrbit {
+    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2), and the durations from each to the next.
+    pub fn nodes(&self) -> (&[Vec<f64>], &[f64]) {
+        (&self.nodes, &self.durations)
+    }
+}
+
 /// A special orbit.
 #[derive(Debug, Clone)]
 pub struct Sharp<const N: usize> {
