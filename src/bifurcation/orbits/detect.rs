@@ -7,7 +7,7 @@ use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Pace, Regular,
 
 /// What is watched along a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) enum Watch {
+pub enum Watch {
     /// An indicator.
     Indicator(Indicator),
     /// The direction's component along a parameter: zero at folds of a branch, at tops of a curve.

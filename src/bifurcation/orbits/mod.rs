@@ -14,5 +14,7 @@ mod sharp;
 mod top;
 
 pub use branch::branch;
+pub use detect::Watch;
+pub use follow::{End, Met, follow};
 pub use locus::locus;
 pub use sharp::{SpecialOrbit, crosscheck};
