@@ -27,11 +27,13 @@ REFERENCE = [
     ("TR", 0.06646628204773782775, 0.1),
     ("TR", 0.05697328470549310055, 0.05),
     ("TR", 0.05248231983819000419, 0.02),
+    ("TR", 0.05049307173152828714, 0.005),
     ("PD", 0.07009406581655609897, 0.1),
     ("PD", 0.08842641698118172591, 0.1),
     ("PD", 0.05850047150072808571, 0.05),
     ("PD", 0.06643351347619934259, 0.05),
     ("PD", 0.05362565479076072366, 0.02),
+    ("PD", 0.05108175638204740693, 0.005),
     ("top of PF", 1.250228463, 0.134253359245),
     ("PF", 0.41296848444224574558, 0.13),
     ("PF", 5.28057053724932144132, 0.13),
@@ -41,6 +43,7 @@ REFERENCE = [
     ("PF", 0.05539032792963709324, 0.02),
     ("PF", 0.05113867563533, 0.005),
     ("SN", 0.16416064250802362562, 0.05),
+    ("SN", 0.06652539052657576170, 0.05),
     ("SN", 0.41975086702453181968, 0.02),
     ("SN", 1.70167744060299954260, 0.005),
 ]
@@ -49,7 +52,7 @@ ln = math.log
 # What all runs share. Tolerances in Newton 1e-10 unless a run says otherwise; Hopf, folds and multipliers watched (ISP = 2).
 # The period takes no part in the arclength (THL): it varies by orders of magnitude where the orbit hardly changes.
 COMMON = dict(
-    e="spinodal", NDIM=3, JAC=1, IID=2, NPR=0, MXBF=0, ISP=2, ILP=1, ISW=1, NTST=60, NCOL=7, IAD=3,
+    e="spinodal", NDIM=3, JAC=1, IID=2, NPR=0, MXBF=0, ISP=2, ILP=1, ISW=1, NTST=50, NCOL=7, IAD=3,
     unames={1: "tau", 2: "w1", 3: "w2"}, parnames={1: "lnV", 2: "lnK", 11: "T"},
     EPSL=1e-10, EPSU=1e-10, EPSS=1e-9, ITMX=15, ITNW=9, NWTN=3,
     DS=0.01, DSMIN=1e-8, DSMAX=0.1, NMX=4000, THL={11: 0.0}, THU={}, UZR={}, UZSTOP={}, STOP=[], SP=[],
@@ -77,7 +80,9 @@ class Peer:
         entry = self.jobs.setdefault(job, {"spent": 0.0, "steps": 0, "points": []})
         entry["spent"] += spent
         entry["steps"] += len(rows)
-        entry["points"] += [(name, kind, *row) for row in rows if row[0] not in ("", "No Label")]
+        if kind == "sym":
+            entry["points"] += [(name, kind, "asymmetric!", *row[1:3]) for row in rows if not row[3]][:1]
+        entry["points"] += [(name, kind, *row[:3]) for row in rows if row[0] not in ("", "No Label")]
 
     def locus(self, job, kind, name, start, **constants):
         """A curve in two parameters: AUTO first makes starting data of its extended system, then follows it."""
@@ -92,15 +97,18 @@ class Peer:
 
 
 def read(name, icp, K):
-    """(type, V_H, K) of every step in the file b.name."""
+    """(type, V_H, K, symmetric?) of every step in the file b.name."""
     for line in open("b." + name):
         words = line.split()
         if not words or words[0] == "0":
             continue
         values = [float(w) for w in words[4:]]
         # the first unknown, the norm, the maxima of the state, the other unknowns
-        shown = dict(zip(icp, values[:1] + values[len(values) - len(icp) + 1 :]))
-        yield parseB.type_translation(int(words[2]))["short name"], math.exp(shown[1]), math.exp(shown[2]) if 2 in shown else K
+        state, others = values[2 : len(values) - len(icp) + 1], values[len(values) - len(icp) + 1 :]
+        shown = dict(zip(icp, values[:1] + others))
+        what = parseB.type_translation(int(words[2]))["short name"]
+        even = len(state) < 3 or abs(state[1] - state[2]) < 1e-6
+        yield what, math.exp(shown[1]), math.exp(shown[2]) if 2 in shown else K, even
 
 
 def equilibria(peer, job, K):
@@ -137,7 +145,8 @@ def figure_12(peer):
     # the top and 1:2 are found on one side of 1e-8 and lost on the other, and below 1e-8 it does not get down to 0.05
     peer.locus(job, "PD", "pd_right", ("orbits_a", "PD1"), eps=1e-8, **to)
     # 1:2 once more, from close by, since TR and PD touch there
-    peer.locus(job, "PD", "pd_12", ("orbits_a", "PD2"), eps=1e-11, DS=-0.01, DSMAX=0.02, NMX=60, STOP=["R21"])
+    peer.locus(job, "PD", "pd_12", ("orbits_a", "PD2"), eps=1e-11, NTST=60, DS=-0.01, DSMAX=0.01, STOP=["R21"],
+               UZSTOP={2: ln(0.13)})
     deep = dict(UZR={2: [ln(0.02), ln(0.005)]}, UZSTOP={2: ln(0.004)})
     for kind, name, start, eps in (("TR", "tr_down", "EP1", 1e-9), ("PD", "pd_left", "EP1", 1e-9)):
         peer.run("figure 12, left TR and PD from 0.05 to 0.004", kind, name + "_deep", (name, "UZ2"), eps=eps,
@@ -158,7 +167,8 @@ def folds(peer):
              STOP=["LP1"], SP=["BP0", "PD0", "TR0"])
     down = dict(UZR={2: [ln(0.02)]}, UZSTOP={2: ln(0.005)})
     peer.locus("SN right to 0.005", "SN", "sn_right", ("orbits_k5", "LP1"), DS=-0.01, **down)
-    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), **down)
+    # the tighter, the sooner it ends: K = 0.067 at 1e-10
+    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), eps=1e-6, UZR={2: [ln(0.05)]}, UZSTOP=down["UZSTOP"])
 
 
 def pitchforks(peer):
@@ -196,7 +206,7 @@ def main():
         print("\n%s: %.2f s user CPU (median of %d; %.2f to %.2f), %d steps" % (
             job, statistics.median(times), repeats, times[0], times[-1], entry["steps"]))
         for name, kind, what, v, k in entry["points"]:
-            if kind != "start":
+            if kind not in ("start", "steady") and not (what == "EP" and kind == "sym"):
                 print("    %-10s %-3s V_H %-15.11g K %-14.11g %s" % (name, what, v, k, error(kind, what, v, k)))
 
 
