@@ -41,7 +41,7 @@ REFERENCE = [
     ("PF", 363.2590464896270774385, 0.05),
     ("PF", 0.06650002435530830317, 0.05),
     ("PF", 0.05539032792963709324, 0.02),
-    ("PF", 0.05113867563533, 0.005),
+    ("PF", 0.05113867563533591458, 0.005),
     ("SN", 0.16416064250802362562, 0.05),
     ("SN", 0.06652539052657576170, 0.05),
     ("SN", 0.41975086702453181968, 0.02),
@@ -58,6 +58,11 @@ COMMON = dict(
     DS=0.01, DSMIN=1e-8, DSMAX=0.1, NMX=4000, THL={11: 0.0}, THU={}, UZR={}, UZSTOP={}, STOP=[], SP=[],
     RL0=-1e9, RL1=1e9, A0=-1e9, A1=1e9,
 )
+
+
+# Curves in two parameters. K leads, so that its folds are what AUTO reports.
+CURVE = dict(IPS=2, ISW=2, ICP=[2, 1, 11, 12], THL={11: 0.0, 12: 0.0}, EPSS=1e-10, DSMAX=0.3, NMX=400)
+CURVE["parnames"] = {**COMMON["parnames"], 12: "theta"}
 
 
 class Peer:
@@ -86,10 +91,9 @@ class Peer:
 
     def locus(self, job, kind, name, start, **constants):
         """A curve in two parameters: AUTO first makes starting data of its extended system, then follows it."""
-        angle = [] if kind == "SN" else [12]
-        # K leads, so that its folds are what AUTO reports
-        settings = dict(IPS=2, ISW=2, ICP=[2, 1, 11, *angle], THL={11: 0.0, 12: 0.0}, EPSS=1e-10, DSMAX=0.3, NMX=400)
-        settings["parnames"] = {**COMMON["parnames"], **{i: "theta" for i in angle}}
+        settings = dict(CURVE)
+        if kind == "SN":
+            settings.update(ICP=[2, 1, 11], parnames=COMMON["parnames"])
         settings.update(constants)
         bare = dict(settings, UZR={}, UZSTOP={}, STOP=[])
         self.run(job, "start", name + "_data", start, **bare)
@@ -142,22 +146,18 @@ def figure_12(peer):
     peer.locus(job, "TR", "tr_up", ("orbits_a", "TR1"), eps=1e-9, UZR=angles, STOP=["R21"])
     peer.locus(job, "TR", "tr_down", ("orbits_a", "TR1"), eps=1e-9, DS=-0.01, **to)
     peer.locus(job, "PD", "pd_left", ("orbits_a", "PD1"), eps=1e-9, DS=-0.01, **to)
-    # the top and 1:2 are found on one side of 1e-8 and lost on the other, and below 1e-8 it does not get down to 0.05
+    # below 1e-8 it does not get down to 0.05; whether it sees the top and 1:2 on the way is chance
     peer.locus(job, "PD", "pd_right", ("orbits_a", "PD1"), eps=1e-8, **to)
     # 1:2 once more, from close by, since TR and PD touch there
-    peer.locus(job, "PD", "pd_12", ("orbits_a", "PD2"), eps=1e-11, NTST=60, DS=-0.01, DSMAX=0.01, STOP=["R21"],
-               UZSTOP={2: ln(0.13)})
+    peer.locus(job, "PD", "pd_12", ("orbits_a", "PD2"), eps=1e-11, NTST=80, DS=-0.005, DSMAX=0.005, STOP=["R21"],
+               UZSTOP={2: ln(0.135)})
     deep = dict(UZR={2: [ln(0.02), ln(0.005)]}, UZSTOP={2: ln(0.004)})
     for kind, name, start, eps in (("TR", "tr_down", "EP1", 1e-9), ("PD", "pd_left", "EP1", 1e-9)):
         peer.run("figure 12, left TR and PD from 0.05 to 0.004", kind, name + "_deep", (name, "UZ2"), eps=eps,
-                 **dict(AGAIN, DS=-0.01, **deep))
+                 **dict(CURVE, DS=-0.01, **deep))
     for eps in (1e-6, 1e-8, 1e-9):
         job = "figure 12, right PD down, EPS %g" % eps
         peer.locus(job, "PD", "pd_deep", ("orbits_a", "PD1"), eps=eps, **deep)
-
-
-AGAIN = dict(IPS=2, ISW=2, ICP=[2, 1, 11, 12], THL={11: 0.0, 12: 0.0}, EPSS=1e-10, DSMAX=0.3, NMX=400,
-             parnames={**COMMON["parnames"], 12: "theta"})
 
 
 def folds(peer):
@@ -166,9 +166,10 @@ def folds(peer):
     peer.run("fold at K=0.05", "asym", "orbits_k5", ("asym50", "HB2"), K=0.05, IPS=2, ICP=[1, 11], DS=-0.01,
              STOP=["LP1"], SP=["BP0", "PD0", "TR0"])
     down = dict(UZR={2: [ln(0.02)]}, UZSTOP={2: ln(0.005)})
-    peer.locus("SN right to 0.005", "SN", "sn_right", ("orbits_k5", "LP1"), DS=-0.01, **down)
+    peer.locus("SN right to 0.005", "SN", "sn_right", ("orbits_k5", "LP1"), NTST=80, DS=-0.01, **down)
     # the tighter, the sooner it ends: K = 0.067 at 1e-10
-    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), eps=1e-6, UZR={2: [ln(0.05)]}, UZSTOP=down["UZSTOP"])
+    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), eps=1e-6, NTST=60,
+               UZR={2: [ln(0.05)]}, UZSTOP={2: ln(0.005)})
 
 
 def pitchforks(peer):
