@@ -168,7 +168,7 @@ def folds(peer):
     down = dict(UZR={2: [ln(0.02)]}, UZSTOP={2: ln(0.005)})
     peer.locus("SN right to 0.005", "SN", "sn_right", ("orbits_k5", "LP1"), NTST=80, DS=-0.01, **down)
     # the tighter, the sooner it ends: K = 0.067 at 1e-10
-    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), eps=1e-6, NTST=60,
+    peer.locus("SN over the top and left", "SN", "sn_left", ("orbits_k5", "LP1"), eps=1e-6, NTST=60, NMX=100,
                UZR={2: [ln(0.05)]}, UZSTOP={2: ln(0.005)})
 
 
