@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 /// The longest step, in ln V_H and ln K.
 const LONGEST: f64 = 0.2;
 
-/// See [`super::branch`].
+/// See [`super::branch()`].
 pub(super) fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
     let settings = settings(request)?;
     let interfaces = request.slab.interfaces;

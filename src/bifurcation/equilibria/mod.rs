@@ -56,7 +56,7 @@ pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
 /// a wanted value; `EP` where a curve leaves the ranges.
 ///
 /// # Errors
-/// As of [`branch`]; [`Error::Input`] for a kind of curve that is not of equilibria.
+/// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
 pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
     checked(
         &request.slab,

@@ -7,7 +7,7 @@ use super::follow::{End, Met, follow};
 use super::normal_form::{Form, normal_form};
 use super::rows::row;
 use super::sharp::{Exactly, Sharp, rough, sharpened, special};
-use crate::bifurcation::{Event, Label, Seen, Special};
+use crate::bifurcation::{BranchRow, Event, Label, Seen, Special};
 use crate::error::Result;
 use crate::orbit::{Corrector, Family, Indicator, OverParted, Regular, Site, Walk};
 use std::any::Any;
@@ -175,7 +175,8 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
             return Ok(Continue(()));
         }
         self.inside = true;
-        let row = row(family, self.number, here, None)?;
+        let mut row = row(family, self.number, here, None)?;
+        self.held(&mut row);
         Ok(self.tell(Event::Branch(row), seen))
     }
 
@@ -214,6 +215,7 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         self.branches.merged.push(coordinate);
         if self.branches.in_range(coordinate) {
             let mut special = sharp.special(Label::Pf);
+            self.held_at(&mut special);
             self.criticality_of_pitchfork(&mut special, &sharp.orbit);
             let _ = self.tell(Event::Special(special), seen);
         }
@@ -270,6 +272,8 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
             &at.site,
             (&walk.path.free, &[meets]),
         );
+        self.held(&mut row);
+        self.held_at(&mut special);
         if let Watch::Value(_, value) = watch {
             let (exact, place) = self.exactly(value);
             if let Some(exact) = exact {
@@ -296,6 +300,26 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
             return Ok(Break(()));
         }
         Ok(if ends { Break(()) } else { Continue(()) })
+    }
+
+    /// The parameter that does not vary, as it was given: not the exponential of its logarithm.
+    fn held(&self, row: &mut BranchRow) {
+        let loading = self.branches.request.slab.loading;
+        if self.branches.free == 0 {
+            row.stiffness = loading.stiffness;
+        } else {
+            row.driving = loading.driving;
+        }
+    }
+
+    fn held_at(&self, special: &mut Special) {
+        let loading = self.branches.request.slab.loading;
+        let (place, exact) = if self.branches.free == 0 {
+            (&mut special.stiffness, loading.stiffness)
+        } else {
+            (&mut special.driving, loading.driving)
+        };
+        (place.value, place.uncertainty) = (exact, 0.0);
     }
 
     /// What a zero means here; nothing, or nothing new, for some.

@@ -11,7 +11,7 @@ use super::top::top;
 use crate::bifurcation::{Criticality, Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, Indicator, OverParted, Regular, Site, Walk};
+use crate::orbit::{Condition, Corrector, Goal, Indicator, OverParted, Regular, Site, Walk};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -26,6 +26,9 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
+/// An orbit and the logarithm of its multipliers' product.
+type Decided<const N: usize> = (Site<N>, f64);
+
 /// What is known of one way along a curve.
 pub(super) struct Leg<'r, 's, const N: usize> {
     request: &'r LocusRequest,
@@ -34,10 +37,14 @@ pub(super) struct Leg<'r, 's, const N: usize> {
     last: Option<Site<N>>,
     /// The last coefficient of the normal form.
     coefficient: Option<f64>,
+    /// The last orbit at which it was decided which way the bifurcation goes, and which.
+    decided: Option<(Decided<N>, Criticality)>,
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
     course: Vec<[f64; 3]>,
+    /// Which way the bifurcation goes at the last orbit, where that was asked for.
+    now: Option<Criticality>,
     pub told: bool,
 }
 
@@ -49,9 +56,11 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             number,
             last: None,
             coefficient: None,
+            decided: None,
             seen,
             events: Vec::new(),
             course: Vec::new(),
+            now: None,
             told: false,
         }
     }
@@ -109,6 +118,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
                     return self.merged(&family.usual(&here.site));
                 }
                 self.row(family, here, None)?;
+                self.change(family, here)?;
                 lost = family.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
             }
@@ -139,9 +149,11 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             number: self.number,
             last: None,
             coefficient: self.coefficient,
+            decided: None,
             seen: self.seen.take(),
             events: std::mem::take(&mut self.events),
             course: std::mem::take(&mut self.course),
+            now: None,
             told: false,
         };
         let gone = rest.go(walk);
@@ -169,7 +181,67 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         } else {
             None
         };
+        self.now = criticality;
         self.put(here, at, criticality, label)
+    }
+
+    /// Between the last decided orbit and this one the bifurcation may have changed the way that it goes: a Chenciner point, or
+    /// a degenerate period doubling. By halves in K, for of the coefficient the sign alone does not depend on the plane; where
+    /// neither way is decided the point is somewhere.
+    fn change<F: Chart<N>>(&mut self, family: &F, here: &Regular<N>) -> ControlFlow<()> {
+        let Some(now) = self.now.filter(|c| *c != Criticality::Undecided) else {
+            return Continue(());
+        };
+        let end = (here.site.clone(), here.spectrum.volume);
+        let before = self.decided.replace((end.clone(), now));
+        let Some((begin, then)) = before.filter(|(_, then)| *then != now) else {
+            return Continue(());
+        };
+        let from = self.last_of(family, (begin.clone(), then), end.clone());
+        let to = self.last_of(family, (end, now), begin);
+        // At the resonance 1:2 the coefficient of the doubling changes its sign through infinity.
+        if self.indicator == Indicator::Doubling && from.1 * to.1 < 0.0 {
+            return Continue(());
+        }
+        let label = if self.indicator == Indicator::Torus {
+            Label::Ch
+        } else {
+            Label::Gpd
+        };
+        let (from, to) = (from.0, to.0);
+        let between = |a: f64, b: f64| Uncertain::new(0.5 * (a + b), 0.5 * (a - b).abs());
+        let [driving, stiffness] = [0, 1].map(|i| between(from.at[i].exp(), to.at[i].exp()));
+        self.tell(Event::Special(Special {
+            period: Some(between(from.polygon.period(), to.polygon.period())),
+            ..Special::new(label, driving, stiffness)
+        }))
+    }
+
+    /// The last orbit on the way to another that is decided as the first one is.
+    fn last_of<F: Chart<N>>(
+        &mut self,
+        family: &F,
+        ((mut from, mut volume), way): (Decided<N>, Criticality),
+        (mut to, _): Decided<N>,
+    ) -> Decided<N> {
+        /// How near, in ln K.
+        const NEAR: f64 = 1e-6;
+        while (to.at[1] - from.at[1]).abs() > NEAR
+            && let Ok(mut corrector) = Corrector::new(family, ROUGH)
+        {
+            let middle = Condition::Parameter(1, 0.5 * (from.at[1] + to.at[1]));
+            let conditions = [Condition::Indicator(self.indicator), middle];
+            let Some(half) = corrector.correct(from.clone(), &[0, 1], &conditions, Goal::STEP)
+            else {
+                break;
+            };
+            if self.criticality(family, &half) == Some(way) {
+                (from, volume) = (half.site, half.spectrum.volume);
+            } else {
+                to = half.site;
+            }
+        }
+        (from, volume)
     }
 
     fn put(

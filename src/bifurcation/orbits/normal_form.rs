@@ -174,7 +174,7 @@ impl<'a> ReturnMap<'a> {
     }
 }
 
-/// The derivatives of a map of the plane at its fixed point: D[i][a][b] is that of component i, a times in x and b times in y.
+/// The derivatives of a map of the plane at its fixed point: `d[i][a][b]` is that of component i, a times in x and b times in y.
 struct Derivatives {
     d: [[[f64; 4]; 4]; 2],
 }

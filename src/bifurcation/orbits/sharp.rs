@@ -68,7 +68,7 @@ pub struct Sharp<const N: usize> {
 /// Tolerances of the solutions, and the part of their arcs by which the nodes of all but the first are moved.
 const SOLUTIONS: [(f64, f64); 3] = [(1e-16, 0.0), (1e-15, 0.37), (4e-15, 0.71)];
 /// The solutions' largest difference, and the last corrections, times this.
-const SAFETY: f64 = 4.0;
+const SAFETY: f64 = 10.0;
 /// A relative uncertainty of V_H with which no other variables are tried.
 const ENOUGH: f64 = 1e-11;
 /// Rounding, in units of the value.
