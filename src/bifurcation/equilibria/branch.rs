@@ -20,10 +20,7 @@ pub(super) fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
     let mut run = Run {
         request,
         settings,
-        teller: Teller {
-            seen,
-            tolerance: request.tolerance,
-        },
+        teller: Teller::new(seen, request.tolerance, &request.skip),
         branches: 0,
     };
     // an observer's end is no error

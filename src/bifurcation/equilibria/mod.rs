@@ -69,7 +69,7 @@ pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
     values("wanted driving", &request.at_driving)?;
     values("wanted stiffness", &request.at_stiffness)?;
     let tolerance = request.tolerance;
-    let mut teller = Teller { seen, tolerance };
+    let mut teller = Teller::new(seen, tolerance, &request.skip);
     // an observer's end is no error
     let _ = match request.kind {
         LocusKind::Hopf => hopf_curve::locus(request, &mut teller)?,

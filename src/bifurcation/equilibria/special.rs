@@ -6,21 +6,45 @@ use std::ops::ControlFlow;
 
 /// Tells the observer.
 pub(super) struct Teller<'a> {
-    pub seen: Seen<'a>,
+    seen: Seen<'a>,
     /// Asked for, relative.
-    pub tolerance: f64,
+    tolerance: f64,
+    /// Numbers of the branches or curves of which nothing is to be told, and whether the last row was of one of them.
+    skip: &'a [usize],
+    skipping: bool,
 }
 
-impl Teller<'_> {
+impl<'a> Teller<'a> {
+    pub fn new(seen: Seen<'a>, tolerance: f64, skip: &'a [usize]) -> Self {
+        Teller {
+            seen,
+            tolerance,
+            skip,
+            skipping: false,
+        }
+    }
+
     pub fn branch(&mut self, row: BranchRow) -> ControlFlow<()> {
-        (self.seen)(Event::Branch(row))
+        self.row(row.branch, Event::Branch(row))
     }
 
     pub fn locus(&mut self, row: LocusRow) -> ControlFlow<()> {
-        (self.seen)(Event::Locus(row))
+        self.row(row.curve, Event::Locus(row))
     }
 
+    fn row(&mut self, number: usize, row: Event) -> ControlFlow<()> {
+        self.skipping = self.skip.contains(&number);
+        if self.skipping {
+            return ControlFlow::Continue(());
+        }
+        (self.seen)(row)
+    }
+
+    /// After the row that it is the special point of.
     pub fn special(&mut self, mut special: Special) -> ControlFlow<()> {
+        if self.skipping {
+            return ControlFlow::Continue(());
+        }
         let off = |x: &Uncertain| x.uncertainty > self.tolerance * x.value.abs();
         if off(&special.driving) || off(&special.stiffness) {
             let before = special
