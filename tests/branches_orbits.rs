@@ -441,3 +441,22 @@ fn who_has_heard_enough_is_left_alone() {
     .expect("branches");
     assert_eq!(rows, 5);
 }
+
+#[test]
+fn ranges_may_be_given_either_way_and_must_be_positive() {
+    let forwards = locus(&curve(LocusKind::Torus, (0.15, 0.4)));
+    let backwards = locus(&LocusRequest {
+        driving: (1e4, 1e-3),
+        ..curve(LocusKind::Torus, (0.4, 0.15))
+    });
+    assert!(!forwards.points.is_empty());
+    assert_eq!(forwards.points, backwards.points);
+    let mut ignored = |_| Continue(());
+    let bad = curve(LocusKind::Torus, (-1.0, 0.4));
+    assert!(orbits::locus(&bad, &mut ignored).is_err_and(|e| e.is_input()));
+    let bad = BranchRequest {
+        range: (0.0, 1.0),
+        ..along_driving(0.14)
+    };
+    assert!(orbits::branch(&bad, &mut ignored).is_err_and(|e| e.is_input()));
+}

@@ -4,6 +4,7 @@
 
 pub mod equilibria;
 pub mod orbits;
+mod request;
 
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;

@@ -22,9 +22,7 @@ mod vertical;
 mod walk;
 
 use super::{BranchRequest, LocusKind, LocusRequest, Seen};
-use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::orbit::Slab;
 use special::Teller;
 
 /// All branches of equilibria over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
@@ -37,16 +35,7 @@ use special::Teller;
 /// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense; those of
 /// [`steady_states`](crate::equilibrium::steady_states). That the observer ended it is none.
 pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
-    checked(
-        &request.slab,
-        request.symmetry,
-        request.step,
-        request.tolerance,
-    )?;
-    positive("driving", request.slab.loading.driving)?;
-    positive("stiffness", request.slab.loading.stiffness)?;
-    range("range", request.range)?;
-    values("wanted value", &request.at)?;
+    request.checked()?;
     branch::branch(request, seen)
 }
 
@@ -58,16 +47,7 @@ pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
 /// # Errors
 /// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
 pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
-    checked(
-        &request.slab,
-        request.symmetry,
-        request.step,
-        request.tolerance,
-    )?;
-    range("driving range", request.driving)?;
-    range("stiffness range", request.stiffness)?;
-    values("wanted driving", &request.at_driving)?;
-    values("wanted stiffness", &request.at_stiffness)?;
+    request.checked()?;
     let tolerance = request.tolerance;
     let mut teller = Teller::new(seen, tolerance, &request.skip);
     // an observer's end is no error
@@ -87,43 +67,4 @@ pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
         }
     };
     Ok(())
-}
-
-fn checked(slab: &Slab, symmetry: Option<Symmetry>, step: f64, tolerance: f64) -> Result<()> {
-    if !(1..=2).contains(&slab.interfaces) {
-        return Err(Error::parameter("interfaces", slab.interfaces, "1 or 2"));
-    }
-    if slab.interfaces == 1 && symmetry == Some(Symmetry::Asymmetric) {
-        return Err(Error::Input(
-            "a single interface has no asymmetric states; take two".into(),
-        ));
-    }
-    positive("step", step)?;
-    positive("tolerance", tolerance)?;
-    Ok(())
-}
-
-fn positive(name: &str, value: f64) -> Result<f64> {
-    if value > 0.0 && value.is_finite() {
-        Ok(value)
-    } else {
-        Err(Error::parameter(name, value, "positive and finite"))
-    }
-}
-
-fn range(name: &str, (from, to): (f64, f64)) -> Result<()> {
-    positive(name, from)?;
-    positive(name, to)?;
-    if from == to {
-        return Err(Error::parameter(
-            name,
-            format!("{from} to {to}"),
-            "from one value to another",
-        ));
-    }
-    Ok(())
-}
-
-fn values(name: &str, all: &[f64]) -> Result<()> {
-    all.iter().try_for_each(|&x| positive(name, x).map(|_| ()))
 }

@@ -24,8 +24,9 @@ const SAME: f64 = 1e-6;
 /// asymmetric ones, from pitchforks of orbits that none of these has come to, and from period doublings.
 ///
 /// # Errors
-/// Those of the equilibria and of the flow; that a branch ends early is none.
+/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; that a branch ends early is none.
 pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
+    request.checked()?;
     let wants = |symmetry| request.symmetry.is_none_or(|only| only == symmetry);
     let mut branches = Branches::new(request);
     if wants(Symmetry::Symmetric) && branches.symmetric(seen)?.is_break() {

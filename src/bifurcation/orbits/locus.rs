@@ -18,9 +18,11 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// Follows all curves of the kind that is asked for, and hands on what is found.
 ///
 /// # Errors
-/// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of the
-/// equilibria and of the flow.
+/// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of
+/// [`LocusRequest::checked`], of the equilibria and of the flow.
 pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
+    request.checked()?;
+    let request = &request.ordered();
     let mut count = 0;
     for symmetry in symmetries(request)? {
         let told = match symmetry {
