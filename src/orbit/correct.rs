@@ -111,7 +111,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     /// The linearisation at a site, with the derivatives in the parameters.
     fn linear(&mut self, site: &Site<N>) -> Option<Linear<N>> {
         let field = self.family.field(site.at);
-        let mut linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
+        let mut linear = Linear::of(&mut self.tracer, self.family, &*field, &site.polygon).ok()?;
         drop(field);
         if !self.tracer.differentiates() {
             self.difference(site, &mut linear)?;
