@@ -99,6 +99,17 @@ impl<const N: usize> Linear<N> {
         Ok(linear)
     }
 
+    /// The same with the k-th node as the first.
+    pub fn beginning_at(mut self, k: usize) -> Self {
+        self.arcs.rotate_left(k);
+        self.frames.rotate_left(k);
+        self.maps.rotate_left(k);
+        self.gaps.rotate_left(k);
+        self.inflow.rotate_left(k);
+        self.slowness.rotate_left(k);
+        self
+    }
+
     /// The part of a gap before node k + 1 that the planes see, in the frame there.
     fn seen(&self, k: usize, gap: &State<N>) -> State<N> {
         let onto = &self.frames[(k + 1) % self.frames.len()];

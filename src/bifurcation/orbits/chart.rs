@@ -18,7 +18,7 @@ pub trait Chart<const N: usize>: Family<N> + Copy {
 }
 
 /// The least difference of ln psi along an orbit that is left with digits enough.
-const LEAST: f64 = 1e-5;
+const LEAST: f64 = 1e-4;
 /// The greatest difference of psi along an orbit that is symmetric but for it: its square changes nothing.
 const SYMMETRIC: f64 = -15.0;
 

@@ -1,6 +1,6 @@
 //! Follows a curve of orbits of any family and hands on what it meets.
 
-use super::detect::{Watch, landed, zeros};
+use super::detect::{Values, Watch, landed, zeros};
 use crate::orbit::{Family, Goal, Pace, Regular, Walk};
 use std::ops::ControlFlow;
 
@@ -41,11 +41,16 @@ pub fn follow<F: Family<N>, const N: usize>(
     most: usize,
     met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, Met<'_, N>) -> ControlFlow<()>,
 ) -> End {
+    let mut last: Option<(usize, Values)> = None;
     for _ in 0..most {
         let Some((before, length)) = walk.step() else {
             return End::Stuck;
         };
-        for zero in zeros(walk, &before, length, watches) {
+        // Other nodes are another measure of length, and make other slopes.
+        let known = last.take().filter(|(cuts, _)| *cuts == walk.cuts());
+        let (zeros, values) = zeros(walk, (&before, known.map(|k| k.1)), length, watches);
+        last = Some((walk.cuts(), values));
+        for zero in zeros {
             // What can't be landed on is none: a sign that changes by noise, or through a pole.
             let Some(at) = landed(walk, &before, length, &zero, Goal::STEP) else {
                 continue;
