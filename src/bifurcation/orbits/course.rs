@@ -103,9 +103,12 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
                     let met = self.orbit(walk, &pace.here, seen);
                     self.last = pace.here.site.clone();
                     self.slope = pace.direction.parameters[self.branches.free];
-                    lost = walk.corrector.family.loses(&self.last);
                     match met {
-                        Ok(Continue(())) if lost => Ok(Break(())),
+                        // A branch that has ended does not go on in other variables.
+                        Ok(Continue(())) if walk.corrector.family.loses(&self.last) => {
+                            lost = true;
+                            Ok(Break(()))
+                        }
                         met => met,
                     }
                 }
