@@ -32,7 +32,7 @@ pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
 pub use hopf::{HopfPoint, hopf_points};
 pub use indicator::{Indicator, Spectrum};
 pub use motion::{Motion, Site};
-pub use polygon::{EndAndLoss, Mesh, Polygon};
+pub use polygon::{EndAndLoss, Mesh, Polygon, of_digits};
 pub use profile::{Profile, profile};
 pub use shooting::{Closed, close, newton_step};
 pub use slab::Slab;

@@ -49,7 +49,26 @@ impl Mesh {
 const LARGEST_LOSS: f64 = 10.0;
 const DEPTH: usize = 10;
 
+/// A number with only so many significant digits left.
+pub fn of_digits(digits: i32, x: f64) -> f64 {
+    if x == 0.0 {
+        return 0.0;
+    }
+    let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
+    (x / unit).round() * unit
+}
+
 impl<const N: usize> Polygon<N> {
+    /// Nodes, of at least N coordinates, and durations, with only so many significant digits left: what a second method begins
+    /// with.
+    pub fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
+        let node = |x: &Vec<f64>| State::from_fn(|i, _| of_digits(digits, x[i]));
+        Polygon {
+            nodes: nodes.iter().map(node).collect(),
+            durations: durations.iter().map(|&t| of_digits(digits, t)).collect(),
+        }
+    }
+
     /// The trajectory from `start` over this duration, cut into arcs of about equal work and contraction.
     ///
     /// # Errors

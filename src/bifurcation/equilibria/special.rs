@@ -1,6 +1,6 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
-use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Seen, Special};
+use crate::bifurcation::{BranchRow, Event, LocusRow, Seen, Special};
 use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
@@ -54,21 +54,5 @@ impl<'a> Teller<'a> {
             special.note = Some(before + "less accurate than asked for");
         }
         (self.seen)(Event::Special(special))
-    }
-}
-
-impl Special {
-    /// A point that is known exactly and of which nothing else is.
-    pub(super) fn at(label: Label, driving: f64, stiffness: f64) -> Self {
-        Special {
-            label,
-            driving: Uncertain::new(driving, 0.0),
-            stiffness: Uncertain::new(stiffness, 0.0),
-            period: None,
-            criticality: None,
-            coefficient: None,
-            note: None,
-            orbit: None,
-        }
     }
 }

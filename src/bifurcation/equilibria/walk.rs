@@ -11,6 +11,7 @@ use crate::continuation::{Branch, Mark, Point, Stop, Watch};
 use crate::equilibrium::{Equilibrium, stability};
 use crate::error::{Error, Result};
 use crate::friction::{steady_slope, steady_stress};
+use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
 /// The largest change of the stress in a step.
@@ -134,7 +135,7 @@ impl Walk<'_, '_> {
     }
 
     fn plain(&mut self, place: &Place, label: Label, note: &str) -> Result<ControlFlow<()>> {
-        let mut special = Special::at(label, place.driving, place.stiffness);
+        let mut special = Special::new(label, exact(place.driving), exact(place.stiffness));
         special.note = (!note.is_empty()).then(|| note.to_string());
         self.hand_on(place, special)
     }
@@ -168,14 +169,13 @@ impl Walk<'_, '_> {
             return Ok(self.teller.branch(row));
         }
         let special = Special {
-            driving: pitchfork.driving,
             criticality: Some(pitchfork.criticality),
             coefficient: Some(pitchfork.coefficient),
             note: Some(
                 "coefficient: -3 tau''/tau''' of (24); asymmetric states at larger V_H if positive"
                     .into(),
             ),
-            ..Special::at(Label::Bp, driving, place.stiffness)
+            ..Special::new(Label::Bp, pitchfork.driving, exact(place.stiffness))
         };
         self.hand_on(&at, special)
     }
@@ -189,10 +189,7 @@ impl Walk<'_, '_> {
             rates: fold.rates,
             ..*place
         };
-        let special = Special {
-            driving: fold.driving,
-            ..Special::at(Label::Lp, at.driving, at.stiffness)
-        };
+        let special = Special::new(Label::Lp, fold.driving, exact(at.stiffness));
         self.hand_on(&at, special)
     }
 
@@ -216,12 +213,10 @@ impl Walk<'_, '_> {
             let point = points.crosschecked(point);
             let l_1 = points.lyapunov(point.driving.value, point.rates);
             let special = Special {
-                driving: point.driving,
-                stiffness: point.stiffness,
                 period: Some(point.period),
                 criticality: Some(points.criticality(&point)),
                 coefficient: Some(l_1.value),
-                ..Special::at(Label::Hb, point.driving.value, point.stiffness.value)
+                ..Special::new(Label::Hb, point.driving, point.stiffness)
             };
             let at = Place {
                 driving: point.driving.value,
@@ -240,7 +235,7 @@ impl Walk<'_, '_> {
             return ControlFlow::Continue(());
         };
         let place = self.place(point, self.value(point, *mark));
-        let mut special = Special::at(Label::Mx, place.driving, place.stiffness);
+        let mut special = Special::new(Label::Mx, exact(place.driving), exact(place.stiffness));
         special.note = Some(match &branch.stopped {
             Stop::StepTooSmall {
                 because: Some(error),
@@ -266,6 +261,10 @@ impl Walk<'_, '_> {
             Mark::Zero(i) => self.special(self.labels()[i], &place),
         }
     }
+}
+
+fn exact(x: f64) -> Uncertain {
+    Uncertain::new(x, 0.0)
 }
 
 /// Whether a Hopf point is the one that a test function saw.

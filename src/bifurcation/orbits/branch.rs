@@ -181,7 +181,7 @@ impl<'r> Branches<'r> {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
-            Some(mut walk) => Course::new(self, number, inside, &walk).go(&mut walk, seen),
+            Some(mut walk) => Course::new(self, number, inside, seen).go(&mut walk),
             None => Ok(Continue(())),
         }
     }
@@ -203,9 +203,9 @@ impl<'r> Branches<'r> {
         let first = site.moved(&direction, ASIDE);
         match Walk::from(&mut corrector, self.path(), first, direction) {
             Some(mut walk) => {
-                let mut course = Course::new(self, number, inside, &walk);
+                let mut course = Course::new(self, number, inside, seen);
                 course.times = times;
-                course.go(&mut walk, seen)
+                course.go(&mut walk)
             }
             None => Ok(Continue(())),
         }

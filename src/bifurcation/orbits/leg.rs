@@ -5,14 +5,14 @@ use super::chart::{Chart, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::locus::Locus;
-use super::normal_form::{Form, normal_form};
+use super::rows::{Given, asked};
 use super::sharp::{Exactly, rough, sharpened, special};
 use super::top::top;
-use crate::bifurcation::{Criticality, Event, Label, LocusRequest, LocusRow, Seen, Special};
+use super::way::{Decided, Way};
+use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Goal, Indicator, OverParted, Regular, Site, Walk};
-use std::any::Any;
+use crate::orbit::{Corrector, Indicator, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -26,41 +26,31 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
-/// An orbit and the logarithm of its multipliers' product.
-type Decided<const N: usize> = (Site<N>, f64);
-
 /// What is known of one way along a curve.
-pub(super) struct Leg<'r, 's, const N: usize> {
+pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
     indicator: Indicator,
     number: usize,
-    last: Option<Site<N>>,
-    /// The last coefficient of the normal form.
-    coefficient: Option<f64>,
-    /// The last orbit at which it was decided which way the bifurcation goes, and which.
-    decided: Option<(Decided<N>, Criticality)>,
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
     course: Vec<[f64; 3]>,
-    /// Which way the bifurcation goes at the last orbit, where that was asked for.
-    now: Option<Criticality>,
     pub told: bool,
 }
 
-impl<'r, 's, const N: usize> Leg<'r, 's, N> {
-    pub fn new(locus: &Locus<'r, N>, number: usize, seen: Option<Seen<'s>>) -> Self {
+impl<'r, 's> Leg<'r, 's> {
+    pub fn new<const N: usize>(
+        locus: &Locus<'r, N>,
+        number: usize,
+        seen: Option<Seen<'s>>,
+    ) -> Self {
         Leg {
             request: locus.request,
             indicator: locus.indicator,
             number,
-            last: None,
-            coefficient: None,
-            decided: None,
             seen,
             events: Vec::new(),
             course: Vec::new(),
-            now: None,
             told: false,
         }
     }
@@ -80,7 +70,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         told
     }
 
-    fn watches(&self) -> Vec<Watch> {
+    fn watches<const N: usize>(&self) -> Vec<Watch> {
         let request = self.request;
         let mut watches = vec![Watch::Turn(1)];
         match self.indicator {
@@ -105,20 +95,26 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
     }
 
     /// To the end, in other variables where these lose digits.
-    pub fn go<F: Chart<N>>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
-        let watches = self.watches();
+    pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
+        let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
         let mut lost = false;
+        let watches = self.watches::<N>();
         let end = follow(walk, &watches, STEPS, &mut |walk, met| match met {
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {
                 let here = &pace.here;
                 let family = walk.corrector.family;
-                let last = self.last.replace(here.site.clone());
+                let last = last.replace(here.site.clone());
                 if last.is_some_and(|last| family.merges(&here.site, &last)) {
                     return self.merged(&family.usual(&here.site));
                 }
-                self.row(family, here, None)?;
-                self.change(family, here)?;
+                let way = self.row(family, here)?;
+                if let Some(now) = way.and_then(|way| Decided::new(here, way.criticality))
+                    && let Some(before) = decided.replace(now.clone())
+                    && let Some(special) = before.change(&now, family, self.indicator)
+                {
+                    self.tell(Event::Special(special))?;
+                }
                 lost = family.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
             }
@@ -132,7 +128,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             let afar = walk.afar();
             let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
             if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
-                return self.goes_on(&mut walk);
+                return self.go(&mut walk);
             }
         }
         let mut special = rough(Label::Mx, &family.usual(site));
@@ -141,34 +137,12 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         Ok(())
     }
 
-    /// The same leg in three dimensions: as it is, if it has them.
-    fn goes_on(&mut self, walk: &mut Walk<'_, '_, OverParted, 3>) -> Result<()> {
-        let mut rest = Leg::<3> {
-            request: self.request,
-            indicator: self.indicator,
-            number: self.number,
-            last: None,
-            coefficient: self.coefficient,
-            decided: None,
-            seen: self.seen.take(),
-            events: std::mem::take(&mut self.events),
-            course: std::mem::take(&mut self.course),
-            now: None,
-            told: false,
-        };
-        let gone = rest.go(walk);
-        self.seen = rest.seen.take();
-        (self.events, self.course, self.told) = (rest.events, rest.course, rest.told);
-        gone
-    }
-
-    /// A point of the curve.
-    fn row<F: Chart<N>>(
+    /// A point of the curve; which way the bifurcation goes there, where that is asked for.
+    fn row<F: Chart<N>, const N: usize>(
         &mut self,
         family: &F,
         here: &Regular<N>,
-        label: Option<Label>,
-    ) -> ControlFlow<()> {
+    ) -> ControlFlow<(), Option<Way>> {
         // The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
         let uncertainty = LEFT * here.residual + 100.0 * ROUGH;
@@ -176,79 +150,21 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             .site
             .at
             .map(|x| Uncertain::new(x.exp(), uncertainty * x.exp()));
-        let criticality = if self.request.criticality {
-            self.criticality(family, here)
-        } else {
-            None
-        };
-        self.now = criticality;
-        self.put(here, at, criticality, label)
+        let way = self.way(family, here);
+        self.put(here, at, way, None)?;
+        Continue(way)
     }
 
-    /// Between the last decided orbit and this one the bifurcation may have changed the way that it goes: a Chenciner point, or
-    /// a degenerate period doubling. By halves in K, for of the coefficient the sign alone does not depend on the plane; where
-    /// neither way is decided the point is somewhere.
-    fn change<F: Chart<N>>(&mut self, family: &F, here: &Regular<N>) -> ControlFlow<()> {
-        let Some(now) = self.now.filter(|c| *c != Criticality::Undecided) else {
-            return Continue(());
-        };
-        let end = (here.site.clone(), here.spectrum.volume);
-        let before = self.decided.replace((end.clone(), now));
-        let Some((begin, then)) = before.filter(|(_, then)| *then != now) else {
-            return Continue(());
-        };
-        let from = self.last_of(family, (begin.clone(), then), end.clone());
-        let to = self.last_of(family, (end, now), begin);
-        // At the resonance 1:2 the coefficient of the doubling changes its sign through infinity.
-        if self.indicator == Indicator::Doubling && from.1 * to.1 < 0.0 {
-            return Continue(());
-        }
-        let label = if self.indicator == Indicator::Torus {
-            Label::Ch
-        } else {
-            Label::Gpd
-        };
-        let (from, to) = (from.0, to.0);
-        let between = |a: f64, b: f64| Uncertain::new(0.5 * (a + b), 0.5 * (a - b).abs());
-        let [driving, stiffness] = [0, 1].map(|i| between(from.at[i].exp(), to.at[i].exp()));
-        self.tell(Event::Special(Special {
-            period: Some(between(from.polygon.period(), to.polygon.period())),
-            ..Special::new(label, driving, stiffness)
-        }))
+    fn way<F: Chart<N>, const N: usize>(&self, family: &F, here: &Regular<N>) -> Option<Way> {
+        let wanted = self.request.criticality;
+        wanted.then(|| Way::along(family, &here.site, self.indicator))?
     }
 
-    /// The last orbit on the way to another that is decided as the first one is.
-    fn last_of<F: Chart<N>>(
-        &mut self,
-        family: &F,
-        ((mut from, mut volume), way): (Decided<N>, Criticality),
-        (mut to, _): Decided<N>,
-    ) -> Decided<N> {
-        /// How near, in ln K.
-        const NEAR: f64 = 1e-6;
-        while (to.at[1] - from.at[1]).abs() > NEAR
-            && let Ok(mut corrector) = Corrector::new(family, ROUGH)
-        {
-            let middle = Condition::Parameter(1, 0.5 * (from.at[1] + to.at[1]));
-            let conditions = [Condition::Indicator(self.indicator), middle];
-            let Some(half) = corrector.correct(from.clone(), &[0, 1], &conditions, Goal::STEP)
-            else {
-                break;
-            };
-            if self.criticality(family, &half) == Some(way) {
-                (from, volume) = (half.site, half.spectrum.volume);
-            } else {
-                to = half.site;
-            }
-        }
-        (from, volume)
-    }
-
-    fn put(
+    fn put<const N: usize>(
         &mut self,
         here: &Regular<N>,
         [driving, stiffness]: [Uncertain; 2],
-        criticality: Option<Criticality>,
+        way: Option<Way>,
         label: Option<Label>,
     ) -> ControlFlow<()> {
         let [v, k] = here.site.at;
@@ -262,28 +178,13 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             stiffness,
             period: Some(period),
             angle_over_pi: torus.then_some(angle / std::f64::consts::PI),
-            criticality,
+            criticality: way.map(|way| way.criticality),
             label,
         };
         self.tell(Event::Locus(row))
     }
 
-    /// Which way the bifurcation goes here, where that is decided by a cubic coefficient in the space of all states.
-    fn criticality<F: Chart<N>>(&mut self, family: &F, here: &Regular<N>) -> Option<Criticality> {
-        let form = match self.indicator {
-            Indicator::Torus => Form::Torus,
-            Indicator::Doubling => Form::Doubling,
-            _ => return None,
-        };
-        let usual: &dyn Any = &family.usual(&here.site);
-        let site = usual.downcast_ref::<Site<3>>()?;
-        let field = family.slab().slab(site.at).whole();
-        let (coefficient, criticality) = normal_form(&*field, &site.polygon, form);
-        self.coefficient = Some(coefficient.value);
-        Some(criticality)
-    }
-
-    fn zero<F: Chart<N>>(
+    fn zero<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &mut Walk<'_, '_, F, N>,
         watch: Watch,
@@ -326,41 +227,27 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             (&walk.path.free, &meets),
         );
         if let Watch::Value(i, value) = watch {
-            self.exactly(i, value, &mut special);
+            special.given(self.given(i, value));
         }
-        let criticality = if self.request.criticality {
-            self.criticality(family, orbit)
-        } else {
-            None
-        };
-        special.criticality = criticality;
-        special.coefficient = criticality.and(self.coefficient);
+        let way = self.way(family, orbit);
+        special.goes(way);
         let known = [special.driving, special.stiffness];
-        self.put(orbit, known, criticality, Some(label))?;
+        self.put(orbit, known, way, Some(label))?;
         self.tell(Event::Special(special))?;
         if ends { Break(()) } else { Continue(()) }
     }
 
-    /// What was asked for, not the exponential of its logarithm.
-    fn exactly(&self, i: usize, value: f64, special: &mut Special) {
+    fn given(&self, i: usize, value: f64) -> Given {
         let request = self.request;
-        let (range, asked, place) = if i == 0 {
-            (request.driving, &request.at_driving, &mut special.driving)
-        } else {
-            (
-                request.stiffness,
-                &request.at_stiffness,
-                &mut special.stiffness,
-            )
-        };
-        let mut values = [range.0, range.1].into_iter().chain(asked.iter().copied());
-        if let Some(exact) = values.find(|x| x.ln() == value) {
-            *place = Uncertain::new(exact, 0.0);
-        }
+        let ranges = [request.driving, request.stiffness];
+        let wanted = [&request.at_driving, &request.at_stiffness];
+        let mut given = [None; 2];
+        given[i] = asked(value, ranges[i], wanted[i]);
+        given
     }
 
     /// K is stationary along the curve here: its largest value, if it is that.
-    fn turn<F: Chart<N>>(
+    fn turn<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &mut Walk<'_, '_, F, N>,
         at: &Regular<N>,
@@ -380,7 +267,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the pitchfork at this K.
-    fn merged(&mut self, last: &Site<N>) -> ControlFlow<()> {
+    fn merged<const N: usize>(&mut self, last: &Site<N>) -> ControlFlow<()> {
         let mut special = rough(Label::Cp, &middle(last));
         special.note = Some("the curve ends on that of the pitchforks of orbits".into());
         let _ = self.tell(Event::Special(special));

@@ -12,6 +12,7 @@ pub mod normal_form;
 mod rows;
 mod sharp;
 mod top;
+mod way;
 
 pub use branch::branch;
 pub use detect::Watch;

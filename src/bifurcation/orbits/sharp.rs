@@ -7,12 +7,11 @@ use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::State;
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, Corrector, Family, Goal, Indicator, OverLoadings, Polygon, Regular, Site, Slab,
-    Tracer,
+    Tracer, of_digits,
 };
 
 /// What a special orbit meets, by itself: no plane of a walk.
@@ -270,28 +269,13 @@ where
 
 /// The orbit with only so many digits left.
 fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
-    let cut = |x: f64| {
-        if x == 0.0 {
-            return 0.0;
-        }
-        let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
-        (x / unit).round() * unit
-    };
-    let nodes = orbit.nodes.iter();
-    let mut at = orbit.at.map(cut);
+    let mut at = orbit.at;
     // What is not free is given.
-    for (i, at) in at.iter_mut().enumerate() {
-        if !orbit.free.contains(&i) {
-            *at = orbit.at[i];
-        }
+    for &i in &orbit.free {
+        at[i] = of_digits(digits, at[i]);
     }
     Site {
-        polygon: Polygon {
-            nodes: nodes
-                .map(|x| State::<N>::from_fn(|i, _| cut(x[i])))
-                .collect(),
-            durations: orbit.durations.iter().map(|&t| cut(t)).collect(),
-        },
+        polygon: Polygon::of_digits(digits, &orbit.nodes, &orbit.durations),
         at,
     }
 }
