@@ -39,7 +39,8 @@ where
         path.clone(),
         here.clone(),
         direction.clone(),
-    ) {
+    ) && back.begins(&mut walk, true).is_continue()
+    {
         back.go(&mut walk)?;
     }
     let (mut course, events) = back.kept();
@@ -51,7 +52,9 @@ where
         }
     }
     let mut forth = Leg::new(locus, number, Some(seen));
-    if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
+    if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0))
+        && forth.begins(&mut walk, false).is_continue()
+    {
         forth.go(&mut walk)?;
     }
     let told = if forth.told {

@@ -94,6 +94,32 @@ impl<'r, 's> Leg<'r, 's> {
         watches
     }
 
+    /// Where the curve begins at a value that is asked for: the point, unless it was told already; and a break where the walk
+    /// would leave the range.
+    pub fn begins<F: Chart<N>, const N: usize>(
+        &mut self,
+        walk: &mut Walk<'_, '_, F, N>,
+        tell: bool,
+    ) -> ControlFlow<()> {
+        let here = walk.pace.here.clone();
+        let met: Vec<Watch> = self.watches::<N>();
+        let mut ends = Continue(());
+        for watch in met.into_iter().filter(|watch| watch.met(&here)) {
+            if tell {
+                // At an end of the range the other way leads inside.
+                let _ = self.zero(walk, watch, &here);
+            }
+            if let Watch::Value(i, value) = watch {
+                let (from, to) = [self.request.driving, self.request.stiffness][i];
+                let rises = walk.pace.direction.parameters[i] > 0.0;
+                if value == from.ln() && !rises || value == to.ln() && rises {
+                    ends = Break(());
+                }
+            }
+        }
+        ends
+    }
+
     /// To the end, in other variables where these lose digits.
     pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
         let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
