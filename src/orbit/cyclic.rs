@@ -91,10 +91,7 @@ impl<const N: usize, const C: usize> Reduced<N, C> {
 }
 
 /// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
-pub(super) fn solve<const N: usize>(
-    maps: &[Jacobian<N>],
-    right: &[State<N>],
-) -> Option<Vec<State<N>>> {
+pub fn solve<const N: usize>(maps: &[Jacobian<N>], right: &[State<N>]) -> Option<Vec<State<N>>> {
     let reduced = reduce::<N, 1>(maps, right);
     let start = reduced.closing.solve_upper_triangular(&reduced.right)?;
     // Where one direction is free, rounding alone keeps the last pivot from being zero.

@@ -99,6 +99,11 @@ impl<const N: usize> Linear<N> {
         Ok(linear)
     }
 
+    /// ln of the largest growth along every arc.
+    pub fn growth(&self) -> impl Iterator<Item = f64> {
+        self.maps.iter().map(|map| map.amax().ln())
+    }
+
     /// The same with the k-th node as the first.
     pub fn beginning_at(mut self, k: usize) -> Self {
         self.arcs.rotate_left(k);
@@ -256,7 +261,7 @@ fn underdetermined<const N: usize>(
 }
 
 /// Orthonormal columns, the first along f, which is not zero: the reflection that takes the first axis there.
-fn frame<const N: usize>(f: &State<N>) -> Jacobian<N> {
+pub(super) fn frame<const N: usize>(f: &State<N>) -> Jacobian<N> {
     let along = f / f.amax();
     let along = along / along.norm();
     let mut v = along;

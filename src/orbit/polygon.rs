@@ -177,6 +177,39 @@ impl<const N: usize> Polygon<N> {
         Ok(finer)
     }
 
+    /// With more nodes in arcs along which something grows by too much, `growths` its logarithms: what the end of such an arc
+    /// does is linear in its beginning for small steps only.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub(super) fn split(
+        &self,
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        growths: &[f64],
+        most: f64,
+    ) -> Result<Self> {
+        /// Parts of an arc, at most.
+        const PARTS: f64 = 8.0;
+        let mut finer = Polygon {
+            nodes: Vec::new(),
+            durations: Vec::new(),
+        };
+        for ((x, duration), growth) in self.nodes.iter().zip(&self.durations).zip(growths) {
+            let parts = (growth / most).ceil().clamp(1.0, PARTS);
+            let part = duration / parts;
+            let mut node = *x;
+            finer.nodes.push(node);
+            finer.durations.push(part);
+            for _ in 1..parts as usize {
+                node = tracer.flow(field, &node, part, None)?;
+                finer.nodes.push(node);
+                finer.durations.push(part);
+            }
+        }
+        Ok(finer)
+    }
+
     /// The same cycle from other nodes: each moved along its arc by this part of it.
     ///
     /// # Errors

@@ -267,10 +267,14 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         };
         let mut linear = self.corrector.linear(&site)?;
         for _ in 0..SPLITS {
-            if growth(&linear).all(|growth| growth < GROWTH) {
+            if linear.growth().all(|growth| growth < GROWTH) {
                 break;
             }
-            site = self.split(&site, &linear)?;
+            let growths: Vec<f64> = linear.growth().collect();
+            let field = self.corrector.family.field(site.at);
+            let tracer = &mut self.corrector.tracer;
+            site.polygon = site.polygon.split(tracer, &*field, &growths, GROWTH).ok()?;
+            drop(field);
             linear = self.corrector.linear(&site)?;
         }
         let scale = self.corrector.family.scale(site.at);
@@ -281,33 +285,6 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         self.fresh = true;
         self.cuts += 1;
         Some(())
-    }
-
-    /// With more nodes in arcs along which something grows by too much: what the end of such an arc does is linear in its
-    /// beginning for small steps only.
-    fn split(&mut self, site: &Site<N>, linear: &Linear<N>) -> Option<Site<N>> {
-        let field = self.corrector.family.field(site.at);
-        let mut finer = Polygon {
-            nodes: Vec::new(),
-            durations: Vec::new(),
-        };
-        let Polygon { nodes, durations } = &site.polygon;
-        for ((x, &duration), growth) in nodes.iter().zip(durations).zip(growth(linear)) {
-            let parts = (growth / GROWTH).ceil().clamp(1.0, PARTS);
-            let part = duration / parts;
-            let mut node = *x;
-            finer.nodes.push(node);
-            finer.durations.push(part);
-            for _ in 1..parts as usize {
-                node = self.corrector.tracer.flow(&*field, &node, part, None).ok()?;
-                finer.nodes.push(node);
-                finer.durations.push(part);
-            }
-        }
-        Some(Site {
-            polygon: finer,
-            at: site.at,
-        })
     }
 
     /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
@@ -335,9 +312,8 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
 /// ln of what an arc of a new mesh may grow by, and one of an old mesh.
 const GROWTH: f64 = 5.0;
 const GROWN: f64 = 8.0;
-/// How often arcs are split for it, and into how many parts at most.
+/// How often arcs are split for it.
 const SPLITS: usize = 6;
-const PARTS: f64 = 8.0;
 
 /// The node that the motions left to the orbit move most. All others are found from the first one: from the small end of a
 /// motion that grows by many decades nothing is found.
@@ -352,11 +328,6 @@ fn most_moved<const N: usize>(along: &[Motion<N>]) -> usize {
         .unwrap_or(0)
 }
 
-/// ln of the largest growth along every arc.
-fn growth<const N: usize>(linear: &Linear<N>) -> impl Iterator<Item = f64> {
-    linear.maps.iter().map(|map| map.amax().ln())
-}
-
 /// Whether arcs take far more work than the others or than they should, or grow by too much.
 fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
     /// Steps of an arc over the mean, and of the mean over what it should be.
@@ -367,5 +338,7 @@ fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
     let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
     let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
     let most = mean.max(Mesh::FINE.steps);
-    worst > WORST * most || mean > MEAN * Mesh::FINE.steps || growth(&orbit.linear).any(|g| g > GROWN)
+    worst > WORST * most
+        || mean > MEAN * Mesh::FINE.steps
+        || orbit.linear.growth().any(|g| g > GROWN)
 }

@@ -353,7 +353,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         let Some(orbit) = orbit.downcast_ref::<Regular<3>>() else {
             return;
         };
-        special.goes(Way::at(family, &sharp.orbit.site, form));
+        special.goes(Some(Way::at(family, &sharp.orbit.site, form)));
         if label == Label::Pd && !family.loses(&sharp.orbit.site) {
             self.branches.doublings.push(Doubling {
                 orbit: orbit.clone(),
@@ -365,6 +365,6 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
 
     fn pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
         let site = embedded(&orbit.site);
-        special.goes(Way::at(&self.branches.family, &site, Form::Pitchfork));
+        special.goes(Some(Way::at(&self.branches.family, &site, Form::Pitchfork)));
     }
 }

@@ -224,7 +224,12 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
     let (mut low, mut high) = (0.0, length);
     for _ in 0..ATTEMPTS {
         let guess = walk.beyond(before, at);
-        let starts = [guess.as_ref(), Some(&zero.near), Some(&ends.0), Some(&ends.1)];
+        let starts = [
+            guess.as_ref(),
+            Some(&zero.near),
+            Some(&ends.0),
+            Some(&ends.1),
+        ];
         for start in starts.into_iter().flatten() {
             let site = start.here.site.clone();
             let found = walk.corrector.correct(site, &free, &conditions, goal);

@@ -2,11 +2,10 @@
 
 use super::branch::ROUGH;
 use super::chart::Chart;
-use super::normal_form::{Form, normal_form};
+use super::normal_form::Form;
 use crate::bifurcation::{Criticality, Label, Special};
 use crate::number::Uncertain;
 use crate::orbit::{Condition, Corrector, Goal, Indicator, Regular, Site};
-use std::any::Any;
 
 /// Which way a bifurcation goes.
 #[derive(Debug, Clone, Copy)]
@@ -17,16 +16,13 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// By the cubic coefficient in the space of all states. `None` in the plane of symmetric ones.
-    pub fn at<F: Chart<N>, const N: usize>(family: &F, site: &Site<N>, form: Form) -> Option<Self> {
-        let usual: &dyn Any = &family.usual(site);
-        let site = usual.downcast_ref::<Site<3>>()?;
-        let field = family.slab().slab(site.at).whole();
-        let (coefficient, criticality) = normal_form(&*field, &site.polygon, form);
-        Some(Way {
+    /// By the cubic coefficient in the space of all states.
+    pub fn at<F: Chart<N>, const N: usize>(family: &F, site: &Site<N>, form: Form) -> Self {
+        let (coefficient, criticality) = family.normal_form(site, form);
+        Way {
             criticality,
             coefficient,
-        })
+        }
     }
 
     /// The same at a point of a curve. `None` for bifurcations that are not decided by such a coefficient.
@@ -40,7 +36,7 @@ impl Way {
             Indicator::Doubling => Form::Doubling,
             _ => return None,
         };
-        Way::at(family, site, form)
+        Some(Way::at(family, site, form))
     }
 }
 
