@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{
     BranchRequest, BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, LocusRow,
-    Parameter, Special, orbits, orbits::normal_form::ReturnMap,
+    Parameter, Special, equilibria, orbits, orbits::normal_form::ReturnMap,
 };
 use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::field::State;
@@ -155,6 +155,39 @@ fn names(heard: &Heard) -> Vec<(Label, String)> {
     names
         .map(|s| (s.label, format!("{:.6e}", s.driving.value)))
         .collect()
+}
+
+/// Orbits vanish where equilibria begin to oscillate: both tell of the same point.
+#[test]
+fn hopf_points_are_those_of_the_equilibria() {
+    let requests = [
+        along_driving(0.14),
+        BranchRequest::new(slab(200.0, 1.0), Parameter::Stiffness, (0.01, 0.4)),
+    ];
+    for request in requests {
+        let heard = branch(&request);
+        let mut of_equilibria = Heard::default();
+        equilibria::branch(&request, &mut |event| {
+            of_equilibria.hear(event);
+            Continue(())
+        })
+        .expect("branches");
+        let found = heard.of(Label::Hb);
+        assert!(found.len() > 1, "{found:?}");
+        for point in found {
+            let driving = point.driving.value;
+            let other = of_equilibria
+                .of(Label::Hb)
+                .into_iter()
+                .find(|s| s.driving.value == driving && s.stiffness.value == point.stiffness.value);
+            let other = other.unwrap_or_else(|| panic!("{point:?}"));
+            assert_eq!(point.driving.uncertainty, other.driving.uncertainty);
+            assert_eq!(point.stiffness.uncertainty, other.stiffness.uncertainty);
+            assert_eq!(point.coefficient, other.coefficient);
+            assert_eq!(point.criticality, other.criticality);
+            assert_eq!(point.note, other.note);
+        }
+    }
 }
 
 #[test]
