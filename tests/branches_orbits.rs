@@ -461,6 +461,30 @@ fn a_second_method_finds_the_same_points() {
 }
 
 #[test]
+fn what_is_less_accurate_than_asked_for_says_so() {
+    const WORDS: &str = "less accurate than asked for";
+    for tolerance in [1e-15, 1e-11] {
+        let of_branch = branch(&BranchRequest {
+            tolerance,
+            symmetry: Some(Symmetry::Asymmetric),
+            ..along_driving(0.14)
+        });
+        let of_curve = locus(&LocusRequest {
+            tolerance,
+            ..curve(LocusKind::Torus, (0.15, 0.4))
+        });
+        for point in of_branch.special.iter().chain(&of_curve.special) {
+            let less = |x: Uncertain| x.uncertainty > tolerance * x.value;
+            let says = point.note.as_ref().is_some_and(|note| note.contains(WORDS));
+            let is = less(point.driving) || less(point.stiffness);
+            assert_eq!(says, is, "{tolerance}: {point:?}");
+        }
+        let doubling = nearest(&of_branch, Label::Pd, 0.0884);
+        assert_eq!(doubling.note.is_some(), tolerance < 1e-14);
+    }
+}
+
+#[test]
 fn who_has_heard_enough_is_left_alone() {
     let mut rows = 0;
     orbits::branch(&along_driving(0.14), &mut |event| {

@@ -177,7 +177,8 @@ impl<'r> Branches<'r> {
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
         let inside = self.in_range(hopf.at()[self.free]);
-        if inside && seen(Event::Special(self.hopf(i))).is_break() {
+        let special = Event::Special(self.hopf(i)).against(self.request.tolerance);
+        if inside && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {

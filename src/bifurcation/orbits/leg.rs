@@ -61,6 +61,7 @@ impl<'r, 's> Leg<'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        let event = event.against(self.request.tolerance);
         let Some(seen) = &mut self.seen else {
             self.events.push(event);
             return Continue(());
