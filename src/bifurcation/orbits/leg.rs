@@ -26,6 +26,24 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
+/// Where a curve passes one of the values of K at which bifurcations are looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass {
+    /// (ln V_H, ln K).
+    pub at: [f64; 2],
+    /// ln T.
+    pub period: f64,
+}
+
+impl Pass {
+    pub fn of<const N: usize>(site: &Site<N>) -> Self {
+        Pass {
+            at: site.at,
+            period: site.polygon.period().ln(),
+        }
+    }
+}
+
 /// What is known of one way along a curve.
 pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
@@ -34,7 +52,9 @@ pub(super) struct Leg<'r, 's> {
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
-    course: Vec<[f64; 3]>,
+    /// The values of ln K at which the curve is to be known again, and where it passes these.
+    scan: &'r [f64],
+    passes: Vec<Pass>,
     pub told: bool,
 }
 
@@ -50,14 +70,15 @@ impl<'r, 's> Leg<'r, 's> {
             number,
             seen,
             events: Vec::new(),
-            course: Vec::new(),
+            scan: locus.scan,
+            passes: Vec::new(),
             told: false,
         }
     }
 
-    /// (ln V_H, ln K, ln T) along it, and what nobody was told.
-    pub fn kept(self) -> (Vec<[f64; 3]>, Vec<Event>) {
-        (self.course, self.events)
+    /// Where it passes, and what nobody was told.
+    pub fn kept(self) -> (Vec<Pass>, Vec<Event>) {
+        (self.passes, self.events)
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
@@ -92,6 +113,12 @@ impl<'r, 's> Leg<'r, 's> {
             .into_iter()
             .chain(request.at_stiffness.iter().copied());
         watches.extend(stiffnesses.map(|x| Watch::Value(1, x.ln())));
+        for &log in self.scan {
+            let watch = Watch::Value(1, log);
+            if !watches.contains(&watch) {
+                watches.push(watch);
+            }
+        }
         watches
     }
 
@@ -168,9 +195,7 @@ impl<'r, 's> Leg<'r, 's> {
         way: Option<Way>,
         label: Option<Label>,
     ) -> ControlFlow<()> {
-        let [v, k] = here.site.at;
         let period = here.site.polygon.period();
-        self.course.push([v, k, period.ln()]);
         let torus = self.indicator == Indicator::Torus;
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
@@ -193,7 +218,14 @@ impl<'r, 's> Leg<'r, 's> {
     ) -> ControlFlow<()> {
         let indicator = self.indicator;
         let trace = at.spectrum.trace;
+        if let Watch::Value(1, log) = watch
+            && self.scan.contains(&log)
+        {
+            self.passes.push(Pass::of(&at.site));
+        }
         let (label, condition, ends) = match watch {
+            // Nobody asked for it.
+            Watch::Value(i, value) if self.given(i, value)[i].is_none() => return Continue(()),
             Watch::Value(i, value) => {
                 let range = [self.request.driving, self.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();

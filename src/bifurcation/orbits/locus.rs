@@ -8,6 +8,7 @@ use super::chart::Chart;
 use super::curve::through;
 use super::detect::Watch;
 use super::follow::{Met, follow};
+use super::leg::Pass;
 use crate::bifurcation::{LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -75,13 +76,21 @@ const LOWEST: f64 = 0.045;
 /// From one such branch to the next K is divided by this.
 const APART: f64 = 2.0;
 
+/// The values of K at which bifurcations are looked for.
+fn scanned((from, to): (f64, f64)) -> Vec<f64> {
+    let all = std::iter::successors(Some(to), |k| Some(k / APART));
+    all.take_while(|&k| k >= from.max(LOWEST.min(to))).collect()
+}
+
 /// The curves of one kind and symmetry.
 pub(super) struct Locus<'r, const N: usize> {
+    /// The values of ln K at which bifurcations are looked for.
+    pub scan: &'r [f64],
     pub request: &'r LocusRequest,
     pub family: OverLoadings,
     pub indicator: Indicator,
-    /// (ln V_H, ln K, ln T) along the curves so far.
-    pub known: Vec<Vec<[f64; 3]>>,
+    /// Where the curves so far pass these.
+    known: Vec<Pass>,
 }
 
 impl<'r, const N: usize> Locus<'r, N>
@@ -94,7 +103,9 @@ where
         count: &mut usize,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
+        let scan = scanned(request.stiffness);
         let mut locus = Locus {
+            scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
             family: OverLoadings(request.slab),
             indicator: match request.kind {
@@ -105,9 +116,7 @@ where
             },
             known: Vec::new(),
         };
-        let (from, to) = request.stiffness;
-        let mut stiffness = to;
-        while stiffness >= from.max(LOWEST.min(to)) {
+        for stiffness in scan {
             for seed in locus.seeds(symmetry, stiffness)? {
                 if locus.is_known(&seed) {
                     continue;
@@ -124,9 +133,8 @@ where
                 if curve.told.is_break() {
                     return Ok(Break(()));
                 }
-                locus.known.push(curve.course);
+                locus.known.extend(curve.passes);
             }
-            stiffness /= APART;
         }
         Ok(Continue(()))
     }
@@ -187,20 +195,13 @@ where
 
     /// Whether a curve that was followed passes there.
     fn is_known(&self, seed: &Site<N>) -> bool {
-        /// What the straight way between two of its points may err by, in ln V_H and ln T.
-        const NEAR: (f64, f64) = (0.02, 0.05);
-        let [v, k] = seed.at;
-        let t = seed.polygon.period().ln();
-        let passes = |pair: &[[f64; 3]]| {
-            let (a, b) = (pair[0], pair[1]);
-            if (a[1] - k) * (b[1] - k) > 0.0 || a[1] == b[1] {
-                return false;
-            }
-            let part = (k - a[1]) / (b[1] - a[1]);
-            let between = |i: usize| a[i] + part * (b[i] - a[i]);
-            (between(0) - v).abs() < NEAR.0 && (between(2) - t).abs() < NEAR.1
-        };
-        self.known.iter().any(|curve| curve.windows(2).any(passes))
+        /// In ln V_H, ln K and ln T.
+        const NEAR: f64 = 1e-6;
+        let Pass { at, period } = Pass::of(seed);
+        let near = |a: f64, b: f64| (a - b).abs() < NEAR;
+        self.known
+            .iter()
+            .any(|one| near(one.at[0], at[0]) && near(one.at[1], at[1]) && near(one.period, period))
     }
 
     /// The longest step.
