@@ -367,6 +367,41 @@ fn curves_go_down_to_small_stiffness() {
     }
 }
 
+/// Where a range of K ends on the way of a curve both ways begin at its end: what lies beyond is none of them.
+#[test]
+fn curves_stay_within_the_ranges() {
+    let kinds = [
+        (LocusKind::OrbitPitchfork, (0.1, 0.4), 2),
+        (LocusKind::Torus, (0.1, 0.2), 3),
+        (LocusKind::PeriodDoubling, (0.05, 0.12), 4),
+    ];
+    for (kind, range, ends) in kinds {
+        let request = LocusRequest {
+            at_stiffness: vec![0.11],
+            ..curve(kind, range)
+        };
+        let heard = locus(&request);
+        for row in &heard.points {
+            let k = row.stiffness.value;
+            assert!(k >= range.0 && k <= range.1, "{kind:?}: {row:?}");
+        }
+        // A piece of the torus curve ends at the resonance 1:2.
+        assert_eq!(heard.of(Label::Ep).len(), ends, "{kind:?}");
+        assert!(heard.of(Label::Mx).is_empty(), "{kind:?}");
+        let again = heard.of(Label::Uz);
+        let mut driving: Vec<f64> = again.iter().map(|s| s.driving.value).collect();
+        driving.sort_by(f64::total_cmp);
+        let once = driving.windows(2).all(|v| v[1] / v[0] > 1.0 + 1e-9);
+        assert!(once && !driving.is_empty(), "{kind:?}: {driving:?}");
+    }
+    // The K at which a curve is looked for first, asked for: told once on each flank.
+    let request = LocusRequest {
+        at_stiffness: vec![0.1],
+        ..curve(LocusKind::OrbitPitchfork, (0.05, 0.2))
+    };
+    assert_eq!(locus(&request).of(Label::Uz).len(), 2);
+}
+
 #[test]
 fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
     let request = BranchRequest {

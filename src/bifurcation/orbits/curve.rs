@@ -34,13 +34,14 @@ where
         return Ok(None);
     };
     let begin = Pass::of(&here);
-    let mut back = Leg::new(locus, number, None);
+    let mut back = Leg::new(locus, number, begin, None);
     if let Some(mut walk) = Walk::from(
         &mut corrector,
         path.clone(),
         here.clone(),
         direction.clone(),
-    ) {
+    ) && !back.leaves(&walk.pace)
+    {
         back.go(&mut walk)?;
     }
     let (mut passes, events) = back.kept();
@@ -51,9 +52,12 @@ where
             return Ok(Some(Curve { passes, told }));
         }
     }
-    let mut forth = Leg::new(locus, number, Some(seen));
+    let mut forth = Leg::new(locus, number, begin, Some(seen));
     if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
-        forth.go(&mut walk)?;
+        forth.begins(&mut walk);
+        if !forth.told && !forth.leaves(&walk.pace) {
+            forth.go(&mut walk)?;
+        }
     }
     let told = if forth.told {
         ControlFlow::Break(())

@@ -12,7 +12,7 @@ use super::way::{Decided, Way};
 use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, Indicator, Regular, Site, Walk};
+use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -25,6 +25,9 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R3, -1.0),
     (Label::R4, 0.0),
 ];
+
+/// In ln V_H, ln K and ln T: orbits that differ by less are the same one. What is found on branches is off by 1.5e-8 at most.
+const SAME: f64 = 1e-6;
 
 /// Where a curve passes one of the values of K at which bifurcations are looked for.
 #[derive(Debug, Clone, Copy)]
@@ -42,6 +45,14 @@ impl Pass {
             period: site.polygon.period().ln(),
         }
     }
+
+    /// Whether both are the same orbit.
+    pub fn is(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() < SAME;
+        near(self.at[0], other.at[0])
+            && near(self.at[1], other.at[1])
+            && near(self.period, other.period)
+    }
 }
 
 /// What is known of one way along a curve.
@@ -49,6 +60,8 @@ pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
     indicator: Indicator,
     number: usize,
+    /// Where both ways begin.
+    begin: Pass,
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
@@ -62,12 +75,14 @@ impl<'r, 's> Leg<'r, 's> {
     pub fn new<const N: usize>(
         locus: &Locus<'r, N>,
         number: usize,
+        begin: Pass,
         seen: Option<Seen<'s>>,
     ) -> Self {
         Leg {
             request: locus.request,
             indicator: locus.indicator,
             number,
+            begin,
             seen,
             events: Vec::new(),
             scan: locus.scan,
@@ -122,12 +137,37 @@ impl<'r, 's> Leg<'r, 's> {
         watches
     }
 
+    /// What was asked for at the orbit where both ways begin: neither comes to it.
+    pub fn begins<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) {
+        let here = walk.pace.here.clone();
+        for watch in self.watches::<N>() {
+            if let Watch::Value(i, value) = watch
+                && (self.begin.at[i] - value).abs() < SAME
+                && !self.told
+            {
+                // That it may be the range's end is seen to by who asks whether the way leaves it.
+                let _ = self.zero(walk, watch, &here);
+            }
+        }
+    }
+
+    /// Whether the way begins at the end of a range and leads out of it.
+    pub fn leaves<const N: usize>(&self, pace: &Pace<N>) -> bool {
+        let ranges = [self.request.driving, self.request.stiffness];
+        (0..2).any(|i| {
+            let (from, to) = (ranges[i].0.ln(), ranges[i].1.ln());
+            let (x, slope) = (pace.here.site.at[i], pace.direction.parameters[i]);
+            x < from + SAME && slope < 0.0 || x > to - SAME && slope > 0.0
+        })
+    }
+
     /// To the end, in other variables where these lose digits.
     pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
         let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
         let mut lost = false;
         let watches = self.watches::<N>();
         let end = follow(walk, &watches, STEPS, &mut |walk, met| match met {
+            Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {
                 let here = &pace.here;

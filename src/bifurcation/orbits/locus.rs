@@ -3,7 +3,6 @@
 //! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
 //! through resonances, to where the bifurcation ceases to be one.
 
-use super::branch::ROUGH;
 use super::chart::Chart;
 use super::curve::through;
 use super::detect::Watch;
@@ -71,6 +70,8 @@ const LONGEST: f64 = 0.2;
 const LONGEST_OF_BRANCH: f64 = 0.7;
 /// Steps on such a branch.
 const STEPS: usize = 2000;
+/// Tolerance of such a branch: what is found there is corrected with that of the curves.
+const SCAN: f64 = 1e-11;
 /// Below this K no branch is followed for seeds: the curves that there are come down from above.
 const LOWEST: f64 = 0.045;
 /// From one such branch to the next K is divided by this.
@@ -156,7 +157,7 @@ where
             if ends.iter().any(|end| (end - begin).abs() < 1e-3) {
                 continue;
             }
-            let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
+            let mut corrector = Corrector::<_, N>::new(&family, SCAN)?;
             let path = Path::branch(0, LONGEST_OF_BRANCH);
             let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopf) else {
                 continue;
@@ -195,13 +196,8 @@ where
 
     /// Whether a curve that was followed passes there.
     fn is_known(&self, seed: &Site<N>) -> bool {
-        /// In ln V_H, ln K and ln T.
-        const NEAR: f64 = 1e-6;
-        let Pass { at, period } = Pass::of(seed);
-        let near = |a: f64, b: f64| (a - b).abs() < NEAR;
-        self.known
-            .iter()
-            .any(|one| near(one.at[0], at[0]) && near(one.at[1], at[1]) && near(one.period, period))
+        let here = Pass::of(seed);
+        self.known.iter().any(|pass| pass.is(&here))
     }
 
     /// The longest step.
