@@ -71,7 +71,7 @@ const LONGEST_OF_BRANCH: f64 = 0.7;
 /// Steps on such a branch.
 const STEPS: usize = 2000;
 /// Tolerance of such a branch: what is found there is corrected with that of the curves.
-const SCAN: f64 = 1e-11;
+const SCAN: f64 = 1e-8;
 /// Below this K no branch is followed for seeds: the curves that there are come down from above.
 const LOWEST: f64 = 0.045;
 /// From one such branch to the next K is divided by this.
