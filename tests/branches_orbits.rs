@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{
     BranchRequest, BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, LocusRow,
-    Parameter, Special, orbits, orbits::normal_form::ReturnMap,
+    Parameter, Special, equilibria, orbits, orbits::normal_form::ReturnMap,
 };
 use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::field::State;
@@ -155,6 +155,39 @@ fn names(heard: &Heard) -> Vec<(Label, String)> {
     names
         .map(|s| (s.label, format!("{:.6e}", s.driving.value)))
         .collect()
+}
+
+/// Orbits vanish where equilibria begin to oscillate: both tell of the same point.
+#[test]
+fn hopf_points_are_those_of_the_equilibria() {
+    let requests = [
+        along_driving(0.14),
+        BranchRequest::new(slab(200.0, 1.0), Parameter::Stiffness, (0.01, 0.4)),
+    ];
+    for request in requests {
+        let heard = branch(&request);
+        let mut of_equilibria = Heard::default();
+        equilibria::branch(&request, &mut |event| {
+            of_equilibria.hear(event);
+            Continue(())
+        })
+        .expect("branches");
+        let found = heard.of(Label::Hb);
+        assert!(found.len() > 1, "{found:?}");
+        for point in found {
+            let driving = point.driving.value;
+            let other = of_equilibria
+                .of(Label::Hb)
+                .into_iter()
+                .find(|s| s.driving.value == driving && s.stiffness.value == point.stiffness.value);
+            let other = other.unwrap_or_else(|| panic!("{point:?}"));
+            assert_eq!(point.driving.uncertainty, other.driving.uncertainty);
+            assert_eq!(point.stiffness.uncertainty, other.stiffness.uncertainty);
+            assert_eq!(point.coefficient, other.coefficient);
+            assert_eq!(point.criticality, other.criticality);
+            assert_eq!(point.note, other.note);
+        }
+    }
 }
 
 #[test]
@@ -334,6 +367,41 @@ fn curves_go_down_to_small_stiffness() {
     }
 }
 
+/// Where a range of K ends on the way of a curve both ways begin at its end: what lies beyond is none of them.
+#[test]
+fn curves_stay_within_the_ranges() {
+    let kinds = [
+        (LocusKind::OrbitPitchfork, (0.1, 0.4), 2),
+        (LocusKind::Torus, (0.1, 0.2), 3),
+        (LocusKind::PeriodDoubling, (0.05, 0.12), 4),
+    ];
+    for (kind, range, ends) in kinds {
+        let request = LocusRequest {
+            at_stiffness: vec![0.11],
+            ..curve(kind, range)
+        };
+        let heard = locus(&request);
+        for row in &heard.points {
+            let k = row.stiffness.value;
+            assert!(k >= range.0 && k <= range.1, "{kind:?}: {row:?}");
+        }
+        // A piece of the torus curve ends at the resonance 1:2.
+        assert_eq!(heard.of(Label::Ep).len(), ends, "{kind:?}");
+        assert!(heard.of(Label::Mx).is_empty(), "{kind:?}");
+        let again = heard.of(Label::Uz);
+        let mut driving: Vec<f64> = again.iter().map(|s| s.driving.value).collect();
+        driving.sort_by(f64::total_cmp);
+        let once = driving.windows(2).all(|v| v[1] / v[0] > 1.0 + 1e-9);
+        assert!(once && !driving.is_empty(), "{kind:?}: {driving:?}");
+    }
+    // The K at which a curve is looked for first, asked for: told once on each flank.
+    let request = LocusRequest {
+        at_stiffness: vec![0.1],
+        ..curve(LocusKind::OrbitPitchfork, (0.05, 0.2))
+    };
+    assert_eq!(locus(&request).of(Label::Uz).len(), 2);
+}
+
 #[test]
 fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
     let request = BranchRequest {
@@ -425,6 +493,30 @@ fn a_second_method_finds_the_same_points() {
         }
     }
     assert_eq!(checked, 4);
+}
+
+#[test]
+fn what_is_less_accurate_than_asked_for_says_so() {
+    const WORDS: &str = "less accurate than asked for";
+    for tolerance in [1e-15, 1e-11] {
+        let of_branch = branch(&BranchRequest {
+            tolerance,
+            symmetry: Some(Symmetry::Asymmetric),
+            ..along_driving(0.14)
+        });
+        let of_curve = locus(&LocusRequest {
+            tolerance,
+            ..curve(LocusKind::Torus, (0.15, 0.4))
+        });
+        for point in of_branch.special.iter().chain(&of_curve.special) {
+            let less = |x: Uncertain| x.uncertainty > tolerance * x.value;
+            let says = point.note.as_ref().is_some_and(|note| note.contains(WORDS));
+            let is = less(point.driving) || less(point.stiffness);
+            assert_eq!(says, is, "{tolerance}: {point:?}");
+        }
+        let doubling = nearest(&of_branch, Label::Pd, 0.0884);
+        assert_eq!(doubling.note.is_some(), tolerance < 1e-14);
+    }
 }
 
 #[test]

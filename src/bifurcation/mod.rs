@@ -202,6 +202,16 @@ impl Special {
             orbit: None,
         }
     }
+
+    /// With a word in its note where it is less accurate, relatively, than was asked for.
+    fn against(mut self, tolerance: f64) -> Self {
+        let off = |x: &Uncertain| x.uncertainty > tolerance * x.value.abs();
+        if off(&self.driving) || off(&self.stiffness) {
+            let before = self.note.map_or(String::new(), |note| note + "; ");
+            self.note = Some(before + "less accurate than asked for");
+        }
+        self
+    }
 }
 
 /// A point of a branch.
@@ -259,6 +269,16 @@ pub enum Event {
     Locus(LocusRow),
     /// A special point.
     Special(Special),
+}
+
+impl Event {
+    /// A special point with a word where it is less accurate than was asked for; what else there is as it is.
+    fn against(self, tolerance: f64) -> Self {
+        match self {
+            Event::Special(special) => Event::Special(special.against(tolerance)),
+            row => row,
+        }
+    }
 }
 
 /// Whether to go on.

@@ -104,6 +104,14 @@ impl<const N: usize> Linear<N> {
         self.maps.iter().map(|map| map.amax().ln())
     }
 
+    /// Into how many parts to cut each arc for nothing to grow by more than e^growth along one.
+    pub fn parts(&self, growth: f64) -> Vec<usize> {
+        /// At most, at once: the growth along a part is not known.
+        const PARTS: f64 = 8.0;
+        let parts = |of_arc: f64| (of_arc / growth).ceil().clamp(1.0, PARTS) as usize;
+        self.growth().map(parts).collect()
+    }
+
     /// The same with the k-th node as the first.
     pub fn beginning_at(mut self, k: usize) -> Self {
         self.arcs.rotate_left(k);

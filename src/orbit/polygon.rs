@@ -177,8 +177,7 @@ impl<const N: usize> Polygon<N> {
         Ok(finer)
     }
 
-    /// With more nodes in arcs along which something grows by too much, `growths` its logarithms: what the end of such an arc
-    /// does is linear in its beginning for small steps only.
+    /// With more nodes: every arc cut into its number of parts, of equal duration.
     ///
     /// # Errors
     /// Those of the flow.
@@ -186,23 +185,19 @@ impl<const N: usize> Polygon<N> {
         &self,
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
-        growths: &[f64],
-        most: f64,
+        parts: &[usize],
     ) -> Result<Self> {
-        /// Parts of an arc, at most.
-        const PARTS: f64 = 8.0;
         let mut finer = Polygon {
             nodes: Vec::new(),
             durations: Vec::new(),
         };
-        for ((x, duration), growth) in self.nodes.iter().zip(&self.durations).zip(growths) {
-            let parts = (growth / most).ceil().clamp(1.0, PARTS);
-            let part = duration / parts;
+        for ((x, duration), &parts) in self.nodes.iter().zip(&self.durations).zip(parts) {
+            let part = duration / parts as f64;
             let mut node = *x;
-            finer.nodes.push(node);
-            finer.durations.push(part);
-            for _ in 1..parts as usize {
-                node = tracer.flow(field, &node, part, None)?;
+            for i in 0..parts {
+                if i > 0 {
+                    node = tracer.flow(field, &node, part, None)?;
+                }
                 finer.nodes.push(node);
                 finer.durations.push(part);
             }

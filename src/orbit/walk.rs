@@ -5,7 +5,7 @@ use super::family::Family;
 use super::indicator::Indicator;
 use super::linear::Linear;
 use super::motion::{Motion, Site};
-use super::polygon::{Mesh, Polygon};
+use super::polygon::Mesh;
 
 /// Where a walk stands.
 #[derive(Debug, Clone)]
@@ -270,10 +270,10 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             if linear.growth().all(|growth| growth < GROWTH) {
                 break;
             }
-            let growths: Vec<f64> = linear.growth().collect();
+            let parts = linear.parts(GROWTH);
             let field = self.corrector.family.field(site.at);
             let tracer = &mut self.corrector.tracer;
-            site.polygon = site.polygon.split(tracer, &*field, &growths, GROWTH).ok()?;
+            site.polygon = site.polygon.split(tracer, &*field, &parts).ok()?;
             drop(field);
             linear = self.corrector.linear(&site)?;
         }

@@ -1,7 +1,6 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
 use crate::bifurcation::{BranchRow, Event, LocusRow, Seen, Special};
-use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
 /// Tells the observer.
@@ -41,18 +40,10 @@ impl<'a> Teller<'a> {
     }
 
     /// After the row that it is the special point of.
-    pub fn special(&mut self, mut special: Special) -> ControlFlow<()> {
+    pub fn special(&mut self, special: Special) -> ControlFlow<()> {
         if self.skipping {
             return ControlFlow::Continue(());
         }
-        let off = |x: &Uncertain| x.uncertainty > self.tolerance * x.value.abs();
-        if off(&special.driving) || off(&special.stiffness) {
-            let before = special
-                .note
-                .take()
-                .map_or(String::new(), |note| note + "; ");
-            special.note = Some(before + "less accurate than asked for");
-        }
-        (self.seen)(Event::Special(special))
+        (self.seen)(Event::Special(special).against(self.tolerance))
     }
 }

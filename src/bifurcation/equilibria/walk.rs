@@ -2,11 +2,12 @@
 
 use super::crossing::Root;
 use super::curves::Curve;
-use super::hopf::{Hopf, HopfPoints};
+use super::hopf::HopfPoints;
+use super::hopf_special::hopf_point;
 use super::pieces::Begin;
 use super::special::Teller;
 use super::stationary::{fold, fold_test, pitchforks};
-use crate::bifurcation::{BranchRequest, BranchRow, Label, Parameter, Special};
+use crate::bifurcation::{BranchRequest, BranchRow, Label, Special};
 use crate::continuation::{Branch, Mark, Point, Stop, Watch};
 use crate::equilibrium::{Equilibrium, stability};
 use crate::error::{Error, Result};
@@ -194,34 +195,19 @@ impl Walk<'_, '_> {
     }
 
     fn hopf(&mut self, place: &Place) -> Result<ControlFlow<()>> {
-        let slab = &self.request.slab;
-        for root in [Root::Larger, Root::Smaller] {
-            let points = HopfPoints {
-                law: &slab.law,
-                curve: self.curve,
-                root,
-            };
-            let found = match self.request.along {
-                Parameter::Driving => {
-                    points.at_stiffness(place.stiffness, place.driving, place.rates)
-                }
-                Parameter::Stiffness => points.at_driving(place.driving, place.rates),
-            };
-            let Some(point) = found.filter(|point| close(point, place)) else {
-                continue;
-            };
-            let point = points.crosschecked(point);
-            let l_1 = points.lyapunov(point.driving.value, point.rates);
-            let special = Special {
-                period: Some(point.period),
-                criticality: Some(points.criticality(&point)),
-                coefficient: Some(l_1.value),
-                ..Special::new(Label::Hb, point.driving, point.stiffness)
-            };
+        let Place {
+            driving,
+            stiffness,
+            rates,
+        } = *place;
+        let request = self.request;
+        let at = [driving, stiffness];
+        let found = hopf_point(&request.slab.law, self.curve, request.along, at, rates);
+        if let Some((special, rates)) = found {
             let at = Place {
-                driving: point.driving.value,
-                stiffness: point.stiffness.value,
-                rates: point.rates,
+                driving: special.driving.value,
+                stiffness: special.stiffness.value,
+                rates,
             };
             return self.hand_on(&at, special);
         }
@@ -265,12 +251,6 @@ impl Walk<'_, '_> {
 
 fn exact(x: f64) -> Uncertain {
     Uncertain::new(x, 0.0)
-}
-
-/// Whether a Hopf point is the one that a test function saw.
-fn close(point: &Hopf, place: &Place) -> bool {
-    let near = |a: f64, b: f64| (a / b).ln().abs() < 1e-6;
-    near(point.driving.value, place.driving) && near(point.stiffness.value, place.stiffness)
 }
 
 impl Watch for Walk<'_, '_> {

@@ -3,7 +3,7 @@
 
 use super::chart::Chart;
 use super::course::Course;
-use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special};
+use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special, equilibria};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
@@ -177,7 +177,8 @@ impl<'r> Branches<'r> {
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
         let inside = self.in_range(hopf.at()[self.free]);
-        if inside && seen(Event::Special(self.hopf(i))).is_break() {
+        let special = Event::Special(self.hopf(i)).against(self.request.tolerance);
+        if inside && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
@@ -211,22 +212,14 @@ impl<'r> Branches<'r> {
         }
     }
 
-    /// A Hopf point as a special point.
+    /// A Hopf point as a special point: the same as that of the equilibria.
     pub fn hopf(&self, i: usize) -> Special {
-        /// Of the bisection, relative.
-        const KNOWN: f64 = 1e-12;
-        let hopf = &self.hopfs[i];
-        let known = |x: f64| Uncertain::new(x, KNOWN * x);
-        let of = |i: usize, x: f64| {
-            if self.free == i {
-                known(x)
-            } else {
-                Uncertain::new(x, 0.0)
-            }
-        };
-        Special {
-            period: Some(known(std::f64::consts::TAU / hopf.frequency)),
-            ..Special::new(Label::Hb, of(0, hopf.driving), of(1, hopf.stiffness))
-        }
+        let (hopf, request) = (&self.hopfs[i], self.request);
+        let known = equilibria::hopf(&request.slab.law, request.along, hopf);
+        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
+        known.unwrap_or_else(|| Special {
+            period: Some(unknown(std::f64::consts::TAU / hopf.frequency)),
+            ..Special::new(Label::Hb, unknown(hopf.driving), unknown(hopf.stiffness))
+        })
     }
 }

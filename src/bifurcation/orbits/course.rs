@@ -146,7 +146,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
-        let told = (self.seen)(event);
+        let told = (self.seen)(event.against(self.branches.request.tolerance));
         self.told |= told.is_break();
         told
     }

@@ -47,32 +47,14 @@ const DIP: f64 = 0.25;
 const BENT: f64 = 0.6;
 
 impl Watch {
-    /// Whether a parameter has the value that is watched, but for rounding.
-    pub fn met<const N: usize>(self, at: &Regular<N>) -> bool {
-        const ROUNDING: f64 = 1e-12;
-        self.beyond(at).abs() < ROUNDING
-    }
-
-    /// By how much a parameter's coordinate is greater than the value that is watched.
-    fn beyond<const N: usize>(self, at: &Regular<N>) -> f64 {
-        match self {
-            Watch::Value(i, value) => at.site.at[i] - value,
-            _ => f64::NAN,
-        }
-    }
-
     /// The value, scaled to be of order one, and its slope where there is one.
     fn value<const N: usize>(self, pace: &Pace<N>, slope: Option<&Spectrum>) -> (f64, Option<f64>) {
         match self {
             Watch::Turn(i) => (pace.direction.parameters[i], None),
-            Watch::Value(i, _) => {
-                let beyond = if self.met(&pace.here) {
-                    0.0
-                } else {
-                    self.beyond(&pace.here)
-                };
-                (beyond, Some(pace.direction.parameters[i]))
-            }
+            Watch::Value(i, value) => (
+                pace.here.site.at[i] - value,
+                Some(pace.direction.parameters[i]),
+            ),
             Watch::Indicator(indicator) => {
                 let at = &pace.here.spectrum;
                 let (value, size) = (indicator.of::<N>(at), size::<N>(indicator, at));

@@ -12,7 +12,7 @@ use super::way::{Decided, Way};
 use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, Indicator, Regular, Site, Walk};
+use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -26,15 +26,48 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
+/// In ln V_H, ln K and ln T: orbits that differ by less are the same one. What is found on branches is off by 1.5e-8 at most.
+const SAME: f64 = 1e-6;
+
+/// Where a curve passes one of the values of K at which bifurcations are looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass {
+    /// (ln V_H, ln K).
+    pub at: [f64; 2],
+    /// ln T.
+    pub period: f64,
+}
+
+impl Pass {
+    pub fn of<const N: usize>(site: &Site<N>) -> Self {
+        Pass {
+            at: site.at,
+            period: site.polygon.period().ln(),
+        }
+    }
+
+    /// Whether both are the same orbit.
+    pub fn is(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() < SAME;
+        near(self.at[0], other.at[0])
+            && near(self.at[1], other.at[1])
+            && near(self.period, other.period)
+    }
+}
+
 /// What is known of one way along a curve.
 pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
     indicator: Indicator,
     number: usize,
+    /// Where both ways begin.
+    begin: Pass,
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
-    course: Vec<[f64; 3]>,
+    /// The values of ln K at which the curve is to be known again, and where it passes these.
+    scan: &'r [f64],
+    passes: Vec<Pass>,
     pub told: bool,
 }
 
@@ -42,25 +75,29 @@ impl<'r, 's> Leg<'r, 's> {
     pub fn new<const N: usize>(
         locus: &Locus<'r, N>,
         number: usize,
+        begin: Pass,
         seen: Option<Seen<'s>>,
     ) -> Self {
         Leg {
             request: locus.request,
             indicator: locus.indicator,
             number,
+            begin,
             seen,
             events: Vec::new(),
-            course: Vec::new(),
+            scan: locus.scan,
+            passes: Vec::new(),
             told: false,
         }
     }
 
-    /// (ln V_H, ln K, ln T) along it, and what nobody was told.
-    pub fn kept(self) -> (Vec<[f64; 3]>, Vec<Event>) {
-        (self.course, self.events)
+    /// Where it passes, and what nobody was told.
+    pub fn kept(self) -> (Vec<Pass>, Vec<Event>) {
+        (self.passes, self.events)
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        let event = event.against(self.request.tolerance);
         let Some(seen) = &mut self.seen else {
             self.events.push(event);
             return Continue(());
@@ -91,33 +128,37 @@ impl<'r, 's> Leg<'r, 's> {
             .into_iter()
             .chain(request.at_stiffness.iter().copied());
         watches.extend(stiffnesses.map(|x| Watch::Value(1, x.ln())));
+        for &log in self.scan {
+            let watch = Watch::Value(1, log);
+            if !watches.contains(&watch) {
+                watches.push(watch);
+            }
+        }
         watches
     }
 
-    /// Where the curve begins at a value that is asked for: the point, unless it was told already; and a break where the walk
-    /// would leave the range.
-    pub fn begins<F: Chart<N>, const N: usize>(
-        &mut self,
-        walk: &mut Walk<'_, '_, F, N>,
-        tell: bool,
-    ) -> ControlFlow<()> {
+    /// What was asked for at the orbit where both ways begin: neither comes to it.
+    pub fn begins<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) {
         let here = walk.pace.here.clone();
-        let met: Vec<Watch> = self.watches::<N>();
-        let mut ends = Continue(());
-        for watch in met.into_iter().filter(|watch| watch.met(&here)) {
-            if tell {
-                // At an end of the range the other way leads inside.
+        for watch in self.watches::<N>() {
+            if let Watch::Value(i, value) = watch
+                && (self.begin.at[i] - value).abs() < SAME
+                && !self.told
+            {
+                // That it may be the range's end is seen to by who asks whether the way leaves it.
                 let _ = self.zero(walk, watch, &here);
             }
-            if let Watch::Value(i, value) = watch {
-                let (from, to) = [self.request.driving, self.request.stiffness][i];
-                let rises = walk.pace.direction.parameters[i] > 0.0;
-                if value == from.ln() && !rises || value == to.ln() && rises {
-                    ends = Break(());
-                }
-            }
         }
-        ends
+    }
+
+    /// Whether the way begins at the end of a range and leads out of it.
+    pub fn leaves<const N: usize>(&self, pace: &Pace<N>) -> bool {
+        let ranges = [self.request.driving, self.request.stiffness];
+        (0..2).any(|i| {
+            let (from, to) = (ranges[i].0.ln(), ranges[i].1.ln());
+            let (x, slope) = (pace.here.site.at[i], pace.direction.parameters[i]);
+            x < from + SAME && slope < 0.0 || x > to - SAME && slope > 0.0
+        })
     }
 
     /// To the end, in other variables where these lose digits.
@@ -126,6 +167,7 @@ impl<'r, 's> Leg<'r, 's> {
         let mut lost = false;
         let watches = self.watches::<N>();
         let end = follow(walk, &watches, STEPS, &mut |walk, met| match met {
+            Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {
                 let here = &pace.here;
@@ -193,9 +235,7 @@ impl<'r, 's> Leg<'r, 's> {
         way: Option<Way>,
         label: Option<Label>,
     ) -> ControlFlow<()> {
-        let [v, k] = here.site.at;
         let period = here.site.polygon.period();
-        self.course.push([v, k, period.ln()]);
         let torus = self.indicator == Indicator::Torus;
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
@@ -218,7 +258,14 @@ impl<'r, 's> Leg<'r, 's> {
     ) -> ControlFlow<()> {
         let indicator = self.indicator;
         let trace = at.spectrum.trace;
+        if let Watch::Value(1, log) = watch
+            && self.scan.contains(&log)
+        {
+            self.passes.push(Pass::of(&at.site));
+        }
         let (label, condition, ends) = match watch {
+            // Nobody asked for it.
+            Watch::Value(i, value) if self.given(i, value)[i].is_none() => return Continue(()),
             Watch::Value(i, value) => {
                 let range = [self.request.driving, self.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();

@@ -9,12 +9,12 @@
 //! Kuznetsov, Y. A. (2004). Elements of Applied Bifurcation Theory, 3rd edition, (5.40) period doubling, (5.45) torus;
 //!
 //! that of the pitchfork is (5.40) with the multiplier 1. Every order is a cyclic linear system; the cubic coefficient is the
-//! condition that the last one can be solved. So no map around the whole orbit is needed, which a canard would bend beyond any
-//! polynomial. Grids of two sizes show what a coefficient errs by, and other nodes must give the same sign.
+//! condition that the last one can be solved. So no map around the whole orbit is needed, whose derivatives a canard makes
+//! huge. The same with twice as many nodes and another tolerance shows what a coefficient errs by.
 
 use crate::bifurcation::Criticality;
 use crate::number::Uncertain;
-use crate::orbit::{Family, Jet, Site, cyclic, finely_cut, jets};
+use crate::orbit::{Family, Jet, Site, cut_into, cyclic, finely_cut, jets};
 use nalgebra::{Complex, Matrix2, Matrix4, Vector2, Vector4};
 
 type C = Complex<f64>;
@@ -31,16 +31,11 @@ pub enum Form {
     Pitchfork,
 }
 
-/// Half widths of the grids in the planes' coordinates, over what grows along the arc; and the second width that each is held
-/// against, as a part of it.
-const WIDTHS: [f64; 5] = [0.03, 0.01, 0.003, 0.001, 0.1];
-const NARROWER: f64 = 0.7;
-/// The parts of the arcs by which the nodes are moved: different ones must agree.
-const PARTS: [f64; 2] = [0.0, 0.5];
-/// A relative uncertainty with which no better grids are looked for.
-const ENOUGH: f64 = 1e-3;
-/// The difference of two widths times this.
-const SAFETY: f64 = 3.0;
+/// Tolerances of the maps, and into how many parts the arcs are cut for each.
+const SOLUTIONS: [(f64, usize); 2] = [(1e-16, 1), (1e-15, 2)];
+/// The difference of both times this, and what is always left.
+const SAFETY: f64 = 10.0;
+const LEAST: f64 = 1e-6;
 
 /// The cubic coefficient of an orbit that bifurcates, for the eigenvector whose greatest length in any of the nodes' planes is
 /// 1, and which way that is.
@@ -49,41 +44,29 @@ pub fn normal_form<F: Family<3>>(
     site: &Site<3>,
     form: Form,
 ) -> (Uncertain, Criticality) {
-    let unknown = Uncertain::new(0.0, f64::INFINITY);
-    let [first, second] = PARTS.map(|part| {
-        let all = finely_cut(family, site, part).and_then(|site| coefficient(family, &site, form));
-        all.unwrap_or(unknown)
-    });
-    if std::env::var("NF").is_ok() {
-        eprintln!(
-            "nf {form:?} K {:.5} nodes {} {:?} {:?}",
-            site.at[1].exp(),
-            site.polygon.nodes.len(),
-            first,
-            second
-        );
-    }
-    let sure = |c: &Uncertain| c.value.abs() > c.uncertainty;
-    if !(sure(&first) && sure(&second) && first.value * second.value > 0.0) {
-        return (first, Criticality::Undecided);
-    }
-    let supercritical = match form {
-        Form::Doubling => first.value > 0.0,
-        Form::Torus | Form::Pitchfork => first.value < 0.0,
+    let Some(coefficient) = coefficient(family, site, form) else {
+        return (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
     };
-    let criticality = if supercritical {
+    let supercritical = match form {
+        Form::Doubling => coefficient.value > 0.0,
+        Form::Torus | Form::Pitchfork => coefficient.value < 0.0,
+    };
+    let criticality = if coefficient.value.abs() <= coefficient.uncertainty {
+        Criticality::Undecided
+    } else if supercritical {
         Criticality::Supercritical
     } else {
         Criticality::Subcritical
     };
-    (first, criticality)
+    (coefficient, criticality)
 }
 
-/// With the grids that are best.
 fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<Uncertain> {
-    let of = |width: f64| {
+    let site = finely_cut(family, site)?;
+    let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
         let circle = Circle {
-            jets: jets(family, site, width)?,
+            jets: jets(family, &cut_into(parts, family, &site)?, tolerance)?,
+            parts,
         };
         let coefficient = match form {
             Form::Torus => circle.torus()?,
@@ -91,30 +74,17 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
             Form::Pitchfork => circle.real(1.0)?,
         };
         coefficient.is_finite().then_some(coefficient)
-    };
-    let relative = |x: &Uncertain| x.uncertainty / x.value.abs();
-    let mut best: Option<Uncertain> = None;
-    for width in WIDTHS {
-        let (Some(wide), Some(narrow)) = (of(width), of(width * NARROWER)) else {
-            continue;
-        };
-        let here = Uncertain::new(narrow, SAFETY * (wide - narrow).abs());
-        if std::env::var("NF").is_ok() {
-            eprintln!("   width {width} wide {wide:e} narrow {narrow:e}");
-        }
-        if best.is_none_or(|best| relative(&here) < relative(&best)) {
-            best = Some(here);
-        }
-        if relative(&here) < ENOUGH {
-            break;
-        }
-    }
-    best
+    });
+    let (first, second) = (first?, second?);
+    let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
+    Some(Uncertain::new(first, uncertainty))
 }
 
 /// The maps around an orbit.
 struct Circle {
     jets: Vec<Jet>,
+    /// Eigenvectors are measured at every so many-th node.
+    parts: usize,
 }
 
 impl Circle {
@@ -192,7 +162,8 @@ impl Circle {
                 .collect();
             for _ in 0..ITERATIONS {
                 v = around(maps, place, factor, &v)?;
-                let longest = v.iter().map(|v| v.norm()).fold(0.0, f64::max);
+                let measured = v.iter().step_by(self.parts);
+                let longest = measured.map(|v| v.norm()).fold(0.0, f64::max);
                 v.iter_mut().for_each(|v| *v /= C::from(longest));
             }
             Some(v)
