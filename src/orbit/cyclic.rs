@@ -1,8 +1,9 @@
 //! Cyclic two-point systems: u_{k+1} = P_k u_k + r_k around a circle of nodes.
 //!
-//! Eliminated node by node with Householder reflections, which keep what grows and what decays around the circle apart; a
-//! product of all P_k would mix them. The elimination is that of structured orthogonal factorisation: Wright, S. J. (1992).
-//! Stable parallel algorithms for two-point boundary value problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
+//! Eliminated node by node with rotations, which keep what grows and what decays around the circle apart; a product of all P_k
+//! would mix them, and so would reflections, in which a small row is the difference of two large ones. The elimination is
+//! that of structured orthogonal factorisation: Wright, S. J. (1992). Stable parallel algorithms for two-point boundary value
+//! problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
 use crate::field::{Jacobian, State};
 use nalgebra::SMatrix;
@@ -55,6 +56,15 @@ pub(super) fn reduce<const N: usize, const C: usize>(
             right: stacked.right[0],
         });
         (e, f, c) = (stacked.first[1], stacked.next[1], stacked.right[1]);
+    }
+    // Rows that belong to what has grown or decayed on the way are of any size: only beside their own is a pivot zero.
+    for i in 0..N {
+        let size = e.row(i).amax().max(f.row(i).amax());
+        if size > 0.0 {
+            e.row_mut(i).scale_mut(1.0 / size);
+            f.row_mut(i).scale_mut(1.0 / size);
+            c.row_mut(i).scale_mut(1.0 / size);
+        }
     }
     let mut last = Stacked {
         pivot: [e + f, Jacobian::zeros()],
@@ -112,33 +122,45 @@ struct Stacked<const N: usize, const C: usize> {
 }
 
 impl<const N: usize, const C: usize> Stacked<N, C> {
-    /// Makes the pivot's first block upper triangular and its second zero, by reflections of all rows.
+    /// Makes the pivot's first block upper triangular and its second zero, by rotations of two rows at a time.
     fn triangulate(&mut self) {
         for j in 0..N {
-            let mut v = [State::<N>::zeros(); 2];
-            for (b, v) in v.iter_mut().enumerate() {
-                for i in if b == 0 { j } else { 0 }..N {
-                    v[i] = self.pivot[b][(i, j)];
+            for row in j + 1..2 * N {
+                let (block, i) = (row / N, row % N);
+                let (p, x) = (self.pivot[0][(j, j)], self.pivot[block][(i, j)]);
+                if x == 0.0 {
+                    continue;
                 }
+                let length = p.hypot(x);
+                let turn = Turn {
+                    rows: [(0, j), (block, i)],
+                    cosine: p / length,
+                    sine: x / length,
+                };
+                turn.apply(&mut self.pivot);
+                turn.apply(&mut self.first);
+                turn.apply(&mut self.next);
+                turn.apply(&mut self.right);
+                self.pivot[block][(i, j)] = 0.0;
             }
-            let length = v[0].norm().hypot(v[1].norm());
-            if length == 0.0 {
-                continue;
-            }
-            let sign = if v[0][j] < 0.0 { -1.0 } else { 1.0 };
-            v[0][j] += sign * length;
-            let squared = v[0].norm_squared() + v[1].norm_squared();
-            for block in [&mut self.pivot, &mut self.first, &mut self.next] {
-                let along = (block[0].tr_mul(&v[0]) + block[1].tr_mul(&v[1])) * (2.0 / squared);
-                for (block, v) in block.iter_mut().zip(&v) {
-                    *block -= v * along.transpose();
-                }
-            }
-            let along =
-                (self.right[0].tr_mul(&v[0]) + self.right[1].tr_mul(&v[1])) * (2.0 / squared);
-            for (right, v) in self.right.iter_mut().zip(&v) {
-                *right -= v * along.transpose();
-            }
+        }
+    }
+}
+
+/// A rotation of two rows of two blocks.
+struct Turn {
+    rows: [(usize, usize); 2],
+    cosine: f64,
+    sine: f64,
+}
+
+impl Turn {
+    fn apply<const N: usize, const C: usize>(&self, blocks: &mut [SMatrix<f64, N, C>; 2]) {
+        let [(a, i), (b, k)] = self.rows;
+        for column in 0..C {
+            let (x, y) = (blocks[a][(i, column)], blocks[b][(k, column)]);
+            blocks[a][(i, column)] = self.cosine * x + self.sine * y;
+            blocks[b][(k, column)] = self.cosine * y - self.sine * x;
         }
     }
 }

@@ -8,6 +8,7 @@ use crate::field::{Jacobian, State};
 use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
 use crate::series::Cubic;
 use nalgebra::{Complex, Matrix2, Vector2};
+use std::f64::consts::FRAC_1_SQRT_2;
 
 type C2 = Vector2<Complex<f64>>;
 
@@ -24,12 +25,32 @@ pub struct Jet {
     components: [Cubic; 2],
 }
 
+/// The coordinates in the planes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// Any.
+    Any,
+    /// Of an orbit in (tau, ln psi_1, ln psi_2) with psi_1 = psi_2: the first antisymmetric, the second symmetric.
+    Symmetry,
+}
+
 /// The maps from node to node of an orbit, by arcs of this tolerance. `None` where one can't be had.
-pub fn jets<F: Family<3>>(family: &F, site: &Site<3>, tolerance: f64) -> Option<Vec<Jet>> {
+pub fn jets<F: Family<3>>(
+    family: &F,
+    site: &Site<3>,
+    axes: Axes,
+    tolerance: f64,
+) -> Option<Vec<Jet>> {
     let field = family.field(site.at);
     let mut taylor = Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?;
     let nodes = &site.polygon.nodes;
-    let plane = |x: &State<3>| frame(&family.normal(field.f(x)));
+    let plane = |x: &State<3>| {
+        let normal = family.normal(field.f(x));
+        match axes {
+            Axes::Any => frame(&normal),
+            Axes::Symmetry => symmetric_frame(&normal),
+        }
+    };
     let frames: Vec<Jacobian<3>> = nodes.iter().map(plane).collect();
     let mut jet = |k: usize| {
         let next = (k + 1) % nodes.len();
@@ -51,6 +72,13 @@ pub fn jets<F: Family<3>>(family: &F, site: &Site<3>, tolerance: f64) -> Option<
         })
     };
     (0..nodes.len()).map(&mut jet).collect()
+}
+
+/// Orthonormal columns: a normal with equal components 1 and 2, the antisymmetric direction, and the one that is left.
+fn symmetric_frame(normal: &State<3>) -> Jacobian<3> {
+    let normal = normal.normalize();
+    let across = State::<3>::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2);
+    Jacobian::<3>::from_columns(&[normal, across, normal.cross(&across)])
 }
 
 /// The same orbit with so many nodes that along no arc anything grows by much.

@@ -32,7 +32,7 @@ pub use find::{Begin, Found, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet, symmetric_floquet};
 pub use hopf::{HopfPoint, hopf_points};
 pub use indicator::{Indicator, Spectrum};
-pub use jet::{Jet, cut_into, finely_cut, jets};
+pub use jet::{Axes, Jet, cut_into, finely_cut, jets};
 pub use motion::{Motion, Site};
 pub use polygon::{EndAndLoss, Mesh, Polygon, of_digits};
 pub use profile::{Profile, profile};

@@ -8,11 +8,11 @@ use super::locus::Locus;
 use super::rows::{Given, asked};
 use super::sharp::{Exactly, rough, sharpened, special};
 use super::top::top;
-use super::way::{Decided, Way};
+use super::way::{Decided, Way, degenerate_pitchfork};
 use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
+use crate::orbit::{Corrector, Indicator, OverLoadings, Pace, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -174,10 +174,10 @@ impl<'r, 's> Leg<'r, 's> {
                 let family = walk.corrector.family;
                 let last = last.replace(here.site.clone());
                 if last.is_some_and(|last| family.merges(&here.site, &last)) {
-                    return self.merged(&family.usual(&here.site));
+                    return self.merged(&family.slab(), &family.usual(&here.site));
                 }
                 let way = self.row(family, here)?;
-                if let Some(now) = way.and_then(|way| Decided::new(here, way.criticality))
+                if let Some(now) = way.and_then(|way| Decided::new(here, &way))
                     && let Some(before) = decided.replace(now.clone())
                     && let Some(special) = before.change(&now, family, self.indicator)
                 {
@@ -340,9 +340,13 @@ impl<'r, 's> Leg<'r, 's> {
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the pitchfork at this K.
-    fn merged<const N: usize>(&mut self, last: &Site<N>) -> ControlFlow<()> {
-        let mut special = rough(Label::Cp, &middle(last));
-        special.note = Some("the curve ends on that of the pitchforks of orbits".into());
+    fn merged<const N: usize>(&mut self, family: &OverLoadings, last: &Site<N>) -> ControlFlow<()> {
+        let near = middle(last);
+        let special = degenerate_pitchfork(family, &near).unwrap_or_else(|| {
+            let mut special = rough(Label::Cp, &near);
+            special.note = Some("the curve ends on that of the pitchforks of orbits".into());
+            special
+        });
         let _ = self.tell(Event::Special(special));
         Break(())
     }

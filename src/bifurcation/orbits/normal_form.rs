@@ -14,8 +14,8 @@
 
 use crate::bifurcation::Criticality;
 use crate::number::Uncertain;
-use crate::orbit::{Family, Jet, Site, cut_into, cyclic, finely_cut, jets};
-use nalgebra::{Complex, Matrix2, Matrix4, Vector2, Vector4};
+use crate::orbit::{Axes, Family, Jet, Site, cut_into, cyclic, finely_cut, jets};
+use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector2, Vector4};
 
 type C = Complex<f64>;
 type C2 = Vector2<C>;
@@ -63,19 +63,32 @@ pub fn normal_form<F: Family<3>>(
 
 fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<Uncertain> {
     let site = finely_cut(family, site)?;
+    let axes = match form {
+        Form::Pitchfork => Axes::Symmetry,
+        _ => Axes::Any,
+    };
     let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
         let circle = Circle {
-            jets: jets(family, &cut_into(parts, family, &site)?, tolerance)?,
+            jets: jets(family, &cut_into(parts, family, &site)?, axes, tolerance)?,
             parts,
-        };
+        }
+        .from_the_top(axes);
         let coefficient = match form {
             Form::Torus => circle.torus()?,
-            Form::Doubling => circle.real(-1.0)?,
-            Form::Pitchfork => circle.real(1.0)?,
+            Form::Doubling => circle.doubling()?,
+            Form::Pitchfork => circle.pitchfork()?,
         };
         coefficient.is_finite().then_some(coefficient)
     });
     let (first, second) = (first?, second?);
+    if std::env::var("NF").is_ok() {
+        eprintln!(
+            "nf {form:?} K {:.5} nodes {} {first:e} {second:e} rel {:e}",
+            site.at[1].exp(),
+            site.polygon.nodes.len(),
+            second / first - 1.0
+        );
+    }
     let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
     Some(Uncertain::new(first, uncertainty))
 }
@@ -88,18 +101,71 @@ struct Circle {
 }
 
 impl Circle {
-    /// b = <p, C(q,q,q) + 3 B(q, h)> / 6 with the sign of (5.40), for the multiplier -1 or 1
-    fn real(&self, multiplier: f64) -> Option<f64> {
-        let mu = C::from(multiplier);
+    /// The same from another of the nodes where eigenvectors are measured: from the one to which most has grown. All nodes are
+    /// found from the first; from the small end of what grows by many decades nothing is found.
+    fn from_the_top(mut self, axes: Axes) -> Self {
+        let mut top = (0, 0.0);
+        let (mut log, mut moved) = (0.0, Vector2::new(1.0, 1.0));
+        // Once around for what is there at the beginning to die out.
+        for turn in 0..2 {
+            for (k, jet) in self.jets.iter().enumerate() {
+                if turn == 1 && k % self.parts == 0 && (k == 0 || log > top.1) {
+                    top = (k, log);
+                }
+                moved = match axes {
+                    Axes::Any => jet.linear() * moved,
+                    // What is symmetric is all that has to be solved for.
+                    Axes::Symmetry => Vector2::new(0.0, jet.linear()[(1, 1)] * moved[1]),
+                };
+                let length = moved.norm();
+                log += length.ln();
+                moved /= length;
+            }
+        }
+        self.jets.rotate_left(top.0);
+        self
+    }
+
+    /// b = <p, C(q,q,q) + 3 B(q, h)> / 6  (5.40)
+    fn doubling(&self) -> Option<f64> {
+        let (mu, one) = (C::from(-1.0), C::from(1.0));
         let (q, p) = self.eigenvectors(mu)?;
-        let square = self.each(|k, jet| jet.second(&q[k], &q[k]));
-        // At a pitchfork 1 is a multiplier too, but along q the square has no part, nor has what is added there any effect.
-        let beside = C::from(if multiplier > 0.0 { 1.0 + BESIDE } else { 1.0 });
-        let h = self.solve(beside, &square)?;
+        let h = self.solve(one, &self.each(|k, jet| jet.second(&q[k], &q[k])))?;
         let cube = self.each(|k, jet| {
             jet.third(&q[k], &q[k], &q[k]) + jet.second(&q[k], &h[k]) * C::from(3.0)
         });
         Some((mu * self.solvability(mu, &p, &q, &cube)).re / 6.0)
+    }
+
+    /// c = <p, C(q,q,q) + 3 B(q, h)> / 6, with q antisymmetric and h symmetric: each is one number in every plane. As products
+    /// and quotients they keep their digits where small differences fall by fifty decades along the orbit.
+    fn pitchfork(&self) -> Option<f64> {
+        let (across, along) = (
+            C2::new(C::from(1.0), C::from(0.0)),
+            C2::new(C::from(0.0), C::from(1.0)),
+        );
+        let mut q = vec![1.0];
+        for jet in &self.jets {
+            q.push(q[q.len() - 1] * jet.linear()[(0, 0)]);
+        }
+        let longest = q.iter().step_by(self.parts).copied().fold(0.0, f64::max);
+        q.iter_mut().for_each(|q| *q /= longest);
+        let in_plane: Vec<_> = self
+            .jets
+            .iter()
+            .map(|jet| Matrix1::new(jet.linear()[(1, 1)]))
+            .collect();
+        let square =
+            |(jet, q): (&Jet, &f64)| Vector1::new(jet.second(&across, &across)[1].re * q * q);
+        let squares: Vec<_> = self.jets.iter().zip(&q).map(square).collect();
+        let h = cyclic::solve(&in_plane, &squares)?;
+        let mut sum = 0.0;
+        for (k, jet) in self.jets.iter().enumerate() {
+            let third = jet.third(&across, &across, &across)[0].re * q[k] * q[k];
+            let mixed = jet.second(&across, &along)[0].re * h[k][0];
+            sum += (third + 3.0 * mixed) * (q[k] / q[k + 1]);
+        }
+        Some(sum / 6.0)
     }
 
     /// d = Re e^(-i theta) <p, C(q,q,q*) + 2 B(q, h11) + B(q*, h20)> / 2  (5.45)
@@ -141,7 +207,7 @@ impl Circle {
         let maps: Vec<_> = self.jets.iter().map(Jet::linear).collect();
         let mut right = right.to_vec();
         *right.last_mut()? /= mu;
-        around(&maps, maps.len() - 1, mu.inv(), &right)
+        around(&maps, mu.inv(), &right)
     }
 
     /// q_{k+1} = P_k q_k, q_m = mu q_0, of greatest length 1; and the same of the transposed maps, p_k for the k-th map. By
@@ -149,28 +215,28 @@ impl Circle {
     fn eigenvectors(&self, mu: C) -> Option<(Vec<C2>, Vec<C2>)> {
         const ITERATIONS: usize = 3;
         let maps: Vec<_> = self.jets.iter().map(Jet::linear).collect();
-        let transposed: Vec<_> = maps.iter().rev().map(Matrix2::transpose).collect();
+        let last = maps.len() - 1;
+        // From the last plane but one down to the first, and from the last plane at last, where the circle closes.
+        let mut transposed: Vec<_> = maps[..last].iter().rev().map(Matrix2::transpose).collect();
+        transposed.push(maps[last].transpose());
         let factor = (mu * (1.0 + BESIDE)).inv();
-        let kernel = |maps: &[Matrix2<f64>], place: usize| {
-            let mut v: Vec<C2> = (0..maps.len())
-                .map(|k| {
-                    C2::new(
-                        C::new(1.0, 0.3 * (k as f64).sin()),
-                        C::new(0.7, (k as f64).cos()),
-                    )
-                })
-                .collect();
+        let kernel = |maps: &[Matrix2<f64>]| {
+            // Real, so that what belongs to a real multiplier stays real; and only where the circle closes, so that it is the
+            // return map's.
+            let mut v = vec![C2::zeros(); maps.len()];
+            v[0] = C2::new(C::from(1.0), C::from(0.7));
             for _ in 0..ITERATIONS {
-                v = around(maps, place, factor, &v)?;
+                let mut right = vec![C2::zeros(); maps.len()];
+                right[last] = v[0];
+                v = around(maps, factor, &right)?;
                 let measured = v.iter().step_by(self.parts);
                 let longest = measured.map(|v| v.norm()).fold(0.0, f64::max);
                 v.iter_mut().for_each(|v| *v /= C::from(longest));
             }
             Some(v)
         };
-        let q = kernel(&maps, maps.len() - 1)?;
-        let mut p = kernel(&transposed, 0)?;
-        p.reverse();
+        let (q, mut p) = (kernel(&maps)?, kernel(&transposed)?);
+        p[..last].reverse();
         Some((q, p))
     }
 
@@ -189,13 +255,14 @@ impl Circle {
 /// How far beside a multiplier systems are solved that would be singular there.
 const BESIDE: f64 = 1e-7;
 
-/// u_{k+1} = P_k u_k + r_k, u_m = u_0, where one of the maps is P times a complex factor.
-fn around(maps: &[Matrix2<f64>], place: usize, factor: C, right: &[C2]) -> Option<Vec<C2>> {
+/// u_{k+1} = P_k u_k + r_k, u_m = u_0, where the last of the maps is P times a complex factor.
+fn around(maps: &[Matrix2<f64>], factor: C, right: &[C2]) -> Option<Vec<C2>> {
+    let last = maps.len() - 1;
     let real: Vec<Matrix4<f64>> = maps
         .iter()
         .enumerate()
         .map(|(k, map)| {
-            let factor = if k == place { factor } else { C::from(1.0) };
+            let factor = if k == last { factor } else { C::from(1.0) };
             let rotation = Matrix2::new(factor.re, -factor.im, factor.im, factor.re);
             rotation.kronecker(map)
         })
