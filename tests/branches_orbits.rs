@@ -309,6 +309,23 @@ fn who_has_heard_enough_is_left_alone() {
     assert_eq!(rows, 5);
 }
 
+/// Of a branch that is known already nothing is told, under another number neither.
+#[test]
+fn branches_that_are_skipped_are_not_told_of() {
+    let heard = branch(&along_driving(0.14));
+    let last = heard.rows.last().expect("a row").branch;
+    assert!(last > 0);
+    for skipped in 0..=last {
+        let rest = branch(&BranchRequest {
+            skip: vec![skipped],
+            ..along_driving(0.14)
+        });
+        let mut expected = heard.rows.clone();
+        expected.retain(|row| row.branch != skipped);
+        assert_eq!(rest.rows, expected);
+    }
+}
+
 #[test]
 fn what_is_less_accurate_than_asked_for_says_so() {
     for tolerance in [1e-15, 1e-11] {

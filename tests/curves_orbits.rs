@@ -144,6 +144,23 @@ fn curves_stay_within_the_ranges() {
     assert_eq!(locus(&request).of(Label::Uz).len(), 2);
 }
 
+/// Of a curve that is known already nothing is told, under another number neither.
+#[test]
+fn curves_that_are_skipped_are_not_told_of() {
+    let all = curve(LocusKind::PeriodDoubling, (0.05, 0.12));
+    let heard = locus(&all);
+    for skipped in [0, 1] {
+        let rest = locus(&LocusRequest {
+            skip: vec![skipped],
+            ..all.clone()
+        });
+        let mut expected = heard.points.clone();
+        expected.retain(|point| point.curve != skipped);
+        assert!(!expected.is_empty());
+        assert_eq!(rest.points, expected);
+    }
+}
+
 #[test]
 fn what_is_less_accurate_than_asked_for_says_so() {
     for tolerance in [1e-15, 1e-11] {

@@ -124,10 +124,13 @@ where
                 }
                 let number = *count;
                 *count += 1;
-                if request.skip.contains(&number) {
-                    continue;
-                }
-                let Some(curve) = through(&locus, number, seed, seen)? else {
+                // A curve that is not to be told of is followed all the same: what lies on it would be taken for another one.
+                let found = if request.skip.contains(&number) {
+                    through(&locus, number, seed, &mut |_| Continue(()))?
+                } else {
+                    through(&locus, number, seed, seen)?
+                };
+                let Some(curve) = found else {
                     *count -= 1;
                     continue;
                 };
