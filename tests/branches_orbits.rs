@@ -277,7 +277,6 @@ fn a_second_method_finds_the_same_points() {
     for special in &heard.special {
         let difference = orbits::crosscheck(
             &request.slab,
-            None,
             special,
             Choice::named("rodas5p").expect("a method"),
         )
