@@ -9,6 +9,7 @@ use common::{data, number};
 use heard::{Heard, assert_known, two};
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{Label, LocusKind, LocusRequest, Special, orbits};
+use twinslip::equilibrium::Symmetry;
 use twinslip::number::Uncertain;
 
 /// Relative bar for parameters, and for periods at small stiffness.
@@ -142,6 +143,21 @@ fn curves_stay_within_the_ranges() {
         ..curve(LocusKind::OrbitPitchfork, (0.05, 0.2))
     };
     assert_eq!(locus(&request).of(Label::Uz).len(), 2);
+}
+
+/// The folds of orbits have their top at K = 0.0722: wherever the range ends above that, they are found.
+#[test]
+fn curves_with_low_tops_are_found_from_any_range() {
+    for largest in [0.08, 0.17, 0.3] {
+        let request = LocusRequest {
+            symmetry: Some(Symmetry::Asymmetric),
+            ..curve(LocusKind::OrbitSaddleNode, (0.06, largest))
+        };
+        let heard = locus(&request);
+        let tops = heard.of(Label::Top);
+        assert_eq!(tops.len(), 1, "{largest}");
+        assert!((tops[0].stiffness.value - 0.0722).abs() < 1e-4);
+    }
 }
 
 /// Of a curve that is known already nothing is told, under another number neither.
