@@ -301,7 +301,7 @@ pub struct BranchRequest {
     pub step: f64,
     /// The accuracy of special points, relative.
     pub tolerance: f64,
-    /// Numbers of branches that are known already and not computed again.
+    /// Numbers of branches that are known already and not told of again.
     pub skip: Vec<usize>,
     /// How many times orbits may double their period: the branches of all these are followed too.
     pub doublings: usize,
@@ -388,6 +388,6 @@ pub struct LocusRequest {
     pub tolerance: f64,
     /// Whether normal form coefficients are computed.
     pub criticality: bool,
-    /// Numbers of curves that are known already and not computed again.
+    /// Numbers of curves that are known already and not told of again.
     pub skip: Vec<usize>,
 }

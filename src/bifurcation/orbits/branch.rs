@@ -84,15 +84,20 @@ impl<'r> Branches<'r> {
         }
     }
 
+    /// Whether a branch is told of. One that is not is followed all the same: its other end and the branches that begin on it
+    /// would be taken for others.
+    pub fn tells(&self, branch: usize) -> bool {
+        !self.request.skip.contains(&branch)
+    }
+
     pub fn in_range(&self, coordinate: f64) -> bool {
         (self.range.0..=self.range.1).contains(&coordinate)
     }
 
-    /// The number of the next branch, and whether it is to be followed.
-    fn next(&mut self) -> (usize, bool) {
-        let number = self.count;
+    /// The number of the next branch.
+    fn next(&mut self) -> usize {
         self.count += 1;
-        (number, !self.request.skip.contains(&number))
+        self.count - 1
     }
 
     fn symmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
@@ -152,8 +157,7 @@ impl<'r> Branches<'r> {
                 continue;
             }
             self.reached[i] = true;
-            let (number, wanted) = self.next();
-            if wanted && self.one_of::<N>(i, number, seen)?.is_break() {
+            if self.one_of::<N>(i, seen)?.is_break() {
                 return Ok(Break(()));
             }
         }
@@ -164,21 +168,17 @@ impl<'r> Branches<'r> {
         Path::branch(self.free, LONGEST * self.request.step)
     }
 
-    fn one_of<const N: usize>(
-        &mut self,
-        i: usize,
-        number: usize,
-        seen: Seen<'_>,
-    ) -> Result<ControlFlow<()>>
+    fn one_of<const N: usize>(&mut self, i: usize, seen: Seen<'_>) -> Result<ControlFlow<()>>
     where
         OverLoadings: Chart<N>,
     {
+        let number = self.next();
         let hopf = self.hopfs[i].clone();
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
         let inside = self.in_range(hopf.at()[self.free]);
         let special = Event::Special(self.hopf(i)).against(self.request.tolerance);
-        if inside && seen(special).is_break() {
+        if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
@@ -194,10 +194,7 @@ impl<'r> Branches<'r> {
         times: usize,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
-        let (number, wanted) = self.next();
-        if !wanted {
-            return Ok(Continue(()));
-        }
+        let number = self.next();
         let family = self.family;
         let mut corrector = Corrector::<_, 3>::new(&family, ROUGH)?;
         let inside = self.in_range(site.at[self.free]);

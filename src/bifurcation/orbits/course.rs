@@ -146,6 +146,9 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        if !self.branches.tells(self.number) {
+            return Continue(());
+        }
         let told = (self.seen)(event.against(self.branches.request.tolerance));
         self.told |= told.is_break();
         told

@@ -79,8 +79,10 @@ const APART: f64 = 2.0;
 
 /// The values of K at which bifurcations are looked for.
 fn scanned((from, to): (f64, f64)) -> Vec<f64> {
-    let all = std::iter::successors(Some(to), |k| Some(k / APART));
-    all.take_while(|&k| k >= from.max(LOWEST.min(to))).collect()
+    let least = from.max(LOWEST.min(to));
+    let halves = std::iter::successors(Some(to), |k| Some(k / APART));
+    // The least one too: a curve whose top is below the last but one would not be met.
+    halves.take_while(|&k| k > least).chain([least]).collect()
 }
 
 /// The curves of one kind and symmetry.
@@ -124,10 +126,13 @@ where
                 }
                 let number = *count;
                 *count += 1;
-                if request.skip.contains(&number) {
-                    continue;
-                }
-                let Some(curve) = through(&locus, number, seed, seen)? else {
+                // A curve that is not to be told of is followed all the same: what lies on it would be taken for another one.
+                let found = if request.skip.contains(&number) {
+                    through(&locus, number, seed, &mut |_| Continue(()))?
+                } else {
+                    through(&locus, number, seed, seen)?
+                };
+                let Some(curve) = found else {
                     *count -= 1;
                     continue;
                 };

@@ -5,7 +5,6 @@
 
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
-use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::number::Uncertain;
@@ -220,12 +219,7 @@ const TOLERANCE: f64 = 1e-12;
 ///
 /// # Errors
 /// [`Error::NotConverged`] where the second method does not find the point; those of the method.
-pub fn crosscheck(
-    slab: &Slab,
-    _: Option<Symmetry>,
-    special: &Special,
-    method: Choice,
-) -> Result<Option<[f64; 3]>> {
+pub fn crosscheck(slab: &Slab, special: &Special, method: Choice) -> Result<Option<[f64; 3]>> {
     let Some(orbit) = &special.orbit else {
         return Ok(None);
     };
