@@ -4,20 +4,19 @@
 mod common;
 #[path = "common/heard.rs"]
 mod heard;
+#[path = "common/returns.rs"]
+mod returns;
 
 use common::{data, number};
 use heard::{Heard, assert_known, two};
-use nalgebra::Vector2;
+use returns::returns;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{
-    BranchRequest, BranchRow, Criticality, Event, Label, Parameter, Special, equilibria, orbits,
-    orbits::normal_form::ReturnMap,
+    BranchRequest, BranchRow, Criticality, Event, Label, Parameter, equilibria, orbits,
 };
 use twinslip::equilibrium::{Symmetry, Verdict};
-use twinslip::field::State;
 use twinslip::integrate::Choice;
 use twinslip::number::Uncertain;
-use twinslip::orbit::Polygon;
 
 /// Relative bar for parameters and periods.
 const BAR: f64 = 1e-10;
@@ -230,40 +229,10 @@ fn bifurcations_go_the_way_that_orbits_and_tori_beside_them_do() {
         assert!(row.ln_abs_multiplier[1].expect("ln |mu|") > 0.0, "{row:?}");
     }
     // Where the multipliers of the orbit itself are of modulus 1 the returns of a point beside it come nearer, slowly.
-    let (early, late) = returns(torus);
+    let field = two(torus.driving.value, 0.14).whole();
+    let (early, late) = returns(&*field, torus, 0.01);
     assert!(late < early * (1.0 - 1e-3), "{early} then {late}");
     assert!(late > 0.5 * early, "{early} then {late}");
-}
-
-/// The greatest distance from the orbit among the first returns and among the last of some thousands.
-fn returns(special: &Special) -> (f64, f64) {
-    const RETURNS: usize = 4000;
-    const WINDOW: usize = 500;
-    let (nodes, durations) = special.orbit.as_ref().expect("an orbit").nodes();
-    let polygon = Polygon {
-        nodes: nodes
-            .iter()
-            .map(|x| State::<3>::from_fn(|i, _| x[i]))
-            .collect(),
-        durations: durations.to_vec(),
-    };
-    let field = two(special.driving.value, special.stiffness.value).whole();
-    let run = |node: usize| {
-        let mut map = ReturnMap::new(&*field, &polygon, node).expect("a map");
-        let mut x = Vector2::new(0.01, 0.0);
-        let mut distances = Vec::with_capacity(RETURNS);
-        for _ in 0..RETURNS {
-            x = map.at(x).filter(|x| x.norm() < 0.2)?;
-            distances.push(x.norm());
-        }
-        let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
-        Some((
-            largest(&distances[..WINDOW]),
-            largest(&distances[RETURNS - WINDOW..]),
-        ))
-    };
-    // A plane where the orbit is not about to jump.
-    (0..polygon.nodes.len()).find_map(run).expect("a plane")
 }
 
 #[test]

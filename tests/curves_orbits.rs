@@ -4,11 +4,14 @@
 mod common;
 #[path = "common/heard.rs"]
 mod heard;
+#[path = "common/returns.rs"]
+mod returns;
 
 use common::{data, number};
 use heard::{Heard, assert_known, two};
+use returns::returns;
 use std::ops::ControlFlow::Continue;
-use twinslip::bifurcation::{Label, LocusKind, LocusRequest, Special, orbits};
+use twinslip::bifurcation::{Criticality, Label, LocusKind, LocusRequest, Special, orbits};
 use twinslip::equilibrium::Symmetry;
 use twinslip::number::Uncertain;
 
@@ -75,7 +78,6 @@ fn curves_go_down_to_small_stiffness() {
         (LocusKind::OrbitPitchfork, "PF"),
         (LocusKind::OrbitSaddleNode, "SN"),
     ];
-    let mut missing = Vec::new();
     for (kind, name) in kinds {
         let request = LocusRequest {
             at_stiffness: vec![0.1, 0.05, 0.02],
@@ -94,10 +96,8 @@ fn curves_go_down_to_small_stiffness() {
                     && (s.period.map_or(0.0, |t| t.value) / number(&point["period"]) - 1.0).abs()
                         < 1e-3
             };
-            let Some(found) = heard.special.iter().find(here) else {
-                missing.push((name, stiffness));
-                continue;
-            };
+            let found = heard.special.iter().find(here);
+            let found = found.unwrap_or_else(|| panic!("{what} is missing"));
             assert_known(&what, found.driving, exact, BAR);
             let period = number(&point["period"]);
             assert_known(
@@ -107,6 +107,83 @@ fn curves_go_down_to_small_stiffness() {
                 BAR_OF_PERIOD,
             );
         }
+    }
+}
+
+/// Points at which the cubic coefficient is zero: the same from longer and shorter steps, and as many as there are.
+#[test]
+fn bifurcations_change_the_way_they_go_where_the_coefficient_is_zero() {
+    let of = |kind, stiffness, label, step| {
+        let heard = locus(&LocusRequest {
+            criticality: true,
+            step,
+            ..curve(kind, stiffness)
+        });
+        assert!(heard.of(Label::Mx).is_empty());
+        let found = heard.of(label);
+        found.into_iter().cloned().collect::<Vec<Special>>()
+    };
+    let cases = [
+        (LocusKind::Torus, (0.02, 0.06), Label::Ch, 1),
+        (LocusKind::PeriodDoubling, (0.035, 0.12), Label::Gpd, 2),
+        (LocusKind::OrbitPitchfork, (0.02, 0.1), Label::Cp, 1),
+    ];
+    for (kind, stiffness, label, count) in cases {
+        let (long, short) = (
+            of(kind, stiffness, label, 2.0),
+            of(kind, stiffness, label, 0.5),
+        );
+        assert_eq!((long.len(), short.len()), (count, count), "{kind:?}");
+        for (a, b) in long.iter().zip(&short) {
+            for (a, b) in [(a.driving, b.driving), (a.stiffness, b.stiffness)] {
+                assert!((a.value - b.value).abs() <= a.uncertainty + b.uncertainty);
+                assert!(a.uncertainty < 1e-8 * a.value, "{kind:?}: {a:?}");
+            }
+        }
+    }
+    // The degenerate pitchfork is where the curve of folds ends: K = 0.0314028, V_H = 0.0591300 by an independent computation.
+    let folds = locus(&curve(LocusKind::OrbitSaddleNode, (0.03, 0.07)));
+    let end = folds.of(Label::Cp)[0];
+    assert!((end.stiffness.value - 0.0314028).abs() < 5e-8);
+    assert!((end.driving.value - 0.0591300).abs() < 5e-8);
+    let last = folds.points.iter().map(|p| p.stiffness.value);
+    let last = last.fold(f64::INFINITY, |a, b| {
+        if b < end.stiffness.value * 0.999 {
+            a
+        } else {
+            a.min(b)
+        }
+    });
+    assert!((last / end.stiffness.value - 1.0).abs() < 1e-4, "{last}");
+}
+
+/// Above the Chenciner point what is beside the orbit comes nearer, below it goes away.
+#[test]
+fn returns_go_the_way_that_the_coefficient_says() {
+    let heard = locus(&LocusRequest {
+        criticality: true,
+        at_stiffness: vec![0.05, 0.025],
+        ..curve(LocusKind::Torus, (0.02, 0.1))
+    });
+    for (stiffness, way) in [
+        (0.05, Criticality::Supercritical),
+        (0.025, Criticality::Subcritical),
+    ] {
+        let here = heard
+            .special
+            .iter()
+            .find(|s| s.stiffness.value == stiffness);
+        let here = here.expect("a torus bifurcation");
+        assert_eq!(here.criticality, Some(way));
+        let field = two(here.driving.value, stiffness).whole();
+        let (early, late) = returns(&*field, here, 0.03);
+        println!("{stiffness} {early} {late}");
+        assert_eq!(
+            late < early,
+            way == Criticality::Supercritical,
+            "{early} then {late}"
+        );
+        assert!((late / early - 1.0).abs() > 1e-5, "{early} then {late}");
     }
 }
 

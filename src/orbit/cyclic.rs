@@ -8,7 +8,7 @@
 use crate::field::{Jacobian, State};
 use nalgebra::SMatrix;
 
-/// A pivot below this part of the largest is zero.
+/// A pivot below this part of its row's size is zero.
 const SINGULAR: f64 = 1e-14;
 
 /// The rows that a node's elimination leaves behind: `diagonal` (upper triangular) times u_k plus `first` u_0 plus `next`
@@ -28,6 +28,9 @@ pub(super) struct Reduced<const N: usize, const C: usize> {
     /// What is left: `closing` (upper triangular) times u_0 equals `right`.
     pub closing: Jacobian<N>,
     pub right: SMatrix<f64, N, C>,
+    /// The same equations as they were before, and of every row the size of what it is the sum of.
+    end: (Jacobian<N>, SMatrix<f64, N, C>),
+    sizes: [f64; N],
 }
 
 /// Eliminates all nodes but the first.
@@ -57,27 +60,30 @@ pub(super) fn reduce<const N: usize, const C: usize>(
         });
         (e, f, c) = (stacked.first[1], stacked.next[1], stacked.right[1]);
     }
-    // Rows that belong to what has grown or decayed on the way are of any size: only beside their own is a pivot zero.
-    for i in 0..N {
-        let size = e.row(i).amax().max(f.row(i).amax());
-        if size > 0.0 {
-            e.row_mut(i).scale_mut(1.0 / size);
-            f.row_mut(i).scale_mut(1.0 / size);
-            c.row_mut(i).scale_mut(1.0 / size);
-        }
-    }
-    let mut last = Stacked {
-        pivot: [e + f, Jacobian::zeros()],
-        first: [Jacobian::zeros(); 2],
-        next: [Jacobian::zeros(); 2],
-        right: [c, SMatrix::zeros()],
-    };
-    last.triangulate();
+    let sizes = std::array::from_fn(|i| e.row(i).amax().max(f.row(i).amax()));
+    let last = closed(e + f, c);
     Reduced {
         left,
-        closing: last.pivot[0],
-        right: last.right[0],
+        end: (e + f, c),
+        sizes,
+        closing: last.0,
+        right: last.1,
     }
+}
+
+/// The last equations, with an upper triangular matrix.
+fn closed<const N: usize, const C: usize>(
+    matrix: Jacobian<N>,
+    right: SMatrix<f64, N, C>,
+) -> (Jacobian<N>, SMatrix<f64, N, C>) {
+    let mut last = Stacked {
+        pivot: [matrix, Jacobian::zeros()],
+        first: [Jacobian::zeros(); 2],
+        next: [Jacobian::zeros(); 2],
+        right: [right, SMatrix::zeros()],
+    };
+    last.triangulate();
+    (last.pivot[0], last.right[0])
 }
 
 impl<const N: usize, const C: usize> Reduced<N, C> {
@@ -103,10 +109,17 @@ impl<const N: usize, const C: usize> Reduced<N, C> {
 /// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
 pub fn solve<const N: usize>(maps: &[Jacobian<N>], right: &[State<N>]) -> Option<Vec<State<N>>> {
     let reduced = reduce::<N, 1>(maps, right);
-    let start = reduced.closing.solve_upper_triangular(&reduced.right)?;
+    // Rows that belong to what has grown or decayed on the way are of any size: only beside its own is a pivot zero.
+    let (mut matrix, mut right) = reduced.end;
+    for (i, size) in reduced.sizes.iter().enumerate().filter(|row| *row.1 > 0.0) {
+        matrix.row_mut(i).scale_mut(1.0 / size);
+        right.row_mut(i).scale_mut(1.0 / size);
+    }
+    let (closing, right) = closed(matrix, right);
+    let start = closing.solve_upper_triangular(&right)?;
     // Where one direction is free, rounding alone keeps the last pivot from being zero.
-    let pivots = reduced.closing.diagonal().abs();
-    let free = pivots.min() <= SINGULAR * reduced.closing.amax();
+    let pivots = closing.diagonal().abs();
+    let free = pivots.min() <= SINGULAR;
     if free {
         return None;
     }

@@ -72,7 +72,7 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
             jets: jets(family, &cut_into(parts, family, &site)?, axes, tolerance)?,
             parts,
         }
-        .from_the_top(axes);
+        .begun_at_the_top(axes);
         let coefficient = match form {
             Form::Torus => circle.torus()?,
             Form::Doubling => circle.doubling()?,
@@ -81,14 +81,6 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
         coefficient.is_finite().then_some(coefficient)
     });
     let (first, second) = (first?, second?);
-    if std::env::var("NF").is_ok() {
-        eprintln!(
-            "nf {form:?} K {:.5} nodes {} {first:e} {second:e} rel {:e}",
-            site.at[1].exp(),
-            site.polygon.nodes.len(),
-            second / first - 1.0
-        );
-    }
     let uncertainty = SAFETY * (second - first).abs() + LEAST * first.abs();
     Some(Uncertain::new(first, uncertainty))
 }
@@ -103,7 +95,7 @@ struct Circle {
 impl Circle {
     /// The same from another of the nodes where eigenvectors are measured: from the one to which most has grown. All nodes are
     /// found from the first; from the small end of what grows by many decades nothing is found.
-    fn from_the_top(mut self, axes: Axes) -> Self {
+    fn begun_at_the_top(mut self, axes: Axes) -> Self {
         let mut top = (0, 0.0);
         let (mut log, mut moved) = (0.0, Vector2::new(1.0, 1.0));
         // Once around for what is there at the beginning to die out.
