@@ -44,6 +44,15 @@ impl<const N: usize> Last<N> {
     }
 }
 
+/// How a branch of doubled orbits ends at one of orbits that go round once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Back {
+    /// Through the period doubling.
+    Through,
+    /// Newton's method has left the branch.
+    Jumped,
+}
+
 type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Walk<'c, 'f, F, N>;
 
 impl<'b, 'r, 's> Course<'b, 'r, 's> {
@@ -97,27 +106,36 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         let free = self.branches.free;
         let mut last = Last::of(&walk.pace, free);
         let (mut failed, mut lost) = (None, false);
-        let end = follow(walk, &self.watches::<N>(), STEPS, &mut |walk, met| {
-            let met = match met {
-                Met::Zero(watch, at) => self.zero(walk, watch, at, &last),
-                Met::Orbit(pace) => {
-                    let met = self.orbit(walk, pace, &last);
-                    last = Last::of(pace, free);
-                    match met {
-                        // A branch that has ended does not go on in other variables.
-                        Ok(Continue(())) if walk.corrector.family.loses(&last.site) => {
-                            lost = true;
-                            Ok(Break(()))
-                        }
-                        met => met,
+        let end = follow(
+            walk,
+            &self.watches::<N>(),
+            STEPS,
+            &mut |walk, before, met| {
+                let met = match met {
+                    Met::Zero(watch, at) => {
+                        let back = self.comes_back(walk, before);
+                        self.zero(walk, watch, at, &last, back)
                     }
-                }
-            };
-            met.unwrap_or_else(|error| {
-                failed = Some(error);
-                Break(())
-            })
-        });
+                    Met::Orbit(pace) => {
+                        let back = self.comes_back(walk, before);
+                        let met = self.orbit(walk, pace, &last, back);
+                        last = Last::of(pace, free);
+                        match met {
+                            // A branch that has ended does not go on in other variables.
+                            Ok(Continue(())) if walk.corrector.family.loses(&last.site) => {
+                                lost = true;
+                                Ok(Break(()))
+                            }
+                            met => met,
+                        }
+                    }
+                };
+                met.unwrap_or_else(|error| {
+                    failed = Some(error);
+                    Break(())
+                })
+            },
+        );
         match failed {
             Some(error) => Err(error),
             None if lost => Ok(End::Stuck),
@@ -160,6 +178,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         walk: &Walk<'_, '_, F, N>,
         Pace { here, direction }: &Pace<N>,
         last: &Last<N>,
+        back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         let site = &here.site;
         let free = self.branches.free;
@@ -175,8 +194,13 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
             self.merged(&family.usual(&last.site));
             return Ok(Break(()));
         }
-        let turned = direction.parameters[free] * last.slope <= 0.0;
-        if self.times > 0 && turned && self.back(site) {
+        if let Some(back) = back {
+            if back == Back::Jumped {
+                let mut special = rough(Label::Mx, &family.usual(site));
+                special.note =
+                    Some("the walk has come onto the branch that this one parted from".into());
+                let _ = self.tell(Event::Special(special));
+            }
             return Ok(Break(()));
         }
         if !self.branches.in_range(coordinate) {
@@ -229,7 +253,32 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         }
     }
 
-    /// Whether a branch of doubled orbits that turns here has come back to a period doubling.
+    /// Whether a branch of doubled orbits has come back, on the step from `before`, to one that goes round once only.
+    fn comes_back<F: Chart<N>, const N: usize>(
+        &mut self,
+        walk: &mut Walk<'_, '_, F, N>,
+        before: &Pace<N>,
+    ) -> Option<Back> {
+        /// Below this both rounds are the same one.
+        const SAME: f64 = 1e-6;
+        if self.times == 0 {
+            return None;
+        }
+        let Pace { here, direction } = &walk.pace;
+        let free = self.branches.free;
+        let turned = direction.parameters[free] * before.direction.parameters[free] <= 0.0;
+        if turned && self.back(&here.site) {
+            return Some(Back::Through);
+        }
+        let Site { polygon, at } = &here.site;
+        let field = walk.corrector.family.field(*at);
+        let half = 0.5 * polygon.period();
+        let tracer = &mut walk.corrector.tracer;
+        let after = tracer.flow(&*field, &polygon.nodes[0], half, None).ok()?;
+        ((after - polygon.nodes[0]).amax() < SAME).then_some(Back::Jumped)
+    }
+
+    /// Whether there is a period doubling, where the parameter turns.
     fn back<const N: usize>(&mut self, site: &Site<N>) -> bool {
         /// Of the turn in the coordinate, and of the period from twice that at the doubling.
         const NEAR: (f64, f64) = (2e-3, 1e-3);
@@ -254,7 +303,13 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         watch: Watch,
         at: &Regular<N>,
         last: &Last<N>,
+        back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
+        // At the doubling that the branch has come back to the parameter turns, and that is no fold.
+        let turns = matches!(watch, Watch::Turn(_));
+        if back == Some(Back::Jumped) || back.is_some() && turns {
+            return Ok(Continue(()));
+        }
         let Some(label) = self.label(walk, watch, at, last) else {
             return Ok(Continue(()));
         };

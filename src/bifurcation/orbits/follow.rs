@@ -34,12 +34,13 @@ impl End {
     }
 }
 
-/// Follows the walk, past all that is watched.
+/// Follows the walk, past all that is watched. Whoever is told of what is met is given where the step began too: with the same
+/// nodes as where it ended.
 pub fn follow<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,
     watches: &[Watch],
     most: usize,
-    met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, Met<'_, N>) -> ControlFlow<()>,
+    met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, &Pace<N>, Met<'_, N>) -> ControlFlow<()>,
 ) -> End {
     let mut last: Option<(usize, Values)> = None;
     for _ in 0..most {
@@ -55,12 +56,12 @@ pub fn follow<F: Family<N>, const N: usize>(
             let Some(at) = landed(walk, &before, length, &zero, Goal::STEP) else {
                 continue;
             };
-            if met(walk, Met::Zero(zero.watch, &at)).is_break() {
+            if met(walk, &before, Met::Zero(zero.watch, &at)).is_break() {
                 return End::Told;
             }
         }
         let pace = walk.pace.clone();
-        if met(walk, Met::Orbit(&pace)).is_break() {
+        if met(walk, &before, Met::Orbit(&pace)).is_break() {
             return End::Told;
         }
         if walk.mesh().is_none() {

@@ -166,7 +166,7 @@ impl<'r, 's> Leg<'r, 's> {
         let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
         let mut lost = false;
         let watches = self.watches::<N>();
-        let end = follow(walk, &watches, STEPS, &mut |walk, met| match met {
+        let end = follow(walk, &watches, STEPS, &mut |walk, _, met| match met {
             Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {

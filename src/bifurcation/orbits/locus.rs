@@ -169,7 +169,7 @@ where
             };
             let mut last = walk.pace.here.site.clone();
             let mut been = (from..=to).contains(&begin);
-            follow(&mut walk, &[watch], STEPS, &mut |walk, met| match met {
+            follow(&mut walk, &[watch], STEPS, &mut |walk, _, met| match met {
                 Met::Zero(_, at) => {
                     let inside = (from..=to).contains(&at.site.at[0]);
                     let pitchfork = family.merges(&walk.pace.here.site, &last);
