@@ -29,21 +29,6 @@ pub(super) struct Course<'b, 'r, 's> {
     told: bool,
 }
 
-/// Where the walk was before, and the change of the free parameter there.
-struct Last<const N: usize> {
-    site: Site<N>,
-    slope: f64,
-}
-
-impl<const N: usize> Last<N> {
-    fn of(pace: &Pace<N>, free: usize) -> Self {
-        Last {
-            site: pace.here.site.clone(),
-            slope: pace.direction.parameters[free],
-        }
-    }
-}
-
 /// How a branch of doubled orbits ends at one of orbits that go round once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Back {
@@ -103,8 +88,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         &mut self,
         walk: Walker<'_, '_, '_, F, N>,
     ) -> Result<End> {
-        let free = self.branches.free;
-        let mut last = Last::of(&walk.pace, free);
+        let mut last = walk.pace.here.site.clone();
         let (mut failed, mut lost) = (None, false);
         let end = follow(
             walk,
@@ -119,10 +103,10 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
                     Met::Orbit(pace) => {
                         let back = self.comes_back(walk, before);
                         let met = self.orbit(walk, pace, &last, back);
-                        last = Last::of(pace, free);
+                        last = pace.here.site.clone();
                         match met {
                             // A branch that has ended does not go on in other variables.
-                            Ok(Continue(())) if walk.corrector.family.loses(&last.site) => {
+                            Ok(Continue(())) if walk.corrector.family.loses(&last) => {
                                 lost = true;
                                 Ok(Break(()))
                             }
@@ -176,22 +160,22 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     fn orbit<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &Walk<'_, '_, F, N>,
-        Pace { here, direction }: &Pace<N>,
-        last: &Last<N>,
+        Pace { here, .. }: &Pace<N>,
+        last: &Site<N>,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         let site = &here.site;
         let free = self.branches.free;
         let coordinate = site.at[free];
-        if let Some(end) = walk.vanishes(&last.site)
+        if let Some(end) = walk.vanishes(last)
             && let Some(i) = self.hopf_at(end, coordinate)
         {
             self.shrunk(i);
             return Ok(Break(()));
         }
         let family = walk.corrector.family;
-        if family.merges(site, &last.site) {
-            self.merged(&family.usual(&last.site));
+        if family.merges(site, last) {
+            self.merged(&family.usual(last));
             return Ok(Break(()));
         }
         if let Some(back) = back {
@@ -302,7 +286,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         walk: Walker<'_, '_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
-        last: &Last<N>,
+        last: &Site<N>,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         // At the doubling that the branch has come back to the parameter turns, and that is no fold.
@@ -362,12 +346,12 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         walk: &Walk<'_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
-        last: &Last<N>,
+        last: &Site<N>,
     ) -> Option<Label> {
         let Branches { range, .. } = *self.branches;
         let merges = || {
             let family = walk.corrector.family;
-            family.merges(&walk.pace.here.site, &last.site)
+            family.merges(&walk.pace.here.site, last)
         };
         let label = match watch {
             // At the pitchfork, where the branch meets its mirror image.

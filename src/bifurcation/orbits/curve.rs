@@ -46,11 +46,15 @@ where
     }
     let (mut passes, events) = back.kept();
     passes.push(begin);
+    // What has been followed is told of, also to those who then have had enough: nothing is lost.
+    let mut told = ControlFlow::Continue(());
     for event in events.into_iter().rev() {
         if seen(event).is_break() {
-            let told = ControlFlow::Break(());
-            return Ok(Some(Curve { passes, told }));
+            told = ControlFlow::Break(());
         }
+    }
+    if told.is_break() {
+        return Ok(Some(Curve { passes, told }));
     }
     let mut forth = Leg::new(locus, number, begin, Some(seen));
     if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {

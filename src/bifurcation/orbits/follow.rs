@@ -34,13 +34,17 @@ impl End {
     }
 }
 
+/// Who is told of what is met: with the walk, where its step began, and what that is.
+type Told<'t, F, const N: usize> =
+    &'t mut dyn FnMut(&mut Walk<'_, '_, F, N>, &Pace<N>, Met<'_, N>) -> ControlFlow<()>;
+
 /// Follows the walk, past all that is watched. Whoever is told of what is met is given where the step began too: with the same
 /// nodes as where it ended.
 pub fn follow<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,
     watches: &[Watch],
     most: usize,
-    met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, &Pace<N>, Met<'_, N>) -> ControlFlow<()>,
+    met: Told<'_, F, N>,
 ) -> End {
     let mut last: Option<(usize, Values)> = None;
     for _ in 0..most {
