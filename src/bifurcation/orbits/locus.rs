@@ -157,14 +157,17 @@ where
         };
         let mut seeds = Vec::new();
         let mut ends: Vec<f64> = Vec::new();
-        for hopf in hopf_points(&slab, symmetry, Parameter::Driving)? {
+        let hopfs = hopf_points(&slab, symmetry, Parameter::Driving)?;
+        for (i, hopf) in hopfs.iter().enumerate() {
             let begin = hopf.at()[0];
             if ends.iter().any(|end| (end - begin).abs() < 1e-3) {
                 continue;
             }
+            // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
+            let last_one = i + 1 == hopfs.len();
             let mut corrector = Corrector::<_, N>::new(&family, SCAN)?;
             let path = Path::branch(0, LONGEST_OF_BRANCH);
-            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopf) else {
+            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, hopf) else {
                 continue;
             };
             let mut last = walk.pace.here.site.clone();
@@ -188,7 +191,7 @@ where
                     ends.extend(vanishes);
                     let merged = family.merges(here, &last);
                     last = here.clone();
-                    if left || vanishes.is_some() || merged {
+                    if left && last_one || vanishes.is_some() || merged {
                         Break(())
                     } else {
                         Continue(())
