@@ -13,6 +13,7 @@ use returns::returns;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{Criticality, Label, LocusKind, LocusRequest, Special, orbits};
 use twinslip::equilibrium::Symmetry;
+use twinslip::integrate::Choice;
 use twinslip::number::Uncertain;
 
 /// Relative bar for parameters, and for periods at small stiffness.
@@ -184,6 +185,30 @@ fn returns_go_the_way_that_the_coefficient_says() {
             "{early} then {late}"
         );
         assert!((late / early - 1.0).abs() > 1e-5, "{early} then {late}");
+    }
+}
+
+/// Pitchforks in another formulation, and orbits along which the interfaces come near each other.
+#[test]
+fn a_second_method_finds_the_same_points() {
+    let method = Choice::named("rodas5p").expect("a method");
+    for (kind, stiffness, count) in [
+        (LocusKind::OrbitPitchfork, (0.02, 0.1), 4),
+        (LocusKind::PeriodDoubling, (0.03, 0.1), 4),
+        (LocusKind::OrbitSaddleNode, (0.04, 0.06), 4),
+        (LocusKind::Torus, (0.03, 0.1), 3),
+    ] {
+        let request = curve(kind, stiffness);
+        let mut checked = 0;
+        for special in &locus(&request).special {
+            let difference = orbits::crosscheck(&request.slab, special, method).expect("a point");
+            if let Some([driving, stiffness, period]) = difference {
+                let largest = driving.abs().max(stiffness.abs()).max(period.abs());
+                assert!(largest < 1e-9, "{kind:?} {special:?}: {difference:?}");
+                checked += 1;
+            }
+        }
+        assert_eq!(checked, count, "{kind:?}");
     }
 }
 

@@ -16,6 +16,10 @@ pub trait Chart<const N: usize>: Family<N> + Copy {
     fn merges(&self, here: &Site<N>, last: &Site<N>) -> bool;
     /// Whether the interfaces come so near each other along the orbit that these variables lose their difference.
     fn loses(&self, site: &Site<N>) -> bool;
+    /// Whether these are the variables that don't.
+    fn parted(&self) -> bool {
+        false
+    }
     /// The same orbit in the variables that don't.
     fn keeping(&self, site: &Site<N>) -> Option<(OverParted, Site<3>)>;
     /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is.
@@ -72,6 +76,9 @@ impl Chart<3> for OverLoadings {
 }
 
 impl Chart<3> for OverParted {
+    fn parted(&self) -> bool {
+        true
+    }
     fn slab(&self) -> OverLoadings {
         self.0
     }

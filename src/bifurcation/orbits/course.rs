@@ -167,9 +167,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         let site = &here.site;
         let free = self.branches.free;
         let coordinate = site.at[free];
-        if let Some(end) = walk.vanishes(last)
-            && let Some(i) = self.hopf_at(end, coordinate)
-        {
+        if let Some(i) = walk.ends_at(last, &self.branches.hopfs) {
             self.shrunk(i);
             return Ok(Break(()));
         }
@@ -194,18 +192,6 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         let mut row = row(family, self.number, here, None)?;
         row.given(self.given(None));
         Ok(self.tell(Event::Branch(row)))
-    }
-
-    /// The Hopf point where the amplitude of the branch, which is at `here` now, is predicted to be zero.
-    fn hopf_at(&self, end: f64, here: f64) -> Option<usize> {
-        /// What the prediction may err by: part of the way that is left, and rounding.
-        const PART: f64 = 0.2;
-        const ROUNDING: f64 = 1e-6;
-        let Branches { hopfs, free, .. } = &*self.branches;
-        (0..hopfs.len()).find(|&i| {
-            let hopf = hopfs[i].at()[*free];
-            (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING
-        })
     }
 
     /// At the other Hopf point of the branch.

@@ -156,13 +156,13 @@ where
             other => Watch::Indicator(other),
         };
         let mut seeds = Vec::new();
-        let mut ends: Vec<f64> = Vec::new();
+        let mut reached = Vec::new();
         let hopfs = hopf_points(&slab, symmetry, Parameter::Driving)?;
         for (i, hopf) in hopfs.iter().enumerate() {
-            let begin = hopf.at()[0];
-            if ends.iter().any(|end| (end - begin).abs() < 1e-3) {
+            if reached.contains(&i) {
                 continue;
             }
+            let begin = hopf.at()[0];
             // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
             let last_one = i + 1 == hopfs.len();
             let mut corrector = Corrector::<_, N>::new(&family, SCAN)?;
@@ -187,11 +187,11 @@ where
                     let inside = (from..=to).contains(&here.at[0]);
                     let left = been && !inside;
                     been |= inside;
-                    let vanishes = walk.vanishes(&last);
-                    ends.extend(vanishes);
+                    let end = walk.ends_at(&last, &hopfs);
+                    reached.extend(end);
                     let merged = family.merges(here, &last);
                     last = here.clone();
-                    if left && last_one || vanishes.is_some() || merged {
+                    if left && last_one || end.is_some() || merged {
                         Break(())
                     } else {
                         Continue(())
