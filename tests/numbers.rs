@@ -42,6 +42,19 @@ proptest! {
     }
 
     #[test]
+    fn ordered_differences_keep_it_at_any_distance(y in 0.01..5.0_f64, ln_gap in -300.0..8.0_f64) {
+        let gap = y * ln_gap.exp();
+        let x = Difference::ordered(y + gap, y, gap);
+        // A rate that falls times a state that rises: x^-0.4.
+        let made = (x.powf(-1.4).abs() * x).gap;
+        let exact = y.powf(-0.4) * (-0.4 * (gap / y).ln_1p()).exp_m1();
+        prop_assert!((made / exact - 1.0).abs() < 1e-13, "{made} {exact}");
+        let made = (x * 3.0 + 0.5).ln().gap;
+        let exact = (3.0 * gap / (3.0 * y + 0.5)).ln_1p();
+        prop_assert!((made / exact - 1.0).abs() < 1e-14, "{made} {exact}");
+    }
+
+    #[test]
     fn intervals_contain_the_values_of_their_points(x in 0.1..5.0, radius in 0.0..0.05, inside in -1.0..1.0) {
         let bounds = formula(Interval::around(x, radius));
         let value = formula(x + radius * inside);

@@ -56,7 +56,7 @@ fn first<F: Family<3>>(
         &mut walk,
         &[Watch::Indicator(watch)],
         400,
-        &mut |_, met| match met {
+        &mut |_, _, met| match met {
             Met::Zero(_, at) => {
                 found = Some(at.site.clone());
                 Break(())
@@ -136,7 +136,7 @@ fn roesslers_orbit_doubles_its_period_and_again() {
         &mut walk,
         &[Watch::Indicator(Indicator::Doubling)],
         400,
-        &mut |_, met| match met {
+        &mut |_, _, met| match met {
             Met::Zero(_, at) => {
                 cascade = Some(at.site.clone());
                 Break(())

@@ -202,6 +202,16 @@ impl Special {
             orbit: None,
         }
     }
+
+    /// With a word in its note where it is less accurate, relatively, than was asked for.
+    fn against(mut self, tolerance: f64) -> Self {
+        let off = |x: &Uncertain| x.uncertainty > tolerance * x.value.abs();
+        if off(&self.driving) || off(&self.stiffness) {
+            let before = self.note.map_or(String::new(), |note| note + "; ");
+            self.note = Some(before + "less accurate than asked for");
+        }
+        self
+    }
 }
 
 /// A point of a branch.
@@ -261,6 +271,16 @@ pub enum Event {
     Special(Special),
 }
 
+impl Event {
+    /// A special point with a word where it is less accurate than was asked for; what else there is as it is.
+    fn against(self, tolerance: f64) -> Self {
+        match self {
+            Event::Special(special) => Event::Special(special.against(tolerance)),
+            row => row,
+        }
+    }
+}
+
 /// Whether to go on.
 pub type Seen<'a> = &'a mut dyn FnMut(Event) -> std::ops::ControlFlow<()>;
 
@@ -281,7 +301,7 @@ pub struct BranchRequest {
     pub step: f64,
     /// The accuracy of special points, relative.
     pub tolerance: f64,
-    /// Numbers of branches that are known already and not computed again.
+    /// Numbers of branches that are known already and not told of again.
     pub skip: Vec<usize>,
     /// How many times orbits may double their period: the branches of all these are followed too.
     pub doublings: usize,
@@ -368,6 +388,6 @@ pub struct LocusRequest {
     pub tolerance: f64,
     /// Whether normal form coefficients are computed.
     pub criticality: bool,
-    /// Numbers of curves that are known already and not computed again.
+    /// Numbers of curves that are known already and not told of again.
     pub skip: Vec<usize>,
 }

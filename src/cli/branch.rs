@@ -204,17 +204,12 @@ fn loading(system: &System, along: &Along, from: f64) -> Result<Loading> {
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     let plan = Plan::new(options)?;
-    let recheck = |special: &_, method| {
-        orbits::crosscheck(&plan.request.slab, plan.request.symmetry, special, method)
-    };
     let task = Task {
         system: &plan.system,
         columns: rows::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
         numerics: plan.numerics.clone(),
-        second: plan
-            .following
-            .second
-            .map(|method| (method, &recheck as &dyn Fn(&_, _) -> _)),
+        slab: &plan.request.slab,
+        second: plan.following.second,
         resume: options.resume.as_ref(),
         plot: options.plot.as_ref(),
         output: &options.output,

@@ -6,18 +6,16 @@ use super::report::{Report, unit_names};
 use super::resume::Kept;
 use super::rows::Row;
 use super::{Ending, interrupt, special, written};
-use crate::bifurcation::{Criticality, Event, Label, Seen, Special};
+use crate::bifurcation::{Criticality, Event, Label, Seen, Special, orbits};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
+use crate::orbit::Slab;
 use crate::output::{Format, RowWriter, plot, seven_digits};
 use crate::scene::{OutputOptions, Quantity, System};
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
-
-/// A recomputation of a special point, and by which method.
-pub type Recheck<'a> = &'a dyn Fn(&Special, Choice) -> Result<Option<[f64; 3]>>;
 
 /// Everything that a run needs.
 pub struct Task<'a, R> {
@@ -27,8 +25,10 @@ pub struct Task<'a, R> {
     pub columns: Vec<Column<R>>,
     /// What was asked for.
     pub numerics: Value,
-    /// The second method.
-    pub second: Option<(Choice, Recheck<'a>)>,
+    /// The same in dimensionless numbers.
+    pub slab: &'a Slab,
+    /// By which method special points of orbits are computed once more.
+    pub second: Option<Choice>,
     /// The file to go on with.
     pub resume: Option<&'a PathBuf>,
     /// The picture.
@@ -113,7 +113,7 @@ impl<'a, R: Row> Task<'a, R> {
     /// Every special point by the second method.
     fn recheck(&self, report: &Report<'_>, special: &[Special], failed: bool) -> special::Checks {
         let mut checks = special::Checks::default();
-        let Some((method, recheck)) = self.second.filter(|_| !failed) else {
+        let Some(method) = self.second.filter(|_| !failed) else {
             return checks;
         };
         checks.method = Some(method.name());
@@ -121,7 +121,7 @@ impl<'a, R: Row> Task<'a, R> {
             if interrupt::asked() {
                 break;
             }
-            let difference = recheck(one, method).unwrap_or_else(|error| {
+            let difference = orbits::crosscheck(self.slab, one, method).unwrap_or_else(|error| {
                 let (label, driving) = (one.label.name(), one.driving.value);
                 report.say(format!(
                     "the crosscheck of {label} at V_H = {driving} by {} failed: {error}",

@@ -1,18 +1,16 @@
 //! `twinslip integrate`.
 
 use super::interrupt;
-use super::progress::Progress;
 use super::report::{self, Report, unit_names};
+use super::stream::Out;
 use super::{Ending, written};
 use crate::error::Result;
-use crate::integrate::Control;
-use crate::output::{Cell, Format, Place, RowWriter, Rows, object, plot};
+use crate::output::{Cell, Format, Place, Rows, object, plot};
 use crate::scene::{
-    Column, Dimension, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, Sink, System,
-    explain,
+    Column, Dimension, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, System, explain,
 };
 use serde_json::{Map, Value, json};
-use std::io;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 pub const EXAMPLE: &str =
@@ -50,8 +48,11 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         };
         eprint!("{}", explain(&plan, keeping));
     }
-    let mut out = match Out::new(&plan, &report, kept) {
-        Ok(out) => out,
+    let columns = plan.columns.iter().map(|c| (c.name(), c.quantity()));
+    let pictured = Column::pictured(plan.system.interfaces);
+    let numbers = numerics(&plan);
+    let mut out = match Out::new(&report, (&plan.system, &numbers), columns.collect(), kept) {
+        Ok(out) => out.drawing(pictured.iter().map(Column::name).collect()),
         Err(error) => return written(Err(error), &report.place),
     };
     if plan.observed() {
@@ -78,74 +79,6 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None => Ok(ending),
-    }
-}
-
-/// Takes the rows of a run: writes them, keeps them, or both.
-struct Out {
-    writer: Option<Box<dyn RowWriter>>,
-    broken: Option<io::Error>,
-    keep: bool,
-    rows: Rows,
-    drawn: Rows,
-    cells: Vec<Cell>,
-    progress: Progress,
-}
-
-impl Out {
-    fn new(plan: &Plan, report: &Report<'_>, keep: bool) -> io::Result<Self> {
-        let columns: Vec<String> = plan.columns.iter().map(Column::name).collect();
-        let pictured = Column::pictured(plan.system.interfaces);
-        let writer = if report.format == Format::Json {
-            None
-        } else {
-            let units = unit_names(
-                &plan.system.units,
-                plan.columns.iter().map(Column::quantity),
-            );
-            let remarks = report.remarks(&plan.system, &numerics(plan));
-            let stream = report.place.stream().map_err(io::Error::other)?;
-            Some(report.rows(stream, &remarks, &columns, &units)?)
-        };
-        Ok(Out {
-            writer,
-            broken: None,
-            keep,
-            rows: Rows::new(columns),
-            drawn: Rows::new(pictured.iter().map(Column::name).collect()),
-            cells: Vec::new(),
-            progress: Progress::new(report.quiet),
-        })
-    }
-}
-
-impl Sink for Out {
-    fn row(&mut self, row: &[f64]) -> Control {
-        if self.keep {
-            self.rows.numbers.extend_from_slice(row);
-        }
-        if let Some(writer) = &mut self.writer {
-            self.cells.clear();
-            self.cells.extend(row.iter().map(|&x| Cell::Number(x)));
-            if let Err(error) = writer.row(&self.cells) {
-                self.broken = Some(error);
-                return Control::Stop;
-            }
-        }
-        Control::Continue
-    }
-
-    fn drawn(&mut self, point: &[f64]) {
-        self.drawn.numbers.extend_from_slice(point);
-    }
-
-    fn reached(&mut self, fraction: f64) -> Control {
-        self.progress.reached(fraction);
-        if interrupt::asked() {
-            Control::Stop
-        } else {
-            Control::Continue
-        }
     }
 }
 

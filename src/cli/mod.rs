@@ -18,6 +18,7 @@ mod rows;
 mod run;
 mod section;
 mod special;
+mod stream;
 
 use crate::error::Error;
 use clap::{CommandFactory, Parser, Subcommand};

@@ -1,20 +1,19 @@
 //! `twinslip section`.
 
 use super::interrupt;
-use super::progress::Progress;
 use super::report::{self, Report, unit_names};
+use super::stream::Out;
 use super::{Ending, written};
 use crate::error::Result;
-use crate::integrate::Control;
 use crate::number::Uncertain;
-use crate::output::{self, Cell, Format, RowWriter, Rows, plot};
+use crate::output::{self, Cell, Format, Rows, plot};
 use crate::scene::{
-    Lyapunov, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan, Sink,
+    Lyapunov, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan,
     explain_section, run_section,
 };
 use crate::section::Regime;
 use serde_json::{Map, Value, json};
-use std::io;
+use std::io::Write;
 use std::path::Path;
 
 pub const EXAMPLE: &str =
@@ -34,8 +33,12 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     if options.output.explain {
         eprint!("{}", explain_section(&plan));
     }
-    let mut out = match Out::new(&plan, &report, options.plot.is_some()) {
-        Ok(out) => out,
+    let columns = SectionColumn::all(plan.system.interfaces);
+    let columns = columns.iter().map(|c| (c.name(), c.quantity())).collect();
+    let numbers = numerics(&plan);
+    let drawn = options.plot.is_some();
+    let mut out = match Out::new(&report, (&plan.system, &numbers), columns, drawn) {
+        Ok(out) => out.counting(),
         Err(error) => return written(Err(error), &report.place),
     };
     interrupt::watch();
@@ -60,64 +63,6 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
             Ok(Ending::Undecided)
         }
         None => Ok(ending),
-    }
-}
-
-/// Takes the rows of a run: writes them, keeps them, or both.
-struct Out {
-    writer: Option<Box<dyn RowWriter>>,
-    broken: Option<io::Error>,
-    keep: bool,
-    rows: Rows,
-    progress: Progress,
-}
-
-impl Out {
-    fn new(plan: &SectionPlan, report: &Report<'_>, drawn: bool) -> io::Result<Self> {
-        let all = SectionColumn::all(plan.system.interfaces);
-        let columns: Vec<String> = all.iter().map(SectionColumn::name).collect();
-        let writer = if report.format == Format::Json {
-            None
-        } else {
-            let units = unit_names(&plan.system.units, all.iter().map(SectionColumn::quantity));
-            let remarks = report.remarks(&plan.system, &numerics(plan));
-            let stream = report.place.stream().map_err(io::Error::other)?;
-            Some(report.rows(stream, &remarks, &columns, &units)?)
-        };
-        Ok(Out {
-            keep: drawn || writer.is_none(),
-            writer,
-            broken: None,
-            rows: Rows::new(columns),
-            progress: Progress::new(report.quiet),
-        })
-    }
-}
-
-impl Sink for Out {
-    fn row(&mut self, row: &[f64]) -> Control {
-        if self.keep {
-            self.rows.numbers.extend_from_slice(row);
-        }
-        if let Some(writer) = &mut self.writer {
-            // The first column counts: a whole number needs no point.
-            let mut cells: Vec<Cell> = row.iter().map(|&x| Cell::Number(x)).collect();
-            cells[0] = Cell::Text(format!("{}", row[0]));
-            if let Err(error) = writer.row(&cells) {
-                self.broken = Some(error);
-                return Control::Stop;
-            }
-        }
-        Control::Continue
-    }
-
-    fn reached(&mut self, fraction: f64) -> Control {
-        self.progress.reached(fraction);
-        if interrupt::asked() {
-            Control::Stop
-        } else {
-            Control::Continue
-        }
     }
 }
 

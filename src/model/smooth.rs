@@ -3,7 +3,8 @@
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::{DoubleDouble, Jet};
 use crate::series::{
-    Array, Equations, MAX_ORDER, Plain, REFERENCE_ORDER, Solution, Tangent, Variational,
+    Array, Cubic, Cubics, Equations, MAX_ORDER, Plain, REFERENCE_ORDER, Solution, Tangent,
+    Transport, Variational,
 };
 #[cfg(target_arch = "x86_64")]
 use {
@@ -154,5 +155,10 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
             Array([DoubleDouble::ZERO]),
             Array([DoubleDouble::ZERO; 8]),
         ))
+    }
+
+    fn transport(&self, start: [Cubic; N]) -> Option<Box<dyn Transport<N> + '_>> {
+        let cubics = Cubics::new(self.equations, self.parameters, start);
+        Some(Box::new(cubics))
     }
 }

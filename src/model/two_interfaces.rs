@@ -6,7 +6,8 @@ use super::tangent::{reference_tangent, tangent};
 use super::{Driven, Loading, Parameter, stress_rate};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
-use crate::series::{Solution, Tangent};
+use crate::number::Real;
+use crate::series::{Cubic, Cubics, Equations, Solution, Tangent, Transport};
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -92,6 +93,36 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
 
     fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {
         reference_tangent(self.law.core(), self.loading, (1.0, 1.0))
+    }
+
+    fn transport(&self, start: [Cubic; 3]) -> Option<Box<dyn Transport<3> + '_>> {
+        let equations = Logarithmic {
+            law: self.law.core(),
+        };
+        let Loading { driving, stiffness } = self.loading;
+        let cubics = Cubics::new(equations, [driving, stiffness], start);
+        Some(Box::new(cubics))
+    }
+}
+
+/// (19) in (tau, w_1, w_2), in the parameters (V_H, K).
+#[derive(Debug, Clone, Copy)]
+struct Logarithmic<L> {
+    law: L,
+}
+
+impl<L: Law> Equations<3> for Logarithmic<L> {
+    #[inline(always)]
+    fn rates<T: Real>(&self, [tau, w1, w2]: [T; 3], loading: [T; 2]) -> [T; 3] {
+        let activation = self.law.activation(tau);
+        let (psi1, psi2) = (w1.exp(), w2.exp());
+        let v1 = self.law.slip_rate(activation, psi1);
+        let v2 = self.law.slip_rate(activation, psi2);
+        [
+            stress_rate((loading[0], loading[1]), v1 + v2),
+            self.law.evolution(v1, psi1) / psi1,
+            self.law.evolution(v2, psi2) / psi2,
+        ]
     }
 }
 

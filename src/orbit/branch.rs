@@ -48,7 +48,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
 
     /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
     /// to an equilibrium.
-    pub fn vanishes(&self, before: &Site<N>) -> Option<f64> {
+    fn vanishes(&self, before: &Site<N>) -> Option<f64> {
         let here = &self.pace.here.site;
         let free = *self.path.free.first()?;
         let (old, new) = (before.polygon.extent(), here.polygon.extent());
@@ -56,6 +56,21 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         let shrinks = new < SMALL * SMALL && new < old;
         let slope = (here.at[free] - before.at[free]) / (old - new);
         shrinks.then_some(here.at[free] + slope * new)
+    }
+
+    /// Which of these Hopf points the branch is about to end at.
+    pub fn ends_at(&self, before: &Site<N>, hopfs: &[HopfPoint]) -> Option<usize> {
+        /// What the prediction may err by: part of the way that is left, and rounding. An orbit can also seem smaller because its
+        /// nodes lie elsewhere.
+        const PART: f64 = 0.2;
+        const ROUNDING: f64 = 1e-6;
+        let end = self.vanishes(before)?;
+        let free = *self.path.free.first()?;
+        let here = self.pace.here.site.at[free];
+        hopfs.iter().position(|hopf| {
+            let hopf = hopf.at()[free];
+            (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING
+        })
     }
 }
 
@@ -71,8 +86,9 @@ where
     OverLoadings: Family<N>,
 {
     let mut found = Vec::new();
-    for hopf in hopf_points(slab, symmetry, Parameter::Driving)? {
-        follow(slab, space, tracer, &hopf, &mut found)?;
+    let hopfs = hopf_points(slab, symmetry, Parameter::Driving)?;
+    for hopf in &hopfs {
+        follow(slab, space, tracer, (hopf, &hopfs), &mut found)?;
         if !found.is_empty() {
             break;
         }
@@ -85,7 +101,7 @@ fn follow<const N: usize>(
     slab: &Slab,
     space: &impl Space<N>,
     tracer: &mut Tracer<N>,
-    hopf: &HopfPoint,
+    (hopf, hopfs): (&HopfPoint, &[HopfPoint]),
     found: &mut Vec<Polygon<N>>,
 ) -> Result<()>
 where
@@ -115,7 +131,7 @@ where
             }
         }
         let far = (new.at[0] - begin).abs() > reach;
-        if far || walk.vanishes(old).is_some() || walk.mesh().is_none() {
+        if far || walk.ends_at(old, hopfs).is_some() || walk.mesh().is_none() {
             break;
         }
     }

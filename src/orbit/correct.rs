@@ -109,9 +109,9 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// The linearisation at a site, with the derivatives in the parameters.
-    fn linear(&mut self, site: &Site<N>) -> Option<Linear<N>> {
+    pub(super) fn linear(&mut self, site: &Site<N>) -> Option<Linear<N>> {
         let field = self.family.field(site.at);
-        let mut linear = Linear::new(&mut self.tracer, &*field, &site.polygon, true).ok()?;
+        let mut linear = Linear::of(&mut self.tracer, self.family, &*field, &site.polygon).ok()?;
         drop(field);
         if !self.tracer.differentiates() {
             self.difference(site, &mut linear)?;
@@ -222,6 +222,17 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         conditions: &[Condition<'_, N>],
     ) -> Option<Regular<N>> {
         let linear = self.linear(&site)?;
+        self.look_with(site, linear, free, conditions)
+    }
+
+    /// The same where the linearisation is known.
+    pub(super) fn look_with(
+        &mut self,
+        site: Site<N>,
+        linear: Linear<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+    ) -> Option<Regular<N>> {
         let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
         let spectrum = Spectrum::new(&linear);
         let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions)?;

@@ -6,7 +6,6 @@ use super::slab::Slab;
 use super::solve::{Accuracy, Orbit, orbit};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::field::State;
 
 /// What the second method found.
 #[derive(Debug, Clone, PartialEq)]
@@ -30,11 +29,16 @@ const DIGITS: [i32; 3] = [3, 5, 7];
 pub fn crosscheck(slab: &Slab, first: &Orbit, accuracy: &Accuracy) -> Result<Crosscheck> {
     let (plane, whole) = (slab.plane(), slab.whole());
     let from = |digits: i32| {
+        let Orbit {
+            nodes, durations, ..
+        } = first;
         if first.symmetry == Symmetry::Symmetric {
             let space = plane_of(slab, &*plane, &*whole);
-            orbit(slab, &space, accuracy, cut::<2>(first, digits))
+            let polygon = Polygon::of_digits(digits, nodes, durations);
+            orbit(slab, &space, accuracy, polygon)
         } else {
-            orbit(slab, &whole_of(&*whole), accuracy, cut::<3>(first, digits))
+            let polygon = Polygon::of_digits(digits, nodes, durations);
+            orbit(slab, &whole_of(&*whole), accuracy, polygon)
         }
     };
     let [few, more, most] = DIGITS;
@@ -51,23 +55,4 @@ pub fn crosscheck(slab: &Slab, first: &Orbit, accuracy: &Accuracy) -> Result<Cro
             .collect(),
         orbit: second,
     })
-}
-
-/// The cycle with only so many digits left.
-fn cut<const N: usize>(orbit: &Orbit, digits: i32) -> Polygon<N> {
-    let cut = |x: f64| {
-        if x == 0.0 {
-            return 0.0;
-        }
-        let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
-        (x / unit).round() * unit
-    };
-    Polygon {
-        nodes: orbit
-            .nodes
-            .iter()
-            .map(|x| State::from_fn(|i, _| cut(x[i])))
-            .collect(),
-        durations: orbit.durations.iter().map(|&t| cut(t)).collect(),
-    }
 }

@@ -1,13 +1,14 @@
 //! Cyclic two-point systems: u_{k+1} = P_k u_k + r_k around a circle of nodes.
 //!
-//! Eliminated node by node with Householder reflections, which keep what grows and what decays around the circle apart; a
-//! product of all P_k would mix them. The elimination is that of structured orthogonal factorisation: Wright, S. J. (1992).
-//! Stable parallel algorithms for two-point boundary value problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
+//! Eliminated node by node with rotations, which keep what grows and what decays around the circle apart; a product of all P_k
+//! would mix them, and so would reflections, in which a small row is the difference of two large ones. The elimination is
+//! that of structured orthogonal factorisation: Wright, S. J. (1992). Stable parallel algorithms for two-point boundary value
+//! problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
 use crate::field::{Jacobian, State};
 use nalgebra::SMatrix;
 
-/// A pivot below this part of the largest is zero.
+/// A pivot below this part of its row's size is zero.
 const SINGULAR: f64 = 1e-14;
 
 /// The rows that a node's elimination leaves behind: `diagonal` (upper triangular) times u_k plus `first` u_0 plus `next`
@@ -27,6 +28,9 @@ pub(super) struct Reduced<const N: usize, const C: usize> {
     /// What is left: `closing` (upper triangular) times u_0 equals `right`.
     pub closing: Jacobian<N>,
     pub right: SMatrix<f64, N, C>,
+    /// The same equations as they were before, and of every row the size of what it is the sum of.
+    end: (Jacobian<N>, SMatrix<f64, N, C>),
+    sizes: [f64; N],
 }
 
 /// Eliminates all nodes but the first.
@@ -56,18 +60,30 @@ pub(super) fn reduce<const N: usize, const C: usize>(
         });
         (e, f, c) = (stacked.first[1], stacked.next[1], stacked.right[1]);
     }
-    let mut last = Stacked {
-        pivot: [e + f, Jacobian::zeros()],
-        first: [Jacobian::zeros(); 2],
-        next: [Jacobian::zeros(); 2],
-        right: [c, SMatrix::zeros()],
-    };
-    last.triangulate();
+    let sizes = std::array::from_fn(|i| e.row(i).amax().max(f.row(i).amax()));
+    let last = closed(e + f, c);
     Reduced {
         left,
-        closing: last.pivot[0],
-        right: last.right[0],
+        end: (e + f, c),
+        sizes,
+        closing: last.0,
+        right: last.1,
     }
+}
+
+/// The last equations, with an upper triangular matrix.
+fn closed<const N: usize, const C: usize>(
+    matrix: Jacobian<N>,
+    right: SMatrix<f64, N, C>,
+) -> (Jacobian<N>, SMatrix<f64, N, C>) {
+    let mut last = Stacked {
+        pivot: [matrix, Jacobian::zeros()],
+        first: [Jacobian::zeros(); 2],
+        next: [Jacobian::zeros(); 2],
+        right: [right, SMatrix::zeros()],
+    };
+    last.triangulate();
+    (last.pivot[0], last.right[0])
 }
 
 impl<const N: usize, const C: usize> Reduced<N, C> {
@@ -91,15 +107,19 @@ impl<const N: usize, const C: usize> Reduced<N, C> {
 }
 
 /// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
-pub(super) fn solve<const N: usize>(
-    maps: &[Jacobian<N>],
-    right: &[State<N>],
-) -> Option<Vec<State<N>>> {
+pub fn solve<const N: usize>(maps: &[Jacobian<N>], right: &[State<N>]) -> Option<Vec<State<N>>> {
     let reduced = reduce::<N, 1>(maps, right);
-    let start = reduced.closing.solve_upper_triangular(&reduced.right)?;
+    // Rows that belong to what has grown or decayed on the way are of any size: only beside its own is a pivot zero.
+    let (mut matrix, mut right) = reduced.end;
+    for (i, size) in reduced.sizes.iter().enumerate().filter(|row| *row.1 > 0.0) {
+        matrix.row_mut(i).scale_mut(1.0 / size);
+        right.row_mut(i).scale_mut(1.0 / size);
+    }
+    let (closing, right) = closed(matrix, right);
+    let start = closing.solve_upper_triangular(&right)?;
     // Where one direction is free, rounding alone keeps the last pivot from being zero.
-    let pivots = reduced.closing.diagonal().abs();
-    let free = pivots.min() <= SINGULAR * reduced.closing.amax();
+    let pivots = closing.diagonal().abs();
+    let free = pivots.min() <= SINGULAR;
     if free {
         return None;
     }
@@ -115,33 +135,45 @@ struct Stacked<const N: usize, const C: usize> {
 }
 
 impl<const N: usize, const C: usize> Stacked<N, C> {
-    /// Makes the pivot's first block upper triangular and its second zero, by reflections of all rows.
+    /// Makes the pivot's first block upper triangular and its second zero, by rotations of two rows at a time.
     fn triangulate(&mut self) {
         for j in 0..N {
-            let mut v = [State::<N>::zeros(); 2];
-            for (b, v) in v.iter_mut().enumerate() {
-                for i in if b == 0 { j } else { 0 }..N {
-                    v[i] = self.pivot[b][(i, j)];
+            for row in j + 1..2 * N {
+                let (block, i) = (row / N, row % N);
+                let (p, x) = (self.pivot[0][(j, j)], self.pivot[block][(i, j)]);
+                if x == 0.0 {
+                    continue;
                 }
+                let length = p.hypot(x);
+                let turn = Turn {
+                    rows: [(0, j), (block, i)],
+                    cosine: p / length,
+                    sine: x / length,
+                };
+                turn.apply(&mut self.pivot);
+                turn.apply(&mut self.first);
+                turn.apply(&mut self.next);
+                turn.apply(&mut self.right);
+                self.pivot[block][(i, j)] = 0.0;
             }
-            let length = v[0].norm().hypot(v[1].norm());
-            if length == 0.0 {
-                continue;
-            }
-            let sign = if v[0][j] < 0.0 { -1.0 } else { 1.0 };
-            v[0][j] += sign * length;
-            let squared = v[0].norm_squared() + v[1].norm_squared();
-            for block in [&mut self.pivot, &mut self.first, &mut self.next] {
-                let along = (block[0].tr_mul(&v[0]) + block[1].tr_mul(&v[1])) * (2.0 / squared);
-                for (block, v) in block.iter_mut().zip(&v) {
-                    *block -= v * along.transpose();
-                }
-            }
-            let along =
-                (self.right[0].tr_mul(&v[0]) + self.right[1].tr_mul(&v[1])) * (2.0 / squared);
-            for (right, v) in self.right.iter_mut().zip(&v) {
-                *right -= v * along.transpose();
-            }
+        }
+    }
+}
+
+/// A rotation of two rows of two blocks.
+struct Turn {
+    rows: [(usize, usize); 2],
+    cosine: f64,
+    sine: f64,
+}
+
+impl Turn {
+    fn apply<const N: usize, const C: usize>(&self, blocks: &mut [SMatrix<f64, N, C>; 2]) {
+        let [(a, i), (b, k)] = self.rows;
+        for column in 0..C {
+            let (x, y) = (blocks[a][(i, column)], blocks[b][(k, column)]);
+            blocks[a][(i, column)] = self.cosine * x + self.sine * y;
+            blocks[b][(k, column)] = self.cosine * y - self.sine * x;
         }
     }
 }

@@ -19,6 +19,12 @@ pub trait Family<const N: usize>: Sync {
 
     /// Of each parameter, its derivative in its coordinate.
     fn scale(&self, at: [f64; 2]) -> [f64; 2];
+
+    /// The normal of the plane in which a node may move where the flow is `flow`: the flow itself, unless some variables had
+    /// better stay out of it.
+    fn normal(&self, flow: State<N>) -> State<N> {
+        flow
+    }
 }
 
 /// Any small system over its two parameters as they are.
@@ -110,6 +116,12 @@ impl Family<3> for OverParted {
 
     fn scale(&self, at: [f64; 2]) -> [f64; 2] {
         at.map(f64::exp)
+    }
+
+    /// Without ln D. Where D is small, tau and psi_2 know nothing of it, and a shift of ln D stays as it is all along the
+    /// orbit. A plane that leans towards ln D would mix that shift with what grows by e^(0.5 / K) along the canard.
+    fn normal(&self, flow: State<3>) -> State<3> {
+        State::<3>::new(flow[0], flow[1], 0.0)
     }
 }
 

@@ -6,6 +6,9 @@ use crate::equilibrium::{Equilibrium, Solver, Symmetry, stability, steady_states
 use crate::error::Result;
 use crate::field::{State, VectorField};
 use crate::model::{Loading, Parameter};
+use nalgebra::Complex;
+
+type C = Complex<f64>;
 
 /// A Hopf point.
 #[derive(Debug, Clone)]
@@ -27,9 +30,8 @@ const TRIED: usize = 400;
 /// Bisections of an interval: to the last digits of the logarithm.
 const BISECTIONS: usize = 60;
 
-/// The equilibrium of a symmetry with its oscillatory pair of eigenvalues, where it has one. Of several asymmetric ones that
-/// of the largest stress.
-fn oscillation(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, f64, f64)>> {
+/// The equilibrium of a symmetry with its eigenvalues. Of several asymmetric ones that of the largest stress.
+fn spectrum(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, Vec<C>)>> {
     let states = steady_states(
         &slab.law,
         slab.loading.driving,
@@ -44,8 +46,27 @@ fn oscillation(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, f
         return Ok(None);
     };
     let eigenvalues = stability(&slab.law, &equilibrium, slab.loading.stiffness)?.eigenvalues;
-    let pair = eigenvalues.into_iter().find(|z| z.im > 0.0);
-    Ok(pair.map(|z| (equilibrium, z.re, z.im)))
+    Ok(Some((equilibrium, eigenvalues)))
+}
+
+/// The product of the sums of all pairs of eigenvalues: it changes its sign at Hopf points also where the pair is soon real
+/// again, as it is at small stiffness; and at neutral saddles.
+fn sums(eigenvalues: &[C]) -> f64 {
+    let mut product = C::from(1.0);
+    for (i, a) in eigenvalues.iter().enumerate() {
+        for b in &eigenvalues[i + 1..] {
+            product *= a + b;
+        }
+    }
+    product.re
+}
+
+/// The frequency of the pair on the imaginary axis, if there is one.
+fn frequency(eigenvalues: &[C]) -> Option<f64> {
+    /// What is left of the real part, over the imaginary one.
+    const AXIS: f64 = 1e-5;
+    let pair = eigenvalues.iter().find(|z| z.im > 0.0)?;
+    (pair.re.abs() < AXIS * pair.im).then_some(pair.im)
 }
 
 /// All Hopf points of equilibria of this symmetry along a parameter, the other one that of the slab; the nearest to the slab's
@@ -58,43 +79,67 @@ pub fn hopf_points(slab: &Slab, symmetry: Symmetry, along: Parameter) -> Result<
         Parameter::Driving => slab.driven_at(log.exp()),
         Parameter::Stiffness => slab.of_stiffness(log.exp()),
     };
-    let at = |log: f64| oscillation(&there(log), symmetry);
+    let at = |log: f64| spectrum(&there(log), symmetry);
     let ((from, to), own) = match along {
         Parameter::Driving => (DRIVINGS, slab.loading.driving),
         Parameter::Stiffness => (STIFFNESSES, slab.loading.stiffness),
     };
     let (from, to) = (from.ln(), to.ln());
     let grid = (0..=TRIED).map(|i| from + (to - from) * i as f64 / TRIED as f64);
-    let mut points = Vec::new();
-    let mut last: Option<(f64, f64)> = None;
+    let sums_at = |log: f64| -> Result<Option<f64>> {
+        Ok(at(log)?.map(|(_, eigenvalues)| sums(&eigenvalues)))
+    };
+    let mut tried: Vec<(f64, Option<f64>)> = Vec::new();
     for log in grid {
-        let here = at(log)?.map(|(_, growth, _)| (log, growth));
-        if let (Some((left, before)), Some((right, after))) = (last, here)
-            && before * after < 0.0
+        let here = (log, sums_at(log)?);
+        // An equilibrium may have its Hopf point soon after it appears.
+        if let Some(&last) = tried.last()
+            && last.1.is_some() != here.1.is_some()
         {
-            let (mut left, mut right) = (left, right);
+            let (mut none, mut some) = if here.1.is_some() {
+                (last, here)
+            } else {
+                (here, last)
+            };
             for _ in 0..BISECTIONS {
-                let middle = 0.5 * (left + right);
-                match at(middle)? {
-                    Some((_, growth, _)) if growth * before > 0.0 => left = middle,
-                    _ => right = middle,
+                let middle = 0.5 * (none.0 + some.0);
+                match sums_at(middle)? {
+                    None => none.0 = middle,
+                    known => some = (middle, known),
                 }
             }
+            tried.push(some);
+        }
+        tried.push(here);
+    }
+    let mut points = Vec::new();
+    for pair in tried.windows(2) {
+        let [(mut left, Some(before)), (mut right, Some(after))] = [pair[0], pair[1]] else {
+            continue;
+        };
+        if before * after >= 0.0 {
+            continue;
+        }
+        for _ in 0..BISECTIONS {
             let middle = 0.5 * (left + right);
-            if let Some((equilibrium, _, frequency)) = at(middle)? {
-                let Loading { driving, stiffness } = there(middle).loading;
-                points.push((
-                    middle,
-                    HopfPoint {
-                        driving,
-                        stiffness,
-                        equilibrium,
-                        frequency,
-                    },
-                ));
+            match sums_at(middle)? {
+                Some(sums) if sums * before > 0.0 => left = middle,
+                _ => right = middle,
             }
         }
-        last = here;
+        let middle = 0.5 * (left + right);
+        if let Some((equilibrium, eigenvalues)) = at(middle)?
+            && let Some(frequency) = frequency(&eigenvalues)
+        {
+            let Loading { driving, stiffness } = there(middle).loading;
+            let point = HopfPoint {
+                driving,
+                stiffness,
+                equilibrium,
+                frequency,
+            };
+            points.push((middle, point));
+        }
     }
     let far = |log: f64| (log - own.ln()).abs();
     points.sort_by(|a, b| far(a.0).total_cmp(&far(b.0)));

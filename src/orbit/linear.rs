@@ -1,11 +1,12 @@
 //! The linear equations of multiple shooting.
 //!
-//! Every node may move in the plane through it that stands across the flow, and the duration of every arc is eliminated by
+//! Every node may move in a plane through it that stands across the flow, and the duration of every arc is eliminated by
 //! the next plane. So no phase is to be fixed, the period is no unknown, and the multipliers are those of the planes' maps:
 //! the trivial one is gone.
 
 use super::arc::{Arc, Tracer};
 use super::cyclic;
+use super::family::Family;
 use super::motion::Motion;
 use super::polygon::Polygon;
 use crate::error::Result;
@@ -17,7 +18,7 @@ use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 pub(super) struct Linear<const N: usize> {
     /// From every node to the next.
     pub arcs: Vec<Arc<N>>,
-    /// At every node orthonormal columns, the first along the flow.
+    /// At every node orthonormal columns, the first the plane's normal.
     frames: Vec<Jacobian<N>>,
     /// The maps from plane to plane in these frames; the first row and column, of the flow's direction, are zero.
     pub maps: Vec<Jacobian<N>>,
@@ -28,15 +29,26 @@ pub(super) struct Linear<const N: usize> {
 }
 
 impl<const N: usize> Linear<N> {
-    /// With the derivatives in the parameters where asked for.
+    /// In the planes at right angles to the flow.
     pub fn new(
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
         polygon: &Polygon<N>,
-        parameters: bool,
     ) -> Result<Self> {
         let frames = polygon.nodes.iter().map(|x| frame(&field.f(x))).collect();
-        Self::in_frames(tracer, field, polygon, parameters, frames)
+        Self::in_frames(tracer, field, polygon, false, frames)
+    }
+
+    /// In the family's planes, with the derivatives in the parameters.
+    pub fn of<F: Family<N>>(
+        tracer: &mut Tracer<N>,
+        family: &F,
+        field: &dyn VectorField<N>,
+        polygon: &Polygon<N>,
+    ) -> Result<Self> {
+        let normal = |x: &State<N>| frame(&family.normal(field.f(x)));
+        let frames = polygon.nodes.iter().map(normal).collect();
+        Self::in_frames(tracer, field, polygon, true, frames)
     }
 
     /// The same in the planes of another linearisation nearby, so that the maps can be compared.
@@ -85,6 +97,30 @@ impl<const N: usize> Linear<N> {
             linear.arcs.push(arc);
         }
         Ok(linear)
+    }
+
+    /// ln of the largest growth along every arc.
+    pub fn growth(&self) -> impl Iterator<Item = f64> {
+        self.maps.iter().map(|map| map.amax().ln())
+    }
+
+    /// Into how many parts to cut each arc for nothing to grow by more than e^growth along one.
+    pub fn parts(&self, growth: f64) -> Vec<usize> {
+        /// At most, at once: the growth along a part is not known.
+        const PARTS: f64 = 8.0;
+        let parts = |of_arc: f64| (of_arc / growth).ceil().clamp(1.0, PARTS) as usize;
+        self.growth().map(parts).collect()
+    }
+
+    /// The same with the k-th node as the first.
+    pub fn beginning_at(mut self, k: usize) -> Self {
+        self.arcs.rotate_left(k);
+        self.frames.rotate_left(k);
+        self.maps.rotate_left(k);
+        self.gaps.rotate_left(k);
+        self.inflow.rotate_left(k);
+        self.slowness.rotate_left(k);
+        self
     }
 
     /// The part of a gap before node k + 1 that the planes see, in the frame there.
@@ -232,8 +268,8 @@ fn underdetermined<const N: usize>(
     Some((start(&(&q * y)), kernel.collect()))
 }
 
-/// Orthonormal columns, the first along f: the reflection that takes the first axis there.
-fn frame<const N: usize>(f: &State<N>) -> Jacobian<N> {
+/// Orthonormal columns, the first along f, which is not zero: the reflection that takes the first axis there.
+pub(super) fn frame<const N: usize>(f: &State<N>) -> Jacobian<N> {
     let along = f / f.amax();
     let along = along / along.norm();
     let mut v = along;

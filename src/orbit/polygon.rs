@@ -49,7 +49,26 @@ impl Mesh {
 const LARGEST_LOSS: f64 = 10.0;
 const DEPTH: usize = 10;
 
+/// A number with only so many significant digits left.
+pub fn of_digits(digits: i32, x: f64) -> f64 {
+    if x == 0.0 {
+        return 0.0;
+    }
+    let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
+    (x / unit).round() * unit
+}
+
 impl<const N: usize> Polygon<N> {
+    /// Nodes, of at least N coordinates, and durations, with only so many significant digits left: what a second method begins
+    /// with.
+    pub fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
+        let node = |x: &Vec<f64>| State::from_fn(|i, _| of_digits(digits, x[i]));
+        Polygon {
+            nodes: nodes.iter().map(node).collect(),
+            durations: durations.iter().map(|&t| of_digits(digits, t)).collect(),
+        }
+    }
+
     /// The trajectory from `start` over this duration, cut into arcs of about equal work and contraction.
     ///
     /// # Errors
@@ -153,6 +172,34 @@ impl<const N: usize> Polygon<N> {
                     pieces.push((duration - half, depth + 1));
                     pieces.push((half, depth + 1));
                 }
+            }
+        }
+        Ok(finer)
+    }
+
+    /// With more nodes: every arc cut into its number of parts, of equal duration.
+    ///
+    /// # Errors
+    /// Those of the flow.
+    pub(super) fn split(
+        &self,
+        tracer: &mut Tracer<N>,
+        field: &dyn VectorField<N>,
+        parts: &[usize],
+    ) -> Result<Self> {
+        let mut finer = Polygon {
+            nodes: Vec::new(),
+            durations: Vec::new(),
+        };
+        for ((x, duration), &parts) in self.nodes.iter().zip(&self.durations).zip(parts) {
+            let part = duration / parts as f64;
+            let mut node = *x;
+            for i in 0..parts {
+                if i > 0 {
+                    node = tracer.flow(field, &node, part, None)?;
+                }
+                finer.nodes.push(node);
+                finer.durations.push(part);
             }
         }
         Ok(finer)

@@ -89,7 +89,7 @@ pub fn newton_step<const N: usize>(
     field: &dyn VectorField<N>,
     polygon: &Polygon<N>,
 ) -> Result<Polygon<N>> {
-    let linear = Linear::new(tracer, field, polygon, false)?;
+    let linear = Linear::new(tracer, field, polygon)?;
     let correction = linear.correction(&linear.gaps);
     let (nodes, durations) = correction.ok_or(Error::NotConverged {
         what: "the periodic orbit",
@@ -110,7 +110,7 @@ pub fn close<const N: usize>(
     guess: Polygon<N>,
 ) -> Result<Closed<N>> {
     let mut polygon = guess;
-    let mut linear = Linear::new(tracer, field, &polygon, false)?;
+    let mut linear = Linear::new(tracer, field, &polygon)?;
     let mut last = f64::INFINITY;
     for iterations in 1..=ITERATIONS {
         let failed = |residual: f64| Error::NotConverged {
@@ -153,7 +153,7 @@ pub fn close<const N: usize>(
         let mut halvings = 0;
         linear = loop {
             let trial = polygon.moved(&nodes, &durations, part);
-            match Linear::new(tracer, field, &trial, false) {
+            match Linear::new(tracer, field, &trial) {
                 Ok(next) => {
                     polygon = trial;
                     break next;

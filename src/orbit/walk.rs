@@ -3,8 +3,9 @@
 use super::correct::{Condition, Corrector, Goal, Regular};
 use super::family::Family;
 use super::indicator::Indicator;
+use super::linear::Linear;
 use super::motion::{Motion, Site};
-use super::polygon::{Mesh, Polygon};
+use super::polygon::Mesh;
 
 /// Where a walk stands.
 #[derive(Debug, Clone)]
@@ -53,6 +54,8 @@ pub struct Walk<'c, 'f, F, const N: usize> {
     pub length: f64,
     /// Whether the nodes have been cut anew where it stands.
     fresh: bool,
+    /// How often they have been.
+    cuts: usize,
     /// How many of the last steps were very short.
     crawls: usize,
 }
@@ -123,6 +126,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             length: FIRST.min(path.longest),
             path,
             fresh: false,
+            cuts: 0,
             crawls: 0,
         })
     }
@@ -152,12 +156,19 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             path,
             length,
             fresh: false,
+            cuts: 0,
             crawls: 0,
         };
         let site = walk.pace.here.site.clone();
-        walk.pace = walk.arrived(site, afar)?;
+        let linear = walk.pace.here.linear.clone();
+        walk.pace = walk.arrived(site, linear, afar)?;
         walk.cut()?;
         Some(walk)
+    }
+
+    /// How often the nodes have been cut anew.
+    pub fn cuts(&self) -> usize {
+        self.cuts
     }
 
     /// What of the walk's direction does not depend on the variables: the change of the parameters and of ln T.
@@ -254,59 +265,39 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             polygon,
             at: site.at,
         };
-        for _ in 0..HALVINGS {
-            self.pace = self.arrived(site, old)?;
-            if growth(&self.pace.here).all(|growth| growth < GROWTH) {
+        let mut linear = self.corrector.linear(&site)?;
+        for _ in 0..SPLITS {
+            if linear.growth().all(|growth| growth < GROWTH) {
                 break;
             }
-            site = self.halved()?;
+            let parts = linear.parts(GROWTH);
+            let field = self.corrector.family.field(site.at);
+            let tracer = &mut self.corrector.tracer;
+            site.polygon = site.polygon.split(tracer, &*field, &parts).ok()?;
+            drop(field);
+            linear = self.corrector.linear(&site)?;
         }
-        let largest = most_moved(&self.pace.here);
-        if largest != 0 {
-            let Site { polygon, at } = self.pace.here.site.clone();
-            let polygon = polygon.beginning_at(largest);
-            self.pace = self.arrived(Site { polygon, at }, old)?;
-        }
+        let scale = self.corrector.family.scale(site.at);
+        let (_, along) = linear.solutions(&self.path.free, scale)?;
+        let first = most_moved(&along);
+        site.polygon = site.polygon.beginning_at(first);
+        self.pace = self.arrived(site, linear.beginning_at(first), old)?;
         self.fresh = true;
+        self.cuts += 1;
         Some(())
     }
 
-    /// With a node more in the middle of every arc along which something grows by too much: what the end of such an arc does
-    /// is linear in its beginning for small steps only.
-    fn halved(&mut self) -> Option<Site<N>> {
-        let Regular { site, linear, .. } = &self.pace.here;
-        let field = self.corrector.family.field(site.at);
-        let mut finer = Polygon {
-            nodes: Vec::new(),
-            durations: Vec::new(),
-        };
-        let Polygon { nodes, durations } = &site.polygon;
-        for (k, (x, &duration)) in nodes.iter().zip(durations).enumerate() {
-            finer.nodes.push(*x);
-            if linear.maps[k].amax().ln() < GROWTH {
-                finer.durations.push(duration);
-                continue;
-            }
-            let half = 0.5 * duration;
-            let middle = self.corrector.tracer.flow(&*field, x, half, None).ok()?;
-            finer.nodes.push(middle);
-            finer.durations.extend([half, duration - half]);
-        }
-        Some(Site {
-            polygon: finer,
-            at: site.at,
-        })
-    }
-
     /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
-    fn arrived(&mut self, site: Site<N>, old: [f64; 3]) -> Option<Pace<N>> {
+    fn arrived(&mut self, site: Site<N>, linear: Linear<N>, old: [f64; 3]) -> Option<Pace<N>> {
         let own: Vec<Condition<'_, N>> = self
             .path
             .indicator
             .map(Condition::Indicator)
             .into_iter()
             .collect();
-        let here = self.corrector.look(site, &self.path.free, &own)?;
+        let here = self
+            .corrector
+            .look_with(site, linear, &self.path.free, &own)?;
         let any = here.along.first()?.clone();
         let mut direction = self.path.direction(&here, &any)?;
         let new = direction.seen_from_afar(&here.site.polygon);
@@ -318,30 +309,23 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     }
 }
 
-/// ln of what an arc of a new mesh may grow by, and one of an old mesh; how often arcs are halved for it.
-const GROWTH: f64 = 1.0;
-const GROWN: f64 = 2.0;
-const HALVINGS: usize = 6;
+/// ln of what an arc of a new mesh may grow by, and one of an old mesh.
+const GROWTH: f64 = 5.0;
+const GROWN: f64 = 8.0;
+/// How often arcs are split for it.
+const SPLITS: usize = 6;
 
 /// The node that the motions left to the orbit move most. All others are found from the first one: from the small end of a
 /// motion that grows by many decades nothing is found.
-fn most_moved<const N: usize>(orbit: &Regular<N>) -> usize {
+fn most_moved<const N: usize>(along: &[Motion<N>]) -> usize {
     let moved = |k: usize| -> f64 {
-        let each = orbit
-            .along
-            .iter()
-            .map(|motion| motion.nodes[k].norm_squared());
+        let each = along.iter().map(|motion| motion.nodes[k].norm_squared());
         each.sum()
     };
-    let count = orbit.site.polygon.nodes.len();
+    let count = along.first().map_or(0, |motion| motion.nodes.len());
     (0..count)
         .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
         .unwrap_or(0)
-}
-
-/// ln of the largest growth along every arc.
-fn growth<const N: usize>(orbit: &Regular<N>) -> impl Iterator<Item = f64> {
-    orbit.linear.maps.iter().map(|map| map.amax().ln())
 }
 
 /// Whether arcs take far more work than the others or than they should, or grow by too much.
@@ -354,5 +338,7 @@ fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
     let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
     let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
     let most = mean.max(Mesh::FINE.steps);
-    worst > WORST * most || mean > MEAN * Mesh::FINE.steps || growth(orbit).any(|g| g > GROWN)
+    worst > WORST * most
+        || mean > MEAN * Mesh::FINE.steps
+        || orbit.linear.growth().any(|g| g > GROWN)
 }

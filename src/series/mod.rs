@@ -13,6 +13,7 @@
 
 mod array;
 mod columns;
+mod cubic;
 mod dual;
 mod element;
 mod equations;
@@ -28,12 +29,14 @@ mod real;
 mod recurrences;
 mod stepper;
 mod tape;
+mod transport;
 mod variational;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
 pub use array::Array;
 pub use columns::{Columns, Linearisation, Spread};
+pub use cubic::Cubic;
 pub use dual::Dual;
 pub use element::Element;
 pub use equations::{Equations, Plain};
@@ -45,6 +48,7 @@ pub use lanes::{Eight, Four, Pair};
 pub use plain::Both;
 pub use stepper::Stepper;
 pub use tape::Order;
+pub use transport::{Cubics, Transport};
 pub use variational::Variational;
 
 /// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.

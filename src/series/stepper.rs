@@ -65,10 +65,10 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         // The time in which the state would change by its own size.
         let mut rate = zero;
         for c in 0..C {
-            let size = Element::max(self.x[c].abs(), zero.like(f64::MIN_POSITIVE));
-            rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
+            let size = Element::max(self.x[c].plain().abs(), zero.like(f64::MIN_POSITIVE));
+            rate = Element::max(rate, (self.coefficient(c, 1).plain() / size).abs());
         }
-        let rate = rate.plain().largest_over_interfaces();
+        let rate = rate.largest_over_interfaces();
         let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
         self.next_unit = new.if_negative(next_unit, self.next_unit);
     }

@@ -118,32 +118,12 @@ impl<S: Equations<N>, T: Element, X: Element, const N: usize, const ROOM: usize>
         self.stepper.expand(accuracy);
         let unit = self.stepper.unit();
         let most = Element::min(self.stepper.longest(accuracy), (limit / unit).abs());
-        let longest = self.longest(accuracy, most.first());
+        let longest = longest_of_columns(accuracy, most.first(), |k| self.column_sizes(k));
         let h = Element::min(most, limit.like(longest));
         let taken = self.stepper.advance_by(accuracy, h, limit);
         let grown = self.mean_trace(accuracy.order, (taken / unit).value) * taken.value;
         self.log_determinant = self.log_determinant + grown.to_exact();
         taken
-    }
-
-    /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the
-    /// tolerance.
-    #[inline(always)]
-    fn longest(&self, accuracy: &Accuracy, most: f64) -> f64 {
-        /// Columns are not as small.
-        const NOTHING: f64 = 1e-250;
-        let order = accuracy.order;
-        let begins = self.column_sizes(0);
-        let any = begins;
-        // Derivatives in parameters begin at zero.
-        let grows = self.column_sizes(1) * any.like(most);
-        let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
-        let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
-        let before = (self.column_sizes(order - 1) * per_tolerable).largest_lane();
-        let last = (self.column_sizes(order) * per_tolerable).largest_lane();
-        let before = -rough_log2(before) / (order - 1) as f64;
-        let last = -rough_log2(last) / order as f64;
-        rough_exp2(before.min(last))
     }
 
     /// The largest component of the k-th coefficient of every column, in units of 1 + |x_i|.
@@ -175,6 +155,30 @@ impl<S: Equations<N>, T: Element, X: Element, const N: usize, const ROOM: usize>
         }
         mean
     }
+}
+
+/// The step, in units of the series and at most `most`, at which the last two terms of every column are below the tolerance,
+/// from the sizes of the columns' k-th coefficients.
+#[inline(always)]
+pub(super) fn longest_of_columns<X: Element>(
+    accuracy: &Accuracy,
+    most: f64,
+    sizes: impl Fn(usize) -> X,
+) -> f64 {
+    /// Columns are not as small.
+    const NOTHING: f64 = 1e-250;
+    let order = accuracy.order;
+    let begins = sizes(0);
+    let any = begins;
+    // Derivatives in parameters begin at zero.
+    let grows = sizes(1) * any.like(most);
+    let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
+    let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
+    let before = (sizes(order - 1) * per_tolerable).largest_lane();
+    let last = (sizes(order) * per_tolerable).largest_lane();
+    let before = -rough_log2(before) / (order - 1) as f64;
+    let last = -rough_log2(last) / order as f64;
+    rough_exp2(before.min(last))
 }
 
 /// A step, to be compiled for the processor.

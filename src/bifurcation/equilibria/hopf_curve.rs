@@ -8,7 +8,7 @@
 //! omega^2 = 2 K G_psi / F_V > 0. On the asymmetric one omega^2 = c_1 = c_0 / c_2 of (30) vanishes only with c_0, at a fold. With
 //! the paper's parameters all curves end at K = 0: at 2 V_M and 2 V_m the symmetric one, at 2 V_M and where V_fast = V_m
 //! the asymmetric one, but for one of no consequence that leaves the Bogdanov-Takens point of V_sn at K = 4.4e-13. l_1 has
-//! no zero there either (tests/branches_equilibria.rs; a search over 1293 other sets of parameters of (35) found none either).
+//! no zero there either (tests/curves_equilibria.rs; a search over 1293 other sets of parameters of (35) found none either).
 
 use super::crossing::Root;
 use super::curves::{AlongDriving, Curve};

@@ -3,12 +3,13 @@
 //! That the closed forms are right is no part of their error budgets: they are held against the numerical condition on the
 //! Jacobian of the vector field itself, and a special point's budget covers the difference.
 
+use super::crossing::Root;
 use super::curves::Curve;
 use super::hopf::{Hopf, HopfPoints, certain_zero, straddling};
 use super::lyapunov::{Lyapunov, first_lyapunov};
-use crate::bifurcation::Criticality;
+use crate::bifurcation::{Criticality, Label, Parameter, Special};
 use crate::field::State;
-use crate::friction::{Law, steady_stress};
+use crate::friction::{AnyLaw, Law, steady_stress};
 use crate::model::{Loading, single_interface, two_interfaces};
 use crate::number::{DoubleDouble, Real, bracketed_root};
 use nalgebra::DMatrix;
@@ -135,12 +136,43 @@ impl HopfPoints<'_> {
     }
 }
 
+/// The Hopf point of a curve of equilibria at this (V_H, K), of which the parameter that does not vary is exact, with the slip
+/// rates there. `None` where no pair crosses: two real eigenvalues of opposite sign are no bifurcation.
+pub(super) fn hopf_point(
+    law: &AnyLaw,
+    curve: Curve,
+    along: Parameter,
+    [driving, stiffness]: [f64; 2],
+    rates: [f64; 2],
+) -> Option<(Special, [f64; 2])> {
+    /// In ln V_H and ln K: that it is this one.
+    const CLOSE: f64 = 1e-6;
+    [Root::Larger, Root::Smaller].into_iter().find_map(|root| {
+        let points = HopfPoints { law, curve, root };
+        let found = match along {
+            Parameter::Driving => points.at_stiffness(stiffness, driving, rates),
+            Parameter::Stiffness => points.at_driving(driving, rates),
+        };
+        let near = |a: f64, b: f64| (a / b).ln().abs() < CLOSE;
+        let point = found.filter(|point| {
+            near(point.driving.value, driving) && near(point.stiffness.value, stiffness)
+        })?;
+        let point = points.crosschecked(point);
+        let special = Special {
+            period: Some(point.period),
+            criticality: Some(points.criticality(&point)),
+            coefficient: Some(points.lyapunov(point.driving.value, point.rates).value),
+            ..Special::new(Label::Hb, point.driving, point.stiffness)
+        };
+        Some((special, point.rates))
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bifurcation::equilibria::crossing::Root;
     use crate::equilibrium::{Solver, Symmetry, steady_states};
-    use crate::friction::{AnyLaw, Parameters};
+    use crate::friction::Parameters;
 
     /// (29) and (34) against the Jacobian of the vector field, over the whole curves.
     #[test]

@@ -21,8 +21,12 @@ mod trace;
 mod vertical;
 mod walk;
 
-use super::{BranchRequest, LocusKind, LocusRequest, Seen};
+use super::{BranchRequest, LocusKind, LocusRequest, Parameter, Seen, Special};
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
+use crate::friction::AnyLaw;
+use crate::orbit::HopfPoint;
+use curves::Curve;
 use special::Teller;
 
 /// All branches of equilibria over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
@@ -67,4 +71,19 @@ pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
         }
     };
     Ok(())
+}
+
+/// A Hopf point with its budgets and its first Lyapunov coefficient, as [`branch()`] tells of it. `None` where it is not decided
+/// that there is one.
+pub(super) fn hopf(law: &AnyLaw, along: Parameter, point: &HopfPoint) -> Option<Special> {
+    let rates = &point.equilibrium.slip_rate;
+    let interfaces = rates.len();
+    let curve = match point.equilibrium.symmetry {
+        Symmetry::Symmetric => Curve::Symmetric { interfaces },
+        Symmetry::Asymmetric => Curve::Asymmetric,
+    };
+    let pair = [rates[0], rates[interfaces - 1]];
+    let at = [point.driving, point.stiffness];
+    let found = hopf_special::hopf_point(law, curve, along, at, pair);
+    found.map(|(special, _)| special)
 }

@@ -1,7 +1,6 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
-use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Seen, Special};
-use crate::number::Uncertain;
+use crate::bifurcation::{BranchRow, Event, LocusRow, Seen, Special};
 use std::ops::ControlFlow;
 
 /// Tells the observer.
@@ -41,34 +40,10 @@ impl<'a> Teller<'a> {
     }
 
     /// After the row that it is the special point of.
-    pub fn special(&mut self, mut special: Special) -> ControlFlow<()> {
+    pub fn special(&mut self, special: Special) -> ControlFlow<()> {
         if self.skipping {
             return ControlFlow::Continue(());
         }
-        let off = |x: &Uncertain| x.uncertainty > self.tolerance * x.value.abs();
-        if off(&special.driving) || off(&special.stiffness) {
-            let before = special
-                .note
-                .take()
-                .map_or(String::new(), |note| note + "; ");
-            special.note = Some(before + "less accurate than asked for");
-        }
-        (self.seen)(Event::Special(special))
-    }
-}
-
-impl Special {
-    /// A point that is known exactly and of which nothing else is.
-    pub(super) fn at(label: Label, driving: f64, stiffness: f64) -> Self {
-        Special {
-            label,
-            driving: Uncertain::new(driving, 0.0),
-            stiffness: Uncertain::new(stiffness, 0.0),
-            period: None,
-            criticality: None,
-            coefficient: None,
-            note: None,
-            orbit: None,
-        }
+        (self.seen)(Event::Special(special).against(self.tolerance))
     }
 }

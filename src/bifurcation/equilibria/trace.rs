@@ -131,12 +131,10 @@ impl Trace<'_, '_> {
         let l_1 = self.points.lyapunov(point.driving.value, point.rates);
         let asked = self.request.criticality && label != Label::Gh;
         self.teller.special(Special {
-            driving: point.driving,
-            stiffness: point.stiffness,
             period: Some(point.period),
             criticality: asked.then(|| self.points.criticality(&point)),
             coefficient: Some(l_1.value),
-            ..Special::at(label, point.driving.value, point.stiffness.value)
+            ..Special::new(label, point.driving, point.stiffness)
         })
     }
 
@@ -202,10 +200,8 @@ impl Trace<'_, '_> {
         let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
         let (driving, stiffness) = at.unwrap_or((unknown(place.driving), unknown(k)));
         self.teller.special(Special {
-            driving,
-            stiffness,
             note: Some("a curve of Hopf points ends here".into()),
-            ..Special::at(Label::Bt, place.driving, k)
+            ..Special::new(Label::Bt, driving, stiffness)
         })
     }
 
@@ -230,10 +226,8 @@ impl Trace<'_, '_> {
         let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
         let k = self.points.closed_form(place.rates);
         self.teller.special(Special {
-            driving: unknown(place.driving),
-            stiffness: unknown(k),
             note: Some(format!("no further: {:?}", branch.stopped)),
-            ..Special::at(Label::Mx, place.driving, k)
+            ..Special::new(Label::Mx, unknown(place.driving), unknown(k))
         })
     }
 

@@ -106,11 +106,9 @@ fn along(
         })?;
         if let Some(label) = label {
             teller.special(Special {
-                driving: line.driving,
-                stiffness,
                 criticality: line.criticality,
                 coefficient: line.coefficient,
-                ..Special::at(label, line.driving.value, stiffness.value)
+                ..Special::new(label, line.driving, stiffness)
             })?;
         }
     }

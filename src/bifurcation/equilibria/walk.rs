@@ -2,15 +2,17 @@
 
 use super::crossing::Root;
 use super::curves::Curve;
-use super::hopf::{Hopf, HopfPoints};
+use super::hopf::HopfPoints;
+use super::hopf_special::hopf_point;
 use super::pieces::Begin;
 use super::special::Teller;
 use super::stationary::{fold, fold_test, pitchforks};
-use crate::bifurcation::{BranchRequest, BranchRow, Label, Parameter, Special};
+use crate::bifurcation::{BranchRequest, BranchRow, Label, Special};
 use crate::continuation::{Branch, Mark, Point, Stop, Watch};
 use crate::equilibrium::{Equilibrium, stability};
 use crate::error::{Error, Result};
 use crate::friction::{steady_slope, steady_stress};
+use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
 /// The largest change of the stress in a step.
@@ -134,7 +136,7 @@ impl Walk<'_, '_> {
     }
 
     fn plain(&mut self, place: &Place, label: Label, note: &str) -> Result<ControlFlow<()>> {
-        let mut special = Special::at(label, place.driving, place.stiffness);
+        let mut special = Special::new(label, exact(place.driving), exact(place.stiffness));
         special.note = (!note.is_empty()).then(|| note.to_string());
         self.hand_on(place, special)
     }
@@ -168,14 +170,13 @@ impl Walk<'_, '_> {
             return Ok(self.teller.branch(row));
         }
         let special = Special {
-            driving: pitchfork.driving,
             criticality: Some(pitchfork.criticality),
             coefficient: Some(pitchfork.coefficient),
             note: Some(
                 "coefficient: -3 tau''/tau''' of (24); asymmetric states at larger V_H if positive"
                     .into(),
             ),
-            ..Special::at(Label::Bp, driving, place.stiffness)
+            ..Special::new(Label::Bp, pitchfork.driving, exact(place.stiffness))
         };
         self.hand_on(&at, special)
     }
@@ -189,44 +190,24 @@ impl Walk<'_, '_> {
             rates: fold.rates,
             ..*place
         };
-        let special = Special {
-            driving: fold.driving,
-            ..Special::at(Label::Lp, at.driving, at.stiffness)
-        };
+        let special = Special::new(Label::Lp, fold.driving, exact(at.stiffness));
         self.hand_on(&at, special)
     }
 
     fn hopf(&mut self, place: &Place) -> Result<ControlFlow<()>> {
-        let slab = &self.request.slab;
-        for root in [Root::Larger, Root::Smaller] {
-            let points = HopfPoints {
-                law: &slab.law,
-                curve: self.curve,
-                root,
-            };
-            let found = match self.request.along {
-                Parameter::Driving => {
-                    points.at_stiffness(place.stiffness, place.driving, place.rates)
-                }
-                Parameter::Stiffness => points.at_driving(place.driving, place.rates),
-            };
-            let Some(point) = found.filter(|point| close(point, place)) else {
-                continue;
-            };
-            let point = points.crosschecked(point);
-            let l_1 = points.lyapunov(point.driving.value, point.rates);
-            let special = Special {
-                driving: point.driving,
-                stiffness: point.stiffness,
-                period: Some(point.period),
-                criticality: Some(points.criticality(&point)),
-                coefficient: Some(l_1.value),
-                ..Special::at(Label::Hb, point.driving.value, point.stiffness.value)
-            };
+        let Place {
+            driving,
+            stiffness,
+            rates,
+        } = *place;
+        let request = self.request;
+        let at = [driving, stiffness];
+        let found = hopf_point(&request.slab.law, self.curve, request.along, at, rates);
+        if let Some((special, rates)) = found {
             let at = Place {
-                driving: point.driving.value,
-                stiffness: point.stiffness.value,
-                rates: point.rates,
+                driving: special.driving.value,
+                stiffness: special.stiffness.value,
+                rates,
             };
             return self.hand_on(&at, special);
         }
@@ -240,7 +221,7 @@ impl Walk<'_, '_> {
             return ControlFlow::Continue(());
         };
         let place = self.place(point, self.value(point, *mark));
-        let mut special = Special::at(Label::Mx, place.driving, place.stiffness);
+        let mut special = Special::new(Label::Mx, exact(place.driving), exact(place.stiffness));
         special.note = Some(match &branch.stopped {
             Stop::StepTooSmall {
                 because: Some(error),
@@ -268,10 +249,8 @@ impl Walk<'_, '_> {
     }
 }
 
-/// Whether a Hopf point is the one that a test function saw.
-fn close(point: &Hopf, place: &Place) -> bool {
-    let near = |a: f64, b: f64| (a / b).ln().abs() < 1e-6;
-    near(point.driving.value, place.driving) && near(point.stiffness.value, place.stiffness)
+fn exact(x: f64) -> Uncertain {
+    Uncertain::new(x, 0.0)
 }
 
 impl Watch for Walk<'_, '_> {

@@ -3,7 +3,7 @@
 
 use super::chart::Chart;
 use super::course::Course;
-use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special};
+use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special, equilibria};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
@@ -84,15 +84,20 @@ impl<'r> Branches<'r> {
         }
     }
 
+    /// Whether a branch is told of. One that is not is followed all the same: its other end and the branches that begin on it
+    /// would be taken for others.
+    pub fn tells(&self, branch: usize) -> bool {
+        !self.request.skip.contains(&branch)
+    }
+
     pub fn in_range(&self, coordinate: f64) -> bool {
         (self.range.0..=self.range.1).contains(&coordinate)
     }
 
-    /// The number of the next branch, and whether it is to be followed.
-    fn next(&mut self) -> (usize, bool) {
-        let number = self.count;
+    /// The number of the next branch.
+    fn next(&mut self) -> usize {
         self.count += 1;
-        (number, !self.request.skip.contains(&number))
+        self.count - 1
     }
 
     fn symmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
@@ -152,8 +157,7 @@ impl<'r> Branches<'r> {
                 continue;
             }
             self.reached[i] = true;
-            let (number, wanted) = self.next();
-            if wanted && self.one_of::<N>(i, number, seen)?.is_break() {
+            if self.one_of::<N>(i, seen)?.is_break() {
                 return Ok(Break(()));
             }
         }
@@ -164,24 +168,21 @@ impl<'r> Branches<'r> {
         Path::branch(self.free, LONGEST * self.request.step)
     }
 
-    fn one_of<const N: usize>(
-        &mut self,
-        i: usize,
-        number: usize,
-        seen: Seen<'_>,
-    ) -> Result<ControlFlow<()>>
+    fn one_of<const N: usize>(&mut self, i: usize, seen: Seen<'_>) -> Result<ControlFlow<()>>
     where
         OverLoadings: Chart<N>,
     {
+        let number = self.next();
         let hopf = self.hopfs[i].clone();
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
         let inside = self.in_range(hopf.at()[self.free]);
-        if inside && seen(Event::Special(self.hopf(i))).is_break() {
+        let special = Event::Special(self.hopf(i)).against(self.request.tolerance);
+        if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
-            Some(mut walk) => Course::new(self, number, inside, &walk).go(&mut walk, seen),
+            Some(mut walk) => Course::new(self, number, inside, seen).go(&mut walk),
             None => Ok(Continue(())),
         }
     }
@@ -193,40 +194,29 @@ impl<'r> Branches<'r> {
         times: usize,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
-        let (number, wanted) = self.next();
-        if !wanted {
-            return Ok(Continue(()));
-        }
+        let number = self.next();
         let family = self.family;
         let mut corrector = Corrector::<_, 3>::new(&family, ROUGH)?;
         let inside = self.in_range(site.at[self.free]);
         let first = site.moved(&direction, ASIDE);
         match Walk::from(&mut corrector, self.path(), first, direction) {
             Some(mut walk) => {
-                let mut course = Course::new(self, number, inside, &walk);
+                let mut course = Course::new(self, number, inside, seen);
                 course.times = times;
-                course.go(&mut walk, seen)
+                course.go(&mut walk)
             }
             None => Ok(Continue(())),
         }
     }
 
-    /// A Hopf point as a special point.
+    /// A Hopf point as a special point: the same as that of the equilibria.
     pub fn hopf(&self, i: usize) -> Special {
-        /// Of the bisection, relative.
-        const KNOWN: f64 = 1e-12;
-        let hopf = &self.hopfs[i];
-        let known = |x: f64| Uncertain::new(x, KNOWN * x);
-        let of = |i: usize, x: f64| {
-            if self.free == i {
-                known(x)
-            } else {
-                Uncertain::new(x, 0.0)
-            }
-        };
-        Special {
-            period: Some(known(std::f64::consts::TAU / hopf.frequency)),
-            ..Special::new(Label::Hb, of(0, hopf.driving), of(1, hopf.stiffness))
-        }
+        let (hopf, request) = (&self.hopfs[i], self.request);
+        let known = equilibria::hopf(&request.slab.law, request.along, hopf);
+        let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
+        known.unwrap_or_else(|| Special {
+            period: Some(unknown(std::f64::consts::TAU / hopf.frequency)),
+            ..Special::new(Label::Hb, unknown(hopf.driving), unknown(hopf.stiffness))
+        })
     }
 }

@@ -1,6 +1,9 @@
 //! The variables in which orbits of a slab are followed, and the way from one to the other.
 
+use super::normal_form::{Form, normal_form};
+use crate::bifurcation::Criticality;
 use crate::field::State;
+use crate::number::Uncertain;
 use crate::orbit::{Family, OverLoadings, OverParted, Polygon, Site};
 
 /// Orbits of a slab in some variables.
@@ -13,12 +16,18 @@ pub trait Chart<const N: usize>: Family<N> + Copy {
     fn merges(&self, here: &Site<N>, last: &Site<N>) -> bool;
     /// Whether the interfaces come so near each other along the orbit that these variables lose their difference.
     fn loses(&self, site: &Site<N>) -> bool;
+    /// Whether these are the variables that don't.
+    fn parted(&self) -> bool {
+        false
+    }
     /// The same orbit in the variables that don't.
     fn keeping(&self, site: &Site<N>) -> Option<(OverParted, Site<3>)>;
+    /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is.
+    fn normal_form(&self, site: &Site<N>, form: Form) -> (Uncertain, Criticality);
 }
 
 /// The least difference of ln psi along an orbit that is left with digits enough.
-const LEAST: f64 = 1e-5;
+const LEAST: f64 = 1e-4;
 /// The greatest difference of psi along an orbit that is symmetric but for it: its square changes nothing.
 const SYMMETRIC: f64 = -15.0;
 
@@ -37,6 +46,9 @@ impl Chart<2> for OverLoadings {
     }
     fn keeping(&self, _: &Site<2>) -> Option<(OverParted, Site<3>)> {
         None
+    }
+    fn normal_form(&self, site: &Site<2>, form: Form) -> (Uncertain, Criticality) {
+        normal_form(self, &embedded(site), form)
     }
 }
 
@@ -58,9 +70,15 @@ impl Chart<3> for OverLoadings {
     fn keeping(&self, site: &Site<3>) -> Option<(OverParted, Site<3>)> {
         Some((OverParted(*self), OverParted::parted(site)?))
     }
+    fn normal_form(&self, site: &Site<3>, form: Form) -> (Uncertain, Criticality) {
+        normal_form(self, site, form)
+    }
 }
 
 impl Chart<3> for OverParted {
+    fn parted(&self) -> bool {
+        true
+    }
     fn slab(&self) -> OverLoadings {
         self.0
     }
@@ -76,6 +94,9 @@ impl Chart<3> for OverParted {
     }
     fn keeping(&self, _: &Site<3>) -> Option<(OverParted, Site<3>)> {
         None
+    }
+    fn normal_form(&self, site: &Site<3>, form: Form) -> (Uncertain, Criticality) {
+        normal_form(self, site, form)
     }
 }
 

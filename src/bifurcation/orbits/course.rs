@@ -4,12 +4,13 @@ use super::branch::{Branches, Doubling, ROUGH};
 use super::chart::{Chart, embedded, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
-use super::normal_form::{Form, normal_form};
-use super::rows::row;
+use super::normal_form::Form;
+use super::rows::{Given, asked, row};
 use super::sharp::{Exactly, Sharp, rough, sharpened, special};
-use crate::bifurcation::{BranchRow, Event, Label, Seen, Special};
+use super::way::Way;
+use crate::bifurcation::{Event, Label, Seen, Special};
 use crate::error::Result;
-use crate::orbit::{Corrector, Family, Indicator, OverParted, Regular, Site, Walk};
+use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -17,112 +18,116 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const STEPS: usize = 5000;
 
 /// How a branch goes on.
-pub(super) struct Course<'b, 'r, const N: usize> {
-    branches: &'b mut Branches<'r>,
-    number: usize,
-    /// The orbit before, and the change of the free parameter there.
-    last: Site<N>,
-    slope: f64,
+pub(super) struct Course<'b, 'r, 's> {
+    pub branches: &'b mut Branches<'r>,
+    pub number: usize,
     /// Whether it has been in the range.
-    inside: bool,
-    told: bool,
+    pub inside: bool,
     /// How often the period has doubled.
     pub times: usize,
+    seen: Seen<'s>,
+    told: bool,
+}
+
+/// How a branch of doubled orbits ends at one of orbits that go round once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Back {
+    /// Through the period doubling.
+    Through,
+    /// Newton's method has left the branch.
+    Jumped,
 }
 
 type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Walk<'c, 'f, F, N>;
 
-impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
-    pub fn new<F: Family<N>>(
+impl<'b, 'r, 's> Course<'b, 'r, 's> {
+    pub fn new(
         branches: &'b mut Branches<'r>,
         number: usize,
         inside: bool,
-        walk: &Walk<'_, '_, F, N>,
+        seen: Seen<'s>,
     ) -> Self {
-        let free = branches.free;
         Course {
             branches,
             number,
-            last: walk.pace.here.site.clone(),
-            slope: walk.pace.direction.parameters[free],
             inside,
-            told: false,
             times: 0,
+            seen,
+            told: false,
         }
     }
 
     /// To the end, in other variables where these lose digits; breaks where whoever is told had enough.
-    pub fn go<F: Chart<N>>(
+    pub fn go<F: Chart<N>, const N: usize>(
         mut self,
         walk: Walker<'_, '_, '_, F, N>,
-        seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
-        let end = self.along(walk, seen)?;
+        let end = self.along(walk)?;
         if end == End::Told {
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
         let site = &walk.pace.here.site;
         let (family, path, length) = (*walk.corrector.family, walk.path.clone(), walk.length);
-        let kept = family.keeping(site);
-        if let Some((parted, there)) = kept {
+        if let Some((parted, there)) = family.keeping(site) {
             let afar = walk.afar();
             let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
             if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
-                let course = Course::<3> {
-                    last: walk.pace.here.site.clone(),
-                    branches: self.branches,
-                    number: self.number,
-                    slope: self.slope,
-                    inside: self.inside,
-                    told: false,
-                    times: self.times,
-                };
-                return course.go::<OverParted>(&mut walk, seen);
+                return self.go(&mut walk);
             }
         }
         if self.inside {
             let mut special = rough(Label::Mx, &family.usual(site));
             special.note = Some(end.words().into());
-            let _ = self.tell(Event::Special(special), seen);
+            let _ = self.tell(Event::Special(special));
         }
         Ok(if self.told { Break(()) } else { Continue(()) })
     }
 
-    fn along<F: Chart<N>>(
+    /// In the same variables throughout.
+    fn along<F: Chart<N>, const N: usize>(
         &mut self,
         walk: Walker<'_, '_, '_, F, N>,
-        seen: Seen<'_>,
     ) -> Result<End> {
-        let watches = self.watches();
-        let mut failed = None;
-        let mut lost = false;
-        let end = follow(walk, &watches, STEPS, &mut |walk, met| {
-            let met = match met {
-                Met::Zero(watch, at) => self.zero(walk, watch, at, seen),
-                Met::Orbit(pace) => {
-                    let met = self.orbit(walk, &pace.here, seen);
-                    self.last = pace.here.site.clone();
-                    self.slope = pace.direction.parameters[self.branches.free];
-                    lost = walk.corrector.family.loses(&self.last);
-                    match met {
-                        Ok(Continue(())) if lost => Ok(Break(())),
-                        met => met,
+        let mut last = walk.pace.here.site.clone();
+        let (mut failed, mut lost) = (None, false);
+        let end = follow(
+            walk,
+            &self.watches::<N>(),
+            STEPS,
+            &mut |walk, before, met| {
+                let met = match met {
+                    Met::Zero(watch, at) => {
+                        let back = self.comes_back(walk, before);
+                        self.zero(walk, watch, at, &last, back)
                     }
-                }
-            };
-            met.unwrap_or_else(|error| {
-                failed = Some(error);
-                Break(())
-            })
-        });
+                    Met::Orbit(pace) => {
+                        let back = self.comes_back(walk, before);
+                        let met = self.orbit(walk, pace, &last, back);
+                        last = pace.here.site.clone();
+                        match met {
+                            // A branch that has ended does not go on in other variables.
+                            Ok(Continue(())) if walk.corrector.family.loses(&last) => {
+                                lost = true;
+                                Ok(Break(()))
+                            }
+                            met => met,
+                        }
+                    }
+                };
+                met.unwrap_or_else(|error| {
+                    failed = Some(error);
+                    Break(())
+                })
+            },
+        );
         match failed {
             Some(error) => Err(error),
-            None if lost && !self.told => Ok(End::Stuck),
+            None if lost => Ok(End::Stuck),
             None => Ok(end),
         }
     }
 
-    fn watches(&self) -> Vec<Watch> {
+    fn watches<const N: usize>(&self) -> Vec<Watch> {
         let Branches {
             free,
             range,
@@ -142,33 +147,42 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         watches
     }
 
-    fn tell(&mut self, event: Event, seen: Seen<'_>) -> ControlFlow<()> {
-        let told = seen(event);
+    fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        if !self.branches.tells(self.number) {
+            return Continue(());
+        }
+        let told = (self.seen)(event.against(self.branches.request.tolerance));
         self.told |= told.is_break();
         told
     }
 
     /// The next orbit: its row, and whether the branch goes on.
-    fn orbit<F: Chart<N>>(
+    fn orbit<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &Walk<'_, '_, F, N>,
-        here: &Regular<N>,
-        seen: Seen<'_>,
+        Pace { here, .. }: &Pace<N>,
+        last: &Site<N>,
+        back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         let site = &here.site;
-        let coordinate = site.at[self.branches.free];
-        if let Some(end) = walk.vanishes(&self.last)
-            && let Some(i) = self.hopf_at(end, coordinate)
-        {
-            self.shrunk(i, seen);
+        let free = self.branches.free;
+        let coordinate = site.at[free];
+        if let Some(i) = walk.ends_at(last, &self.branches.hopfs) {
+            self.shrunk(i);
             return Ok(Break(()));
         }
         let family = walk.corrector.family;
-        if family.merges(site, &self.last) {
-            self.merged(&family.usual(&self.last), seen);
+        if family.merges(site, last) {
+            self.merged(&family.usual(last));
             return Ok(Break(()));
         }
-        if self.times > 0 && self.back(walk.pace.direction.parameters[self.branches.free], site) {
+        if let Some(back) = back {
+            if back == Back::Jumped {
+                let mut special = rough(Label::Mx, &family.usual(site));
+                special.note =
+                    Some("the walk has come onto the branch that this one parted from".into());
+                let _ = self.tell(Event::Special(special));
+            }
             return Ok(Break(()));
         }
         if !self.branches.in_range(coordinate) {
@@ -176,34 +190,22 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         }
         self.inside = true;
         let mut row = row(family, self.number, here, None)?;
-        self.held(&mut row);
-        Ok(self.tell(Event::Branch(row), seen))
-    }
-
-    /// The Hopf point where the amplitude of the branch, which is at `here` now, is predicted to be zero.
-    fn hopf_at(&self, end: f64, here: f64) -> Option<usize> {
-        /// What the prediction may err by: part of the way that is left, and rounding.
-        const PART: f64 = 0.2;
-        const ROUNDING: f64 = 1e-6;
-        let Branches { hopfs, free, .. } = &*self.branches;
-        (0..hopfs.len()).find(|&i| {
-            let hopf = hopfs[i].at()[*free];
-            (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING
-        })
+        row.given(self.given(None));
+        Ok(self.tell(Event::Branch(row)))
     }
 
     /// At the other Hopf point of the branch.
-    fn shrunk(&mut self, i: usize, seen: Seen<'_>) {
+    fn shrunk(&mut self, i: usize) {
         self.branches.reached[i] = true;
         let coordinate = self.branches.hopfs[i].at()[self.branches.free];
         if self.branches.in_range(coordinate) {
             let special = self.branches.hopf(i);
-            let _ = self.tell(Event::Special(special), seen);
+            let _ = self.tell(Event::Special(special));
         }
     }
 
     /// An asymmetric branch has met the symmetric one.
-    fn merged(&mut self, last: &Site<N>, seen: Seen<'_>) {
+    fn merged<const N: usize>(&mut self, last: &Site<N>) {
         let site = middle(last);
         let across = [Exactly::Indicator(Indicator::Across)];
         let free = self.branches.free;
@@ -215,19 +217,41 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         self.branches.merged.push(coordinate);
         if self.branches.in_range(coordinate) {
             let mut special = sharp.special(Label::Pf);
-            self.held_at(&mut special);
-            self.criticality_of_pitchfork(&mut special, &sharp.orbit);
-            let _ = self.tell(Event::Special(special), seen);
+            special.given(self.given(None));
+            self.pitchfork(&mut special, &sharp.orbit);
+            let _ = self.tell(Event::Special(special));
         }
     }
 
-    /// Whether a branch of doubled orbits has come back to a period doubling: there the parameter turns.
-    fn back(&mut self, slope: f64, site: &Site<N>) -> bool {
+    /// Whether a branch of doubled orbits has come back, on the step from `before`, to one that goes round once only.
+    fn comes_back<F: Chart<N>, const N: usize>(
+        &mut self,
+        walk: &mut Walk<'_, '_, F, N>,
+        before: &Pace<N>,
+    ) -> Option<Back> {
+        /// Below this both rounds are the same one.
+        const SAME: f64 = 1e-6;
+        if self.times == 0 {
+            return None;
+        }
+        let Pace { here, direction } = &walk.pace;
+        let free = self.branches.free;
+        let turned = direction.parameters[free] * before.direction.parameters[free] <= 0.0;
+        if turned && self.back(&here.site) {
+            return Some(Back::Through);
+        }
+        let Site { polygon, at } = &here.site;
+        let field = walk.corrector.family.field(*at);
+        let half = 0.5 * polygon.period();
+        let tracer = &mut walk.corrector.tracer;
+        let after = tracer.flow(&*field, &polygon.nodes[0], half, None).ok()?;
+        ((after - polygon.nodes[0]).amax() < SAME).then_some(Back::Jumped)
+    }
+
+    /// Whether there is a period doubling, where the parameter turns.
+    fn back<const N: usize>(&mut self, site: &Site<N>) -> bool {
         /// Of the turn in the coordinate, and of the period from twice that at the doubling.
         const NEAR: (f64, f64) = (2e-3, 1e-3);
-        if slope * self.slope > 0.0 {
-            return false;
-        }
         let free = self.branches.free;
         let near = |one: &Doubling| {
             let period = 2.0 * one.orbit.site.polygon.period();
@@ -243,14 +267,20 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
     }
 
     /// Something that is watched is zero here.
-    fn zero<F: Chart<N>>(
+    fn zero<F: Chart<N>, const N: usize>(
         &mut self,
         walk: Walker<'_, '_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
-        seen: Seen<'_>,
+        last: &Site<N>,
+        back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
-        let Some(label) = self.label(walk, watch, at) else {
+        // At the doubling that the branch has come back to the parameter turns, and that is no fold.
+        let turns = matches!(watch, Watch::Turn(_));
+        if back == Some(Back::Jumped) || back.is_some() && turns {
+            return Ok(Continue(()));
+        }
+        let Some(label) = self.label(walk, watch, at, last) else {
             return Ok(Continue(()));
         };
         // Where the branch leaves the range it ends, where it enters it begins.
@@ -272,75 +302,46 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
             &at.site,
             (&walk.path.free, &[meets]),
         );
-        self.held(&mut row);
-        self.held_at(&mut special);
-        if let Watch::Value(_, value) = watch {
-            let (exact, place) = self.exactly(value);
-            if let Some(exact) = exact {
-                let of_row = if place == 0 {
-                    &mut row.driving
-                } else {
-                    &mut row.stiffness
-                };
-                *of_row = exact;
-                let of_special = if place == 0 {
-                    &mut special.driving
-                } else {
-                    &mut special.stiffness
-                };
-                (of_special.value, of_special.uncertainty) = (exact, 0.0);
-            }
-        }
+        row.given(self.given(Some(watch)));
+        special.given(self.given(Some(watch)));
         if let Some(sharp) = &sharp {
             self.remember(family, label, sharp, &mut special);
         }
-        if self.tell(Event::Special(special), seen).is_break()
-            || self.tell(Event::Branch(row), seen).is_break()
+        if self.tell(Event::Special(special)).is_break() || self.tell(Event::Branch(row)).is_break()
         {
             return Ok(Break(()));
         }
         Ok(if ends { Break(()) } else { Continue(()) })
     }
 
-    /// The parameter that does not vary, as it was given: not the exponential of its logarithm.
-    fn held(&self, row: &mut BranchRow) {
-        let loading = self.branches.request.slab.loading;
-        if self.branches.free == 0 {
-            row.stiffness = loading.stiffness;
-        } else {
-            row.driving = loading.driving;
-        }
-    }
-
-    fn held_at(&self, special: &mut Special) {
-        let loading = self.branches.request.slab.loading;
-        let (place, exact) = if self.branches.free == 0 {
-            (&mut special.stiffness, loading.stiffness)
-        } else {
-            (&mut special.driving, loading.driving)
+    /// The parameter that does not vary, and the other one where a value was asked for.
+    fn given(&self, watch: Option<Watch>) -> Given {
+        let Branches { free, request, .. } = *self.branches;
+        let loading = request.slab.loading;
+        let mut given = [Some(loading.driving), Some(loading.stiffness)];
+        given[free] = match watch {
+            Some(Watch::Value(_, value)) => asked(value, request.range, &request.at),
+            _ => None,
         };
-        (place.value, place.uncertainty) = (exact, 0.0);
+        given
     }
 
     /// What a zero means here; nothing, or nothing new, for some.
-    fn label<F: Chart<N>>(
+    fn label<F: Chart<N>, const N: usize>(
         &self,
         walk: &Walk<'_, '_, F, N>,
         watch: Watch,
         at: &Regular<N>,
+        last: &Site<N>,
     ) -> Option<Label> {
         let Branches { range, .. } = *self.branches;
-        let turn = matches!(watch, Watch::Turn(_));
-        if turn
-            && walk
-                .corrector
-                .family
-                .merges(&walk.pace.here.site, &self.last)
-        {
-            // At the pitchfork, where the branch meets its mirror image.
-            return None;
-        }
+        let merges = || {
+            let family = walk.corrector.family;
+            family.merges(&walk.pace.here.site, last)
+        };
         let label = match watch {
+            // At the pitchfork, where the branch meets its mirror image.
+            Watch::Turn(_) if merges() => return None,
             Watch::Value(_, value) if value == range.0 || value == range.1 => {
                 return Some(Label::Ep);
             }
@@ -356,16 +357,8 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         self.branches.in_range(coordinate).then_some(label)
     }
 
-    /// What was asked for, not the exponential of its logarithm; and of which parameter it is.
-    fn exactly(&self, value: f64) -> (Option<f64>, usize) {
-        let request = self.branches.request;
-        let asked = [request.range.0, request.range.1];
-        let mut asked = asked.iter().chain(&request.at).copied();
-        (asked.find(|x| x.ln() == value), self.branches.free)
-    }
-
     /// Which way it goes, and that branches begin here.
-    fn remember<F: Chart<N>>(
+    fn remember<F: Chart<N>, const N: usize>(
         &mut self,
         family: &F,
         label: Label,
@@ -378,7 +371,7 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
             Label::Tr => Form::Torus,
             Label::Pf => {
                 if let Some(orbit) = orbit.downcast_ref::<Regular<2>>() {
-                    self.criticality_of_pitchfork(special, orbit);
+                    self.pitchfork(special, orbit);
                     self.branches.pitchforks.push(orbit.clone());
                 }
                 return;
@@ -388,11 +381,7 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         let Some(orbit) = orbit.downcast_ref::<Regular<3>>() else {
             return;
         };
-        let site: &dyn Any = &family.usual(&sharp.orbit.site);
-        let Some(site) = site.downcast_ref::<Site<3>>() else {
-            return;
-        };
-        self.criticality(special, site, form);
+        special.goes(Some(Way::at(family, &sharp.orbit.site, form)));
         if label == Label::Pd && !family.loses(&sharp.orbit.site) {
             self.branches.doublings.push(Doubling {
                 orbit: orbit.clone(),
@@ -402,17 +391,8 @@ impl<'b, 'r, const N: usize> Course<'b, 'r, N> {
         }
     }
 
-    fn criticality_of_pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
-        self.criticality(special, &embedded(&orbit.site), Form::Pitchfork);
-    }
-
-    fn criticality(&self, special: &mut Special, site: &Site<3>, form: Form) {
-        let field = self.branches.family.slab(site.at).whole();
-        let (coefficient, criticality) = normal_form(&*field, &site.polygon, form);
-        special.criticality = Some(criticality);
-        special.coefficient = coefficient
-            .uncertainty
-            .is_finite()
-            .then_some(coefficient.value);
+    fn pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
+        let site = embedded(&orbit.site);
+        special.goes(Some(Way::at(&self.branches.family, &site, Form::Pitchfork)));
     }
 }

@@ -2,7 +2,7 @@
 
 use super::branch::ROUGH;
 use super::chart::Chart;
-use super::leg::Leg;
+use super::leg::{Leg, Pass};
 use super::locus::Locus;
 use crate::bifurcation::Seen;
 use crate::error::Result;
@@ -11,8 +11,8 @@ use std::ops::ControlFlow;
 
 /// A curve that was followed.
 pub(super) struct Curve {
-    /// (ln V_H, ln K, ln T) along it.
-    pub course: Vec<[f64; 3]>,
+    /// Where it passes values of K at which bifurcations are looked for.
+    pub passes: Vec<Pass>,
     /// Whether more is wanted.
     pub told: ControlFlow<()>,
 }
@@ -33,34 +33,43 @@ where
     let Some((here, direction)) = first(&mut corrector, &path, seed) else {
         return Ok(None);
     };
-    let mut back = Leg::new(locus, number, None);
+    let begin = Pass::of(&here);
+    let mut back = Leg::new(locus, number, begin, None);
     if let Some(mut walk) = Walk::from(
         &mut corrector,
         path.clone(),
         here.clone(),
         direction.clone(),
-    ) {
+    ) && !back.leaves(&walk.pace)
+    {
         back.go(&mut walk)?;
     }
-    let (mut course, events) = back.kept();
-    course.reverse();
+    let (mut passes, events) = back.kept();
+    passes.push(begin);
+    // What has been followed is told of, also to those who then have had enough: nothing is lost.
+    let mut told = ControlFlow::Continue(());
     for event in events.into_iter().rev() {
         if seen(event).is_break() {
-            let told = ControlFlow::Break(());
-            return Ok(Some(Curve { course, told }));
+            told = ControlFlow::Break(());
         }
     }
-    let mut forth = Leg::new(locus, number, Some(seen));
+    if told.is_break() {
+        return Ok(Some(Curve { passes, told }));
+    }
+    let mut forth = Leg::new(locus, number, begin, Some(seen));
     if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
-        forth.go(&mut walk)?;
+        forth.begins(&mut walk);
+        if !forth.told && !forth.leaves(&walk.pace) {
+            forth.go(&mut walk)?;
+        }
     }
     let told = if forth.told {
         ControlFlow::Break(())
     } else {
         ControlFlow::Continue(())
     };
-    course.extend(forth.kept().0);
-    Ok(Some(Curve { course, told }))
+    passes.extend(forth.kept().0);
+    Ok(Some(Curve { passes, told }))
 }
 
 /// The bifurcation at the seed's K, and a direction along the curve there.

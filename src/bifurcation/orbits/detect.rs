@@ -26,14 +26,19 @@ pub(super) struct Zero<const N: usize> {
     pub near: Pace<N>,
 }
 
-/// A place on the step, with what is watched there and its slopes.
+/// What is watched, with the slopes along the walk where there are such.
+pub(super) type Values = Vec<(f64, Option<f64>)>;
+
+/// A place on the step, with what is watched there.
 #[derive(Debug, Clone)]
 struct Place<const N: usize> {
     at: f64,
     pace: Pace<N>,
-    values: Vec<(f64, Option<f64>)>,
+    values: Values,
 }
 
+/// How often a zero is tried to be landed on.
+const ATTEMPTS: usize = 12;
 /// Halvings of a step.
 const DEPTH: usize = 6;
 /// An extremum of the cubic below this part of the values at both ends is looked at.
@@ -67,20 +72,27 @@ fn size<const N: usize>(indicator: Indicator, at: &Spectrum) -> f64 {
     }
 }
 
-/// All zeros on the step from `before` to where the walk stands, by distance.
+/// All zeros on the step from `before`, where the values may be known, to where the walk stands, by distance; and the values
+/// there.
 pub(super) fn zeros<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,
-    before: &Pace<N>,
+    (before, known): (&Pace<N>, Option<Values>),
     length: f64,
     watches: &[Watch],
-) -> Vec<Zero<N>> {
-    let start = place(walk.corrector, before.clone(), 0.0, watches);
+) -> (Vec<Zero<N>>, Values) {
+    let start = match known {
+        Some(values) => Place {
+            at: 0.0,
+            pace: before.clone(),
+            values,
+        },
+        None => place(walk.corrector, before.clone(), 0.0, watches),
+    };
     let end = place(walk.corrector, walk.pace.clone(), length, watches);
     let mut found = Vec::new();
-    // Which watches are to be looked at on this piece: all.
     look(walk, before, &start, &end, watches, DEPTH, &mut found);
     found.sort_by(|a: &Zero<N>, b| a.at.total_cmp(&b.at));
-    found
+    (found, end.values)
 }
 
 fn place<F: Family<N>, const N: usize>(
@@ -189,31 +201,42 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
     };
     let conditions = walk.path.and(condition);
     let free = walk.path.free.clone();
-    let mut near = zero.near.clone();
-    let (mut low, mut high) = (0.0, length);
+    let mut ends = (before.clone(), walk.pace.clone());
     let mut at = zero.at;
-    for _ in 0..12 {
+    let (mut low, mut high) = (0.0, length);
+    for _ in 0..ATTEMPTS {
         let guess = walk.beyond(before, at);
-        let start = guess.as_ref().unwrap_or(&near);
-        let found = walk
-            .corrector
-            .correct(start.here.site.clone(), &free, &conditions, goal);
-        if let Some(found) = found {
-            let there = before.direction.dot(&found.site.from(&before.here.site));
-            if there > -0.1 * length && there < 1.1 * length {
-                return Some(found);
+        let starts = [
+            guess.as_ref(),
+            Some(&zero.near),
+            Some(&ends.0),
+            Some(&ends.1),
+        ];
+        for start in starts.into_iter().flatten() {
+            let site = start.here.site.clone();
+            let found = walk.corrector.correct(site, &free, &conditions, goal);
+            if let Some(found) = found {
+                let there = before.direction.dot(&found.site.from(&before.here.site));
+                if there > -0.1 * length && there < 1.1 * length {
+                    return Some(found);
+                }
+            }
+            if guess.is_some() {
+                break;
             }
         }
-        // By halves, then, until Newton's method stays.
-        let guess = guess?;
+        // By halves, then, until Newton's method stays; and from elsewhere where it does not even find an orbit.
+        let Some(guess) = guess else {
+            at = 0.5 * (at + if at - low > high - at { low } else { high });
+            continue;
+        };
         let value = |pace: &Pace<N>| zero.watch.value(pace, None).0;
         if value(&guess) * value(before) > 0.0 {
-            low = at;
+            (low, ends.0) = (at, guess);
         } else {
-            high = at;
+            (high, ends.1) = (at, guess);
         }
         at = 0.5 * (low + high);
-        near = guess;
     }
     None
 }

@@ -1,6 +1,6 @@
 //! Follows a curve of orbits of any family and hands on what it meets.
 
-use super::detect::{Watch, landed, zeros};
+use super::detect::{Values, Watch, landed, zeros};
 use crate::orbit::{Family, Goal, Pace, Regular, Walk};
 use std::ops::ControlFlow;
 
@@ -34,28 +34,38 @@ impl End {
     }
 }
 
-/// Follows the walk, past all that is watched.
+/// Who is told of what is met: with the walk, where its step began, and what that is.
+type Told<'t, F, const N: usize> =
+    &'t mut dyn FnMut(&mut Walk<'_, '_, F, N>, &Pace<N>, Met<'_, N>) -> ControlFlow<()>;
+
+/// Follows the walk, past all that is watched. Whoever is told of what is met is given where the step began too: with the same
+/// nodes as where it ended.
 pub fn follow<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,
     watches: &[Watch],
     most: usize,
-    met: &mut dyn FnMut(&mut Walk<'_, '_, F, N>, Met<'_, N>) -> ControlFlow<()>,
+    met: Told<'_, F, N>,
 ) -> End {
+    let mut last: Option<(usize, Values)> = None;
     for _ in 0..most {
         let Some((before, length)) = walk.step() else {
             return End::Stuck;
         };
-        for zero in zeros(walk, &before, length, watches) {
+        // Other nodes are another measure of length, and make other slopes.
+        let known = last.take().filter(|(cuts, _)| *cuts == walk.cuts());
+        let (zeros, values) = zeros(walk, (&before, known.map(|k| k.1)), length, watches);
+        last = Some((walk.cuts(), values));
+        for zero in zeros {
             // What can't be landed on is none: a sign that changes by noise, or through a pole.
             let Some(at) = landed(walk, &before, length, &zero, Goal::STEP) else {
                 continue;
             };
-            if met(walk, Met::Zero(zero.watch, &at)).is_break() {
+            if met(walk, &before, Met::Zero(zero.watch, &at)).is_break() {
                 return End::Told;
             }
         }
         let pace = walk.pace.clone();
-        if met(walk, Met::Orbit(&pace)).is_break() {
+        if met(walk, &before, Met::Orbit(&pace)).is_break() {
             return End::Told;
         }
         if walk.mesh().is_none() {

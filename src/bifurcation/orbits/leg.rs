@@ -5,14 +5,14 @@ use super::chart::{Chart, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::locus::Locus;
-use super::normal_form::{Form, normal_form};
+use super::rows::{Given, asked};
 use super::sharp::{Exactly, rough, sharpened, special};
 use super::top::top;
-use crate::bifurcation::{Criticality, Event, Label, LocusRequest, LocusRow, Seen, Special};
+use super::way::{Decided, Way, degenerate_pitchfork};
+use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Goal, Indicator, OverParted, Regular, Site, Walk};
-use std::any::Any;
+use crate::orbit::{Corrector, Indicator, OverLoadings, Pace, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -26,51 +26,78 @@ const RESONANCES: [(Label, f64); 4] = [
     (Label::R4, 0.0),
 ];
 
-/// An orbit and the logarithm of its multipliers' product.
-type Decided<const N: usize> = (Site<N>, f64);
+/// In ln V_H, ln K and ln T: orbits that differ by less are the same one. What is found on branches is off by 1.5e-8 at most.
+const SAME: f64 = 1e-6;
+
+/// Where a curve passes one of the values of K at which bifurcations are looked for.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Pass {
+    /// (ln V_H, ln K).
+    pub at: [f64; 2],
+    /// ln T.
+    pub period: f64,
+}
+
+impl Pass {
+    pub fn of<const N: usize>(site: &Site<N>) -> Self {
+        Pass {
+            at: site.at,
+            period: site.polygon.period().ln(),
+        }
+    }
+
+    /// Whether both are the same orbit.
+    pub fn is(&self, other: &Self) -> bool {
+        let near = |a: f64, b: f64| (a - b).abs() < SAME;
+        near(self.at[0], other.at[0])
+            && near(self.at[1], other.at[1])
+            && near(self.period, other.period)
+    }
+}
 
 /// What is known of one way along a curve.
-pub(super) struct Leg<'r, 's, const N: usize> {
+pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
     indicator: Indicator,
     number: usize,
-    last: Option<Site<N>>,
-    /// The last coefficient of the normal form.
-    coefficient: Option<f64>,
-    /// The last orbit at which it was decided which way the bifurcation goes, and which.
-    decided: Option<(Decided<N>, Criticality)>,
+    /// Where both ways begin.
+    begin: Pass,
     /// Who is told, or what is to be told later.
     seen: Option<Seen<'s>>,
     events: Vec<Event>,
-    course: Vec<[f64; 3]>,
-    /// Which way the bifurcation goes at the last orbit, where that was asked for.
-    now: Option<Criticality>,
+    /// The values of ln K at which the curve is to be known again, and where it passes these.
+    scan: &'r [f64],
+    passes: Vec<Pass>,
     pub told: bool,
 }
 
-impl<'r, 's, const N: usize> Leg<'r, 's, N> {
-    pub fn new(locus: &Locus<'r, N>, number: usize, seen: Option<Seen<'s>>) -> Self {
+impl<'r, 's> Leg<'r, 's> {
+    pub fn new<const N: usize>(
+        locus: &Locus<'r, N>,
+        number: usize,
+        begin: Pass,
+        seen: Option<Seen<'s>>,
+    ) -> Self {
         Leg {
             request: locus.request,
             indicator: locus.indicator,
             number,
-            last: None,
-            coefficient: None,
-            decided: None,
+            begin,
             seen,
             events: Vec::new(),
-            course: Vec::new(),
-            now: None,
+            scan: locus.scan,
+            passes: Vec::new(),
             told: false,
         }
     }
 
-    /// (ln V_H, ln K, ln T) along it, and what nobody was told.
-    pub fn kept(self) -> (Vec<[f64; 3]>, Vec<Event>) {
-        (self.course, self.events)
+    /// Where it passes, and what nobody was told.
+    pub fn kept(self) -> (Vec<Pass>, Vec<Event>) {
+        (self.passes, self.events)
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        let event = event.against(self.request.tolerance);
         let Some(seen) = &mut self.seen else {
             self.events.push(event);
             return Continue(());
@@ -80,7 +107,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         told
     }
 
-    fn watches(&self) -> Vec<Watch> {
+    fn watches<const N: usize>(&self) -> Vec<Watch> {
         let request = self.request;
         let mut watches = vec![Watch::Turn(1)];
         match self.indicator {
@@ -101,24 +128,61 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             .into_iter()
             .chain(request.at_stiffness.iter().copied());
         watches.extend(stiffnesses.map(|x| Watch::Value(1, x.ln())));
+        for &log in self.scan {
+            let watch = Watch::Value(1, log);
+            if !watches.contains(&watch) {
+                watches.push(watch);
+            }
+        }
         watches
     }
 
+    /// What was asked for at the orbit where both ways begin: neither comes to it.
+    pub fn begins<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) {
+        let here = walk.pace.here.clone();
+        for watch in self.watches::<N>() {
+            if let Watch::Value(i, value) = watch
+                && (self.begin.at[i] - value).abs() < SAME
+                && !self.told
+            {
+                // That it may be the range's end is seen to by who asks whether the way leaves it.
+                let _ = self.zero(walk, watch, &here);
+            }
+        }
+    }
+
+    /// Whether the way begins at the end of a range and leads out of it.
+    pub fn leaves<const N: usize>(&self, pace: &Pace<N>) -> bool {
+        let ranges = [self.request.driving, self.request.stiffness];
+        (0..2).any(|i| {
+            let (from, to) = (ranges[i].0.ln(), ranges[i].1.ln());
+            let (x, slope) = (pace.here.site.at[i], pace.direction.parameters[i]);
+            x < from + SAME && slope < 0.0 || x > to - SAME && slope > 0.0
+        })
+    }
+
     /// To the end, in other variables where these lose digits.
-    pub fn go<F: Chart<N>>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
-        let watches = self.watches();
+    pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
+        let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
         let mut lost = false;
-        let end = follow(walk, &watches, STEPS, &mut |walk, met| match met {
+        let watches = self.watches::<N>();
+        let end = follow(walk, &watches, STEPS, &mut |walk, _, met| match met {
+            Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {
                 let here = &pace.here;
                 let family = walk.corrector.family;
-                let last = self.last.replace(here.site.clone());
+                let last = last.replace(here.site.clone());
                 if last.is_some_and(|last| family.merges(&here.site, &last)) {
-                    return self.merged(&family.usual(&here.site));
+                    return self.merged(&family.slab(), &family.usual(&here.site));
                 }
-                self.row(family, here, None)?;
-                self.change(family, here)?;
+                let way = self.row(family, here)?;
+                if let Some(now) = way.and_then(|way| Decided::new(here, &way))
+                    && let Some(before) = decided.replace(now.clone())
+                    && let Some(special) = before.change(&now, family, self.indicator)
+                {
+                    self.tell(Event::Special(special))?;
+                }
                 lost = family.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
             }
@@ -132,7 +196,7 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             let afar = walk.afar();
             let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
             if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
-                return self.goes_on(&mut walk);
+                return self.go(&mut walk);
             }
         }
         let mut special = rough(Label::Mx, &family.usual(site));
@@ -141,34 +205,12 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
         Ok(())
     }
 
-    /// The same leg in three dimensions: as it is, if it has them.
-    fn goes_on(&mut self, walk: &mut Walk<'_, '_, OverParted, 3>) -> Result<()> {
-        let mut rest = Leg::<3> {
-            request: self.request,
-            indicator: self.indicator,
-            number: self.number,
-            last: None,
-            coefficient: self.coefficient,
-            decided: None,
-            seen: self.seen.take(),
-            events: std::mem::take(&mut self.events),
-            course: std::mem::take(&mut self.course),
-            now: None,
-            told: false,
-        };
-        let gone = rest.go(walk);
-        self.seen = rest.seen.take();
-        (self.events, self.course, self.told) = (rest.events, rest.course, rest.told);
-        gone
-    }
-
-    /// A point of the curve.
-    fn row<F: Chart<N>>(
+    /// A point of the curve; which way the bifurcation goes there, where that is asked for.
+    fn row<F: Chart<N>, const N: usize>(
         &mut self,
         family: &F,
         here: &Regular<N>,
-        label: Option<Label>,
-    ) -> ControlFlow<()> {
+    ) -> ControlFlow<(), Option<Way>> {
         // The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
         let uncertainty = LEFT * here.residual + 100.0 * ROUGH;
@@ -176,84 +218,24 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             .site
             .at
             .map(|x| Uncertain::new(x.exp(), uncertainty * x.exp()));
-        let criticality = if self.request.criticality {
-            self.criticality(family, here)
-        } else {
-            None
-        };
-        self.now = criticality;
-        self.put(here, at, criticality, label)
+        let way = self.way(family, here);
+        self.put(here, at, way, None)?;
+        Continue(way)
     }
 
-    /// Between the last decided orbit and this one the bifurcation may have changed the way that it goes: a Chenciner point, or
-    /// a degenerate period doubling. By halves in K, for of the coefficient the sign alone does not depend on the plane; where
-    /// neither way is decided the point is somewhere.
-    fn change<F: Chart<N>>(&mut self, family: &F, here: &Regular<N>) -> ControlFlow<()> {
-        let Some(now) = self.now.filter(|c| *c != Criticality::Undecided) else {
-            return Continue(());
-        };
-        let end = (here.site.clone(), here.spectrum.volume);
-        let before = self.decided.replace((end.clone(), now));
-        let Some((begin, then)) = before.filter(|(_, then)| *then != now) else {
-            return Continue(());
-        };
-        let from = self.last_of(family, (begin.clone(), then), end.clone());
-        let to = self.last_of(family, (end, now), begin);
-        // At the resonance 1:2 the coefficient of the doubling changes its sign through infinity.
-        if self.indicator == Indicator::Doubling && from.1 * to.1 < 0.0 {
-            return Continue(());
-        }
-        let label = if self.indicator == Indicator::Torus {
-            Label::Ch
-        } else {
-            Label::Gpd
-        };
-        let (from, to) = (from.0, to.0);
-        let between = |a: f64, b: f64| Uncertain::new(0.5 * (a + b), 0.5 * (a - b).abs());
-        let [driving, stiffness] = [0, 1].map(|i| between(from.at[i].exp(), to.at[i].exp()));
-        self.tell(Event::Special(Special {
-            period: Some(between(from.polygon.period(), to.polygon.period())),
-            ..Special::new(label, driving, stiffness)
-        }))
+    fn way<F: Chart<N>, const N: usize>(&self, family: &F, here: &Regular<N>) -> Option<Way> {
+        let wanted = self.request.criticality;
+        wanted.then(|| Way::along(family, &here.site, self.indicator))?
     }
 
-    /// The last orbit on the way to another that is decided as the first one is.
-    fn last_of<F: Chart<N>>(
-        &mut self,
-        family: &F,
-        ((mut from, mut volume), way): (Decided<N>, Criticality),
-        (mut to, _): Decided<N>,
-    ) -> Decided<N> {
-        /// How near, in ln K.
-        const NEAR: f64 = 1e-6;
-        while (to.at[1] - from.at[1]).abs() > NEAR
-            && let Ok(mut corrector) = Corrector::new(family, ROUGH)
-        {
-            let middle = Condition::Parameter(1, 0.5 * (from.at[1] + to.at[1]));
-            let conditions = [Condition::Indicator(self.indicator), middle];
-            let Some(half) = corrector.correct(from.clone(), &[0, 1], &conditions, Goal::STEP)
-            else {
-                break;
-            };
-            if self.criticality(family, &half) == Some(way) {
-                (from, volume) = (half.site, half.spectrum.volume);
-            } else {
-                to = half.site;
-            }
-        }
-        (from, volume)
-    }
-
-    fn put(
+    fn put<const N: usize>(
         &mut self,
         here: &Regular<N>,
         [driving, stiffness]: [Uncertain; 2],
-        criticality: Option<Criticality>,
+        way: Option<Way>,
         label: Option<Label>,
     ) -> ControlFlow<()> {
-        let [v, k] = here.site.at;
         let period = here.site.polygon.period();
-        self.course.push([v, k, period.ln()]);
         let torus = self.indicator == Indicator::Torus;
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
@@ -262,28 +244,13 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             stiffness,
             period: Some(period),
             angle_over_pi: torus.then_some(angle / std::f64::consts::PI),
-            criticality,
+            criticality: way.map(|way| way.criticality),
             label,
         };
         self.tell(Event::Locus(row))
     }
 
-    /// Which way the bifurcation goes here, where that is decided by a cubic coefficient in the space of all states.
-    fn criticality<F: Chart<N>>(&mut self, family: &F, here: &Regular<N>) -> Option<Criticality> {
-        let form = match self.indicator {
-            Indicator::Torus => Form::Torus,
-            Indicator::Doubling => Form::Doubling,
-            _ => return None,
-        };
-        let usual: &dyn Any = &family.usual(&here.site);
-        let site = usual.downcast_ref::<Site<3>>()?;
-        let field = family.slab().slab(site.at).whole();
-        let (coefficient, criticality) = normal_form(&*field, &site.polygon, form);
-        self.coefficient = Some(coefficient.value);
-        Some(criticality)
-    }
-
-    fn zero<F: Chart<N>>(
+    fn zero<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &mut Walk<'_, '_, F, N>,
         watch: Watch,
@@ -291,7 +258,14 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
     ) -> ControlFlow<()> {
         let indicator = self.indicator;
         let trace = at.spectrum.trace;
+        if let Watch::Value(1, log) = watch
+            && self.scan.contains(&log)
+        {
+            self.passes.push(Pass::of(&at.site));
+        }
         let (label, condition, ends) = match watch {
+            // Nobody asked for it.
+            Watch::Value(i, value) if self.given(i, value)[i].is_none() => return Continue(()),
             Watch::Value(i, value) => {
                 let range = [self.request.driving, self.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();
@@ -326,41 +300,27 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
             (&walk.path.free, &meets),
         );
         if let Watch::Value(i, value) = watch {
-            self.exactly(i, value, &mut special);
+            special.given(self.given(i, value));
         }
-        let criticality = if self.request.criticality {
-            self.criticality(family, orbit)
-        } else {
-            None
-        };
-        special.criticality = criticality;
-        special.coefficient = criticality.and(self.coefficient);
+        let way = self.way(family, orbit);
+        special.goes(way);
         let known = [special.driving, special.stiffness];
-        self.put(orbit, known, criticality, Some(label))?;
+        self.put(orbit, known, way, Some(label))?;
         self.tell(Event::Special(special))?;
         if ends { Break(()) } else { Continue(()) }
     }
 
-    /// What was asked for, not the exponential of its logarithm.
-    fn exactly(&self, i: usize, value: f64, special: &mut Special) {
+    fn given(&self, i: usize, value: f64) -> Given {
         let request = self.request;
-        let (range, asked, place) = if i == 0 {
-            (request.driving, &request.at_driving, &mut special.driving)
-        } else {
-            (
-                request.stiffness,
-                &request.at_stiffness,
-                &mut special.stiffness,
-            )
-        };
-        let mut values = [range.0, range.1].into_iter().chain(asked.iter().copied());
-        if let Some(exact) = values.find(|x| x.ln() == value) {
-            *place = Uncertain::new(exact, 0.0);
-        }
+        let ranges = [request.driving, request.stiffness];
+        let wanted = [&request.at_driving, &request.at_stiffness];
+        let mut given = [None; 2];
+        given[i] = asked(value, ranges[i], wanted[i]);
+        given
     }
 
     /// K is stationary along the curve here: its largest value, if it is that.
-    fn turn<F: Chart<N>>(
+    fn turn<F: Chart<N>, const N: usize>(
         &mut self,
         walk: &mut Walk<'_, '_, F, N>,
         at: &Regular<N>,
@@ -380,9 +340,13 @@ impl<'r, 's, const N: usize> Leg<'r, 's, N> {
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the pitchfork at this K.
-    fn merged(&mut self, last: &Site<N>) -> ControlFlow<()> {
-        let mut special = rough(Label::Cp, &middle(last));
-        special.note = Some("the curve ends on that of the pitchforks of orbits".into());
+    fn merged<const N: usize>(&mut self, family: &OverLoadings, last: &Site<N>) -> ControlFlow<()> {
+        let near = middle(last);
+        let special = degenerate_pitchfork(family, &near).unwrap_or_else(|| {
+            let mut special = rough(Label::Cp, &near);
+            special.note = Some("the curve ends on that of the pitchforks of orbits".into());
+            special
+        });
         let _ = self.tell(Event::Special(special));
         Break(())
     }

@@ -3,11 +3,11 @@
 //! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
 //! through resonances, to where the bifurcation ceases to be one.
 
-use super::branch::ROUGH;
 use super::chart::Chart;
 use super::curve::through;
 use super::detect::Watch;
 use super::follow::{Met, follow};
+use super::leg::Pass;
 use crate::bifurcation::{LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -66,22 +66,34 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
 }
 
 /// The longest step along a curve, and along the branches where curves are looked for.
-const LONGEST: f64 = 0.2;
+const LONGEST: f64 = 0.3;
 const LONGEST_OF_BRANCH: f64 = 0.7;
 /// Steps on such a branch.
 const STEPS: usize = 2000;
-/// Below this K no branch is followed for seeds: the curves that there are come down from above.
-const LOWEST: f64 = 0.045;
+/// Tolerance of such a branch: what is found there is corrected with that of the curves.
+const SCAN: f64 = 1e-8;
+/// Below this K no branch is followed for seeds, unless the range ends there: the curves that there are come down from above.
+const LOWEST: f64 = 0.03;
 /// From one such branch to the next K is divided by this.
 const APART: f64 = 2.0;
 
+/// The values of K at which bifurcations are looked for.
+fn scanned((from, to): (f64, f64)) -> Vec<f64> {
+    let least = from.max(LOWEST.min(to));
+    let halves = std::iter::successors(Some(to), |k| Some(k / APART));
+    // The least one too: a curve whose top is below the last but one would not be met.
+    halves.take_while(|&k| k > least).chain([least]).collect()
+}
+
 /// The curves of one kind and symmetry.
 pub(super) struct Locus<'r, const N: usize> {
+    /// The values of ln K at which bifurcations are looked for.
+    pub scan: &'r [f64],
     pub request: &'r LocusRequest,
     pub family: OverLoadings,
     pub indicator: Indicator,
-    /// (ln V_H, ln K, ln T) along the curves so far.
-    pub known: Vec<Vec<[f64; 3]>>,
+    /// Where the curves so far pass these.
+    known: Vec<Pass>,
 }
 
 impl<'r, const N: usize> Locus<'r, N>
@@ -94,7 +106,9 @@ where
         count: &mut usize,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
+        let scan = scanned(request.stiffness);
         let mut locus = Locus {
+            scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
             family: OverLoadings(request.slab),
             indicator: match request.kind {
@@ -105,28 +119,28 @@ where
             },
             known: Vec::new(),
         };
-        let (from, to) = request.stiffness;
-        let mut stiffness = to;
-        while stiffness >= from.max(LOWEST.min(to)) {
+        for stiffness in scan {
             for seed in locus.seeds(symmetry, stiffness)? {
                 if locus.is_known(&seed) {
                     continue;
                 }
                 let number = *count;
                 *count += 1;
-                if request.skip.contains(&number) {
-                    continue;
-                }
-                let Some(curve) = through(&locus, number, seed, seen)? else {
+                // A curve that is not to be told of is followed all the same: what lies on it would be taken for another one.
+                let found = if request.skip.contains(&number) {
+                    through(&locus, number, seed, &mut |_| Continue(()))?
+                } else {
+                    through(&locus, number, seed, seen)?
+                };
+                let Some(curve) = found else {
                     *count -= 1;
                     continue;
                 };
                 if curve.told.is_break() {
                     return Ok(Break(()));
                 }
-                locus.known.push(curve.course);
+                locus.known.extend(curve.passes);
             }
-            stiffness /= APART;
         }
         Ok(Continue(()))
     }
@@ -142,20 +156,23 @@ where
             other => Watch::Indicator(other),
         };
         let mut seeds = Vec::new();
-        let mut ends: Vec<f64> = Vec::new();
-        for hopf in hopf_points(&slab, symmetry, Parameter::Driving)? {
-            let begin = hopf.at()[0];
-            if ends.iter().any(|end| (end - begin).abs() < 1e-3) {
+        let mut reached = Vec::new();
+        let hopfs = hopf_points(&slab, symmetry, Parameter::Driving)?;
+        for (i, hopf) in hopfs.iter().enumerate() {
+            if reached.contains(&i) {
                 continue;
             }
-            let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
+            let begin = hopf.at()[0];
+            // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
+            let last_one = i + 1 == hopfs.len();
+            let mut corrector = Corrector::<_, N>::new(&family, SCAN)?;
             let path = Path::branch(0, LONGEST_OF_BRANCH);
-            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopf) else {
+            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, hopf) else {
                 continue;
             };
             let mut last = walk.pace.here.site.clone();
             let mut been = (from..=to).contains(&begin);
-            follow(&mut walk, &[watch], STEPS, &mut |walk, met| match met {
+            follow(&mut walk, &[watch], STEPS, &mut |walk, _, met| match met {
                 Met::Zero(_, at) => {
                     let inside = (from..=to).contains(&at.site.at[0]);
                     let pitchfork = family.merges(&walk.pace.here.site, &last);
@@ -170,11 +187,11 @@ where
                     let inside = (from..=to).contains(&here.at[0]);
                     let left = been && !inside;
                     been |= inside;
-                    let vanishes = walk.vanishes(&last);
-                    ends.extend(vanishes);
+                    let end = walk.ends_at(&last, &hopfs);
+                    reached.extend(end);
                     let merged = family.merges(here, &last);
                     last = here.clone();
-                    if left || vanishes.is_some() || merged {
+                    if left && last_one || end.is_some() || merged {
                         Break(())
                     } else {
                         Continue(())
@@ -187,20 +204,8 @@ where
 
     /// Whether a curve that was followed passes there.
     fn is_known(&self, seed: &Site<N>) -> bool {
-        /// What the straight way between two of its points may err by, in ln V_H and ln T.
-        const NEAR: (f64, f64) = (0.02, 0.05);
-        let [v, k] = seed.at;
-        let t = seed.polygon.period().ln();
-        let passes = |pair: &[[f64; 3]]| {
-            let (a, b) = (pair[0], pair[1]);
-            if (a[1] - k) * (b[1] - k) > 0.0 || a[1] == b[1] {
-                return false;
-            }
-            let part = (k - a[1]) / (b[1] - a[1]);
-            let between = |i: usize| a[i] + part * (b[i] - a[i]);
-            (between(0) - v).abs() < NEAR.0 && (between(2) - t).abs() < NEAR.1
-        };
-        self.known.iter().any(|curve| curve.windows(2).any(passes))
+        let here = Pass::of(seed);
+        self.known.iter().any(|pass| pass.is(&here))
     }
 
     /// The longest step.

@@ -3,6 +3,7 @@
 mod branch;
 mod chart;
 mod course;
+mod crosscheck;
 mod curve;
 mod detect;
 mod follow;
@@ -12,9 +13,11 @@ pub mod normal_form;
 mod rows;
 mod sharp;
 mod top;
+mod way;
 
 pub use branch::branch;
+pub use crosscheck::crosscheck;
 pub use detect::Watch;
 pub use follow::{End, Met, follow};
 pub use locus::locus;
-pub use sharp::{SpecialOrbit, crosscheck};
+pub use sharp::SpecialOrbit;

@@ -1,9 +1,10 @@
-//! What is said of an orbit on a branch.
+//! What is said of an orbit on a branch or on a curve.
 
 use super::chart::Chart;
-use crate::bifurcation::{BranchRow, Label};
+use crate::bifurcation::{BranchRow, Label, Special};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
+use crate::number::Uncertain;
 use crate::orbit::{Profile, Regular, profile};
 
 /// An orbit of a slab, in any of its variables.
@@ -54,4 +55,31 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
         verdict,
         label,
     })
+}
+
+/// V_H and K as they were given, where they were: not the exponentials of their logarithms.
+pub(super) type Given = [Option<f64>; 2];
+
+/// The number that was asked for and has this logarithm, of a range's ends and the wanted values.
+pub(super) fn asked(log: f64, range: (f64, f64), wanted: &[f64]) -> Option<f64> {
+    let mut all = [range.0, range.1].into_iter().chain(wanted.iter().copied());
+    all.find(|x| x.ln() == log)
+}
+
+impl BranchRow {
+    pub(super) fn given(&mut self, [driving, stiffness]: Given) {
+        self.driving = driving.unwrap_or(self.driving);
+        self.stiffness = stiffness.unwrap_or(self.stiffness);
+    }
+}
+
+impl Special {
+    pub(super) fn given(&mut self, given: Given) {
+        let places = [&mut self.driving, &mut self.stiffness];
+        for (place, given) in places.into_iter().zip(given) {
+            if let Some(exact) = given {
+                *place = Uncertain::new(exact, 0.0);
+            }
+        }
+    }
 }

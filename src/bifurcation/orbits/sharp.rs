@@ -1,19 +1,12 @@
-//! A special orbit to the last digits, with its error budget; and once more by an unlike method.
+//! A special orbit to the last digits, with its error budget.
 //!
 //! It is solved several times, with other nodes and other tolerances: what the solutions differ by, and what the last
 //! corrections still were, bounds what rounding and the method do. What can't be solved more than once claims nothing.
 
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
-use crate::equilibrium::Symmetry;
-use crate::error::{Error, Result};
-use crate::field::State;
-use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::number::Uncertain;
-use crate::orbit::{
-    Condition, Corrector, Family, Goal, Indicator, OverLoadings, Polygon, Regular, Site, Slab,
-    Tracer,
-};
+use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Regular, Site};
 
 /// What a special orbit meets, by itself: no plane of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +18,7 @@ pub enum Exactly {
 }
 
 impl Exactly {
-    fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
+    pub(super) fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
         match self {
             Exactly::Indicator(indicator) => Condition::Indicator(indicator),
             Exactly::Parameter(i, value) => Condition::Parameter(i, value),
@@ -36,17 +29,20 @@ impl Exactly {
 /// The orbit of a special point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpecialOrbit {
-    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2).
-    nodes: Vec<Vec<f64>>,
-    durations: Vec<f64>,
-    at: [f64; 2],
+    /// Whether its variables are those that keep small differences: (tau, ln psi_2, ln D).
+    pub(super) parted: bool,
+    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2) otherwise.
+    pub(super) nodes: Vec<Vec<f64>>,
+    pub(super) durations: Vec<f64>,
+    pub(super) at: [f64; 2],
     /// What makes it special, and the parameters that are free for it.
-    meets: Vec<Exactly>,
-    free: Vec<usize>,
+    pub(super) meets: Vec<Exactly>,
+    pub(super) free: Vec<usize>,
 }
 
 impl SpecialOrbit {
-    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2), and the durations from each to the next.
+    /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2), and the durations from each to the next. Where the interfaces
+    /// come so near each other that these lose their difference, in (tau, ln psi_2, ln(psi_1 - psi_2)).
     pub fn nodes(&self) -> (&[Vec<f64>], &[f64]) {
         (&self.nodes, &self.durations)
     }
@@ -157,9 +153,10 @@ pub(super) fn special<F: Chart<N>, const N: usize>(
     {
         return better;
     }
-    // A second method knows the usual variables only.
-    if family.keeping(near).is_none() && N == 3 {
-        special.orbit = None;
+    if family.parted()
+        && let Some(orbit) = &mut special.orbit
+    {
+        orbit.parted = true;
     }
     special
 }
@@ -174,7 +171,9 @@ fn kept<F: Chart<N>, const N: usize>(
 ) -> Option<Special> {
     let (parted, there) = family.keeping(near)?;
     let mut special = sharpened(&parted, &there, free, meets)?.special(label);
-    special.orbit = None;
+    if let Some(orbit) = &mut special.orbit {
+        orbit.parted = true;
+    }
     Some(special)
 }
 
@@ -185,6 +184,7 @@ impl<const N: usize> Sharp<N> {
         Special {
             period: Some(self.period),
             orbit: Some(SpecialOrbit {
+                parted: false,
                 nodes: polygon
                     .nodes
                     .iter()
@@ -207,91 +207,5 @@ pub(super) fn rough<const N: usize>(label: Label, site: &Site<N>) -> Special {
     Special {
         period: Some(unknown(site.polygon.period())),
         ..Special::new(label, driving, stiffness)
-    }
-}
-
-/// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
-const DIGITS: [i32; 3] = [4, 6, 8];
-/// What the second method is asked for in a step.
-const TOLERANCE: f64 = 1e-12;
-
-/// Relative differences in V_H, K and the period between a special point of orbits and the same one by another method. That
-/// begins from the first one's nodes, cut to a few digits, and shares nothing else with it. `None` for points that are no
-/// orbit's, and for tops, which have no condition of their own.
-///
-/// # Errors
-/// [`Error::NotConverged`] where the second method does not find the point; those of the method.
-pub fn crosscheck(
-    slab: &Slab,
-    _: Option<Symmetry>,
-    special: &Special,
-    method: Choice,
-) -> Result<Option<[f64; 3]>> {
-    let Some(orbit) = &special.orbit else {
-        return Ok(None);
-    };
-    let period = special.period.map_or(f64::NAN, |period| period.value);
-    let first = [special.driving.value, special.stiffness.value, period];
-    let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
-    let second = if planar {
-        second::<2>(slab, orbit, method)?
-    } else {
-        second::<3>(slab, orbit, method)?
-    };
-    Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
-}
-
-fn second<const N: usize>(slab: &Slab, orbit: &SpecialOrbit, method: Choice) -> Result<[f64; 3]>
-where
-    OverLoadings: Family<N>,
-{
-    let family = OverLoadings(*slab);
-    let conditions: Vec<_> = orbit
-        .meets
-        .iter()
-        .map(|exactly| exactly.condition())
-        .collect();
-    let tolerances = Tolerances::equal(TOLERANCE)?;
-    let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
-    for digits in DIGITS {
-        let site = cut::<N>(orbit, digits);
-        if let Some(again) = corrector.correct(site, &orbit.free, &conditions, Goal::SHARP) {
-            let [driving, stiffness] = family.parameters(again.site.at);
-            return Ok([driving, stiffness, again.site.polygon.period()]);
-        }
-    }
-    Err(Error::NotConverged {
-        what: "the special orbit, by the second method",
-        iterations: Goal::SHARP.iterations,
-        residual: f64::INFINITY,
-        tolerance: Goal::SHARP.done,
-    })
-}
-
-/// The orbit with only so many digits left.
-fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
-    let cut = |x: f64| {
-        if x == 0.0 {
-            return 0.0;
-        }
-        let unit = 10.0_f64.powi(x.abs().log10().floor() as i32 + 1 - digits);
-        (x / unit).round() * unit
-    };
-    let nodes = orbit.nodes.iter();
-    let mut at = orbit.at.map(cut);
-    // What is not free is given.
-    for (i, at) in at.iter_mut().enumerate() {
-        if !orbit.free.contains(&i) {
-            *at = orbit.at[i];
-        }
-    }
-    Site {
-        polygon: Polygon {
-            nodes: nodes
-                .map(|x| State::<N>::from_fn(|i, _| cut(x[i])))
-                .collect(),
-            durations: orbit.durations.iter().map(|&t| cut(t)).collect(),
-        },
-        at,
     }
 }

@@ -15,7 +15,9 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflo
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
-use crate::series::{Accuracy, Derivatives, Expansion, REFERENCE_ORDER, Solution};
+use crate::series::{
+    Accuracy, Cubic, Derivatives, Expansion, REFERENCE_ORDER, Solution, Transport,
+};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -128,6 +130,73 @@ impl Taylor {
         };
         let (end, _) = self.walk(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
         Ok((end, tangent.derivatives()))
+    }
+
+    /// The state at `t.1` to third order in two variations, those of `y0`.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`].
+    pub fn transport<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: [Cubic; N],
+    ) -> Result<[Cubic; N]> {
+        let (transport, _) = self.transported(field, t, y0)?;
+        // Without a step there is nothing that was started.
+        Ok(if self.work.steps == 0 {
+            y0
+        } else {
+            transport.polynomials()
+        })
+    }
+
+    /// The map onto the plane normal . (x - point) = 0, passed near `t.1`, to third order in the variations of `y0`: the time of
+    /// the passage since `t.0`, and the state there.
+    ///
+    /// # Errors
+    /// Those of [`Integrator::flow`]; [`Error::NotConverged`] if the plane is not passed within the step that ends at `t.1`.
+    pub fn transport_onto<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: [Cubic; N],
+        (normal, point): (&State<N>, &State<N>),
+    ) -> Result<(Cubic, [Cubic; N])> {
+        let (transport, last) = self.transported(field, t, y0)?;
+        let plane = (&normal.data.0[0], &point.data.0[0]);
+        let Some((mut time, state)) = transport.onto_plane(plane, last) else {
+            let end = State::from(transport.state());
+            return Err(Error::NotConverged {
+                what: "the passage of a plane",
+                iterations: 8,
+                residual: normal.dot(&(end - point)).abs(),
+                tolerance: 1e-12,
+            });
+        };
+        // The last step ended at t.1.
+        time.0[0] += (t.1 - t.0) - last;
+        Ok((time, state))
+    }
+
+    /// A transport at `t.1`, and the length of its last step.
+    fn transported<'f, const N: usize>(
+        &mut self,
+        field: &'f dyn VectorField<N>,
+        t: (f64, f64),
+        y0: [Cubic; N],
+    ) -> Result<(Box<dyn Transport<N> + 'f>, f64)> {
+        self.work = Work::default();
+        let transport = analytic(field)?.transport(y0);
+        let mut transport = transport.ok_or(Error::NotAnalytic)?;
+        let start = State::from(y0.map(Cubic::value));
+        let mut last = 0.0;
+        let mut halt = |h: f64, _: &dyn Fn() -> State<N>| {
+            last = h;
+            false
+        };
+        self.walk(field, t, &start, &mut *transport, None, &mut halt)?;
+        Ok((transport, last))
     }
 
     /// The flow up to the step after which `halt` says so, and the time then.

@@ -6,6 +6,10 @@ use super::Axis;
 const TICKS: usize = 7;
 /// Logarithmic axes shorter than this have ticks at 2 and 5 too.
 const FEW_DECADES: f64 = 2.6;
+/// And those shorter than this at every digit.
+const SHORT: f64 = 0.8;
+/// Decades on a logarithmic axis, at least.
+const NARROWEST: f64 = 0.5;
 
 /// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,15 +41,15 @@ impl Scale {
             return None;
         }
         // A constant gets a range that shows it as one.
-        let least = if axis.log {
-            1.0
+        let pad = if axis.log {
+            (0.5 * (NARROWEST - (hi - lo))).max(margin * (hi - lo))
         } else {
-            1e-3 * lo.abs().max(hi.abs()).max(1e-300)
-        };
-        let pad = if hi - lo < least {
-            least
-        } else {
-            margin * (hi - lo)
+            let least = 1e-3 * lo.abs().max(hi.abs()).max(1e-300);
+            if hi - lo < least {
+                least
+            } else {
+                margin * (hi - lo)
+            }
         };
         let (lo, hi) = (lo - pad, hi + pad);
         let step = if axis.log {
@@ -58,8 +62,13 @@ impl Scale {
         let ticks: Vec<f64> = if axis.log && hi - lo < FEW_DECADES {
             // Powers of ten alone would leave an axis with one number or none.
             let decades = lo.floor() as i32..=hi.ceil() as i32;
+            let between: &[f64] = if hi - lo < SHORT {
+                &[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]
+            } else {
+                &[1.0, 2.0, 5.0]
+            };
             decades
-                .flat_map(|n| [1.0_f64, 2.0, 5.0].map(|m| f64::from(n) + m.log10()))
+                .flat_map(|n| between.iter().map(move |m| f64::from(n) + m.log10()))
                 .collect()
         } else {
             even.collect()

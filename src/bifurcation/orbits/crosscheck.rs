@@ -1,0 +1,137 @@
+//! A special orbit once more, by an unlike method.
+//!
+//! Pitchforks of orbits are found in another formulation too. Tops and zeros of cubic coefficients have no condition of their
+//! own, and no second method here.
+
+use super::sharp::{Exactly, SpecialOrbit};
+use crate::bifurcation::Special;
+use crate::error::{Error, Result};
+use crate::field::State;
+use crate::integrate::{Choice, MAX_STEPS, Tolerances};
+use crate::orbit::{
+    Condition, Corrector, Family, Goal, Indicator, Motion, OverLoadings, OverParted, Polygon,
+    Regular, Site, Slab, Tracer, of_digits,
+};
+
+/// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
+const DIGITS: [i32; 3] = [4, 6, 8];
+/// What the second method is asked for in a step.
+const TOLERANCE: f64 = 1e-12;
+
+/// Relative differences in V_H, K and the period between a special point of orbits and the same one by another method. That
+/// begins from the first one's nodes, cut to a few digits, and shares nothing else with it. `None` for points that are no
+/// orbit's, and for tops, which have no condition of their own.
+///
+/// # Errors
+/// [`Error::NotConverged`] where the second method does not find the point; those of the method.
+pub fn crosscheck(slab: &Slab, special: &Special, method: Choice) -> Result<Option<[f64; 3]>> {
+    let Some(orbit) = &special.orbit else {
+        return Ok(None);
+    };
+    let period = special.period.map_or(f64::NAN, |period| period.value);
+    let first = [special.driving.value, special.stiffness.value, period];
+    let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
+    let family = OverLoadings(*slab);
+    let across = orbit.meets.contains(&Exactly::Indicator(Indicator::Across));
+    let second = if across {
+        second_pitchfork(family, orbit, method)?
+    } else if planar {
+        second::<_, 2>(&family, orbit, method)?
+    } else if orbit.parted {
+        second::<_, 3>(&OverParted(family), orbit, method)?
+    } else {
+        second::<_, 3>(&family, orbit, method)?
+    };
+    Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
+}
+
+fn second<F: Family<N>, const N: usize>(
+    family: &F,
+    orbit: &SpecialOrbit,
+    method: Choice,
+) -> Result<[f64; 3]> {
+    let conditions: Vec<_> = orbit
+        .meets
+        .iter()
+        .map(|exactly| exactly.condition())
+        .collect();
+    let tolerances = Tolerances::equal(TOLERANCE)?;
+    let mut corrector = Corrector::by(family, Tracer::new(method, tolerances, MAX_STEPS)?);
+    let found = DIGITS.iter().find_map(|&digits| {
+        let site = cut::<N>(orbit, digits);
+        corrector.correct(site, &orbit.free, &conditions, Goal::SHARP)
+    });
+    found_again(family, found)
+}
+
+/// The same at a pitchfork, in another formulation too: there an orbit closes on which the interfaces differ by next to nothing,
+/// so that how much they do is free.
+fn second_pitchfork(
+    family: OverLoadings,
+    orbit: &SpecialOrbit,
+    method: Choice,
+) -> Result<[f64; 3]> {
+    /// ln D at the first node: far below rounding, and far above the smallest number.
+    const FAINT: f64 = -300.0;
+    let family = OverParted(family);
+    let tolerances = Tolerances::equal(TOLERANCE)?;
+    let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
+    let others = orbit
+        .meets
+        .iter()
+        .filter(|meets| **meets != Exactly::Indicator(Indicator::Across));
+    let others: Vec<Condition<'_, 3>> = others.map(|exactly| exactly.condition()).collect();
+    let mut found = |digits: i32| {
+        let Site { polygon, at } = cut::<2>(orbit, digits);
+        let field = family.field(at);
+        let (mut nodes, mut faint) = (Vec::new(), FAINT);
+        for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
+            let node = State::<3>::new(x[0], x[1], faint);
+            let end = corrector.tracer.flow(&*field, &node, duration, None).ok()?;
+            faint = end[2];
+            nodes.push(node);
+        }
+        drop(field);
+        let shift = Motion {
+            nodes: vec![State::<3>::new(0.0, 0.0, 1.0); nodes.len()],
+            durations: vec![0.0; nodes.len()],
+            parameters: [0.0; 2],
+        };
+        let durations = polygon.durations;
+        let polygon = Polygon { nodes, durations };
+        let site = Site { polygon, at };
+        let mut conditions = vec![Condition::Plane(&shift, &site)];
+        conditions.extend(&others);
+        corrector.correct(site.clone(), &orbit.free, &conditions, Goal::SHARP)
+    };
+    let found = DIGITS.iter().find_map(|&digits| found(digits));
+    found_again(&family, found)
+}
+
+/// V_H, K and the period of what was found.
+fn found_again<F: Family<N>, const N: usize>(
+    family: &F,
+    found: Option<Regular<N>>,
+) -> Result<[f64; 3]> {
+    let again = found.ok_or(Error::NotConverged {
+        what: "the special orbit, by the second method",
+        iterations: Goal::SHARP.iterations,
+        residual: f64::INFINITY,
+        tolerance: Goal::SHARP.done,
+    })?;
+    let [driving, stiffness] = family.parameters(again.site.at);
+    Ok([driving, stiffness, again.site.polygon.period()])
+}
+
+/// The orbit with only so many digits left.
+fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
+    let mut at = orbit.at;
+    // What is not free is given.
+    for &i in &orbit.free {
+        at[i] = of_digits(digits, at[i]);
+    }
+    Site {
+        polygon: Polygon::of_digits(digits, &orbit.nodes, &orbit.durations),
+        at,
+    }
+}

@@ -1,0 +1,104 @@
+//! The rows of a run on their way out: written as they come, kept, or both.
+
+use super::interrupt;
+use super::progress::Progress;
+use super::report::{Report, unit_names};
+use crate::integrate::Control;
+use crate::output::{Cell, Format, RowWriter, Rows};
+use crate::scene::{Quantity, Sink, System};
+use serde_json::Value;
+use std::io;
+
+/// Takes the rows of a run.
+pub struct Out {
+    writer: Option<Box<dyn RowWriter>>,
+    /// What went wrong with writing.
+    pub broken: Option<io::Error>,
+    keep: bool,
+    counts: bool,
+    /// What is kept.
+    pub rows: Rows,
+    /// Points of the picture.
+    pub drawn: Rows,
+    cells: Vec<Cell>,
+    pub progress: Progress,
+}
+
+impl Out {
+    /// Begins the table or CSV, below the command that makes it. Rows are kept for an object anyway.
+    pub fn new(
+        report: &Report<'_>,
+        (system, numerics): (&System, &Value),
+        columns: Vec<(String, Quantity)>,
+        keep: bool,
+    ) -> io::Result<Self> {
+        let (names, quantities): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
+        let writer = if report.format == Format::Json {
+            None
+        } else {
+            let units = unit_names(&system.units, quantities.into_iter());
+            let remarks = report.remarks(system, numerics);
+            let stream = report.place.stream().map_err(io::Error::other)?;
+            Some(report.rows(stream, &remarks, &names, &units)?)
+        };
+        Ok(Out {
+            keep: keep || writer.is_none(),
+            writer,
+            broken: None,
+            counts: false,
+            rows: Rows::new(names),
+            drawn: Rows::default(),
+            cells: Vec::new(),
+            progress: Progress::new(report.quiet),
+        })
+    }
+
+    /// The first column counts: its whole numbers need no point.
+    pub fn counting(self) -> Self {
+        Out {
+            counts: true,
+            ..self
+        }
+    }
+
+    /// The picture has these columns.
+    pub fn drawing(self, columns: Vec<String>) -> Self {
+        Out {
+            drawn: Rows::new(columns),
+            ..self
+        }
+    }
+}
+
+impl Sink for Out {
+    fn row(&mut self, row: &[f64]) -> Control {
+        if self.keep {
+            self.rows.numbers.extend_from_slice(row);
+        }
+        if let Some(writer) = &mut self.writer {
+            self.cells.clear();
+            self.cells.extend(row.iter().map(|&x| Cell::Number(x)));
+            if self.counts {
+                self.cells[0] = Cell::Text(format!("{}", row[0]));
+            }
+            if let Err(error) = writer.row(&self.cells) {
+                self.broken = Some(error);
+                return Control::Stop;
+            }
+        }
+        Control::Continue
+    }
+
+    fn drawn(&mut self, point: &[f64]) {
+        self.drawn.numbers.extend_from_slice(point);
+    }
+
+    fn reached(&mut self, fraction: f64) -> Control {
+        self.progress.reached(fraction);
+        if interrupt::asked() {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
+    }
+}

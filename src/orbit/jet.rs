@@ -1,0 +1,142 @@
+//! The maps from plane to plane around an orbit, with their derivatives up to the third.
+
+use super::arc::Tracer;
+use super::family::Family;
+use super::linear::{Linear, frame};
+use super::motion::Site;
+use crate::field::{Jacobian, State};
+use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
+use crate::series::Cubic;
+use nalgebra::{Complex, Matrix2, Vector2};
+use std::f64::consts::FRAC_1_SQRT_2;
+
+type C2 = Vector2<Complex<f64>>;
+
+/// ln of what an arc may grow by: its cube is a third derivative.
+const GROWTH: f64 = 3.0;
+/// How often arcs are split for it.
+const SPLITS: usize = 6;
+/// Tolerance of new nodes.
+const FINE: f64 = 1e-16;
+
+/// A map from plane to plane at a node, to third order in orthonormal coordinates of the planes.
+#[derive(Debug, Clone)]
+pub struct Jet {
+    components: [Cubic; 2],
+}
+
+/// The coordinates in the planes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Axes {
+    /// Any.
+    Any,
+    /// Of an orbit in (tau, ln psi_1, ln psi_2) with psi_1 = psi_2: the first antisymmetric, the second symmetric.
+    Symmetry,
+}
+
+/// The maps from node to node of an orbit, by arcs of this tolerance. `None` where one can't be had.
+pub fn jets<F: Family<3>>(
+    family: &F,
+    site: &Site<3>,
+    axes: Axes,
+    tolerance: f64,
+) -> Option<Vec<Jet>> {
+    let field = family.field(site.at);
+    let mut taylor = Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?;
+    let nodes = &site.polygon.nodes;
+    let plane = |x: &State<3>| {
+        let normal = family.normal(field.f(x));
+        match axes {
+            Axes::Any => frame(&normal),
+            Axes::Symmetry => symmetric_frame(&normal),
+        }
+    };
+    let frames: Vec<Jacobian<3>> = nodes.iter().map(plane).collect();
+    let mut jet = |k: usize| {
+        let next = (k + 1) % nodes.len();
+        let (from, onto) = (&frames[k], &frames[next]);
+        let start =
+            std::array::from_fn(|i| Cubic::linear(nodes[k][i], [from[(i, 1)], from[(i, 2)]]));
+        let span = (0.0, site.polygon.durations[k]);
+        let target = (&onto.column(0).into_owned(), &nodes[next]);
+        let (_, end) = taylor.transport_onto(&*field, span, start, target).ok()?;
+        let component = |j: usize| {
+            let mut sum = Cubic::default();
+            for i in 0..3 {
+                sum = sum + (end[i] - Cubic::constant(nodes[next][i])).scaled(onto[(i, j)]);
+            }
+            sum
+        };
+        Some(Jet {
+            components: [component(1), component(2)],
+        })
+    };
+    (0..nodes.len()).map(&mut jet).collect()
+}
+
+/// Orthonormal columns: a normal with equal components 1 and 2, the antisymmetric direction, and the one that is left.
+fn symmetric_frame(normal: &State<3>) -> Jacobian<3> {
+    let normal = normal.normalize();
+    let across = State::<3>::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2);
+    Jacobian::<3>::from_columns(&[normal, across, normal.cross(&across)])
+}
+
+/// The same orbit with so many nodes that along no arc anything grows by much.
+pub fn finely_cut<F: Family<3>>(family: &F, site: &Site<3>) -> Option<Site<3>> {
+    let field = family.field(site.at);
+    let mut tracer = Tracer::taylor(FINE).ok()?;
+    let mut polygon = site.polygon.clone();
+    for _ in 0..SPLITS {
+        let linear = Linear::of(&mut tracer, family, &*field, &polygon).ok()?;
+        if linear.growth().all(|growth| growth < GROWTH) {
+            break;
+        }
+        let parts = linear.parts(GROWTH);
+        polygon = polygon.split(&mut tracer, &*field, &parts).ok()?;
+    }
+    Some(Site {
+        polygon,
+        at: site.at,
+    })
+}
+
+/// The same orbit with every arc cut into so many parts of equal duration.
+pub fn cut_into<F: Family<3>>(parts: usize, family: &F, site: &Site<3>) -> Option<Site<3>> {
+    let field = family.field(site.at);
+    let mut tracer = Tracer::taylor(FINE).ok()?;
+    let counts = vec![parts; site.polygon.nodes.len()];
+    Some(Site {
+        polygon: site.polygon.split(&mut tracer, &*field, &counts).ok()?,
+        at: site.at,
+    })
+}
+
+impl Jet {
+    /// The first derivative.
+    pub fn linear(&self) -> Matrix2<f64> {
+        let [p, q] = self.components.map(|c| c.0);
+        Matrix2::new(p[1], p[2], q[1], q[2])
+    }
+
+    /// B(u, v), the second derivative.
+    pub fn second(&self, u: &C2, v: &C2) -> C2 {
+        C2::from_fn(|i, _| {
+            let c = self.components[i].0;
+            u[0] * v[0] * (2.0 * c[3])
+                + (u[0] * v[1] + u[1] * v[0]) * c[4]
+                + u[1] * v[1] * (2.0 * c[5])
+        })
+    }
+
+    /// C(u, v, w), the third derivative.
+    pub fn third(&self, u: &C2, v: &C2, w: &C2) -> C2 {
+        C2::from_fn(|i, _| {
+            let c = self.components[i].0;
+            let [one, two, three, four] = [6.0 * c[6], 2.0 * c[7], 2.0 * c[8], 6.0 * c[9]];
+            u[0] * v[0] * w[0] * one
+                + (u[0] * v[0] * w[1] + u[0] * v[1] * w[0] + u[1] * v[0] * w[0]) * two
+                + (u[0] * v[1] * w[1] + u[1] * v[0] * w[1] + u[1] * v[1] * w[0]) * three
+                + u[1] * v[1] * w[1] * four
+        })
+    }
+}
