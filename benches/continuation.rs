@@ -33,14 +33,15 @@ fn branches(stiffness: f64) -> usize {
     special
 }
 
-fn curve(kind: LocusKind, driving: (f64, f64), stiffness: (f64, f64)) -> usize {
-    let request = LocusRequest::new(slab(0.1), kind, driving, stiffness);
+fn curves(kinds: &[LocusKind], driving: (f64, f64), stiffness: (f64, f64)) -> usize {
+    let of_kind = |&kind| LocusRequest::new(slab(0.1), kind, driving, stiffness);
+    let requests: Vec<LocusRequest> = kinds.iter().map(of_kind).collect();
     let mut points = 0;
-    orbits::locus(&request, &mut |event| {
+    orbits::loci(&requests, &mut |_, event| {
         points += usize::from(matches!(event, Event::Locus(_)));
         Continue(())
     })
-    .expect("a curve");
+    .expect("curves");
     points
 }
 
@@ -52,28 +53,17 @@ fn figures(criterion: &mut Criterion) {
         .sample_size(10)
         .measurement_time(Duration::from_secs(10));
     group.bench_function("figure-7", |b| b.iter(|| branches(black_box(0.14))));
-    let both = |stiffness| {
-        curve(LocusKind::Torus, ALL, stiffness) + curve(LocusKind::PeriodDoubling, ALL, stiffness)
-    };
+    let both = [LocusKind::Torus, LocusKind::PeriodDoubling];
     group.bench_function("figure-12/torus+doubling", |b| {
-        b.iter(|| both(black_box((0.05, 0.4))));
+        b.iter(|| curves(&both, ALL, black_box((0.05, 0.4))));
     });
+    let pitchforks = LocusKind::OrbitPitchfork;
+    let all = [both[0], both[1], pitchforks, LocusKind::OrbitSaddleNode];
     group.bench_function("figure-12/all-to-0.01", |b| {
-        b.iter(|| {
-            let range = black_box((0.01, 0.4));
-            both(range)
-                + curve(LocusKind::OrbitPitchfork, ALL, range)
-                + curve(LocusKind::OrbitSaddleNode, ALL, range)
-        });
+        b.iter(|| curves(&all, ALL, black_box((0.01, 0.4))));
     });
     group.bench_function("pitchforks", |b| {
-        b.iter(|| {
-            curve(
-                LocusKind::OrbitPitchfork,
-                black_box((1e-3, 1.25)),
-                (0.005, 0.4),
-            )
-        });
+        b.iter(|| curves(&[pitchforks], black_box((1e-3, 1.25)), (0.005, 0.4)));
     });
     group.finish();
 }

@@ -11,7 +11,7 @@ use common::{data, number};
 use heard::{Heard, assert_known, two};
 use returns::returns;
 use std::ops::ControlFlow::Continue;
-use twinslip::bifurcation::{Criticality, Label, LocusKind, LocusRequest, Special, orbits};
+use twinslip::bifurcation::{Criticality, Event, Label, LocusKind, LocusRequest, Special, orbits};
 use twinslip::equilibrium::Symmetry;
 use twinslip::integrate::Choice;
 use twinslip::number::Uncertain;
@@ -209,6 +209,34 @@ fn a_second_method_finds_the_same_points() {
             }
         }
         assert_eq!(checked, count, "{kind:?}");
+    }
+}
+
+/// The tops of all curves, from ranges that begin elsewhere; and several curves at once are the same.
+#[test]
+fn tops_are_found_from_any_range() {
+    let kinds = [
+        (LocusKind::PeriodDoubling, 1),
+        (LocusKind::Torus, 1),
+        (LocusKind::OrbitPitchfork, 1),
+    ];
+    for range in [(0.05, 0.4), (0.09, 0.25), (0.06, 0.3)] {
+        let requests = kinds.map(|(kind, _)| curve(kind, range));
+        let mut together: Vec<Vec<Special>> = vec![Vec::new(); kinds.len()];
+        orbits::loci(&requests, &mut |i, event| {
+            if let Event::Special(special) = event {
+                together[i].push(special);
+            }
+            Continue(())
+        })
+        .expect("curves");
+        for ((request, (kind, count)), together) in requests.iter().zip(kinds).zip(&together) {
+            let alone = locus(request);
+            let tops = |all: &[Special]| all.iter().filter(|s| s.label == Label::Top).count();
+            assert_eq!(tops(&alone.special), count, "{kind:?} {range:?}");
+            assert_eq!(tops(together), count, "{kind:?} {range:?}");
+            assert_eq!(alone.special.len(), together.len(), "{kind:?} {range:?}");
+        }
     }
 }
 

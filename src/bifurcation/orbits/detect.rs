@@ -191,7 +191,7 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
 ) -> Option<Regular<N>> {
     if zero.watch == Watch::Turn(1) && walk.path.indicator.is_some() {
         // Along a curve of bifurcations a turn has no condition of its own.
-        return walk.beyond(before, zero.at).map(|pace| pace.here);
+        return turned(walk, before, length, zero.at);
     }
     let condition = match zero.watch {
         Watch::Indicator(indicator) => Condition::Indicator(indicator),
@@ -239,4 +239,37 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
         at = 0.5 * (low + high);
     }
     None
+}
+
+/// Where K turns on the step, by false position from a first guess: long steps bend by more than one straight line tells.
+fn turned<F: Family<N>, const N: usize>(
+    walk: &mut Walk<'_, '_, F, N>,
+    before: &Pace<N>,
+    length: f64,
+    first: f64,
+) -> Option<Regular<N>> {
+    /// Iterations, and a slope that is small enough.
+    const ITERATIONS: usize = 8;
+    const FLAT: f64 = 1e-3;
+    let slope = |pace: &Pace<N>| pace.direction.parameters[1];
+    let mut low = (0.0, slope(before));
+    let mut high = (length, slope(&walk.pace));
+    let (mut at, mut found) = (first, None);
+    for _ in 0..ITERATIONS {
+        let Some(pace) = walk.beyond(before, at) else {
+            break;
+        };
+        let here = slope(&pace);
+        found = Some(pace.here);
+        if here.abs() < FLAT {
+            break;
+        }
+        if here * low.1 > 0.0 {
+            low = (at, here);
+        } else {
+            high = (at, here);
+        }
+        at = (low.0 * high.1 - high.0 * low.1) / (high.1 - low.1);
+    }
+    found
 }

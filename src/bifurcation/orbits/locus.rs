@@ -5,14 +5,12 @@
 
 use super::chart::Chart;
 use super::curve::through;
-use super::detect::Watch;
-use super::follow::{Met, follow};
 use super::leg::Pass;
-use crate::bifurcation::{LocusKind, LocusRequest, Seen};
+use super::scan::Scan;
+use crate::bifurcation::{Event, LocusKind, LocusRequest, Seen};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::model::Parameter;
-use crate::orbit::{Corrector, Indicator, OverLoadings, Path, Site, Walk, hopf_points};
+use crate::orbit::{Indicator, OverLoadings, Site, Slab};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
@@ -21,19 +19,95 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of
 /// [`LocusRequest::checked`], of the equilibria and of the flow.
 pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
-    request.checked()?;
-    let request = &request.ordered();
-    let mut count = 0;
-    for symmetry in symmetries(request)? {
-        let told = match symmetry {
-            Symmetry::Symmetric => Locus::<2>::all(request, symmetry, &mut count, seen)?,
-            Symmetry::Asymmetric => Locus::<3>::all(request, symmetry, &mut count, seen)?,
+    loci(std::slice::from_ref(request), &mut |_, event| seen(event))
+}
+
+/// Follows the curves of several requests, one after the other, and hands on what is found with the number of the request. For
+/// requests that differ in kind alone the branches on which curves begin are followed once.
+///
+/// # Errors
+/// As of [`locus`].
+pub fn loci(
+    requests: &[LocusRequest],
+    seen: &mut dyn FnMut(usize, Event) -> ControlFlow<()>,
+) -> Result<()> {
+    let mut ordered = Vec::new();
+    for request in requests {
+        request.checked()?;
+        ordered.push((request.ordered(), symmetries(request)?));
+    }
+    let mut scans: Option<Scans> = None;
+    for (i, (request, own)) in ordered.iter().enumerate() {
+        let mut scan = match scans.take() {
+            Some(scans) if scans.serves(request) => scans,
+            _ => Scans::new(&ordered[i..]),
         };
-        if told.is_break() {
-            break;
+        let mut count = 0;
+        for symmetry in own {
+            let seen: Seen<'_> = &mut |event| seen(i, event);
+            let told = match symmetry {
+                Symmetry::Symmetric => {
+                    Locus::<2>::all(request, &mut scan.symmetric, &mut count, seen)?
+                }
+                Symmetry::Asymmetric => {
+                    Locus::<3>::all(request, &mut scan.asymmetric, &mut count, seen)?
+                }
+            };
+            if told.is_break() {
+                return Ok(());
+            }
         }
+        scans = Some(scan);
     }
     Ok(())
+}
+
+/// What is looked for along branches of both symmetries.
+struct Scans {
+    slab: Slab,
+    driving: (f64, f64),
+    symmetric: Scan<2>,
+    asymmetric: Scan<3>,
+}
+
+impl Scans {
+    /// For the first of these requests and all that can share it.
+    fn new(requests: &[(LocusRequest, Vec<Symmetry>)]) -> Self {
+        let LocusRequest { slab, driving, .. } = requests[0].0;
+        let mut scans = Scans {
+            slab,
+            driving,
+            symmetric: Scan::new(slab, driving, Symmetry::Symmetric),
+            asymmetric: Scan::new(slab, driving, Symmetry::Asymmetric),
+        };
+        for (request, symmetries) in requests {
+            if !scans.serves(request) {
+                break;
+            }
+            for symmetry in symmetries {
+                match symmetry {
+                    Symmetry::Symmetric => scans.symmetric.also(of_kind(request.kind)),
+                    Symmetry::Asymmetric => scans.asymmetric.also(of_kind(request.kind)),
+                }
+            }
+        }
+        scans
+    }
+
+    /// Whether the branches of a request are these.
+    fn serves(&self, request: &LocusRequest) -> bool {
+        self.slab == request.slab && self.driving == request.driving
+    }
+}
+
+/// What is zero along curves of a kind.
+fn of_kind(kind: LocusKind) -> Indicator {
+    match kind {
+        LocusKind::OrbitPitchfork => Indicator::Across,
+        LocusKind::PeriodDoubling => Indicator::Doubling,
+        LocusKind::Torus => Indicator::Torus,
+        _ => Indicator::Fold,
+    }
 }
 
 /// Orbits of which symmetry have the bifurcation.
@@ -65,13 +139,8 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
     Ok(wanted)
 }
 
-/// The longest step along a curve, and along the branches where curves are looked for.
+/// The longest step along a curve.
 const LONGEST: f64 = 0.3;
-const LONGEST_OF_BRANCH: f64 = 0.7;
-/// Steps on such a branch.
-const STEPS: usize = 2000;
-/// Tolerance of such a branch: what is found there is corrected with that of the curves.
-const SCAN: f64 = 1e-8;
 /// Below this K no branch is followed for seeds, unless the range ends there: the curves that there are come down from above.
 const LOWEST: f64 = 0.03;
 /// From one such branch to the next K is divided by this.
@@ -102,7 +171,7 @@ where
 {
     fn all(
         request: &'r LocusRequest,
-        symmetry: Symmetry,
+        branches: &mut Scan<N>,
         count: &mut usize,
         seen: Seen<'_>,
     ) -> Result<ControlFlow<()>> {
@@ -111,16 +180,11 @@ where
             scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
             family: OverLoadings(request.slab),
-            indicator: match request.kind {
-                LocusKind::OrbitPitchfork => Indicator::Across,
-                LocusKind::PeriodDoubling => Indicator::Doubling,
-                LocusKind::Torus => Indicator::Torus,
-                _ => Indicator::Fold,
-            },
+            indicator: of_kind(request.kind),
             known: Vec::new(),
         };
         for stiffness in scan {
-            for seed in locus.seeds(symmetry, stiffness)? {
+            for seed in branches.at(stiffness, locus.indicator)? {
                 if locus.is_known(&seed) {
                     continue;
                 }
@@ -143,63 +207,6 @@ where
             }
         }
         Ok(Continue(()))
-    }
-
-    /// The bifurcations on the branches at this K.
-    fn seeds(&self, symmetry: Symmetry, stiffness: f64) -> Result<Vec<Site<N>>> {
-        let slab = self.request.slab.of_stiffness(stiffness);
-        let family = OverLoadings(slab);
-        let (from, to) = self.request.driving;
-        let (from, to) = (from.ln(), to.ln());
-        let watch = match self.indicator {
-            Indicator::Fold => Watch::Turn(0),
-            other => Watch::Indicator(other),
-        };
-        let mut seeds = Vec::new();
-        let mut reached = Vec::new();
-        let hopfs = hopf_points(&slab, symmetry, Parameter::Driving)?;
-        for (i, hopf) in hopfs.iter().enumerate() {
-            if reached.contains(&i) {
-                continue;
-            }
-            let begin = hopf.at()[0];
-            // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
-            let last_one = i + 1 == hopfs.len();
-            let mut corrector = Corrector::<_, N>::new(&family, SCAN)?;
-            let path = Path::branch(0, LONGEST_OF_BRANCH);
-            let Some(mut walk) = Walk::from_hopf(&mut corrector, path, hopf) else {
-                continue;
-            };
-            let mut last = walk.pace.here.site.clone();
-            let mut been = (from..=to).contains(&begin);
-            follow(&mut walk, &[watch], STEPS, &mut |walk, _, met| match met {
-                Met::Zero(_, at) => {
-                    let inside = (from..=to).contains(&at.site.at[0]);
-                    let pitchfork = family.merges(&walk.pace.here.site, &last);
-                    let torus = self.indicator != Indicator::Torus || at.spectrum.trace.abs() < 2.0;
-                    if inside && torus && !(pitchfork && self.indicator == Indicator::Fold) {
-                        seeds.push(at.site.clone());
-                    }
-                    Continue(())
-                }
-                Met::Orbit(pace) => {
-                    let here = &pace.here.site;
-                    let inside = (from..=to).contains(&here.at[0]);
-                    let left = been && !inside;
-                    been |= inside;
-                    let end = walk.ends_at(&last, &hopfs);
-                    reached.extend(end);
-                    let merged = family.merges(here, &last);
-                    last = here.clone();
-                    if left && last_one || end.is_some() || merged {
-                        Break(())
-                    } else {
-                        Continue(())
-                    }
-                }
-            });
-        }
-        Ok(seeds)
     }
 
     /// Whether a curve that was followed passes there.
