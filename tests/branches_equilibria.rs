@@ -6,7 +6,7 @@ mod common;
 mod heard;
 
 use common::{assert_close, data, number, relative};
-use heard::{Heard, assert_sharp, slab, spinodal, two};
+use heard::{Heard, assert_same, assert_sharp, slab, spinodal, two};
 use std::ops::ControlFlow;
 use twinslip::bifurcation::equilibria::branch;
 use twinslip::bifurcation::{BranchRequest, Criticality, Label, Parameter, Special};
@@ -142,13 +142,7 @@ fn the_same_special_points_whatever_the_steps() {
     };
     let usual = list(1.0);
     for step in [0.25, 4.0] {
-        let other = list(step);
-        assert_eq!(usual.len(), other.len(), "step {step}");
-        for (a, b) in usual.iter().zip(&other) {
-            assert_eq!(a.0, b.0, "step {step}");
-            assert_close(a.1, b.1, 1e-13, "V_H");
-            assert_close(a.2, b.2, 1e-13, "K");
-        }
+        assert_same(&usual, &list(step), 1e-13);
     }
 }
 

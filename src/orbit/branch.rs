@@ -58,10 +58,9 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         shrinks.then_some(here.at[free] + slope * new)
     }
 
-    /// Which of these Hopf points the branch is about to end at.
+    /// Which of these Hopf points the branch is about to end at. `before` is where the last step began, with the same nodes.
     pub fn ends_at(&self, before: &Site<N>, hopfs: &[HopfPoint]) -> Option<usize> {
-        /// What the prediction may err by: part of the way that is left, and rounding. An orbit can also seem smaller because its
-        /// nodes lie elsewhere.
+        /// What the prediction may err by: part of the way that is left, and rounding.
         const PART: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let end = self.vanishes(before)?;

@@ -102,3 +102,15 @@ pub fn assert_sharp(what: &str, found: Uncertain, exact: f64) {
         found.uncertainty
     );
 }
+
+/// The same labels at the same places.
+#[track_caller]
+pub fn assert_same(usual: &[(Label, f64, f64)], other: &[(Label, f64, f64)], bar: f64) {
+    let labels = |list: &[(Label, f64, f64)]| list.iter().map(|s| s.0).collect::<Vec<_>>();
+    assert_eq!(labels(usual), labels(other));
+    for (a, b) in usual.iter().zip(other) {
+        for (a, b) in [(a.1, b.1), (a.2, b.2)] {
+            assert!((a - b).abs() <= bar * b.abs(), "{a}, not {b}");
+        }
+    }
+}

@@ -88,25 +88,23 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         &mut self,
         walk: Walker<'_, '_, '_, F, N>,
     ) -> Result<End> {
-        let mut last = walk.pace.here.site.clone();
         let (mut failed, mut lost) = (None, false);
         let end = follow(
             walk,
             &self.watches::<N>(),
             STEPS,
             &mut |walk, before, met| {
+                let last = &before.here.site;
                 let met = match met {
                     Met::Zero(watch, at) => {
                         let back = self.comes_back(walk, before);
-                        self.zero(walk, watch, at, &last, back)
+                        self.zero(walk, watch, at, last, back)
                     }
                     Met::Orbit(pace) => {
                         let back = self.comes_back(walk, before);
-                        let met = self.orbit(walk, pace, &last, back);
-                        last = pace.here.site.clone();
-                        match met {
+                        match self.orbit(walk, pace, last, back) {
                             // A branch that has ended does not go on in other variables.
-                            Ok(Continue(())) if walk.corrector.family.loses(&last) => {
+                            Ok(Continue(())) if walk.corrector.family.loses(&pace.here.site) => {
                                 lost = true;
                                 Ok(Break(()))
                             }

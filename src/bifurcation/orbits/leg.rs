@@ -163,17 +163,16 @@ impl<'r, 's> Leg<'r, 's> {
 
     /// To the end, in other variables where these lose digits.
     pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
-        let (mut last, mut decided): (Option<Site<N>>, Option<Decided<N>>) = (None, None);
+        let mut decided: Option<Decided<N>> = None;
         let mut lost = false;
         let watches = self.watches::<N>();
-        let end = follow(walk, &watches, STEPS, &mut |walk, _, met| match met {
+        let end = follow(walk, &watches, STEPS, &mut |walk, before, met| match met {
             Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
             Met::Zero(watch, at) => self.zero(walk, watch, at),
             Met::Orbit(pace) => {
                 let here = &pace.here;
                 let family = walk.corrector.family;
-                let last = last.replace(here.site.clone());
-                if last.is_some_and(|last| family.merges(&here.site, &last)) {
+                if family.merges(&here.site, &before.here.site) {
                     return self.merged(&family.slab(), &family.usual(&here.site));
                 }
                 let way = self.row(family, here)?;

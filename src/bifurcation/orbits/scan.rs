@@ -94,38 +94,41 @@ where
         let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopfs[i]) else {
             return Ok(());
         };
-        let mut last = walk.pace.here.site.clone();
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
         let watches: Vec<Watch> = self.indicators.iter().map(|&i| watch(i)).collect();
-        follow(&mut walk, &watches, STEPS, &mut |walk, _, met| match met {
-            Met::Zero(met, at) => {
-                let pitchfork = family.merges(&walk.pace.here.site, &last);
-                let indicator = indicator(met);
-                let is_one = match indicator {
-                    Indicator::Torus => at.spectrum.trace.abs() < 2.0,
-                    Indicator::Fold => !pitchfork,
-                    _ => true,
-                };
-                if is_one && inside(&at.site) {
-                    found.push((indicator, at.site.clone()));
-                }
-                Continue(())
-            }
-            Met::Orbit(pace) => {
-                let here = &pace.here.site;
-                let left = been && !inside(here);
-                been |= inside(here);
-                let end = walk.ends_at(&last, hopfs);
-                reached.extend(end);
-                let merged = family.merges(here, &last);
-                last = here.clone();
-                if left && last_one || end.is_some() || merged {
-                    Break(())
-                } else {
+        follow(
+            &mut walk,
+            &watches,
+            STEPS,
+            &mut |walk, before, met| match met {
+                Met::Zero(met, at) => {
+                    let pitchfork = family.merges(&walk.pace.here.site, &before.here.site);
+                    let indicator = indicator(met);
+                    let is_one = match indicator {
+                        Indicator::Torus => at.spectrum.trace.abs() < 2.0,
+                        Indicator::Fold => !pitchfork,
+                        _ => true,
+                    };
+                    if is_one && inside(&at.site) {
+                        found.push((indicator, at.site.clone()));
+                    }
                     Continue(())
                 }
-            }
-        });
+                Met::Orbit(pace) => {
+                    let here = &pace.here.site;
+                    let left = been && !inside(here);
+                    been |= inside(here);
+                    let end = walk.ends_at(&before.here.site, hopfs);
+                    reached.extend(end);
+                    let merged = family.merges(here, &before.here.site);
+                    if left && last_one || end.is_some() || merged {
+                        Break(())
+                    } else {
+                        Continue(())
+                    }
+                }
+            },
+        );
         Ok(())
     }
 }
