@@ -62,6 +62,8 @@ pub mod scene;
 
 pub mod output;
 
+pub mod columns;
+
 pub mod cli;
 
 pub use error::{Error, Result};

@@ -1,13 +1,12 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
-use super::branch::Along;
 use super::report;
 use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
 use crate::equilibrium::Verdict;
 use crate::orbit::Slab;
 use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Side};
 use crate::output::seven_digits;
-use crate::scene::{Quantity, System, Units};
+use crate::scene::{Along, Quantity, System, Units};
 
 /// Colours of branches on which both interfaces move alike, and of the others.
 const ALIKE: usize = 0;

@@ -13,10 +13,6 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub const EXAMPLE: &str =
-    "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
-  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
-
 const EVENT_COLUMNS: [(&str, Quantity); 8] = [
     ("onset", Quantity::Time),
     ("recurrence", Quantity::Time),

@@ -11,10 +11,6 @@ use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
 
-pub const EXAMPLE: &str = "Example, the paper's law and its extrema:
-  twinslip law --format json
-  twinslip law --from 1e-3 --to 1e5 --points 400 -o law.csv --plot law.svg";
-
 /// The grid where none is given.
 const GRID: (f64, f64) = (1e-3, 1e6);
 

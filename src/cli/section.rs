@@ -16,10 +16,6 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
 
-pub const EXAMPLE: &str =
-    "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:
-  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg";
-
 /// Slip rates that differ by more than this factor are drawn on logarithmic axes.
 const DECADES: f64 = 30.0;
 
