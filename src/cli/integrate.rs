@@ -266,12 +266,8 @@ fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
         unit => format!(" [{unit}]"),
     };
     let panel = |title: &str, x: &plot::Axis, y: plot::Axis, series| plot::Panel {
-        title: title.into(),
-        x: x.clone(),
-        y,
         series,
-        marks: Vec::new(),
-        zero_line: false,
+        ..plot::Panel::new(title, x.clone(), y)
     };
     let in_time =
         |field: &'static str| move |i: usize| (column("time"), column(&format!("{field}_{i}")));

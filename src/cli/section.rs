@@ -223,7 +223,13 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
     };
     let (least, most) = ends(&[sums.as_slice(), next.as_slice()].concat());
     let log = least > 0.0 && most > DECADES * least;
-    let axis = |label: String, log| plot::Axis { label, log };
+    let axis = |label: String| {
+        if log {
+            plot::Axis::log(label)
+        } else {
+            plot::Axis::linear(label)
+        }
+    };
     let sum = if plan.system.interfaces == 2 {
         "v₁ + v₂"
     } else {
@@ -231,12 +237,8 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
     };
     let rate = report::short_unit(units, Quantity::SlipRate);
     let panel = |title: &str, x, y, series| plot::Panel {
-        title: title.into(),
-        x,
-        y,
         series,
-        marks: Vec::new(),
-        zero_line: false,
+        ..plot::Panel::new(title, x, y)
     };
     let stress = units.outward(Quantity::Stress, plan.stress);
     let stress_unit = report::short_unit(units, Quantity::Stress);
@@ -245,8 +247,8 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
             "return map at τ = {} [{stress_unit}]",
             output::seven_digits(stress)
         ),
-        axis(format!("{sum} at return n [{rate}]"), log),
-        axis(format!("{sum} at return n + 1 [{rate}]"), log),
+        axis(format!("{sum} at return n [{rate}]")),
+        axis(format!("{sum} at return n + 1 [{rate}]")),
         vec![
             plot::Series::dots("", sums, next),
             plot::Series::new("diagonal", vec![least, most], vec![least, most]),
