@@ -63,7 +63,7 @@ pub mod scene;
 
 pub mod output;
 
-pub mod columns;
+pub mod views;
 
 pub mod paper;
 

@@ -2,7 +2,6 @@
 
 mod branch;
 mod continuation;
-mod diagram;
 mod equilibria;
 mod integrate;
 mod interrupt;
