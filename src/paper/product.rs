@@ -1,5 +1,6 @@
 //! What is made of the paper: its figures, its table and the scorecard, each with the scenes that it needs.
 
+use super::figures;
 use super::pieces::Pieces;
 use super::scorecard;
 use super::sheet::Sheet;
@@ -46,7 +47,22 @@ pub struct Product {
 }
 
 /// All, in the order of the paper.
-pub const PRODUCTS: &[&Product] = &[&scorecard::TABLE1, &scorecard::SCORECARD];
+pub const PRODUCTS: &[&Product] = &[
+    &figures::fig03::FIGURE,
+    &figures::fig05::FIGURE,
+    &figures::fig06::FIGURE,
+    &figures::fig07::FIGURE,
+    &figures::fig08::FIGURE,
+    &figures::fig09::FIGURE,
+    &figures::fig10::FIGURE,
+    &figures::fig11::FIGURE,
+    &figures::fig12::FIGURE,
+    &figures::fig13::FIGURE,
+    &figures::fig14::FIGURE,
+    &figures::fig16::FIGURE,
+    &scorecard::TABLE1,
+    &scorecard::SCORECARD,
+];
 
 impl Product {
     /// The product of that name; figures may be called by their number alone, as 7, fig7 or fig07.

@@ -1,1 +1,17 @@
-//! The figures of the paper, one a file.
+//! The figures of the paper, one a file; what several share of drawing is in [`runs`] and [`plane`].
+
+mod plane;
+mod runs;
+
+pub mod fig03;
+pub mod fig05;
+pub mod fig06;
+pub mod fig07;
+pub mod fig08;
+pub mod fig09;
+pub mod fig10;
+pub mod fig11;
+pub mod fig12;
+pub mod fig13;
+pub mod fig14;
+pub mod fig16;

@@ -1,0 +1,77 @@
+//! Fig. 9: the bifurcation diagram at a small stiffness, of which the paper has a sketch.
+
+use super::fig07::amplitudes;
+use super::plane::{marks, method};
+use crate::bifurcation::BranchRow;
+use crate::error::Result;
+use crate::output::plot::{Axis, Drawing, Panel};
+use crate::paper::pieces::{Branches, Pieces};
+use crate::paper::product::{Made, Make, Product};
+use crate::paper::sheet::Sheet;
+use crate::views::branch_lines;
+
+/// The figure.
+pub const FIGURE: Product = Product {
+    id: "fig09",
+    title: "Bifurcation diagram at small stiffness, K = 0.05, computed",
+    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same in the narrow neighbourhood of 2V_M, where everything happens between V_H = 0.05 and 0.08.
+
+(c) and (d) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|. The asymmetric branch from the first Hopf point ends at a pitchfork on the symmetric branch (triangle), soon after torus and period-doubling points; the one from the second Hopf point comes down, folds at SN and reaches the symmetric branch subcritically. Between the two pitchforks the symmetric orbits are stable.",
+    alt: "Four panels against driving velocity: extremes of stress over the whole range and near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
+    scenes: &["fig09", "fig09-equilibria"],
+    make: Make::Figure(make),
+};
+
+/// V_H in the frames: all, and the crowd.
+const ALL: (f64, f64) = (0.03, 1000.0);
+const CROWD: (f64, f64) = (0.0495, 0.085);
+
+fn make(pieces: &Pieces<'_>) -> Result<Made> {
+    let (orbits, rest) = (
+        pieces.branches("fig09")?,
+        pieces.branches("fig09-equilibria")?,
+    );
+    let mut sheet = Sheet::new();
+    sheet.add_branches("orbits", &orbits);
+    sheet.add_branches("equilibria", &rest);
+    sheet.add_special(
+        "special points of orbits",
+        &orbits.special,
+        &orbits.plan.system.units,
+    );
+    sheet.add_special(
+        "special points of equilibria",
+        &rest.special,
+        &rest.plan.system.units,
+    );
+    let mut crowd = amplitudes("(b) near 2V_M", &orbits, &rest, CROWD);
+    crowd.keys.clear();
+    Ok(Made {
+        sheet,
+        drawing: Some(Drawing::columns(vec![
+            vec![
+                amplitudes("(a) extremes of stress", &orbits, &rest, ALL),
+                asymmetry("(c) asymmetry", &orbits, ALL),
+            ],
+            vec![crowd, asymmetry("(d) asymmetry near 2V_M", &orbits, CROWD)],
+        ])),
+        method: method(orbits.plan.following.tolerance),
+    })
+}
+
+/// How unlike the states are where stress is greatest.
+fn asymmetry(title: &str, orbits: &Branches, (lo, hi): (f64, f64)) -> Panel {
+    let x = |row: &BranchRow| row.driving;
+    let apart = |row: &BranchRow| (row.state[0] / row.state[1]).ln().abs();
+    let mut points = marks(&orbits.rows, x, apart);
+    points.retain(|mark| (lo..=hi).contains(&mark.x));
+    Panel {
+        series: branch_lines(&orbits.rows, &x, &apart, false),
+        marks: points,
+        ..Panel::new(
+            title,
+            Axis::log("driving velocity V_H [V*]").within(lo, hi),
+            Axis::linear("|ln ψ₁ − ln ψ₂| at greatest stress"),
+        )
+    }
+}

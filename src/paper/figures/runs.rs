@@ -1,0 +1,119 @@
+//! Panels of runs in time and of their returns.
+
+use crate::friction::{Law, steady_stress};
+use crate::output::Rows;
+use crate::output::plot::{Axis, Panel, Series, Stroke};
+use crate::paper::pieces::{Map, Run};
+use crate::views;
+
+/// Colours of the stronger and the weaker line: a law, a diagonal.
+const GREY: usize = 6;
+/// Points of a law's curve.
+const LAW_POINTS: usize = 200;
+
+/// How runs are computed, in words.
+pub fn method(run: &Run) -> String {
+    let work = &run.outcome.work;
+    format!(
+        "{} with rtol {:e} on (tau, ln psi), {} steps",
+        run.plan.method.name(),
+        run.plan.tolerances.rtol,
+        work.steps
+    )
+}
+
+/// The rows from one time to another.
+pub fn between(rows: &Rows, from: f64, to: f64) -> Rows {
+    let mut some = Rows::new(rows.columns.clone());
+    let time = rows.columns.iter().position(|name| name == "time");
+    for row in rows.iter() {
+        if time.is_some_and(|i| (from..=to).contains(&row[i])) {
+            some.numbers.extend_from_slice(row);
+        }
+    }
+    some
+}
+
+/// A column by name.
+pub fn column(rows: &Rows, name: &str) -> Vec<f64> {
+    rows.column(name).unwrap_or_default()
+}
+
+/// What follows from two columns, row by row.
+pub fn combined(rows: &Rows, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let (a, b) = (column(rows, names[0]), column(rows, names[1]));
+    a.iter().zip(&b).map(|(&a, &b)| of(a, b)).collect()
+}
+
+/// Stress, states and slip rates in time; the slower interface is dashed where the paper has it so.
+pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
+    views::panels_in_time(&run.plan, rows)
+}
+
+/// The phase plane with the steady-state law as a dotted line.
+pub fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
+    let mut panel = views::phase_plane(&run.plan, rows);
+    let law = run.plan.system.law;
+    let rates = [column(rows, "slip_rate_1"), column(rows, "slip_rate_2")].concat();
+    let rates = rates.into_iter().filter(|&v| v > 0.0);
+    let (lo, hi) = rates.fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), v| {
+        (lo.min(v), hi.max(v))
+    });
+    if lo < hi {
+        let at = |i: usize| lo * (hi / lo).powf(i as f64 / LAW_POINTS as f64);
+        let x: Vec<f64> = (0..=LAW_POINTS).map(at).collect();
+        let y = x.iter().map(|&v| steady_stress(&law, v)).collect();
+        let dotted = Series::new("steady-state law", x, y);
+        panel
+            .series
+            .push(dotted.stroke(Stroke::Dotted).colour(GREY));
+    }
+    debug_assert!(law.bounds_state() || lo >= 0.0);
+    panel
+}
+
+/// How far the interfaces differ: ln psi_1 - ln psi_2, against stress.
+pub fn asymmetry(rows: &Rows) -> Panel {
+    let apart = combined(rows, ["state_1", "state_2"], |a, b| (a / b).ln());
+    Panel {
+        series: vec![Series::new("", apart, column(rows, "stress"))],
+        ..Panel::new(
+            "asymmetric subspace",
+            Axis::linear("ln ψ₁ − ln ψ₂"),
+            Axis::linear("stress τ [aσ]"),
+        )
+    }
+}
+
+/// The phase space (tau, w_1 + w_2, w_1 - w_2), w = log10 psi, seen from two sides.
+pub fn phase_space(rows: &Rows) -> Vec<Panel> {
+    let sum = || combined(rows, ["state_1", "state_2"], |a, b| (a * b).log10());
+    let apart = || combined(rows, ["state_1", "state_2"], |a, b| (a / b).log10());
+    let panel = |title: &str, y: &str, x: Vec<f64>, z: Vec<f64>| Panel {
+        series: vec![Series::new("", x, z)],
+        ..Panel::new(title, Axis::linear("w₁ + w₂"), Axis::linear(y))
+    };
+    vec![
+        panel(
+            "phase space",
+            "stress τ [aσ]",
+            sum(),
+            column(rows, "stress"),
+        ),
+        panel(
+            "the same from above, w = log₁₀ ψ",
+            "w₁ − w₂",
+            sum(),
+            apart(),
+        ),
+    ]
+}
+
+/// The return map, its diagonal thin.
+pub fn return_map(map: &Map) -> Panel {
+    let mut panel = views::return_map(&map.plan, &map.rows);
+    if let Some(diagonal) = panel.series.last_mut() {
+        *diagonal = diagonal.clone().stroke(Stroke::Dotted).colour(GREY);
+    }
+    panel
+}
