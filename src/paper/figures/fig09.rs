@@ -16,7 +16,7 @@ pub const FIGURE: Product = Product {
     title: "Bifurcation diagram at small stiffness, K = 0.05, computed",
     caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same in the narrow neighbourhood of 2V_M, where everything happens between V_H = 0.05 and 0.08.
 
-(c) and (d) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|. The asymmetric branch from the first Hopf point ends at a pitchfork on the symmetric branch (triangle), soon after torus and period-doubling points; the one from the second Hopf point comes down, folds at SN and reaches the symmetric branch subcritically. Between the two pitchforks the symmetric orbits are stable.",
+(c) and (d) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|, on a logarithmic axis, on which asymmetric orbits fall steeply towards the pitchforks where they meet the symmetric ones (not drawn, for theirs is zero). The branch from the first Hopf point ends so soon after torus and period-doubling points; the one from the second Hopf point comes down in V_H, folds at the saddle-node and goes back, unstable, to the symmetric branch. Between the two pitchforks the symmetric orbits are stable, beside the asymmetric ones from the fold on.",
     alt: "Four panels against driving velocity: extremes of stress over the whole range and near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
     scenes: &["fig09", "fig09-equilibria"],
     make: Make::Figure(make),
@@ -25,6 +25,9 @@ pub const FIGURE: Product = Product {
 /// V_H in the frames: all, and the crowd.
 const ALL: (f64, f64) = (0.03, 1000.0);
 const CROWD: (f64, f64) = (0.0495, 0.085);
+
+/// Asymmetries in the frames.
+const APART: (f64, f64) = (1e-9, 20.0);
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let (orbits, rest) = (
@@ -71,7 +74,7 @@ fn asymmetry(title: &str, orbits: &Branches, (lo, hi): (f64, f64)) -> Panel {
         ..Panel::new(
             title,
             Axis::log("driving velocity V_H [V*]").within(lo, hi),
-            Axis::linear("|ln ψ₁ − ln ψ₂| at greatest stress"),
+            Axis::log("|ln ψ₁ − ln ψ₂| at greatest stress").within(APART.0, APART.1),
         )
     }
 }
