@@ -69,6 +69,9 @@ pub mod paper;
 
 pub mod cli;
 
+#[doc = include_str!("../docs/guide.md")]
+pub mod guide {}
+
 pub use error::{Error, Result};
 
 #[cfg(doctest)]
