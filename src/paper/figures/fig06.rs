@@ -1,7 +1,6 @@
 //! Fig. 6: the phase diagram, all curves of bifurcations in the (V_H, K) plane.
 
 use super::plane::{in_plane, method, resonances};
-use crate::bifurcation::Label;
 use crate::error::Result;
 use crate::output::plot::{Axis, Drawing, Note, Panel, Series, Stroke};
 use crate::paper::pieces::Pieces;
@@ -73,7 +72,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     let mut panel = Panel::new(
         "",
-        Axis::log("driving velocity V_H [V*]").within(1e-2, 1e5),
+        Axis::log("driving velocity V_H [V*]").within(1e-3, 1e6),
         Axis::linear("stiffness K [aσ/L]").within(0.0, 0.45),
     );
     for (scene, name, colour, stroke, wide) in CURVES {
@@ -93,8 +92,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     panel
         .marks
         .extend(double.into_iter().filter(|mark| mark.label == "1:2"));
-    let top = pieces.curves("fig06-orbit-pitchforks")?;
-    let top = top.special.iter().find(|one| one.label == Label::Top);
     let note = |x: f64, y: f64, text: &str| Note {
         x,
         y,
@@ -102,20 +99,17 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         colour: None,
     };
     panel.notes = vec![
-        note(0.022, 0.33, "both slide"),
-        note(3.0, 0.425, "one slides, steadily"),
-        note(3.0, 0.27, "asymmetric stick-slip"),
-        note(1.5e4, 0.15, "one slides or both"),
-        note(
-            top.map_or(1.25, |top| top.driving.value),
-            0.06,
-            "symmetric or asymmetric stick-slip",
-        ),
-        note(0.045, 0.415, "2V_M"),
-        note(810.0, 0.415, "2V_m"),
-        note(4.3e4, 0.415, "V_sn"),
-        note(25.0, 0.375, "H_a"),
-        note(25.0, 0.182, "H_s"),
+        note(7e-3, 0.33, "both slide"),
+        note(7.0, 0.425, "one slides, steadily"),
+        note(4.0, 0.27, "asymmetric stick-slip"),
+        note(6e3, 0.2, "one or both"),
+        note(2.1e5, 0.33, "both slide"),
+        note(12.0, 0.06, "symmetric or asymmetric stick-slip"),
+        note(0.05, 0.4, "2V_M"),
+        note(810.0, 0.4, "2V_m"),
+        note(4.3e4, 0.4, "V_sn"),
+        note(30.0, 0.3565, "H_a"),
+        note(30.0, 0.1878, "H_s"),
     ];
     Ok(Made {
         sheet,

@@ -14,17 +14,18 @@ use crate::views::branch_lines;
 pub const FIGURE: Product = Product {
     id: "fig09",
     title: "Bifurcation diagram at small stiffness, K = 0.05, computed",
-    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same in the narrow neighbourhood of 2V_M, where everything happens between V_H = 0.05 and 0.08.
+    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same near 2V_M, where almost everything happens, and (c) within the thousandth of V_H in which the symmetric orbit grows to full size.
 
-(c) and (d) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|, on a logarithmic axis, on which asymmetric orbits fall steeply towards the pitchforks where they meet the symmetric ones (not drawn, for theirs is zero). The branch from the first Hopf point ends so soon after torus and period-doubling points; the one from the second Hopf point comes down in V_H, folds at the saddle-node and goes back, unstable, to the symmetric branch. Between the two pitchforks the symmetric orbits are stable, beside the asymmetric ones from the fold on.",
-    alt: "Four panels against driving velocity: extremes of stress over the whole range and near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
+(d) to (f) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|, on a logarithmic axis, on which asymmetric orbits fall steeply towards the pitchforks where they meet the symmetric ones (not drawn, for theirs is zero). The branch from the first Hopf point does so after a torus point, two period doublings and a fold; the one from the second Hopf point comes down in V_H, folds at the saddle-node and goes back, unstable, to the symmetric branch. Between the two pitchforks the symmetric orbits are stable, beside the asymmetric ones from the fold on.",
+    alt: "Six panels against driving velocity: extremes of stress over the whole range and twice enlarged near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
     scenes: &["fig09", "fig09-equilibria"],
     make: Make::Figure(make),
 };
 
-/// V_H in the frames: all, and the crowd.
+/// V_H in the frames: all, the crowd, and the thick of it.
 const ALL: (f64, f64) = (0.03, 1000.0);
 const CROWD: (f64, f64) = (0.0495, 0.085);
+const THICK: (f64, f64) = (0.06635, 0.06655);
 
 /// Asymmetries in the frames.
 const APART: (f64, f64) = (1e-9, 20.0);
@@ -47,17 +48,28 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         &rest.special,
         &rest.plan.system.units,
     );
-    let mut crowd = amplitudes("(b) near 2V_M", &orbits, &rest, CROWD);
-    crowd.keys.clear();
+    let stress = |title: &str, driving| amplitudes(title, &orbits, &rest, driving);
+    let bare = |panel: Panel| Panel {
+        keys: Vec::new(),
+        ..panel
+    };
+    let columns = vec![
+        vec![
+            stress("(a) extremes of stress", ALL),
+            asymmetry("(d) asymmetry at greatest stress", &orbits, ALL),
+        ],
+        vec![
+            bare(stress("(b) near 2V_M", CROWD)),
+            asymmetry("(e) near 2V_M", &orbits, CROWD),
+        ],
+        vec![
+            bare(stress("(c) nearer", THICK)),
+            asymmetry("(f) nearer", &orbits, THICK),
+        ],
+    ];
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![
-            vec![
-                amplitudes("(a) extremes of stress", &orbits, &rest, ALL),
-                asymmetry("(c) asymmetry", &orbits, ALL),
-            ],
-            vec![crowd, asymmetry("(d) asymmetry near 2V_M", &orbits, CROWD)],
-        ])),
+        drawing: Some(Drawing::columns(columns)),
         method: method(orbits.plan.following.tolerance),
     })
 }
@@ -74,7 +86,7 @@ fn asymmetry(title: &str, orbits: &Branches, (lo, hi): (f64, f64)) -> Panel {
         ..Panel::new(
             title,
             Axis::log("driving velocity V_H [V*]").within(lo, hi),
-            Axis::log("|ln ψ₁ − ln ψ₂| at greatest stress").within(APART.0, APART.1),
+            Axis::log("|ln ψ₁ − ln ψ₂|").within(APART.0, APART.1),
         )
     }
 }

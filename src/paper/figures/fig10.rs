@@ -1,8 +1,9 @@
 //! Fig. 10: the symmetric and the asymmetric orbit at K = 0.05, V_H = 0.2, both stable.
 
-use super::runs::{between, in_time, method, phase_space, plane_with_law};
+use super::runs::{between, method, with_phase_space};
 use crate::error::Result;
-use crate::output::plot::{Block, Drawing};
+use crate::output::Rows;
+use crate::output::plot::Drawing;
 use crate::paper::pieces::{Pieces, Run};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -11,7 +12,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig10",
     title: "Symmetric and asymmetric stick-slip, both stable, at K = 0.05, V_H = 0.2",
-    caption: "The last three cycles of two runs that differ in their start alone. (a) A symmetric start stays symmetric for ever, and so does the orbit it ends on. (b) An asymmetric start finds the asymmetric orbit. Both look alike in stress; what differs are the peaks of the slip rates, and, while both interfaces creep through the slow part of the cycle, next to nothing. From left to right: in time; in the plane of slip rate and stress with the steady-state law; the phase space (τ, w₁ + w₂, w₁ − w₂), w = log₁₀ ψ, from two sides.",
+    caption: "The last three cycles of two runs that differ in their start alone. (a) A symmetric start stays symmetric for ever, and so does the orbit it ends on. (b) An asymmetric start finds the asymmetric orbit. Both look alike in stress; what differs are the peaks of the slip rates, and, while both interfaces creep through the slow part of the cycle, next to nothing. From left to right: in time; in the plane of slip rate and stress with the steady-state law; the phase space (τ, w₁ + w₂, w₁ − w₂), w = log₁₀ ψ, from three sides.",
     alt: "Two rows of panels: stress, states and slip rates in time, the phase plane, and two projections of the phase space. In the upper row both interfaces are one curve, in the lower row their slip rates differ at the peaks.",
     scenes: &["fig10a", "fig10b"],
     make: Make::Figure(make),
@@ -28,21 +29,13 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: Some(Drawing::blocks(vec![
-            block("(a) symmetric", &a),
-            block("(b) asymmetric", &b),
+            with_phase_space("(a) symmetric", &a, &last(&a)),
+            with_phase_space("(b) asymmetric", &b, &last(&b)),
         ])),
         method: format!("(a) {}, in two dimensions; (b) {}", method(&a), method(&b)),
     })
 }
 
-fn block(title: &str, run: &Run) -> Block {
-    let rows = between(&run.rows, run.plan.until - SHOWN, run.plan.until);
-    Block {
-        title: title.into(),
-        columns: vec![
-            in_time(run, &rows),
-            vec![plane_with_law(run, &rows)],
-            phase_space(&rows),
-        ],
-    }
+fn last(run: &Run) -> Rows {
+    between(&run.rows, run.plan.until - SHOWN, run.plan.until)
 }

@@ -1,12 +1,11 @@
 //! Fig. 13: the torus at K = 0.2, V_H = 0.102.
 
-use super::runs::{between, in_time, method, plane_with_law, return_map};
+use super::runs::{between, method, with_returns};
 use crate::error::Result;
-use crate::output::plot::{Block, Drawing};
+use crate::output::plot::Drawing;
 use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
-use crate::views::states_at_returns;
 
 /// The figure.
 pub const FIGURE: Product = Product {
@@ -29,14 +28,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let rows = between(&run.rows, run.plan.until - SHOWN, run.plan.until);
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::blocks(vec![Block {
-            title: String::new(),
-            columns: vec![
-                in_time(&run, &rows),
-                vec![plane_with_law(&run, &rows)],
-                vec![return_map(&map), states_at_returns(&map.rows)],
-            ],
-        }])),
+        drawing: Some(Drawing::blocks(vec![with_returns("", &run, &rows, &map)])),
         method: format!(
             "{}; {} returns after {}",
             method(&run),

@@ -1,9 +1,10 @@
 //! Fig. 16: K = 0.14 past the torus bifurcation and near the resonance 1:4.
 
-use super::runs::{between, in_time, method, plane_with_law, return_map};
+use super::runs::{between, method, with_returns};
 use crate::error::Result;
-use crate::output::plot::{Block, Drawing};
-use crate::paper::pieces::{Map, Pieces, Run};
+use crate::output::Rows;
+use crate::output::plot::Drawing;
+use crate::paper::pieces::{Pieces, Run};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
 
@@ -31,8 +32,8 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: Some(Drawing::blocks(vec![
-            block("(a) V_H = 0.0768", &a, &map_a),
-            block("(b) V_H = 0.079", &b, &map_b),
+            with_returns("(a) V_H = 0.0768", &a, &last(&a), &map_a),
+            with_returns("(b) V_H = 0.079", &b, &last(&b), &map_b),
         ])),
         method: format!(
             "(a) {}; (b) {}; returns landed on exactly",
@@ -42,14 +43,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     })
 }
 
-fn block(title: &str, run: &Run, map: &Map) -> Block {
-    let rows = between(&run.rows, run.plan.until - SHOWN, run.plan.until);
-    Block {
-        title: title.into(),
-        columns: vec![
-            in_time(run, &rows),
-            vec![plane_with_law(run, &rows)],
-            vec![return_map(map)],
-        ],
-    }
+fn last(run: &Run) -> Rows {
+    between(&run.rows, run.plan.until - SHOWN, run.plan.until)
 }

@@ -2,7 +2,7 @@
 
 use crate::friction::{Law, steady_stress};
 use crate::output::Rows;
-use crate::output::plot::{Axis, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Panel, Series, Stroke};
 use crate::paper::pieces::{Map, Run};
 use crate::views;
 
@@ -51,7 +51,7 @@ pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
 }
 
 /// The phase plane with the steady-state law as a dotted line.
-pub fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
+fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
     let mut panel = views::phase_plane(&run.plan, rows);
     let law = run.plan.system.law;
     let rates = [column(rows, "slip_rate_1"), column(rows, "slip_rate_2")].concat();
@@ -73,7 +73,7 @@ pub fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
 }
 
 /// How far the interfaces differ: ln psi_1 - ln psi_2, against stress.
-pub fn asymmetry(rows: &Rows) -> Panel {
+fn asymmetry(rows: &Rows) -> Panel {
     let apart = combined(rows, ["state_1", "state_2"], |a, b| (a / b).ln());
     Panel {
         series: vec![Series::new("", apart, column(rows, "stress"))],
@@ -85,32 +85,50 @@ pub fn asymmetry(rows: &Rows) -> Panel {
     }
 }
 
-/// The phase space (tau, w_1 + w_2, w_1 - w_2), w = log10 psi, seen from two sides.
-pub fn phase_space(rows: &Rows) -> Vec<Panel> {
+/// A run with its return map: in time, in the phase plane and the asymmetric subspace, and at the section.
+pub fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
+    Block {
+        title: title.into(),
+        columns: vec![
+            in_time(run, rows),
+            vec![plane_with_law(run, rows), asymmetry(rows)],
+            vec![return_map(map), views::states_at_returns(&map.rows)],
+        ],
+    }
+}
+
+/// A run with its path in the phase plane and in the phase space.
+pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Block {
+    let [front, side, above] = phase_space(rows);
+    Block {
+        title: title.into(),
+        columns: vec![
+            in_time(run, rows),
+            vec![plane_with_law(run, rows), front],
+            vec![side, above],
+        ],
+    }
+}
+
+/// The phase space (tau, w_1 + w_2, w_1 - w_2), w = log10 psi, seen from three sides.
+fn phase_space(rows: &Rows) -> [Panel; 3] {
     let sum = || combined(rows, ["state_1", "state_2"], |a, b| (a * b).log10());
     let apart = || combined(rows, ["state_1", "state_2"], |a, b| (a / b).log10());
-    let panel = |title: &str, y: &str, x: Vec<f64>, z: Vec<f64>| Panel {
-        series: vec![Series::new("", x, z)],
-        ..Panel::new(title, Axis::linear("w₁ + w₂"), Axis::linear(y))
+    let panel = |title: &str, names: [&str; 2], x: Vec<f64>, y: Vec<f64>| Panel {
+        series: vec![Series::new("", x, y)],
+        ..Panel::new(title, Axis::linear(names[0]), Axis::linear(names[1]))
     };
-    vec![
-        panel(
-            "phase space",
-            "stress τ [aσ]",
-            sum(),
-            column(rows, "stress"),
-        ),
-        panel(
-            "the same from above, w = log₁₀ ψ",
-            "w₁ − w₂",
-            sum(),
-            apart(),
-        ),
+    let (tau, stress) = ("stress τ [aσ]", || column(rows, "stress"));
+    let (both, difference) = ("w₁ + w₂, w = log₁₀ ψ", "w₁ − w₂");
+    [
+        panel("phase space", [both, tau], sum(), stress()),
+        panel("from the side", [difference, tau], apart(), stress()),
+        panel("from above", [both, difference], sum(), apart()),
     ]
 }
 
 /// The return map, its diagonal thin.
-pub fn return_map(map: &Map) -> Panel {
+fn return_map(map: &Map) -> Panel {
     let mut panel = views::return_map(&map.plan, &map.rows);
     if let Some(diagonal) = panel.series.last_mut() {
         *diagonal = diagonal.clone().stroke(Stroke::Dotted).colour(GREY);
