@@ -88,15 +88,17 @@ fn stress(branches: &Branches, title: &str) -> Panel {
             .map(|&v| steady_stress(&law, part * v))
             .collect()
     };
-    panel.series.push(
-        Series::new("τ_ss(V_H)", driving.clone(), of(1.0))
-            .stroke(Stroke::Dotted)
-            .colour(6),
-    );
-    panel.series.push(
-        Series::new("τ_ss(V_H/2)", driving.clone(), of(0.5))
-            .stroke(Stroke::Dashed)
-            .colour(6),
-    );
+    let thin = |label: &str, part, stroke| {
+        Series::new(label, driving.clone(), of(part))
+            .stroke(stroke)
+            .colour(6)
+    };
+    // Below the others, for the branches lie on them.
+    panel
+        .series
+        .insert(0, thin("τ_ss(V_H)", 1.0, Stroke::Dotted));
+    panel
+        .series
+        .insert(1, thin("τ_ss(V_H/2)", 0.5, Stroke::Dashed));
     panel
 }

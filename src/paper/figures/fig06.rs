@@ -104,7 +104,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         note(4.0, 0.27, "asymmetric stick-slip"),
         note(6e3, 0.2, "one or both"),
         note(2.1e5, 0.33, "both slide"),
-        note(12.0, 0.06, "symmetric or asymmetric stick-slip"),
+        note(8.0, 0.065, "symmetric stick-slip too"),
         note(0.05, 0.4, "2V_M"),
         note(810.0, 0.4, "2V_m"),
         note(4.3e4, 0.4, "V_sn"),

@@ -3,7 +3,7 @@
 use super::plane::{lines, mark, method, symbol};
 use crate::bifurcation::{Label, LocusRow};
 use crate::error::Result;
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
 use crate::paper::pieces::{Curves, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -18,8 +18,8 @@ pub const FIGURE: Product = Product {
     make: Make::Figure(make),
 };
 
-/// Resonances: theta/pi and name.
-const LINES: [(f64, &str); 3] = [(0.5, "1:4"), (2.0 / 3.0, "1:3"), (1.0, "1:2")];
+/// theta/pi at the resonances 1:4, 1:3 and 1:2.
+const LINES: [f64; 3] = [0.5, 2.0 / 3.0, 1.0];
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let torus = pieces.curves("fig12")?;
@@ -54,16 +54,9 @@ fn panel(torus: &Curves, title: &str, x: Axis, of: fn(&LocusRow) -> f64) -> Pane
     let least = xs.iter().copied().fold(f64::INFINITY, f64::min);
     let most = xs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut series = vec![lines(torus, "", (2, Stroke::Solid), of, angle).wide()];
-    let mut notes = Vec::new();
-    for (height, name) in LINES {
+    for height in LINES {
         let line = Series::new("", vec![least, most], vec![height; 2]);
         series.push(line.stroke(Stroke::Dotted).colour(6));
-        notes.push(Note {
-            x: least + 0.06 * (most - least),
-            y: height,
-            text: name.into(),
-            colour: Some(6),
-        });
     }
     let strong = |row: &&LocusRow| matches!(row.label, Some(Label::R2 | Label::R3 | Label::R4));
     let named = |row: &LocusRow| {
@@ -76,7 +69,6 @@ fn panel(torus: &Curves, title: &str, x: Axis, of: fn(&LocusRow) -> f64) -> Pane
     Panel {
         series,
         marks: torus.rows.iter().filter(strong).filter_map(named).collect(),
-        notes,
         ..Panel::new(title, x, Axis::linear("θ/π").within(0.0, 1.05))
     }
 }

@@ -4,10 +4,13 @@ use crate::friction::{Law, steady_stress};
 use crate::output::Rows;
 use crate::output::plot::{Axis, Block, Panel, Series, Stroke};
 use crate::paper::pieces::{Map, Run};
+use crate::scene::Dimension;
 use crate::views;
 
 /// Colours of the stronger and the weaker line: a law, a diagonal.
 const GREY: usize = 6;
+/// Returns up to this number are drawn broad.
+const FEW: usize = 400;
 /// Points of a law's curve.
 const LAW_POINTS: usize = 200;
 
@@ -100,13 +103,14 @@ pub fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
 /// A run with its path in the phase plane and in the phase space.
 pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Block {
     let [front, side, above] = phase_space(rows);
+    let mut columns = vec![in_time(run, rows), vec![plane_with_law(run, rows), front]];
+    // Equal interfaces leave nothing to be seen across.
+    if run.plan.dimension == Dimension::Full {
+        columns.push(vec![side, above]);
+    }
     Block {
         title: title.into(),
-        columns: vec![
-            in_time(run, rows),
-            vec![plane_with_law(run, rows), front],
-            vec![side, above],
-        ],
+        columns,
     }
 }
 
@@ -130,6 +134,9 @@ fn phase_space(rows: &Rows) -> [Panel; 3] {
 /// The return map, its diagonal thin.
 fn return_map(map: &Map) -> Panel {
     let mut panel = views::return_map(&map.plan, &map.rows);
+    for dots in panel.series.iter_mut().filter(|series| series.dots) {
+        dots.wide = map.rows.iter().len() <= FEW;
+    }
     if let Some(diagonal) = panel.series.last_mut() {
         *diagonal = diagonal.clone().stroke(Stroke::Dotted).colour(GREY);
     }
