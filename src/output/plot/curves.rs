@@ -3,7 +3,7 @@
 use super::canvas::{Canvas, Colour, Pixel, colour};
 use super::frame::Frame;
 use super::thin::thinned;
-use super::{Panel, Series, names, strokes, symbols};
+use super::{Panel, Series, Stroke, names, strokes, symbols};
 use crate::error::Result;
 use std::collections::HashSet;
 
@@ -60,12 +60,19 @@ fn line(
 ) -> Result<Vec<Pixel>> {
     let (x, y) = (&series.x, &series.y);
     let points = x.iter().zip(y).map(|(&a, &b)| frame.coordinates(a, b));
-    let mut seen = Vec::new();
+    let (mut seen, mut been) = (Vec::new(), strokes::Been::default());
     for curve in thinned(points, frame.per_pixel(), x.is_sorted()) {
         for piece in frame.window().line(&curve) {
             let piece: Vec<Pixel> = piece.into_iter().map(|at| frame.pixel(at)).collect();
-            strokes::draw(canvas, &piece, series.stroke, width, colour)?;
             seen.extend(names::along(&piece, SAMPLES));
+            let stretches = if series.stroke == Stroke::Solid || x.is_sorted() {
+                vec![piece]
+            } else {
+                strokes::first_times(&piece, &mut been)
+            };
+            for stretch in stretches {
+                strokes::draw(canvas, &stretch, series.stroke, width, colour)?;
+            }
         }
     }
     Ok(seen)

@@ -115,7 +115,7 @@ impl<'a> Page<'a> {
     }
 }
 
-/// Headings side by side are equally high, so that the frames below them are.
+/// Headings at the top of a block are equally high, and so are those of panels side by side: the frames below begin there.
 fn align(columns: &mut [Column<'_>]) {
     let strips: Vec<Vec<f64>> = columns
         .iter()
@@ -123,9 +123,13 @@ fn align(columns: &mut [Column<'_>]) {
         .collect();
     for column in columns {
         let panels = column.panels.len();
-        let alike = strips.iter().filter(|other| other.len() == panels);
-        for other in alike {
-            for (draft, strip) in column.panels.iter_mut().zip(other) {
+        for other in &strips {
+            let beside = if other.len() == panels { panels } else { 1 };
+            for (draft, strip) in column
+                .panels
+                .iter_mut()
+                .zip(&other[..beside.min(other.len())])
+            {
                 draft.strip = draft.strip.max(*strip);
             }
         }

@@ -14,8 +14,8 @@ const LINE: f64 = 20.0;
 /// Room above the first line and below the last.
 const AROUND: f64 = 6.0;
 /// Room after the title, and after an entry.
-const AFTER_TITLE: f64 = 28.0;
-const AFTER_ENTRY: f64 = 20.0;
+const AFTER_TITLE: f64 = 22.0;
+const AFTER_ENTRY: f64 = 16.0;
 /// Length of a line's sample: more than one turn of any pattern.
 const SAMPLE: f64 = 32.0;
 /// Room between a sample and its name.

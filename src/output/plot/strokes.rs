@@ -2,7 +2,9 @@
 
 use super::Stroke;
 use super::canvas::{Canvas, Colour, Pixel};
+use super::names::along;
 use crate::error::Result;
+use std::collections::HashMap;
 
 /// Lengths of what is drawn and what is left out in turn, for a line of [`USUAL`] width.
 const DASHED: [f64; 2] = [7.0, 4.0];
@@ -23,6 +25,59 @@ pub fn pattern(stroke: Stroke, width: f64) -> Vec<f64> {
     };
     let longer = (width / USUAL).max(1.0);
     pattern.iter().map(|length| longer * length).collect()
+}
+
+/// Distance of the places by which a line knows that it was there before.
+const STEP: f64 = 0.5;
+/// What comes about as near as this to itself, after and over at least so many steps, is there again. Lines that near look
+/// like one.
+const NEAR: f64 = 0.7;
+const AGAIN: usize = 28;
+
+/// The stretches of a curve that don't follow an earlier one: the cycles of an orbit, drawn one over the other, would fill the
+/// gaps of the pattern. That it crosses itself breaks nothing. `been` holds where the curve was already, and when.
+pub fn first_times(line: &[Pixel], been: &mut Been) -> Vec<Vec<Pixel>> {
+    let places = along(line, STEP);
+    let again: Vec<bool> = places.iter().map(|&at| been.visit(at)).collect();
+    let mut stretches = Vec::new();
+    let mut kept: Vec<Pixel> = Vec::new();
+    let mut start = 0;
+    for run in again.chunk_by(|a, b| a == b) {
+        let stretch = &places[start..start + run.len()];
+        start += run.len();
+        if run[0] && run.len() > AGAIN {
+            stretches.extend((kept.len() > 1).then(|| std::mem::take(&mut kept)));
+            kept.clear();
+        } else {
+            kept.extend(stretch);
+        }
+    }
+    stretches.extend((!kept.is_empty()).then_some(kept));
+    stretches
+}
+
+/// Where a curve was.
+#[derive(Default)]
+pub struct Been {
+    /// The first visit of each square.
+    visits: HashMap<(i64, i64), usize>,
+    time: usize,
+}
+
+impl Been {
+    /// Comes to a place, and says whether it or its surroundings were visited before, not just now.
+    fn visit(&mut self, at: Pixel) -> bool {
+        let square = |x: f64| (x / NEAR).floor() as i64;
+        let (i, j) = (square(at.0), square(at.1));
+        let around = (-1..=1).flat_map(|di| (-1..=1).map(move |dj| (i + di, j + dj)));
+        let again = around
+            .filter_map(|square| self.visits.get(&square))
+            .any(|&visit| self.time > visit + AGAIN);
+        self.time += 1;
+        // What is there again stays there since the first time.
+        self.visits.entry((i, j)).or_insert(self.time);
+        again
+    }
 }
 
 /// What of a line is drawn.
@@ -134,6 +189,32 @@ mod test {
             assert!((a[0].0 + a[0].1 - b[0].0).abs() < 1e-9);
             assert!((length(a) - length(b)).abs() < 1e-9);
         }
+    }
+
+    #[test]
+    fn an_orbit_keeps_the_gaps_of_its_pattern() {
+        let turn = |n: i32, first: i32, last: i32| -> Vec<Pixel> {
+            let angle = |i: i32| std::f64::consts::TAU * f64::from(i) / f64::from(n);
+            let place = |i| (100.0 * f64::cos(angle(i)), 100.0 * f64::sin(angle(i)));
+            (first..=last).map(place).collect()
+        };
+        let sum = |lines: &[Vec<Pixel>]| -> f64 { lines.iter().map(|line| length(line)).sum() };
+        // Steps that don't divide the turn: no cycle repeats the points of another.
+        let once = sum(&first_times(&turn(100, 0, 100), &mut Been::default()));
+        let often = sum(&first_times(&turn(73, 0, 1000), &mut Been::default()));
+        assert!(
+            (once - 628.0).abs() < 12.0 && (often - once).abs() < 12.0,
+            "{once}, {often}"
+        );
+        // An eight crosses itself and stays whole.
+        let eight = |i: i32| {
+            let angle = std::f64::consts::TAU * f64::from(i) / 200.0;
+            (100.0 * angle.sin(), 60.0 * (2.0 * angle).sin())
+        };
+        let eight: Vec<Pixel> = (20..200).map(eight).collect();
+        let whole = first_times(&eight, &mut Been::default());
+        assert_eq!(whole.len(), 1);
+        assert!((sum(&whole) - length(&eight)).abs() < 1e-6);
     }
 
     #[test]
