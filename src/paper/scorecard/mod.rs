@@ -206,9 +206,13 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     all.extend(runs::of_fig_8(pieces)?);
     all.extend(orbits::at_moderate_stiffness(pieces)?);
     all.extend(orbits::at_small_stiffness(pieces)?);
-    all.extend(runs::of_figs_11_and_13(pieces)?);
+    all.extend(runs::of_fig_10(pieces)?);
+    all.extend(runs::of_fig_11(pieces)?);
+    all.extend(torus::of_section_4_2(pieces)?);
+    all.extend(runs::of_fig_13(pieces)?);
     all.extend(table1::entries(pieces)?);
-    all.extend(torus::entries(pieces)?);
+    all.extend(torus::of_section_4_3(pieces)?);
+    all.extend(torus::of_fig_16(pieces)?);
     all.extend(runs::of_fig_16(pieces)?);
     all.extend(stability::of_the_appendix(pieces)?);
     Ok(all)
@@ -249,6 +253,9 @@ fn answer(answer: &Answer) -> Value {
         Answer::Word(word) => json!(word),
     }
 }
+
+/// The words of a second computation of a special orbit.
+const BY_SECOND: &str = "a second integrator, from nodes cut to a few digits";
 
 /// The method of second computations of orbits: one that shares no step with Taylor's.
 fn second_method() -> Result<Choice> {
