@@ -4,7 +4,7 @@ use super::orbits::orbit_at;
 use super::{Answer, Entry, missing, second_method, whether};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::friction::{Law, Parameters};
+use crate::friction::Parameters;
 use crate::integrate::Choice;
 use crate::orbit::Begin;
 use crate::paper::{Pieces, Run};
@@ -50,23 +50,7 @@ pub fn of_fig_8(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     ])
 }
 
-/// Fig. 10(b): how the peaks of the two slip rates differ.
-pub fn of_fig_10(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let run = pieces.run("fig10b")?;
-    let peaks = [late(&run, "slip_rate_1")?, late(&run, "slip_rate_2")?].map(|all| range(&all).1);
-    let ratio = peaks[0].max(peaks[1]) / peaks[0].min(peaks[1]);
-    Ok(vec![
-        Entry::claim(
-            ("peaks-of-slip-rates", "Fig. 10, caption"),
-            "the largest slip rates of the slow and the fast interface on the asymmetric orbit, K = 0.05, V_H = 0.2",
-            "differ",
-            whether(ratio > 2.0, "differ", "are alike"),
-        )
-        .noted(format!("{:.4e} V* and {:.4e} V*", peaks[0].min(peaks[1]), peaks[0].max(peaks[1]))),
-    ])
-}
-
-/// Fig. 11: from an asymmetric start to the symmetric orbit; and how near its slow part is to the steady stress.
+/// Fig. 11: from an asymmetric start to the symmetric orbit.
 pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let run = pieces.run("fig11")?;
     let (first, second) = (late(&run, "state_1")?, late(&run, "state_2")?);
@@ -87,35 +71,7 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         )
         .beside("stability of the symmetric orbit, by a second integrator", Answer::Word(word(stable)))
         .noted(format!("|ln psi_1 - ln psi_2| falls from {:.3} to {end:.0e}", (begin[0] - begin[1]).abs())),
-        near_steady_stress(&run)?,
     ])
-}
-
-/// Where slip is slow, how far the stress is from tau_ss(v).
-fn near_steady_stress(run: &Run) -> Result<Entry> {
-    let (stress, rate) = (late(run, "stress")?, late(run, "slip_rate_1")?);
-    let time = late(run, "time")?;
-    let law = run.plan.system.law;
-    let steady = |v: f64| law.stress(v, law.steady_state(v));
-    let slow = 0.5 * run.plan.loading.driving;
-    let (mut all, mut near) = (0.0, 0.0);
-    for i in 1..time.len() {
-        let span = time[i] - time[i - 1];
-        if rate[i] < slow {
-            all += span;
-            if (stress[i] - steady(rate[i])).abs() < 0.5 {
-                near += span;
-            }
-        }
-    }
-    let part = near / all;
-    Ok(Entry::claim(
-        ("slow-part-near-steady-stress", "section 4.2, before Fig. 12"),
-        "the slow part of the orbits at very small K",
-        "near tau_ss(V)",
-        whether(part > 0.75, "near tau_ss(V)", "elsewhere"),
-    )
-    .noted(format!("at K = 0.01, V_H = 0.2, while each interface is slower than V_H/2, the stress is within 0.5 a sigma of tau_ss(v) for the part {part:.3} of the time")))
 }
 
 /// Fig. 13.

@@ -1,18 +1,18 @@
 //! Torus bifurcations and period doublings: section 4.3, Figs 12 to 14 and 16.
 
-use super::orbits::{at_top, orbit_at};
+use super::orbits::{AT_THE_TOP, at_top, orbit_at};
 use super::table1::{again, resonances};
-use super::{Answer, Entry, missing, second_method, slab, whether};
+use super::{Answer, BY_SECOND, Entry, missing, second_method, slab, whether};
 use crate::bifurcation::{Criticality, Label, LocusRow, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::field::State;
-use crate::integrate::{Choice, MAX_STEPS, Tolerances};
+use crate::integrate::{Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::Uncertain;
 use crate::number::polynomial::Crossing;
 use crate::orbit::Begin;
 use crate::paper::Pieces;
-use crate::section::{Surface, Watching, half_driving_stress, record};
+use crate::section::{Return, Surface, Watching, record};
 
 /// K of Figs 7 and 16.
 const STIFFNESS: f64 = 0.14;
@@ -39,74 +39,57 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "< 0.216",
             top.stiffness,
         )
-        .beside("where |mu| = 1 at that V_H, by a second integrator", Answer::Number(second))
-        .noted(format!("at V_H = {driving:.6}")),
-        stable_again(pieces)?,
+        .beside(AT_THE_TOP, Answer::Number(second))
+        .noted(format!(
+            "at V_H = {driving:.6}; the orbits become stable again in a {} at K = 0.14 and a {} at K = 0.05, as the text says",
+            stable_again(pieces, "fig07")?,
+            stable_again(pieces, "fig09")?,
+        )),
     ])
 }
 
-fn stable_again(pieces: &Pieces<'_>) -> Result<Entry> {
-    // The label at the largest V_H below which asymmetric orbits are unstable and above which they are stable.
-    let by = |scene: &str| -> Result<Label> {
-        let branches = pieces.branches(scene)?;
-        let rows: Vec<_> = branches.rows.iter().filter(|row| row.state[0] != row.state[1]).collect();
-        let windows = rows.windows(3).filter(|three| {
-            let verdicts = [three[0].verdict, three[2].verdict];
-            three[1].branch == three[0].branch
-                && three[1].branch == three[2].branch
-                && three[0].driving < three[1].driving
-                && verdicts == [Verdict::Unstable, Verdict::Stable]
-        });
-        let mut labels = windows.filter_map(|three| three[1].label);
-        labels.next().ok_or_else(|| missing("no orbits that become stable again"))
-    };
-    let (here, softer) = (by("fig07")?, by("fig09")?);
-    let as_told = here == Label::Tr && softer == Label::Pd;
-    Ok(Entry::claim(
-        ("stable-again", "section 4.2, after Fig. 11; Fig. 7(a)"),
-        "in what the asymmetric orbits become stable again, depending on K",
-        "torus or period doubling",
-        whether(as_told, "torus or period doubling", "otherwise"),
-    )
-    .noted(format!("{} at K = 0.14, {} at K = 0.05", here.meaning(), softer.meaning())))
+/// In what the asymmetric orbits of a scene become stable again, as V_H grows.
+fn stable_again(pieces: &Pieces<'_>, scene: &str) -> Result<&'static str> {
+    let branches = pieces.branches(scene)?;
+    let rows = branches.rows.iter().filter(|row| row.state[0] != row.state[1]);
+    let rows: Vec<_> = rows.collect();
+    let mut windows = rows.windows(3).filter(|three| {
+        let one = three.iter().all(|row| row.branch == three[0].branch);
+        let verdicts = [three[0].verdict, three[2].verdict];
+        let grows = three[0].driving < three[1].driving;
+        one && grows && verdicts == [Verdict::Unstable, Verdict::Stable]
+    });
+    let label = windows.find_map(|three| three[1].label);
+    let label = label.ok_or_else(|| missing("no orbits that become stable again"))?;
+    Ok(label.meaning())
 }
 
 /// Section 4.3.
 pub fn of_section_4_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let curves = pieces.curves("fig12")?;
-    let place = "section 4.3.2";
     let double = resonances(pieces)?.into_iter().find(|s| s.label == Label::R2);
     let double = double.ok_or_else(|| missing("the torus bifurcations have no resonance 1:2"))?;
     let [_, stiffness] = again(pieces, &double)?;
-    let last = curves.rows.iter().filter_map(|row| row.angle_over_pi).fold(0.0, f64::max);
-    let counts = [Label::R4, Label::R3, Label::R2].map(|label| {
-        let these = curves.special.iter().filter(|s| s.label == label);
-        these.count()
-    });
+    let angles = curves.rows.iter().filter_map(|row| row.angle_over_pi);
+    let last = angles.fold(0.0, f64::max);
     Ok(vec![
-        Entry::claim(
-            ("resonances-met", "Table 1; Fig. 14"),
-            "how often the curve of torus bifurcations meets the resonances 1:4, 1:3, 1:2",
-            "3, 1, 1",
-            whether(counts == [3, 1, 1], "3, 1, 1", "otherwise"),
-        ),
         finite_gradients(&curves.rows),
         Entry::number(
-            ("K-of-1:2-in-the-text", place),
+            ("K-of-1:2-in-the-text", "section 4.3.2"),
             "K of the resonance 1:2",
             "a sigma/L",
             "0.138",
             double.stiffness,
         )
-        .beside(super::BY_SECOND, Answer::Number(stiffness)),
+        .beside(BY_SECOND, Answer::Number(stiffness))
+        .noted(meeting(pieces, &double)?),
         Entry::claim(
             ("angle-at-1:2", "section 4.3.2; Fig. 14"),
             "theta/pi of the multipliers as the curve comes to the resonance 1:2",
-            "1",
-            whether(last > 0.999 && last <= 1.0, "1", "otherwise"),
+            "-> 1",
+            whether(last > 0.999 && last <= 1.0, "-> 1", "otherwise"),
         )
         .noted(format!("the largest on the points of the curve is {last:.6}; there the curve ends")),
-        meeting(pieces, &double)?,
     ])
 }
 
@@ -138,23 +121,15 @@ fn finite_gradients(rows: &[LocusRow]) -> Entry {
     .noted(format!("dK/dV_H is about {} there, in order along the curve", listed.join(", ")))
 }
 
-/// The resonance 1:2 on the curve of period doublings.
-fn meeting(pieces: &Pieces<'_>, double: &Special) -> Result<Entry> {
+/// How far the resonance 1:2 is from that on the curve of period doublings.
+fn meeting(pieces: &Pieces<'_>, double: &Special) -> Result<String> {
     let doublings = pieces.curves("fig12-period-doubling")?;
     let there = doublings.special.iter().find(|s| s.label == Label::R2);
     let there = there.ok_or_else(|| missing("the period doublings have no resonance 1:2"))?;
-    let apart = [
-        there.driving.value / double.driving.value - 1.0,
-        there.stiffness.value / double.stiffness.value - 1.0,
-    ];
-    let meet = apart.iter().all(|part| part.abs() < 1e-9);
-    Ok(Entry::claim(
-        ("meeting-at-1:2", "Figs 6, 12"),
-        "the torus and the period-doubling curve at the resonance 1:2",
-        "meet",
-        whether(meet, "meet", "are apart"),
-    )
-    .noted(format!("found on either curve by itself, the point is the same to the parts {:.0e} and {:.0e}", apart[0].abs(), apart[1].abs())))
+    let apart = (there.stiffness.value / double.stiffness.value - 1.0).abs();
+    Ok(format!(
+        "the same point ends the curve of period doublings, found by itself, to the part {apart:.0e}"
+    ))
 }
 
 /// The caption of Fig. 16, and which way the torus bifurcation goes.
@@ -177,21 +152,28 @@ pub fn of_fig_16(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let [driving, _] = again(pieces, special)?;
         all.push(
             Entry::number((id, "Fig. 16, caption"), quantity, "V*", printed, special.driving)
-                .beside(super::BY_SECOND, Answer::Number(driving))
+                .beside(BY_SECOND, Answer::Number(driving))
                 .misprinted("two methods agree on the computed value to nine digits, and the torus bifurcations of the same caption are right"),
         );
     }
     Ok(all)
 }
 
-/// Which way the first torus bifurcation goes: by its cubic coefficient, and by what returns beside the orbit do.
+/// Which way the first torus bifurcation goes: by its cubic coefficient; by returns above it, which come from both sides to a
+/// torus; and how returns below it that begin far off look as if it went the other way.
 fn way(pieces: &Pieces<'_>, torus: &Special) -> Result<Entry> {
+    /// V_H above and below.
+    const ABOVE: f64 = 0.0767405;
+    const BELOW: f64 = 0.0767;
     let word = match torus.criticality {
         Some(Criticality::Supercritical) => "supercritical",
         Some(Criticality::Subcritical) => "subcritical",
         _ => "undecided",
     };
-    let [early, late] = returns(pieces, torus)?;
+    let inside = distances(pieces, torus, ABOVE, 0.01)?;
+    let outside = distances(pieces, torus, ABOVE, 0.05)?;
+    let far = distances(pieces, torus, BELOW, 0.3)?;
+    let between = inside[0] < inside[1] && inside[1] < outside[1] && outside[1] < outside[0];
     let coefficient = torus.coefficient.unwrap_or(f64::NAN);
     Ok(Entry::claim(
         ("torus-at-0.14", "section 4.3.2; Fig. 16(a)"),
@@ -200,51 +182,51 @@ fn way(pieces: &Pieces<'_>, torus: &Special) -> Result<Entry> {
         word,
     )
     .beside(
-        "4000 returns beside the orbit at the bifurcation itself",
-        Answer::Word(whether(late < early, "supercritical", "subcritical")),
+        "returns above the bifurcation, from inside and outside of a torus",
+        Answer::Word(whether(between, "supercritical", "no torus found")),
     )
     .noted(format!(
-        "by a hair: the cubic coefficient is {coefficient:.5}, and the distance of returns falls from {early:.5} to {late:.5}; runs that start farther away than 0.07 escape, so that simulations look subcritical, as the text says"
+        "by a hair: the cubic coefficient is {coefficient:.5}; at V_H = {ABOVE} the distance of returns from the orbit grows from {:.4} to {:.4} and falls from {:.4} to {:.4}, to a torus between; at {BELOW}, where the orbit is stable, returns that begin 0.3 away stay {:.2} away, so that simulations look subcritical",
+        inside[0], inside[1], outside[0], outside[1], far[1]
     )))
 }
 
-/// The largest distance from the periodic point among early and among late returns, of a run that begins beside the orbit.
-fn returns(pieces: &Pieces<'_>, torus: &Special) -> Result<[f64; 2]> {
+/// The largest distance from the orbit's own return among early and among late returns, of a run that begins beside it.
+fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) -> Result<[f64; 2]> {
     /// Returns, and how many of them are looked at in either part.
-    const RETURNS: usize = 4000;
+    const RETURNS: usize = 3000;
     const WINDOW: usize = 500;
-    /// How far off the run begins, in ln psi.
-    const BESIDE: f64 = 0.01;
-    let orbit = torus.orbit.as_ref().ok_or_else(|| missing("a torus bifurcation without its orbit"))?;
-    let node = &orbit.nodes().0[0];
-    let slab = slab(pieces, torus.driving.value, torus.stiffness.value)?;
-    let field = slab.whole();
-    let stress = half_driving_stress(&slab.law, slab.loading.driving, 2);
-    let surface = Surface::stress(stress, Crossing::Downwards);
-    let tolerance = 1e-15;
-    let landed = |off: f64, skip: usize, returns: usize| -> Result<Vec<State<3>>> {
-        let mut taylor = Choice::Taylor.integrator::<3>(Tolerances::equal(tolerance)?, MAX_STEPS)?;
-        let watching = Watching {
-            skip,
-            returns,
-            patience: 100.0 * slab.rough_period(),
-            accuracy: tolerance,
-            waypoints: false,
-        };
-        let start = State::<3>::new(node[0], node[1] + off, node[2]);
-        let found = record(&mut *taylor, &*field, &start, &surface, &watching, &mut |_, _| {
-            crate::integrate::Control::Continue
-        });
-        Ok(found.returns.iter().map(|at| at.state).collect())
+    const TOLERANCE: f64 = 1e-15;
+    let orbit = torus.orbit.as_ref();
+    let node = &orbit.ok_or_else(|| missing("a torus bifurcation without its orbit"))?.nodes().0[0];
+    let begin = Begin::At {
+        start: (node[0], [node[1], node[2]]),
+        period: torus.period.map(|period| period.value),
     };
-    let fixed = landed(0.0, 0, 1)?;
-    let fixed = fixed.first().ok_or_else(|| missing("an orbit that does not come back"))?;
-    let passed = landed(BESIDE, 0, RETURNS)?;
-    if passed.len() < RETURNS {
+    let at = (driving, STIFFNESS);
+    let orbit = orbit_at(pieces, at, Symmetry::Asymmetric, begin, Choice::Taylor)?;
+    let fixed = State::<3>::from_column_slice(&orbit.point);
+    let slab = slab(pieces, driving, STIFFNESS)?;
+    let field = slab.whole();
+    // The orbit's point is where it falls through this very stress.
+    let surface = Surface::stress(slab.steady_stress(), Crossing::Downwards);
+    let watching = Watching {
+        skip: 0,
+        returns: RETURNS,
+        patience: 100.0 * slab.rough_period(),
+        accuracy: TOLERANCE,
+        waypoints: false,
+    };
+    let mut taylor = Choice::Taylor.integrator::<3>(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+    let start = fixed + State::<3>::new(0.0, beside, 0.0);
+    let mut seen = |_: usize, _: Option<&Return<3>>| Control::Continue;
+    let found = record(&mut *taylor, &*field, &start, &surface, &watching, &mut seen);
+    let all: Vec<f64> = found.returns.iter().map(|at| (at.state - fixed).norm()).collect();
+    if all.len() < RETURNS {
         return Err(missing("a run beside the torus bifurcation that does not come back"));
     }
-    let largest = |all: &[State<3>]| all.iter().map(|y| (y - fixed).norm()).fold(0.0, f64::max);
-    Ok([largest(&passed[..WINDOW]), largest(&passed[RETURNS - WINDOW..])])
+    let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
+    Ok([largest(&all[..WINDOW]), largest(&all[RETURNS - WINDOW..])])
 }
 
 /// A number that a second method found.
