@@ -252,16 +252,13 @@ fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
 /// The branch of asymmetric orbits from the Hopf point at the larger V_H, K = 0.05.
 fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
     let branches = pieces.branches("fig09")?;
-    // From a Hopf point of the asymmetric equilibrium, at fast driving.
-    let begins = |branch: &&[BranchRow]| {
-        let begin = &branch[0];
-        begin.label == Some(Label::Hb) && begin.driving > 1.0 && begin.state[0] != begin.state[1]
-    };
+    // The last branch of all, with the special points that it was told with.
     let mut all = branches.rows.chunk_by(|a, b| a.branch == b.branch);
-    let rows = all.find(begins);
-    let rows = rows.ok_or_else(|| missing("no orbits from H_a^2 at K = 0.05"))?;
-    let special: Vec<&BranchRow> = rows.iter().filter(|row| row.label.is_some()).collect();
-    let labels: Vec<Label> = special.iter().filter_map(|row| row.label).collect();
+    let rows = all.next_back().unwrap_or_default();
+    let points = &branches.special;
+    let begin = points.iter().rposition(|point| point.label == Label::Hb);
+    let special = &points[begin.unwrap_or(0)..];
+    let labels: Vec<Label> = special.iter().map(|point| point.label).collect();
     let fold = rows
         .iter()
         .position(|row: &BranchRow| row.label == Some(Label::Sn));
@@ -273,8 +270,7 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
     let as_told = labels == [Label::Hb, Label::Sn, Label::Pf]
         && all(before, Verdict::Stable)
         && all(after, Verdict::Unstable);
-    let mut points = branches.special.iter();
-    let pitchfork = points.find(|s| s.label == Label::Pf && s.driving.value > 1.0);
+    let pitchfork = special.iter().find(|point| point.label == Label::Pf);
     let pitchfork = pitchfork.ok_or_else(|| missing("no pitchfork of orbits at K = 0.05"))?;
     let way = match pitchfork.criticality {
         Some(Criticality::Supercritical) => "supercritical",
@@ -289,7 +285,7 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
     );
     let at: Vec<String> = special
         .iter()
-        .map(|row| format!("{:.6}", row.driving))
+        .map(|point| format!("{:.6}", point.driving.value))
         .collect();
     Ok([
         Entry::claim(
