@@ -55,7 +55,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
+            "bifurcation",
+            "orbit",
             "section",
+            "equilibrium",
             "integrate",
             "model",
             "series",
@@ -65,9 +68,11 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     ("output", &[]),
+    ("columns", &["scene", "bifurcation", "number", "output"]),
     (
         "cli",
         &[
+            "columns",
             "scene",
             "bifurcation",
             "orbit",

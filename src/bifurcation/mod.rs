@@ -168,6 +168,17 @@ pub enum Criticality {
     Undecided,
 }
 
+impl Criticality {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Criticality::Supercritical => "supercritical",
+            Criticality::Subcritical => "subcritical",
+            Criticality::Undecided => "undecided",
+        }
+    }
+}
+
 /// A special point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Special {

@@ -13,10 +13,6 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-pub const EXAMPLE: &str =
-    "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
-  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
-
 const EVENT_COLUMNS: [(&str, Quantity); 8] = [
     ("onset", Quantity::Time),
     ("recurrence", Quantity::Time),
@@ -270,12 +266,8 @@ fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
         unit => format!(" [{unit}]"),
     };
     let panel = |title: &str, x: &plot::Axis, y: plot::Axis, series| plot::Panel {
-        title: title.into(),
-        x: x.clone(),
-        y,
         series,
-        marks: Vec::new(),
-        zero_line: false,
+        ..plot::Panel::new(title, x.clone(), y)
     };
     let in_time =
         |field: &'static str| move |i: usize| (column("time"), column(&format!("{field}_{i}")));

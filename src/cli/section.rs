@@ -16,10 +16,6 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
 
-pub const EXAMPLE: &str =
-    "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:
-  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg";
-
 /// Slip rates that differ by more than this factor are drawn on logarithmic axes.
 const DECADES: f64 = 30.0;
 
@@ -227,7 +223,13 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
     };
     let (least, most) = ends(&[sums.as_slice(), next.as_slice()].concat());
     let log = least > 0.0 && most > DECADES * least;
-    let axis = |label: String, log| plot::Axis { label, log };
+    let axis = |label: String| {
+        if log {
+            plot::Axis::log(label)
+        } else {
+            plot::Axis::linear(label)
+        }
+    };
     let sum = if plan.system.interfaces == 2 {
         "v₁ + v₂"
     } else {
@@ -235,12 +237,8 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
     };
     let rate = report::short_unit(units, Quantity::SlipRate);
     let panel = |title: &str, x, y, series| plot::Panel {
-        title: title.into(),
-        x,
-        y,
         series,
-        marks: Vec::new(),
-        zero_line: false,
+        ..plot::Panel::new(title, x, y)
     };
     let stress = units.outward(Quantity::Stress, plan.stress);
     let stress_unit = report::short_unit(units, Quantity::Stress);
@@ -249,8 +247,8 @@ fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
             "return map at τ = {} [{stress_unit}]",
             output::seven_digits(stress)
         ),
-        axis(format!("{sum} at return n [{rate}]"), log),
-        axis(format!("{sum} at return n + 1 [{rate}]"), log),
+        axis(format!("{sum} at return n [{rate}]")),
+        axis(format!("{sum} at return n + 1 [{rate}]")),
         vec![
             plot::Series::dots("", sums, next),
             plot::Series::new("diagonal", vec![least, most], vec![least, most]),

@@ -3,7 +3,7 @@
 use super::marks::marks;
 use super::scale::Scale;
 use super::thin::thinned;
-use super::{FAMILY, FONT, Panel, Series, Side, names, unrendered};
+use super::{Block, FAMILY, FONT, Panel, Series, Side, Stroke, names, unrendered};
 use crate::error::Result;
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
@@ -43,11 +43,15 @@ const GAP: f64 = 3.5;
 /// Distance of the points along curves that names avoid.
 const SAMPLES: f64 = 2.5;
 /// Okabe and Ito: told apart by all.
-const COLOURS: [RGBColor; 4] = [
+const COLOURS: [RGBColor; 8] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
     RGBColor(0, 158, 115),
     RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(125, 125, 125),
+    RGBColor(0, 0, 0),
 ];
 pub const INK: RGBColor = RGBColor(40, 40, 40);
 const GRID: RGBColor = RGBColor(228, 228, 228);
@@ -63,7 +67,11 @@ pub fn font(size: f64, colour: RGBColor) -> TextStyle<'static> {
     (FAMILY, size * FINE).into_font().color(&colour)
 }
 
-pub fn svg(columns: &[Vec<Panel>]) -> Result<String> {
+pub fn svg(blocks: &[Block]) -> Result<String> {
+    let columns: Vec<Vec<Panel>> = blocks
+        .iter()
+        .flat_map(|block| block.columns.clone())
+        .collect();
     // Registering again the same font under the same name changes nothing.
     plotters::style::register_font(FAMILY, FontStyle::Normal, FONT)
         .map_err(|_| unrendered("the built-in font is damaged"))?;
@@ -77,7 +85,7 @@ pub fn svg(columns: &[Vec<Panel>]) -> Result<String> {
         let root = SVGBackend::with_string(&mut text, (px(size.0) as u32, px(size.1) as u32))
             .into_drawing_area();
         root.fill(&WHITE).map_err(unrendered)?;
-        for (area, panels) in root.split_evenly((1, columns.len())).iter().zip(columns) {
+        for (area, panels) in root.split_evenly((1, columns.len())).iter().zip(&columns) {
             for (area, panel) in area.split_evenly((panels.len(), 1)).iter().zip(panels) {
                 draw(area, panel)?;
             }
@@ -192,7 +200,7 @@ fn curves(
                 |&(a, b): &(f64, f64)| ((a - x.lo) / per_pixel.0, (y.hi - b) / per_pixel.1);
             let piece_in_pixels: Vec<names::Pixel> = piece.iter().map(pixels).collect();
             seen.extend(names::along(&piece_in_pixels, SAMPLES));
-            if series.dashed {
+            if series.stroke != Stroke::Solid {
                 let dashes = DashedLineSeries::new(piece, px(DASH), px(GAP), style);
                 dashes.into_iter().try_for_each(|dash| area.draw(&dash))
             } else {
@@ -256,7 +264,7 @@ fn heading(strip: &Canvas<'_>, panel: &Panel) -> Result<()> {
         }
         let colour = colour(series, i);
         let style = colour.stroke_width(px(2.2) as u32);
-        let ends: &[(f64, f64)] = if series.dashed {
+        let ends: &[(f64, f64)] = if series.stroke != Stroke::Solid {
             &[(0.0, 6.0), (9.0, 15.0), (18.0, 24.0)]
         } else {
             &[(0.0, 22.0)]

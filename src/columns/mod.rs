@@ -1,10 +1,13 @@
-//! The columns of a row, declared once with what they show: CSV, tables and objects follow from them.
+//! The columns of rows, declared once with what they show: CSV, tables and objects follow from them.
 
-use super::report;
 use crate::number::Uncertain;
-use crate::output::Cell;
+use crate::output::{self, Cell};
 use crate::scene::{Quantity, Units};
 use serde_json::{Map, Value, json};
+
+mod bifurcation;
+
+pub use bifurcation::{branch_columns, locus_columns, special_columns};
 
 /// What a row has in a column, dimensionless.
 pub enum Entry {
@@ -132,7 +135,8 @@ pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, V
     let value = |column: &Column<R>| match (column.entry)(row) {
         Entry::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
         Entry::Uncertain(x) => x.map_or(Value::Null, |x| {
-            report::uncertain(units, column.quantity, x)
+            let x = units.outward_uncertain(column.quantity, x);
+            output::uncertain((x.value, x.uncertainty))
         }),
         Entry::Word(word) => json!(word),
         Entry::Count(n) => json!(n),
