@@ -67,6 +67,12 @@ impl CharacteristicCubic {
         bb * cc - 4.0 * c * cc - 4.0 * bb * b * d - 27.0 * d * d + 18.0 * b * c * d
     }
 
+    /// The real roots of P_3, ascending; a double one once.
+    pub fn real_roots(&self, k: f64) -> Vec<f64> {
+        let [b, c, d] = self.coefficients(k);
+        real_roots(&[d, c, b, 1.0])
+    }
+
     /// The K of which s is a root; `None` if there is no positive one.
     pub fn stiffness_of(&self, s: f64) -> Option<f64> {
         let product = (s - self.one.s) * (s - self.two.s);
@@ -86,14 +92,6 @@ impl CharacteristicCubic {
             a_3,
         ];
         let turning = wronskian(&m, &n);
-        // all roots are within Cauchy's bound
-        let last = turning[4].abs();
-        let largest = turning.iter().fold(0.0_f64, |x, c| x.max(c.abs()));
-        let bound = 1.0 + largest / last;
-        let mut found = Vec::new();
-        for length in [bound, -bound] {
-            roots(&turning, length, &mut found);
-        }
         let at = |s: f64| {
             let k = -evaluate(&m, s) / evaluate(&n, s);
             (k > 0.0 && k.is_finite()).then_some(Tangency {
@@ -101,7 +99,7 @@ impl CharacteristicCubic {
                 growth_rate: s,
             })
         };
-        let mut tangencies: Vec<_> = found.iter().filter_map(|root| at(root.at)).collect();
+        let mut tangencies: Vec<_> = real_roots(&turning).into_iter().filter_map(at).collect();
         tangencies.sort_by(|a, b| a.stiffness.total_cmp(&b.stiffness));
         tangencies
     }
@@ -112,6 +110,20 @@ impl CharacteristicCubic {
         let squared = crossing::asymmetric_frequency(&self.one, &self.two, k);
         (k > 0.0 && k.is_finite() && squared > 0.0).then(|| (k, squared.sqrt()))
     }
+}
+
+/// All real roots but 0, ascending: they are within Cauchy's bound.
+fn real_roots(coefficients: &[f64]) -> Vec<f64> {
+    let leading = coefficients[coefficients.len() - 1].abs();
+    let largest = coefficients.iter().fold(0.0_f64, |x, c| x.max(c.abs()));
+    let bound = 1.0 + largest / leading;
+    let mut found = Vec::new();
+    for length in [bound, -bound] {
+        roots(coefficients, length, &mut found);
+    }
+    let mut found: Vec<f64> = found.iter().map(|root| root.at).collect();
+    found.sort_by(f64::total_cmp);
+    found
 }
 
 /// m' n - m n' of a cubic and a quadratic.
