@@ -1,7 +1,7 @@
 //! What is made of the paper: its figures, its table and the scorecard, each with the scenes that it needs.
 
 use super::pieces::Pieces;
-use super::scorecard;
+use super::{figures, scorecard};
 use super::sheet::Sheet;
 use crate::error::{Error, Result};
 use crate::output::plot::Drawing;
@@ -46,7 +46,15 @@ pub struct Product {
 }
 
 /// All, in the order of the paper.
-pub const PRODUCTS: &[&Product] = &[&scorecard::TABLE1, &scorecard::SCORECARD];
+pub const PRODUCTS: &[&Product] = &[
+    &figures::fig01::FIGURE,
+    &figures::fig02::FIGURE,
+    &figures::fig04::FIGURE,
+    &figures::fig15::FIGURE,
+    &figures::fig17::FIGURE,
+    &scorecard::TABLE1,
+    &scorecard::SCORECARD,
+];
 
 impl Product {
     /// The product of that name; figures may be called by their number alone, as 7, fig7 or fig07.

@@ -5,7 +5,7 @@ use super::curve::{cells, geometric};
 use crate::error::Result;
 use crate::friction::{Law, Parameters, critical_stiffness, steady_stress};
 use crate::model::scales::{Material, Scales};
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Side, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// What it is.
@@ -40,7 +40,7 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
     let mut stiffness = stiffness_panel();
     let strokes = [Stroke::Dashed, Stroke::Solid];
     let rows = [sampled(&ruina, &scales), sampled(&bounded, &scales)];
-    let names = ["Dieterich-Ruina, law (4)", "bounded state, law (6)"];
+    let names = ["Dieterich-Ruina (4)", "law (6)"];
     for (i, rows) in rows.iter().enumerate() {
         let column = |j: usize| rows.iter().map(|row| row[j]).collect::<Vec<f64>>();
         let line = |y: Vec<f64>| {
@@ -64,13 +64,9 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
         let mu = scales.friction * steady_stress(&bounded, v);
         let rate = v * scales.slip_rate;
         sheet.add("maximum", &["slip_rate", "friction"], cells([[rate, mu]]));
-        let label = format!("V_M = {:.2}×10⁻⁸ m/s, μ_ss = {mu:.3}", rate / 1e-8);
-        friction
-            .marks
-            .push(Mark::new(rate, mu, label).side(Side::Below));
-        stiffness
-            .marks
-            .push(Mark::new(rate, 0.0, "V_M").side(Side::Above));
+        let label = format!("V_M = {:.2}×10⁻⁸ m/s: μ_ss = {mu:.3}", rate / 1e-8);
+        friction.marks.push(Mark::new(rate, mu, label));
+        stiffness.marks.push(Mark::new(rate, 0.0, "V_M"));
     }
     Ok(Made {
         sheet,
@@ -108,8 +104,8 @@ fn friction_panel() -> Panel {
 }
 
 fn stiffness_panel() -> Panel {
-    let y = Axis::linear("critical stiffness k_c/σ (1/m)").within(0.0, 2e4);
-    let mut panel = Panel::new("(b) stability of one interface", rate_axis(), y);
+    let y = Axis::linear("critical stiffness k_c/σ (1/m)").within(-700.0, 2e4);
+    let mut panel = Panel::new("(b) stability", rate_axis(), y);
     let note = |x: f64, y: f64, text: &str| Note {
         x,
         y,

@@ -4,9 +4,9 @@
 use super::curve::{Curve, cells, even};
 use crate::equilibrium::Pitchfork;
 use crate::error::{Error, Result};
-use crate::friction::{ExtremumKind, Law, Parameters, Spinodal, steady_slope, steady_stress};
+use crate::friction::{ExtremumKind, Parameters, Spinodal, steady_slope, steady_stress};
 use crate::output::Cell;
-use crate::output::plot::{Axis, Block, Drawing, Mark, Panel, Series, Side, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Mark, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// What it is.
@@ -29,16 +29,69 @@ side on which equal sliding is unstable; where it is negative an unstable pair o
 /// c with which V_M and V_m nearly merge: they do at 2.90.
 const NEARLY_MERGED: f64 = 2.75;
 const POINTS: usize = 201;
+/// Of branches.
+const COLUMNS: [&str; 4] = ["driving", "slip_rate_1", "slip_rate_2", "stability"];
 
-/// A law about one of its extrema, as it is or turned about it.
-struct Case {
+/// What is shown.
+struct Given {
     part: &'static str,
-    law: Spinodal,
-    fork: Pitchfork,
+    residual_strength: f64,
+    kind: ExtremumKind,
+    /// Whether the law is turned by half a turn about the extremum.
     turned: bool,
     /// Slip rates that are shown, and the largest z, in that of the extremum.
     range: (f64, f64),
     largest: f64,
+}
+
+/// Both maxima, then both minima.
+const CASES: [Given; 4] = [
+    Given {
+        part: "maximum-supercritical",
+        residual_strength: 1e-3,
+        kind: ExtremumKind::Maximum,
+        turned: false,
+        range: (0.3, 2.5),
+        largest: 1.0,
+    },
+    Given {
+        part: "maximum-subcritical",
+        residual_strength: 1e-3,
+        kind: ExtremumKind::Minimum,
+        turned: true,
+        range: (0.1, 1.7),
+        largest: 0.7,
+    },
+    Given {
+        part: "minimum-supercritical",
+        residual_strength: NEARLY_MERGED,
+        kind: ExtremumKind::Minimum,
+        turned: false,
+        range: (0.45, 1.5),
+        largest: 0.36,
+    },
+    Given {
+        part: "minimum-subcritical",
+        residual_strength: 1e-3,
+        kind: ExtremumKind::Minimum,
+        turned: false,
+        range: (0.3, 1.9),
+        largest: 0.9,
+    },
+];
+
+/// A law about one of its extrema, as it is or turned about it.
+struct Case {
+    given: &'static Given,
+    law: Spinodal,
+    fork: Pitchfork,
+}
+
+/// [V_H, V_1, V_2] with V_1 > V_2, of an asymmetric state and of the parabola (24) at its z.
+struct Point {
+    state: [f64; 3],
+    near: [f64; 3],
+    stable: bool,
 }
 
 /// The figure.
@@ -46,59 +99,11 @@ struct Case {
 /// # Errors
 /// None that these laws allow.
 pub fn make(_: &Pieces<'_>) -> Result<Made> {
-    use ExtremumKind::{Maximum, Minimum};
-    let paper = Parameters::heslot_1994();
-    let merged = Parameters {
-        residual_strength: NEARLY_MERGED,
-        ..paper
-    };
-    let case = |part, parameters: Parameters, kind, turned, range, largest| -> Result<Case> {
-        let law = parameters.spinodal();
-        let fork = Pitchfork::all(&law)
-            .into_iter()
-            .find(|fork| fork.kind == kind);
-        Ok(Case {
-            part,
-            law,
-            fork: fork.ok_or_else(|| Error::Input("the law has no such extremum".into()))?,
-            turned,
-            range,
-            largest,
-        })
-    };
-    let maxima = [
-        case(
-            "maximum-supercritical",
-            paper,
-            Maximum,
-            false,
-            (0.3, 2.5),
-            1.0,
-        )?,
-        case("maximum-subcritical", paper, Minimum, true, (0.1, 1.7), 0.7)?,
-    ];
-    let minima = [
-        case(
-            "minimum-supercritical",
-            merged,
-            Minimum,
-            false,
-            (0.6, 1.4),
-            0.3,
-        )?,
-        case(
-            "minimum-subcritical",
-            paper,
-            Minimum,
-            false,
-            (0.3, 1.9),
-            0.7,
-        )?,
-    ];
     let mut sheet = Sheet::new();
-    let mut block = |title: &str, cases: [Case; 2]| -> Result<Block> {
+    let mut block = |title: &str, cases: &'static [Given]| -> Result<Block> {
         let mut columns = Vec::new();
-        for case in cases {
+        for given in cases {
+            let case = Case::new(given)?;
             columns.push(vec![case.stress(&mut sheet), case.branches(&mut sheet)?]);
         }
         Ok(Block {
@@ -107,8 +112,8 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
         })
     };
     let blocks = vec![
-        block("(a) τ_ss has a maximum", maxima)?,
-        block("(b) τ_ss has a minimum", minima)?,
+        block("(a) maximum of τ_ss", &CASES[..2])?,
+        block("(b) minimum of τ_ss", &CASES[2..])?,
     ];
     Ok(Made {
         sheet,
@@ -120,9 +125,25 @@ of (22); derivatives exact"
 }
 
 impl Case {
+    fn new(given: &'static Given) -> Result<Self> {
+        let parameters = Parameters {
+            residual_strength: given.residual_strength,
+            ..Parameters::heslot_1994()
+        };
+        let law = parameters.spinodal();
+        let mut forks = Pitchfork::all(&law).into_iter();
+        let fork = forks.find(|fork| fork.kind == given.kind);
+        let missing = || Error::Input("the law has no such extremum".into());
+        Ok(Case {
+            given,
+            law,
+            fork: fork.ok_or_else(missing)?,
+        })
+    }
+
     /// A slip rate of the law as it is drawn, from one of the law as it is.
     fn drawn(&self, v: f64) -> f64 {
-        if self.turned {
+        if self.given.turned {
             2.0 * self.fork.slip_rate - v
         } else {
             v
@@ -132,22 +153,27 @@ impl Case {
     /// The steady stress there.
     fn drawn_stress(&self, v: f64) -> f64 {
         let tau = steady_stress(&self.law, v);
-        if self.turned {
+        if self.given.turned {
             2.0 * steady_stress(&self.law, self.fork.slip_rate) - tau
         } else {
             tau
         }
     }
 
-    fn is_maximum(&self) -> bool {
-        (self.fork.kind == ExtremumKind::Maximum) != self.turned
+    /// What the extremum is called as it is drawn.
+    fn name(&self) -> &'static str {
+        if (self.fork.kind == ExtremumKind::Maximum) == self.given.turned {
+            "V_m"
+        } else {
+            "V_M"
+        }
     }
 
     fn stress(&self, sheet: &mut Sheet) -> Panel {
         let v_e = self.fork.slip_rate;
         let mut curve = Curve::default();
         // of the law as it is, and so that both ends are drawn as they are given
-        let ends = [self.range.0 * v_e, self.range.1 * v_e].map(|v| self.drawn(v));
+        let ends = [self.given.range.0 * v_e, self.given.range.1 * v_e].map(|v| self.drawn(v));
         let mut rates = even(ends[0], ends[1], POINTS);
         rates.push(v_e);
         rates.sort_by(|a, b| self.drawn(*a).total_cmp(&self.drawn(*b)));
@@ -157,95 +183,89 @@ impl Case {
         }
         let rows = (0..curve.x.len()).map(|i| [curve.x[i], curve.y[i]]);
         sheet.add(
-            format!("{}-law", self.part),
+            format!("{}-law", self.given.part),
             &["slip_rate", "stress"],
             cells(rows),
         );
-        let (name, kind, side) = if self.is_maximum() {
-            ("V_M", "maximum", Side::Above)
-        } else {
-            ("V_m", "minimum", Side::Below)
-        };
         let (critical, sign) = if self.fork.third > 0.0 {
             ("supercritical", ">")
         } else {
             ("subcritical", "<")
         };
         let mut panel = Panel::new(
-            format!("{kind}, {critical}: τ''' {sign} 0"),
+            format!("{critical}: τ_ss''' {sign} 0"),
             Axis::linear("slip rate V/V*"),
             Axis::linear("τ_ss/(aσ)"),
         );
         panel.series = curve.series(["strengthening", "weakening"], 0);
         let tau = steady_stress(&self.law, v_e);
-        panel.marks.push(Mark::new(v_e, tau, name).side(side));
+        panel.marks.push(Mark::new(v_e, tau, self.name()));
         panel
+    }
+
+    /// Along z.
+    fn asymmetric(&self) -> Result<Vec<Point>> {
+        let state = |lambda: f64, z: f64| {
+            let [one, two] = [lambda + z, lambda - z].map(|v| self.drawn(v));
+            [2.0 * self.drawn(lambda), one.max(two), one.min(two)]
+        };
+        let at = |i: usize| {
+            let z = self.given.largest * self.fork.slip_rate * (i as f64 / POINTS as f64);
+            let lambda = self.fork.branch(&self.law, z)?;
+            // (22)
+            let slopes = [lambda + z, lambda - z].map(|v| steady_slope(&self.law, v));
+            Ok(Point {
+                state: state(lambda, z),
+                near: state(self.fork.parabola(z), z),
+                stable: slopes[0] + slopes[1] > 0.0,
+            })
+        };
+        (1..=POINTS).map(at).collect()
     }
 
     fn branches(&self, sheet: &mut Sheet) -> Result<Panel> {
         let v_e = self.fork.slip_rate;
-        let [mut upper, mut lower] = [Curve::default(), Curve::default()];
-        let (mut parabola, mut rows) = (Vec::new(), Vec::new());
-        for i in 1..=POINTS {
-            // Closer together next to the pitchfork, where V_H changes with the square of z.
-            let z = self.largest * v_e * (i as f64 / POINTS as f64);
-            let lambda = self.fork.branch(&self.law, z)?;
-            let rates = [lambda + z, lambda - z];
-            // (22), divided by two where z = 0
-            let stable = rates
-                .iter()
-                .map(|&v| steady_slope(&self.law, v))
-                .sum::<f64>()
-                > 0.0;
-            let driving = 2.0 * self.drawn(lambda);
-            let [one, two] = rates.map(|v| self.drawn(v));
-            if i == 1 {
-                upper.push(2.0 * v_e, v_e, stable);
-                lower.push(2.0 * v_e, v_e, stable);
-            }
-            upper.push(driving, one.max(two), stable);
-            lower.push(driving, one.min(two), stable);
-            rows.push(row(driving, [one.max(two), one.min(two)], stable));
-            let near = self.drawn(self.fork.parabola(z));
-            parabola.push([2.0 * near, near + z, near - z]);
-        }
-        let columns = ["driving", "slip_rate_1", "slip_rate_2", "stability"];
-        sheet.add(format!("{}-asymmetric", self.part), &columns, rows);
-        let both = self.symmetric(&lower, sheet);
-        let near = parabola
-            .iter()
-            .map(|&[driving, one, two]| [driving, one, two]);
+        let points = self.asymmetric()?;
+        let rows = points.iter().map(|point| row(point.state, point.stable));
         sheet.add(
-            format!("{}-parabola", self.part),
-            &columns[..3],
-            cells(near),
+            format!("{}-asymmetric", self.given.part),
+            &COLUMNS,
+            rows.collect(),
         );
+        let rows = cells(points.iter().map(|point| point.near));
+        sheet.add(format!("{}-parabola", self.given.part), &COLUMNS[..3], rows);
 
         let mut panel = Panel::new(
             "",
             Axis::linear("driving velocity V_H/V*"),
             Axis::linear("V_1, V_2 (V*)"),
         );
-        panel.series = both.series(["V_1 = V_2, stable", "unstable"], 0);
-        panel
-            .series
-            .extend(upper.series(["V_1 ≠ V_2, stable", "V_1 ≠ V_2, unstable"], 1));
-        panel.series.extend(lower.series(["", ""], 1));
-        for (i, label) in [(1, "parabola (24)"), (2, "")] {
-            let column = |i: usize| parabola.iter().map(|row| row[i]).collect();
-            let line = Series::new(label, column(0), column(i));
+        let [mut upper, mut lower] = [Curve::default(), Curve::default()];
+        for (rate, curve) in [(1, &mut upper), (2, &mut lower)] {
+            // (24) below the branch that it approximates
+            let near = |i: usize| points.iter().map(|point| point.near[i]).collect();
+            let name = if rate == 1 { "parabola (24)" } else { "" };
+            let line = Series::new(name, near(0), near(rate));
             panel.series.push(line.stroke(Stroke::Dotted).colour(7));
+            curve.push(2.0 * v_e, v_e, points[0].stable);
+            for point in &points {
+                curve.push(point.state[0], point.state[rate], point.stable);
+            }
         }
-        let name = if self.is_maximum() { "2 V_M" } else { "2 V_m" };
+        let reach = (upper.x[POINTS] - 2.0 * v_e).abs();
+        panel.x = panel.x.within(2.0 * v_e - reach, 2.0 * v_e + reach);
+        let both = self.symmetric(reach, sheet);
+        panel.series.extend(both.series(["V_1 = V_2", ""], 0));
+        panel.series.extend(upper.series(["asymmetric"; 2], 1));
+        panel.series.extend(lower.series([""; 2], 1));
+        let name = format!("2 {}", self.name());
         panel.marks.push(Mark::new(2.0 * v_e, v_e, name));
         Ok(panel)
     }
 
-    /// V_1 = V_2 = V_H/2 as far again on the other side of the pitchfork.
-    fn symmetric(&self, branch: &Curve, sheet: &mut Sheet) -> Curve {
+    /// V_1 = V_2 = V_H/2 as far on both sides of the pitchfork.
+    fn symmetric(&self, reach: f64, sheet: &mut Sheet) -> Curve {
         let v_e = self.fork.slip_rate;
-        let last = branch.x[branch.x.len() - 1];
-        let reach = (last - 2.0 * v_e).abs();
         let mut curve = Curve::default();
         let [before, after] = [2.0 * v_e - reach, 2.0 * v_e + reach];
         // The stretch up to the pitchfork is what the state was before.
@@ -253,19 +273,19 @@ impl Case {
             let slope = steady_slope(&self.law, self.drawn(0.5 * at));
             curve.push(driving, 0.5 * driving, slope > 0.0);
         }
-        let rows = (0..3).map(|i| row(curve.x[i], [curve.y[i]; 2], curve.stable[i]));
-        let columns = ["driving", "slip_rate_1", "slip_rate_2", "stability"];
-        sheet.add(format!("{}-symmetric", self.part), &columns, rows.collect());
+        let rows = (0..3).map(|i| row([curve.x[i], curve.y[i], curve.y[i]], curve.stable[i]));
+        sheet.add(
+            format!("{}-symmetric", self.given.part),
+            &COLUMNS,
+            rows.collect(),
+        );
         curve
     }
 }
 
-fn row(driving: f64, rates: [f64; 2], stable: bool) -> Vec<Cell> {
+fn row(state: [f64; 3], stable: bool) -> Vec<Cell> {
     let stability = if stable { "stable" } else { "unstable" };
-    vec![
-        driving.into(),
-        rates[0].into(),
-        rates[1].into(),
-        stability.into(),
-    ]
+    let mut row: Vec<Cell> = state.map(Cell::Number).to_vec();
+    row.push(stability.into());
+    row
 }

@@ -45,7 +45,7 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
     let mu = ends.map(|v| scales.friction * steady_stress(&ruina, v));
     let k_c = ends.map(|v| critical_stiffness(&ruina, v));
     let line = |y: [f64; 2]| {
-        Series::new("Dieterich-Ruina law (4)", ends.to_vec(), y.to_vec())
+        Series::new("Dieterich-Ruina (4)", ends.to_vec(), y.to_vec())
             .stroke(Stroke::DashDot)
             .colour(1)
     };
@@ -86,11 +86,11 @@ fn friction_panel(law: &Spinodal, a: f64, sheet: &mut Sheet) -> Panel {
         .push(Series::new("spinodal law (36)", rates, mu).colour(0));
     for extremum in Extremum::all(law) {
         let (v, tau) = (extremum.slip_rate.value, extremum.stress.value);
-        let (part, label, side) = match extremum.kind {
-            ExtremumKind::Maximum => ("maximum", format!("V_M = {v:.4} V*"), Side::Above),
-            ExtremumKind::Minimum => ("minimum", format!("V_m = {v:.1} V*"), Side::Below),
+        let (part, label) = match extremum.kind {
+            ExtremumKind::Maximum => ("maximum", format!("V_M = {v:.4} V*")),
+            ExtremumKind::Minimum => ("minimum", format!("V_m = {v:.1} V*")),
         };
-        panel.marks.push(Mark::new(v, a * tau, label).side(side));
+        panel.marks.push(Mark::new(v, a * tau, label));
         sheet.add(
             part,
             &["slip_rate", "friction", "stress"],
@@ -101,7 +101,7 @@ fn friction_panel(law: &Spinodal, a: f64, sheet: &mut Sheet) -> Panel {
 }
 
 fn stability_panel(law: &Spinodal, sheet: &mut Sheet) -> Result<Panel> {
-    let y = Axis::linear("stiffness K = kL/(aσ)").within(0.0, 0.5);
+    let y = Axis::linear("stiffness K = kL/(aσ)").within(-0.017, 0.5);
     let mut panel = Panel::new("(b) stability of one interface", rate_axis(), y);
     let extrema = law.steady_extrema();
     // Between the extrema, with more points next to them, where the curve is steep.
@@ -116,14 +116,14 @@ fn stability_panel(law: &Spinodal, sheet: &mut Sheet) -> Result<Panel> {
     );
     panel
         .series
-        .push(Series::new("K = k_c(V)", rates, k_c).colour(0));
+        .push(Series::new("k_c(V)", rates, k_c).colour(0));
     for (v, name) in extrema.into_iter().zip(["V_M", "V_m"]) {
-        panel.marks.push(Mark::new(v, 0.0, name).side(Side::Above));
+        panel.marks.push(Mark::new(v, 0.0, name));
     }
     if let Some(maximum) = critical_stiffness_maximum(law)? {
         let (v, k) = (maximum.slip_rate.value, maximum.stiffness.value);
-        let label = format!("K = {k:.4} at V = {v:.3} V*");
-        panel.marks.push(Mark::new(v, k, label).side(Side::Above));
+        let label = format!("K = {k:.4}, V = {v:.3} V*");
+        panel.marks.push(Mark::new(v, k, label).side(Side::Below));
         sheet.add(
             "largest",
             &["slip_rate", "critical_stiffness"],

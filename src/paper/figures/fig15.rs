@@ -6,7 +6,7 @@ use crate::bifurcation::strong_resonance::{Around, Homoclinic, ResonanceCycle};
 use crate::error::Result;
 use crate::model::normal_form::StrongResonance;
 use crate::output::Cell;
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Side, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// What it is.
@@ -17,7 +17,7 @@ pub const FIGURE: Product = Product {
 bifurcation of the doubled orbit; global, a pair of homoclinic orbits of the origin, where tori of the doubled orbit become one; \
 sn, where a stable and an unstable torus merge. Stable are: in region 1 the orbit, in 2 and 3 a torus, in 4 and 5 a torus and the \
 doubled orbit, in 6 the doubled orbit. Between them are unstable tori: around each point of the doubled orbit in 4, around both \
-in 5. Below, the same for μ_2 < 0 with μ_1 over |μ_2|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
+in 5. Enlarged, the same for μ_2 < 0 with μ_1 over |μ_2|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
 resonance.\n\n(b) Steady states and the largest v of cycles along the paths l₁ and l₂, stable solid and unstable dashed. The \
 mirror images at −v are not drawn.",
     alt: "Left the plane of both parameters with curves that meet at the origin. Right two bifurcation diagrams: along the first \
@@ -34,7 +34,7 @@ const L_1: f64 = 0.4;
 const L_2: f64 = -0.5;
 /// mu_1 along them.
 const ALONG_1: (f64, f64) = (-0.3, 0.15);
-const ALONG_2: (f64, f64) = (-0.65, -0.25);
+const ALONG_2: (f64, f64) = (-0.58, -0.32);
 
 const NAMES: [(&str, usize, Stroke); 5] = [
     ("TR", 0, Stroke::Solid),
@@ -54,8 +54,12 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
     for ((name, _, _), points) in NAMES.iter().zip(&curves) {
         sheet.add(*name, &["mu_1", "mu_2"], cells(points.iter().copied()));
     }
-    let left = vec![plane(&curves), enlarged(&curves)];
-    let right = vec![first_path(&mut sheet)?, second_path(&mut sheet)?];
+    let left = vec![plane(&curves)];
+    let right = vec![
+        enlarged(&curves),
+        first_path(&mut sheet)?,
+        second_path(&mut sheet)?,
+    ];
     Ok(Made {
         sheet,
         drawing: Some(Drawing::columns(vec![left, right])),
@@ -120,7 +124,8 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         note(0.5, 0.55, "1: orbit"),
         note(-0.45, 0.55, "2: torus"),
         note(-0.6, -0.25, "3: torus"),
-        note(0.3, -0.4, "6: doubled orbit"),
+        note(-0.69, -0.75, "4"),
+        note(0.2, -0.4, "6: doubled orbit"),
         note(ALONG_1.1 + 0.05, L_1, "l₁"),
         note(ALONG_2.1 + 0.05, L_2, "l₂"),
     ];
@@ -160,7 +165,9 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         note(-0.9, -0.2, "4"),
         note(-0.777, -0.2, "5"),
         note(-0.725, -0.2, "6"),
-        note(-0.712, L_2 + 0.05, "l₂"),
+        note(-0.712, L_2 + 0.07, "l₂"),
+        note(-0.785, -0.7, "−4/5"),
+        note(-0.731, -0.7, "−0.752"),
     ];
     panel
 }
@@ -224,7 +231,8 @@ fn steady(
     curve
 }
 
-fn path_panel(title: &str, along: (f64, f64), top: f64) -> Panel {
+fn path_panel(name: &str, mu2: f64, along: (f64, f64), top: f64) -> Panel {
+    let title = format!("(b) along {name}: μ_2 = {mu2}").replace('-', "−");
     Panel::new(
         title,
         Axis::linear("μ_1").within(along.0, along.1),
@@ -234,7 +242,7 @@ fn path_panel(title: &str, along: (f64, f64), top: f64) -> Panel {
 
 /// l1: the origin loses its stability to a cycle.
 fn first_path(sheet: &mut Sheet) -> Result<Panel> {
-    let mut panel = path_panel(&format!("(b) along l₁: μ_2 = {L_1}"), ALONG_1, 1.2);
+    let mut panel = path_panel("l₁", L_1, ALONG_1, 1.2);
     let torus = StrongResonance::torus(L_1);
     let origin = steady(L_1, 0.0, ALONG_1, Some(torus), "l1-origin", sheet);
     // A = 2 sqrt(-mu_1) to leading order, and less than that
@@ -245,16 +253,14 @@ fn first_path(sheet: &mut Sheet) -> Result<Panel> {
     (tori.x[0], tori.y[0]) = (torus, 0.0);
     panel.series = origin.series(["orbit", ""], 7);
     panel.series.extend(tori.series(["torus", ""], 0));
-    panel
-        .marks
-        .push(Mark::new(torus, 0.0, "TR").side(Side::Above));
+    panel.marks.push(Mark::new(torus, 0.0, "TR"));
     Ok(panel)
 }
 
 /// l2: the states beside the origin lose theirs; cycles around one and around all three meet at the homoclinic orbits.
 fn second_path(sheet: &mut Sheet) -> Result<Panel> {
     const POINTS: usize = 41;
-    let mut panel = path_panel(&format!("(b) along l₂: μ_2 = {L_2}"), ALONG_2, 1.65);
+    let mut panel = path_panel("l₂", L_2, ALONG_2, 1.5);
     let beside = StrongResonance::steady(L_2).unwrap_or(0.0);
     let second = StrongResonance::second_torus(L_2);
     let global = Homoclinic::at(L_2)?;

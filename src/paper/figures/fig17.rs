@@ -6,7 +6,7 @@ use crate::bifurcation::equilibria::{CharacteristicCubic, Tangency};
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, stability, steady_states};
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
-use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Side, Stroke, Symbol};
+use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// What it is.
@@ -30,6 +30,8 @@ const DRIVING: f64 = 0.06;
 /// Of growth rates, and of Q_3 and L, in the picture.
 const THOUSANDTHS: f64 = 1e3;
 const MILLIONTHS: f64 = 1e6;
+/// s in the picture of the cubic.
+const SHOWN: (f64, f64) = (-9e-3, 1.15e-2);
 
 /// The state with all that is marked.
 struct Setting {
@@ -112,64 +114,61 @@ impl Setting {
     }
 
     fn intersections(&self, sheet: &mut Sheet) -> Panel {
-        const POINTS: usize = 401;
-        let range = (-9e-3, 1.15e-2);
-        let cubic = &self.cubic;
-        let line = [range.0, range.1].map(|s| cubic.line(s) * MILLIONTHS);
+        let line = [SHOWN.0, SHOWN.1].map(|s| self.cubic.line(s) * MILLIONTHS);
         let height = line[1] - line[0];
+        let ends = [SHOWN.0 * THOUSANDTHS, SHOWN.1 * THOUSANDTHS];
         let mut panel = Panel::new(
             "(a) Q_3(s) and L(s)",
-            Axis::linear("s (10⁻³ V*/L)").within(range.0 * THOUSANDTHS, range.1 * THOUSANDTHS),
+            Axis::linear("s (10⁻³ V*/L)").within(ends[0], ends[1]),
             Axis::linear("Q_3, L (10⁻⁶)").within(line[0] - 0.05 * height, line[1] + 0.1 * height),
         );
-        let s = even(range.0, range.1, POINTS);
-        let in_thousandths = |s: &[f64]| s.iter().map(|s| s * THOUSANDTHS).collect::<Vec<f64>>();
-        let touching = self.tangencies[0];
-        for (k, label, stroke, colour) in [
-            (touching.stiffness, "Q_3, touching", Stroke::Solid, 0),
-            (
-                0.5 * touching.stiffness,
-                "Q_3, half of that K",
-                Stroke::Dashed,
-                1,
-            ),
-            (self.critical.0, "Q_3, K = k_c*", Stroke::DashDot, 2),
-        ] {
-            let values: Vec<f64> = s.iter().map(|&s| cubic.q_3(k, s)).collect();
-            let rows = s
-                .iter()
-                .zip(&values)
-                .map(|(&s, &q)| [k, s, q, cubic.line(s)]);
-            let part = format!("cubic-{label}").replace([',', ' '], "");
-            sheet.add(part, &["stiffness", "s", "q_3", "line"], cells(rows));
-            let y = values.iter().map(|q| q * MILLIONTHS).collect();
-            let curve = Series::new(label, in_thousandths(&s), y);
-            panel.series.push(curve.stroke(stroke).colour(colour));
-            let mut roots = cubic.real_roots(k);
-            if k == touching.stiffness {
-                // the double root as the tangency has it: rounding takes it away, or makes two of it
-                roots.retain(|&s| s < 0.0);
-                roots.push(touching.growth_rate);
-            }
-            sheet.add(
-                "real-roots",
-                &["stiffness", "s"],
-                cells(roots.iter().map(|&s| [k, s])),
-            );
-            panel.marks.extend(roots.into_iter().map(|s| {
-                let (x, y) = (s * THOUSANDTHS, cubic.line(s) * MILLIONTHS);
-                Mark::new(x, y, "").symbol(Symbol::Circle).colour(colour)
-            }));
-        }
-        let ends = in_thousandths(&[range.0, range.1]);
-        panel
-            .series
-            .push(Series::new("L", ends, line.to_vec()).colour(7));
         panel.zero_line = true;
+        let touching = self.tangencies[0];
+        let k = touching.stiffness;
+        // The double root as the tangency has it: rounding takes it away, or makes two of it.
+        let mut roots = self.cubic.real_roots(k);
+        roots.retain(|&s| s < 0.0);
+        roots.push(touching.growth_rate);
+        let tangent = ("Q_3 tangent to L", Stroke::Solid, 0);
+        self.curve(k, &roots, tangent, &mut panel, sheet);
+        let smaller = ("Q_3, smaller K", Stroke::Dashed, 1);
+        let roots = self.cubic.real_roots(0.5 * k);
+        self.curve(0.5 * k, &roots, smaller, &mut panel, sheet);
+        let critical = ("Q_3, K = k_c*", Stroke::DashDot, 2);
+        let roots = self.cubic.real_roots(self.critical.0);
+        self.curve(self.critical.0, &roots, critical, &mut panel, sheet);
+        let line = Series::new("L", ends.to_vec(), line.to_vec());
+        panel.series.push(line.colour(7));
         panel
     }
 
-    /// [K, the pair's real roots or twice its real part, the third root, the imaginary part].
+    /// Q_3 at one K, with its real roots marked.
+    fn curve(
+        &self,
+        k: f64,
+        roots: &[f64],
+        (label, stroke, colour): (&str, Stroke, usize),
+        panel: &mut Panel,
+        sheet: &mut Sheet,
+    ) {
+        const POINTS: usize = 401;
+        let cubic = &self.cubic;
+        let grid = even(SHOWN.0, SHOWN.1, POINTS);
+        let rows = grid.iter().map(|&s| [k, s, cubic.q_3(k, s), cubic.line(s)]);
+        sheet.add("cubic", &["stiffness", "s", "q_3", "line"], cells(rows));
+        let rows = cells(roots.iter().map(|&s| [k, s]));
+        sheet.add("real-roots", &["stiffness", "s"], rows);
+        let x = grid.iter().map(|s| s * THOUSANDTHS).collect();
+        let y = grid.iter().map(|&s| cubic.q_3(k, s) * MILLIONTHS).collect();
+        let line = Series::new(label, x, y).stroke(stroke).colour(colour);
+        panel.series.push(line.wide());
+        panel.marks.extend(roots.iter().map(|&s| {
+            let (x, y) = (s * THOUSANDTHS, cubic.line(s) * MILLIONTHS);
+            Mark::new(x, y, "").colour(colour)
+        }));
+    }
+
+    /// [K, the pair's real roots or twice its real part, the third root, the imaginary part where there is one].
     fn roots(&self) -> Result<Vec<[f64; 5]>> {
         const POINTS: usize = 301;
         let [first, second] = self.tangencies.map(|t| t.stiffness);
@@ -189,9 +188,9 @@ impl Setting {
             let found = stability(&self.law, &self.state, k)?.eigenvalues;
             let re = |i: usize| found[i].re;
             rows.push(if k < first {
-                [k, re(0), re(1), re(2), 0.0]
+                [k, re(0), re(1), re(2), f64::NAN]
             } else if k > second {
-                [k, re(1), re(2), re(0), 0.0]
+                [k, re(1), re(2), re(0), f64::NAN]
             } else {
                 let pair = found.iter().position(|s| s.im > 0.0).unwrap_or(0);
                 let third = if pair == 0 { 2 } else { 0 };
@@ -229,10 +228,8 @@ impl Setting {
             line("imaginary part", 4, 1).stroke(Stroke::Dashed),
             line("third root", 3, 2),
         ];
-        let tangent = |t: Tangency| {
-            Mark::new(t.stiffness, t.growth_rate * THOUSANDTHS, "tangency").side(Side::Above)
-        };
-        let critical = Mark::new(self.critical.0, 0.0, "k_c*").side(Side::Above);
+        let tangent = |t: Tangency| Mark::new(t.stiffness, t.growth_rate * THOUSANDTHS, "tangency");
+        let critical = Mark::new(self.critical.0, 0.0, "k_c*");
         let all = self.tangencies.map(tangent).into_iter().chain([critical]);
         panel.marks = all
             .filter(|mark| (stiffness.0..stiffness.1).contains(&mark.x))
