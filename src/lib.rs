@@ -63,11 +63,14 @@ pub mod scene;
 
 pub mod output;
 
-pub mod columns;
+pub mod views;
 
 pub mod paper;
 
 pub mod cli;
+
+#[doc = include_str!("../docs/guide.md")]
+pub mod guide {}
 
 pub use error::{Error, Result};
 

@@ -329,8 +329,8 @@ fn figure_17_touches_where_the_discriminant_vanishes() {
     let [first, _, _] = numbers(&made, "first-tangency", names)[0];
     let [critical, _, _] = numbers(&made, "critical", names)[0];
     for number in [
-        format!("s_1 = {s_1:.5}"),
-        format!("s_2 = −{:.5}", -s_2),
+        format!("s₁ = {s_1:.5}"),
+        format!("s₂ = −{:.5}", -s_2),
         format!("K = {first:.5}"),
         format!("k_c* = {critical:.4}"),
     ] {

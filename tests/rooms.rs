@@ -68,11 +68,11 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     ("output", &[]),
-    ("columns", &["scene", "bifurcation", "number", "output"]),
+    ("views", &["scene", "bifurcation", "number", "output"]),
     (
         "cli",
         &[
-            "columns",
+            "views",
             "scene",
             "bifurcation",
             "orbit",

@@ -2,16 +2,15 @@
 
 use super::Ending;
 use super::continuation::Task;
-use super::diagram;
-use crate::columns;
 use crate::error::Result;
 use crate::scene::{BranchOptions, BranchPlan, Of};
+use crate::views;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     let plan = BranchPlan::new(options)?;
     let task = Task {
         system: &plan.system,
-        columns: columns::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
+        columns: views::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
         numerics: plan.numerics.clone(),
         slab: &plan.request.slab,
         second: plan.following.second,
@@ -27,6 +26,6 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     task.run(
         &report,
         |known, seen| plan.follow(known, seen),
-        |rows, _| diagram::branches(rows, &plan.along, &plan.request.slab, &plan.system),
+        |rows, _| views::branches(rows, &plan.along, &plan.request.slab, &plan.system),
     )
 }

@@ -6,12 +6,12 @@ use super::resume::Kept;
 use super::rows::Row;
 use super::{Ending, interrupt, special, written};
 use crate::bifurcation::{Criticality, Event, Label, Seen, Special, orbits};
-use crate::columns::{self, Column};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
 use crate::orbit::Slab;
 use crate::output::{Format, RowWriter, plot, seven_digits};
 use crate::scene::{OutputOptions, Quantity, System};
+use crate::views::{self, Column};
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
@@ -151,7 +151,7 @@ impl<'a, R: Row> Task<'a, R> {
         let units = &self.system.units;
         let rows = out.rows.iter();
         let rows: Vec<Value> = rows
-            .map(|row| Value::Object(columns::object(&self.columns, row, units)))
+            .map(|row| Value::Object(views::object(&self.columns, row, units)))
             .collect();
         let result = json!({
             "rows": rows,
@@ -200,7 +200,7 @@ impl<'a, R: Row> Out<'a, R> {
     fn new(task: &'a Task<'a, R>, report: &'a Report<'a>) -> Result<Self> {
         let remarks = report.remarks(task.system, &task.numerics);
         let table = report.format == Format::Table;
-        let names = columns::names(&task.columns, table);
+        let names = views::names(&task.columns, table);
         let mut kept = Kept::default();
         if let Some(path) = task.resume {
             let plain: Vec<String> = names.iter().map(|(name, _)| name.clone()).collect();
@@ -246,7 +246,7 @@ impl<'a, R: Row> Out<'a, R> {
     fn row(&mut self, row: &R) -> io::Result<()> {
         self.open()?;
         let table = self.report.format == Format::Table;
-        let cells = columns::cells(&self.task.columns, row, &self.task.system.units, table);
+        let cells = views::cells(&self.task.columns, row, &self.task.system.units, table);
         self.writer
             .as_mut()
             .map_or(Ok(()), |writer| writer.row(&cells))

@@ -201,7 +201,7 @@ fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -
 fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let out = |quantity, x| system.units.outward(quantity, x);
-    let unit = |quantity| report::short_unit(&system.units, quantity);
+    let unit = |quantity| system.units.short_name(quantity);
     let marks = Extremum::all(&system.law)
         .iter()
         .map(|extremum| {

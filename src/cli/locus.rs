@@ -2,16 +2,15 @@
 
 use super::Ending;
 use super::continuation::Task;
-use super::diagram;
-use crate::columns;
 use crate::error::Result;
 use crate::scene::{LocusOptions, LocusPlan};
+use crate::views;
 
 pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     let plan = LocusPlan::new(options)?;
     let task = Task {
         system: &plan.system,
-        columns: columns::locus_columns(),
+        columns: views::locus_columns(),
         numerics: plan.numerics.clone(),
         slab: &plan.request.slab,
         second: plan.following.second,
@@ -27,6 +26,6 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     task.run(
         &report,
         |known, seen| plan.follow(known, seen),
-        |rows, special| diagram::curves(rows, special, plan.curve.title, &plan.system.units),
+        |rows, special| views::curves(rows, special, plan.curve.title, &plan.system.units),
     )
 }

@@ -2,7 +2,6 @@
 
 mod branch;
 mod continuation;
-mod diagram;
 mod equilibria;
 mod integrate;
 mod interrupt;
@@ -11,6 +10,7 @@ mod locus;
 mod orbit;
 mod progress;
 mod report;
+mod reproduce;
 mod resume;
 mod rows;
 mod run;
@@ -44,6 +44,12 @@ enum Command {
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
+    /// The whole paper: every figure, Table 1, a scorecard of what it says, and a report to read
+    #[command(after_help = reproduce::EXAMPLE)]
+    Reproduce(reproduce::ReproduceOptions),
+    /// One figure of the paper, as CSV and SVG
+    #[command(after_help = reproduce::FIGURE_EXAMPLE)]
+    Figure(reproduce::FigureOptions),
 }
 
 /// How a command ended, if it ended well.
@@ -90,6 +96,8 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let ended = match &line.command {
         Command::Compute(command) => compute(command, &words),
         Command::Run(options) => run::run(options, &words),
+        Command::Reproduce(options) => reproduce::run(options),
+        Command::Figure(options) => reproduce::run_figure(options),
     };
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,

@@ -1,10 +1,10 @@
 //! Special points as objects and as a short table.
 
 use crate::bifurcation::{Criticality, Special};
-use crate::columns::{self, special_columns};
 use crate::number::Uncertain;
 use crate::output::shortest;
 use crate::scene::{Quantity, System, Units};
+use crate::views::{self, special_columns};
 use serde_json::{Value, json};
 
 /// What a second method says of the special points.
@@ -20,7 +20,7 @@ pub struct Checks {
 pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value> {
     let columns = special_columns();
     let object = |(i, one): (usize, &Special)| {
-        let mut object = columns::object(&columns, one, units);
+        let mut object = views::object(&columns, one, units);
         if let Some(method) = checks.method {
             let difference = checks.differences.get(i).copied().flatten();
             let check = difference.map(|[driving, stiffness, period]| {

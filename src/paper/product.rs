@@ -1,7 +1,8 @@
 //! What is made of the paper: its figures, its table and the scorecard, each with the scenes that it needs.
 
+use super::figures;
 use super::pieces::Pieces;
-use super::{figures, scorecard};
+use super::scorecard;
 use super::sheet::Sheet;
 use crate::error::{Error, Result};
 use crate::output::plot::Drawing;
@@ -49,8 +50,20 @@ pub struct Product {
 pub const PRODUCTS: &[&Product] = &[
     &figures::fig01::FIGURE,
     &figures::fig02::FIGURE,
+    &figures::fig03::FIGURE,
     &figures::fig04::FIGURE,
+    &figures::fig05::FIGURE,
+    &figures::fig06::FIGURE,
+    &figures::fig07::FIGURE,
+    &figures::fig08::FIGURE,
+    &figures::fig09::FIGURE,
+    &figures::fig10::FIGURE,
+    &figures::fig11::FIGURE,
+    &figures::fig12::FIGURE,
+    &figures::fig13::FIGURE,
+    &figures::fig14::FIGURE,
     &figures::fig15::FIGURE,
+    &figures::fig16::FIGURE,
     &figures::fig17::FIGURE,
     &scorecard::TABLE1,
     &scorecard::SCORECARD,

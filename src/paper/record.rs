@@ -14,6 +14,8 @@ pub const FILE: &str = "manifest.json";
 /// All that was made, by product.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
+    /// Seconds that the last run took which made something.
+    pub seconds: Option<f64>,
     /// What made it.
     pub machine: BTreeMap<String, String>,
     /// By the product's name.

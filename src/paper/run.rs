@@ -109,13 +109,18 @@ pub fn reproduce(
         .num_threads(order.threads.unwrap_or(0))
         .build()
         .map_err(|error| Error::Input(format!("there are no threads to compute on: {error}")))?;
+    let begun = Instant::now();
     pool.install(|| workshop.work(&wanted));
     let mut done = workshop.done.into_inner().expect("no thread panicked");
     let place = |product: &Product| order.products.iter().position(|one| one.id == product.id);
     done.made.sort_by_key(|(product, _)| place(product));
     done.failed.sort_by_key(|(product, _)| place(product));
     if order.report {
-        let record = workshop.record.into_inner().expect("no thread panicked");
+        let mut record = workshop.record.into_inner().expect("no thread panicked");
+        if !wanted.is_empty() {
+            record.seconds = Some(begun.elapsed().as_secs_f64());
+            write(&order.out.join(record::FILE), &record.bytes())?;
+        }
         report::write(&order.out, &record)?;
     }
     Ok(done)

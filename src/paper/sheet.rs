@@ -1,10 +1,10 @@
 //! The numbers behind a picture, as CSV: several sets of rows one below the other, each under its own name.
 
 use super::pieces::{Branches, Curves, Map, Run};
-use crate::columns::{self, Column, branch_columns, locus_columns};
 use crate::error::{Error, Result};
 use crate::output::{Cell, CsvRows, RowWriter, Rows};
 use crate::scene::Of;
+use crate::views::{self, Column, branch_columns, locus_columns};
 
 /// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -79,7 +79,7 @@ impl Sheet {
         special: &[crate::bifurcation::Special],
         units: &crate::scene::Units,
     ) {
-        self.add_rows(name, &columns::special_columns(), special, units);
+        self.add_rows(name, &views::special_columns(), special, units);
     }
 
     fn add_rows<R>(
@@ -89,8 +89,8 @@ impl Sheet {
         rows: &[R],
         units: &crate::scene::Units,
     ) {
-        let names = columns::names(columns, false);
-        let cells = |row| columns::cells(columns, row, units, false);
+        let names = views::names(columns, false);
+        let cells = |row| views::cells(columns, row, units, false);
         self.parts.push(Part {
             name: name.into(),
             columns: names.into_iter().map(|(name, _)| name).collect(),

@@ -1,12 +1,23 @@
 //! Pictures: panels of curves, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
 //! a machine without fonts.
 
+mod canvas;
+mod clip;
+mod curves;
 mod draw;
+mod frame;
+mod layout;
+mod legend;
 mod marks;
 mod names;
 mod panel;
+mod reach;
 mod scale;
+mod strokes;
+mod symbols;
+mod text;
 mod thin;
+mod ticks;
 
 pub use panel::{Axis, Block, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol};
 
@@ -18,8 +29,6 @@ use std::sync::Arc;
 
 /// DejaVu Sans, reduced to what labels need.
 static FONT: &[u8] = include_bytes!("../../../assets/font/plot.ttf");
-/// The names by which a viewer of the SVG finds a font like ours.
-const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 /// Pixels of a PNG per unit of the SVG.
 const PNG_ZOOM: f32 = 2.0;
 

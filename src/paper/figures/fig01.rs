@@ -8,7 +8,7 @@ use crate::model::scales::{Material, Scales};
 use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
-/// What it is.
+/// The figure.
 pub const FIGURE: Product = Product {
     id: "fig01",
     title: "Steady-state friction laws and their stability",
@@ -26,11 +26,7 @@ along it. The critical stiffness of law 4 is constant; that of law 6 rises from 
 const RATES: (f64, f64) = (1e-10, 1e-3);
 const POINTS: usize = 701;
 
-/// The figure.
-///
-/// # Errors
-/// None that the paper's parameters allow.
-pub fn make(_: &Pieces<'_>) -> Result<Made> {
+fn make(_: &Pieces<'_>) -> Result<Made> {
     // Over the normal stress: that of 1 Pa.
     let (_, scales) = Material::heslot_1994(1.0).dimensionless()?;
     let parameters = Parameters::heslot_1994();
@@ -95,7 +91,7 @@ fn sampled(law: &impl Law, scales: &Scales) -> Vec<[f64; 3]> {
 }
 
 fn rate_axis() -> Axis {
-    Axis::log("slip rate V (m/s)").within(RATES.0, RATES.1)
+    Axis::log("slip rate V [m/s]").within(RATES.0, RATES.1)
 }
 
 fn friction_panel() -> Panel {
@@ -104,7 +100,7 @@ fn friction_panel() -> Panel {
 }
 
 fn stiffness_panel() -> Panel {
-    let y = Axis::linear("critical stiffness k_c/σ (1/m)").within(-700.0, 2e4);
+    let y = Axis::linear("critical stiffness k_c/σ [1/m]").within(-700.0, 2e4);
     let mut panel = Panel::new("(b) stability", rate_axis(), y);
     let note = |x: f64, y: f64, text: &str| Note {
         x,

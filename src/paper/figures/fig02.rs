@@ -9,13 +9,13 @@ use crate::output::Cell;
 use crate::output::plot::{Axis, Block, Drawing, Mark, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
-/// What it is.
+/// The figure.
 pub const FIGURE: Product = Product {
     id: "fig02",
     title: "The pitchfork of steady states and the shape of the law",
     caption: "In each case above the steady stress about an extremum, strengthening solid and weakening dashed, and below it the \
-slip rates V_1 and V_2 of both interfaces as V_H varies (20): stable solid, unstable dashed, in stiff slabs. The branch leaves \
-V_1 = V_2 at twice the slip rate of the extremum (23). Dotted: the parabola (24). At a maximum and at a minimum alike the \
+slip rates V₁ and V₂ of both interfaces as V_H varies (20): stable solid, unstable dashed, in stiff slabs. The branch leaves \
+V₁ = V₂ at twice the slip rate of the extremum (23). Dotted: the parabola (24). At a maximum and at a minimum alike the \
 pitchfork is supercritical where τ_ss''' > 0 and subcritical where τ_ss''' < 0.\n\nMaximum supercritical and minimum \
 subcritical: the spinodal law (36) with the paper's parameters. Minimum supercritical: the same with c = 2.75, where both extrema \
 are close to merging. A spinodal law has τ_ss'''(V_M) > 0 whatever its parameters; the maximum with a subcritical pitchfork is \
@@ -94,11 +94,7 @@ struct Point {
     stable: bool,
 }
 
-/// The figure.
-///
-/// # Errors
-/// None that these laws allow.
-pub fn make(_: &Pieces<'_>) -> Result<Made> {
+fn make(_: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     let mut block = |title: &str, cases: &'static [Given]| -> Result<Block> {
         let mut columns = Vec::new();
@@ -118,7 +114,7 @@ pub fn make(_: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: Some(Drawing::blocks(blocks)),
-        method: "(20) solved for V_H along z = (V_1 − V_2)/2 by bracketed Newton steps to the last digit; stability by the sign \
+        method: "(20) solved for V_H along z = (V₁ − V₂)/2 by bracketed Newton steps to the last digit; stability by the sign \
 of (22); derivatives exact"
             .into(),
     })
@@ -194,8 +190,8 @@ impl Case {
         };
         let mut panel = Panel::new(
             format!("{critical}: τ_ss''' {sign} 0"),
-            Axis::linear("slip rate V/V*"),
-            Axis::linear("τ_ss/(aσ)"),
+            Axis::linear("slip rate V [V*]"),
+            Axis::linear("stress τ_ss [aσ]"),
         );
         panel.series = curve.series(["strengthening", "weakening"], 0);
         let tau = steady_stress(&self.law, v_e);
@@ -237,8 +233,8 @@ impl Case {
 
         let mut panel = Panel::new(
             "",
-            Axis::linear("driving velocity V_H/V*"),
-            Axis::linear("V_1, V_2 (V*)"),
+            Axis::linear("driving velocity V_H [V*]"),
+            Axis::linear("slip rates V₁, V₂ [V*]"),
         );
         let [mut upper, mut lower] = [Curve::default(), Curve::default()];
         for (rate, curve) in [(1, &mut upper), (2, &mut lower)] {
@@ -255,7 +251,7 @@ impl Case {
         let reach = (upper.x[POINTS] - 2.0 * v_e).abs();
         panel.x = panel.x.within(2.0 * v_e - reach, 2.0 * v_e + reach);
         let both = self.symmetric(reach, sheet);
-        panel.series.extend(both.series(["V_1 = V_2", ""], 0));
+        panel.series.extend(both.series(["V₁ = V₂", ""], 0));
         panel.series.extend(upper.series(["asymmetric"; 2], 1));
         panel.series.extend(lower.series([""; 2], 1));
         let name = format!("2 {}", self.name());

@@ -10,7 +10,7 @@ use crate::model::scales::Material;
 use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Side, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
-/// What it is.
+/// The figure.
 pub const FIGURE: Product = Product {
     id: "fig04",
     title: "Spinodal friction law and stability domain of one interface",
@@ -29,11 +29,7 @@ the Dieterich-Ruina law between. The critical stiffness is an arch between both 
 const RATES: (f64, f64) = (1e-4, 1e6);
 const POINTS: usize = 1001;
 
-/// The figure.
-///
-/// # Errors
-/// None that the paper's parameters allow.
-pub fn make(_: &Pieces<'_>) -> Result<Made> {
+fn make(_: &Pieces<'_>) -> Result<Made> {
     let (_, scales) = Material::heslot_1994(1.0).dimensionless()?;
     let parameters = Parameters::heslot_1994();
     let (spinodal, ruina) = (parameters.spinodal(), parameters.dieterich_ruina());
@@ -67,7 +63,7 @@ k_c by a bracketed zero of its exact derivative"
 }
 
 fn rate_axis() -> Axis {
-    Axis::log("slip rate V/V*").within(RATES.0, RATES.1)
+    Axis::log("slip rate V [V*]").within(RATES.0, RATES.1)
 }
 
 fn friction_panel(law: &Spinodal, a: f64, sheet: &mut Sheet) -> Panel {
@@ -101,7 +97,7 @@ fn friction_panel(law: &Spinodal, a: f64, sheet: &mut Sheet) -> Panel {
 }
 
 fn stability_panel(law: &Spinodal, sheet: &mut Sheet) -> Result<Panel> {
-    let y = Axis::linear("stiffness K = kL/(aσ)").within(-0.017, 0.5);
+    let y = Axis::linear("stiffness K [aσ/L]").within(-0.017, 0.5);
     let mut panel = Panel::new("(b) stability of one interface", rate_axis(), y);
     let extrema = law.steady_extrema();
     // Between the extrema, with more points next to them, where the curve is steep.

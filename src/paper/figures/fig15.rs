@@ -9,7 +9,7 @@ use crate::output::Cell;
 use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
-/// What it is.
+/// The figure.
 pub const FIGURE: Product = Product {
     id: "fig15",
     title: "Bifurcations of the approximating system near the 1:2 resonance",
@@ -17,7 +17,7 @@ pub const FIGURE: Product = Product {
 bifurcation of the doubled orbit; global, a pair of homoclinic orbits of the origin, where tori of the doubled orbit become one; \
 sn, where a stable and an unstable torus merge. Stable are: in region 1 the orbit, in 2 and 3 a torus, in 4 and 5 a torus and the \
 doubled orbit, in 6 the doubled orbit. Between them are unstable tori: around each point of the doubled orbit in 4, around both \
-in 5. Enlarged, the same for μ_2 < 0 with μ_1 over |μ_2|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
+in 5. Enlarged, the same for μ₂ < 0 with μ₁ over |μ₂|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
 resonance.\n\n(b) Steady states and the largest v of cycles along the paths l₁ and l₂, stable solid and unstable dashed. The \
 mirror images at −v are not drawn.",
     alt: "Left the plane of both parameters with curves that meet at the origin. Right two bifurcation diagrams: along the first \
@@ -44,11 +44,7 @@ const NAMES: [(&str, usize, Stroke); 5] = [
     ("sn", 5, Stroke::DashDotDot),
 ];
 
-/// The figure.
-///
-/// # Errors
-/// Those of the integrations.
-pub fn make(_: &Pieces<'_>) -> Result<Made> {
+fn make(_: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     let curves = curves()?;
     for ((name, _, _), points) in NAMES.iter().zip(&curves) {
@@ -107,8 +103,8 @@ fn note(x: f64, y: f64, text: &str) -> Note {
 fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     let mut panel = Panel::new(
         "(a) bifurcation curves",
-        Axis::linear("μ_1").within(-REACH, REACH),
-        Axis::linear("μ_2").within(-REACH, REACH),
+        Axis::linear("μ₁").within(-REACH, REACH),
+        Axis::linear("μ₂").within(-REACH, REACH),
     );
     for ((name, colour, stroke), points) in NAMES.into_iter().zip(curves) {
         let column = |i: usize| points.iter().map(|point| point[i]).collect();
@@ -137,8 +133,8 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     let range = (-1.06, -0.7);
     let mut panel = Panel::new(
         "(a) enlarged",
-        Axis::linear("μ_1/|μ_2|").within(range.0, range.1),
-        Axis::linear("μ_2").within(-REACH, 0.0),
+        Axis::linear("μ₁/|μ₂|").within(range.0, range.1),
+        Axis::linear("μ₂").within(-REACH, 0.0),
     );
     for ((name, colour, stroke), points) in NAMES.into_iter().zip(curves).skip(2) {
         let points = points.iter().filter(|[_, mu2]| *mu2 < 0.0);
@@ -232,10 +228,10 @@ fn steady(
 }
 
 fn path_panel(name: &str, mu2: f64, along: (f64, f64), top: f64) -> Panel {
-    let title = format!("(b) along {name}: μ_2 = {mu2}").replace('-', "−");
+    let title = format!("(b) along {name}: μ₂ = {mu2}").replace('-', "−");
     Panel::new(
         title,
-        Axis::linear("μ_1").within(along.0, along.1),
+        Axis::linear("μ₁").within(along.0, along.1),
         Axis::linear("v, steady or largest").within(-0.06 * top, top),
     )
 }

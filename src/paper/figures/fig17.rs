@@ -9,12 +9,12 @@ use crate::friction::AnyLaw;
 use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
-/// What it is.
+/// The figure.
 pub const FIGURE: Product = Product {
     id: "fig17",
     title: "Roots of the cubic of an asymmetric steady state",
-    caption: "The asymmetric steady state at V_H = 0.06 V*, where s_1 = 0.00835 and s_2 = −0.00428: their sum is positive, against \
-the paper's assumption.\n\n(a) The real roots of (30) are where Q_3(s) meets the line L(s), thin. Solid: at K = 0.00691, where Q_3 \
+    caption: "The asymmetric steady state at V_H = 0.06 V*, where s₁ = 0.00835 and s₂ = −0.00428: their sum is positive, against \
+the paper's assumption.\n\n(a) The real roots of (30) are where Q₃(s) meets the line L(s), thin. Solid: at K = 0.00691, where Q₃ \
 touches L. Dashed: at half of that, where two roots are real and positive. Dash-dotted: at K = k_c* = 0.1179 (34), where the \
 other two roots are imaginary and nothing is to be seen of them.\n\n(b) The three roots as K grows: real parts solid, the \
 imaginary part dashed. Two positive roots become a complex pair at the first tangency, cross the imaginary axis at k_c*, and \
@@ -43,11 +43,7 @@ struct Setting {
     critical: (f64, f64),
 }
 
-/// The figure.
-///
-/// # Errors
-/// Those of the steady state.
-pub fn make(pieces: &Pieces<'_>) -> Result<Made> {
+fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let setting = Setting::new(pieces.law())?;
     let mut sheet = Sheet::new();
     setting.points(&mut sheet);
@@ -118,9 +114,9 @@ impl Setting {
         let height = line[1] - line[0];
         let ends = [SHOWN.0 * THOUSANDTHS, SHOWN.1 * THOUSANDTHS];
         let mut panel = Panel::new(
-            "(a) Q_3(s) and L(s)",
-            Axis::linear("s (10⁻³ V*/L)").within(ends[0], ends[1]),
-            Axis::linear("Q_3, L (10⁻⁶)").within(line[0] - 0.05 * height, line[1] + 0.1 * height),
+            "(a) Q₃(s) and L(s)",
+            Axis::linear("s [10⁻³ V*/L]").within(ends[0], ends[1]),
+            Axis::linear("Q₃, L [10⁻⁶]").within(line[0] - 0.05 * height, line[1] + 0.1 * height),
         );
         panel.zero_line = true;
         let touching = self.tangencies[0];
@@ -129,12 +125,12 @@ impl Setting {
         let mut roots = self.cubic.real_roots(k);
         roots.retain(|&s| s < 0.0);
         roots.push(touching.growth_rate);
-        let tangent = ("Q_3 tangent to L", Stroke::Solid, 0);
+        let tangent = ("Q₃ tangent to L", Stroke::Solid, 0);
         self.curve(k, &roots, tangent, &mut panel, sheet);
-        let smaller = ("Q_3, smaller K", Stroke::Dashed, 1);
+        let smaller = ("Q₃, smaller K", Stroke::Dashed, 1);
         let roots = self.cubic.real_roots(0.5 * k);
         self.curve(0.5 * k, &roots, smaller, &mut panel, sheet);
-        let critical = ("Q_3, K = k_c*", Stroke::DashDot, 2);
+        let critical = ("Q₃, K = k_c*", Stroke::DashDot, 2);
         let roots = self.cubic.real_roots(self.critical.0);
         self.curve(self.critical.0, &roots, critical, &mut panel, sheet);
         let line = Series::new("L", ends.to_vec(), line.to_vec());
@@ -214,8 +210,8 @@ impl Setting {
     ) -> Panel {
         let mut panel = Panel::new(
             title,
-            Axis::log("stiffness K = kL/(aσ)").within(stiffness.0, stiffness.1),
-            Axis::linear("s (10⁻³ V*/L)").within(heights.0, heights.1),
+            Axis::log("stiffness K [aσ/L]").within(stiffness.0, stiffness.1),
+            Axis::linear("s [10⁻³ V*/L]").within(heights.0, heights.1),
         );
         let column = |i: usize| -> Vec<f64> { roots.iter().map(|row| row[i]).collect() };
         let line = |label: &str, i: usize, colour: usize| {

@@ -1,4 +1,4 @@
-//! The columns of rows, declared once with what they show: CSV, tables and objects follow from them.
+//! How rows are shown: their columns, declared once, from which CSV, tables and objects follow, and their pictures.
 
 use crate::number::Uncertain;
 use crate::output::{self, Cell};
@@ -6,8 +6,14 @@ use crate::scene::{Quantity, Units};
 use serde_json::{Map, Value, json};
 
 mod bifurcation;
+mod diagram;
+mod map;
+mod run;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
+pub use diagram::{axis_label, branch_lines, branches, curves};
+pub use map::{return_map, states_at_returns};
+pub use run::{panels_in_time, phase_plane};
 
 /// What a row has in a column, dimensionless.
 pub enum Entry {

@@ -1,6 +1,5 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
-use super::report;
 use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
 use crate::equilibrium::Verdict;
 use crate::orbit::Slab;
@@ -20,10 +19,10 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
     let least = |row: &BranchRow| stress(row.stress_range.0);
     let most = |row: &BranchRow| stress(row.stress_range.1);
     let at = |row: &BranchRow| along.of(row, units);
-    let mut series = lines(rows, &at, &most, true);
+    let mut series = branch_lines(rows, &at, &most, true);
     let mut points = marks(rows, &at, &most, true);
     if orbits {
-        series.extend(lines(rows, &at, &least, false));
+        series.extend(branch_lines(rows, &at, &least, false));
         points.extend(marks(rows, &at, &least, false));
     }
     let symbol = match along.parameter {
@@ -53,7 +52,7 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         units.outward(Quantity::Time, period)
     };
     let second = Panel {
-        series: lines(rows, &at, &period, false),
+        series: branch_lines(rows, &at, &period, false),
         marks: marks(rows, &at, &period, true),
         ..Panel::new(
             "period",
@@ -79,8 +78,9 @@ fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
     format!("{name} = {value}")
 }
 
-fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
-    format!("{name} [{}]", report::short_unit(units, quantity))
+/// The label of an axis: name and unit.
+pub fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
+    format!("{name} [{}]", units.short_name(quantity))
 }
 
 /// Consecutive rows of the same branch.
@@ -96,7 +96,7 @@ fn apart(branch: &[BranchRow]) -> bool {
 }
 
 /// Stable parts solid, all others dashed; in two colours.
-fn lines(
+pub fn branch_lines(
     rows: &[BranchRow],
     x: &dyn Fn(&BranchRow) -> f64,
     y: &dyn Fn(&BranchRow) -> f64,
