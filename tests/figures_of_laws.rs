@@ -100,7 +100,7 @@ fn figure_4_has_the_extrema_and_the_largest_critical_stiffness() {
     close(maximum[0], 0.024_931_583_134_438_45, 1e-14);
     close(maximum[1], 0.404_679_123_19, 1e-11);
     let minimum = numbers(&made, "minimum", names)[0];
-    close(minimum[0], 405.112_661_540_074_73, 1e-14);
+    close(minimum[0], 405.112_661_540_074_7, 1e-14);
     for [v, mu] in numbers(&made, "spinodal", names) {
         close(mu, 0.0349 * printed(v, 1e-3), 1e-13);
     }
@@ -122,7 +122,7 @@ fn figure_2_solves_the_equations_it_shows() {
     let made = made("fig02");
     let names = ["driving", "slip_rate_1", "slip_rate_2"];
     let paper = Parameters::heslot_1994();
-    let v_m = 405.112_661_540_074_73;
+    let v_m = 405.112_661_540_074_7;
     let turned = |v: f64| 2.0 * printed(v_m, 1e-3) - printed(2.0 * v_m - v, 1e-3);
     type Law<'a> = &'a dyn Fn(f64) -> f64;
     let cases: [(&str, Law<'_>, f64, bool); 4] = [
@@ -329,8 +329,8 @@ fn figure_17_touches_where_the_discriminant_vanishes() {
     let [first, _, _] = numbers(&made, "first-tangency", names)[0];
     let [critical, _, _] = numbers(&made, "critical", names)[0];
     for number in [
-        format!("s₁ = {s_1:.5}"),
-        format!("s₂ = −{:.5}", -s_2),
+        format!("s_1 = {s_1:.5}"),
+        format!("s_2 = −{:.5}", -s_2),
         format!("K = {first:.5}"),
         format!("k_c* = {critical:.4}"),
     ] {

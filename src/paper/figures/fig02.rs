@@ -14,8 +14,8 @@ pub const FIGURE: Product = Product {
     id: "fig02",
     title: "The pitchfork of steady states and the shape of the law",
     caption: "In each case above the steady stress about an extremum, strengthening solid and weakening dashed, and below it the \
-slip rates V₁ and V₂ of both interfaces as V_H varies (20): stable solid, unstable dashed, in stiff slabs. The branch leaves \
-V₁ = V₂ at twice the slip rate of the extremum (23). Dotted: the parabola (24). At a maximum and at a minimum alike the \
+slip rates V_1 and V_2 of both interfaces as V_H varies (20): stable solid, unstable dashed, in stiff slabs. The branch leaves \
+V_1 = V_2 at twice the slip rate of the extremum (23). Dotted: the parabola (24). At a maximum and at a minimum alike the \
 pitchfork is supercritical where τ_ss''' > 0 and subcritical where τ_ss''' < 0.\n\nMaximum supercritical and minimum \
 subcritical: the spinodal law (36) with the paper's parameters. Minimum supercritical: the same with c = 2.75, where both extrema \
 are close to merging. A spinodal law has τ_ss'''(V_M) > 0 whatever its parameters; the maximum with a subcritical pitchfork is \

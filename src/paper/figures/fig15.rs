@@ -17,8 +17,8 @@ pub const FIGURE: Product = Product {
 bifurcation of the doubled orbit; global, a pair of homoclinic orbits of the origin, where tori of the doubled orbit become one; \
 sn, where a stable and an unstable torus merge. Stable are: in region 1 the orbit, in 2 and 3 a torus, in 4 and 5 a torus and the \
 doubled orbit, in 6 the doubled orbit. Between them are unstable tori: around each point of the doubled orbit in 4, around both \
-in 5. Enlarged, the same for μ₂ < 0 with μ₁ over |μ₂|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
-resonance.\n\n(b) Steady states and the largest v of cycles along the paths l₁ and l₂, stable solid and unstable dashed. The \
+in 5. Enlarged, the same for μ_2 < 0 with μ_1 over |μ_2|; dotted are the limits −4/5 and −0.75226 of global and sn at the \
+resonance.\n\n(b) Steady states and the largest v of cycles along the paths l_1 and l_2, stable solid and unstable dashed. The \
 mirror images at −v are not drawn.",
     alt: "Left the plane of both parameters with curves that meet at the origin. Right two bifurcation diagrams: along the first \
 path a stable cycle grows from the origin; along the second unstable cycles grow from the states beside the origin, become one \
@@ -102,7 +102,7 @@ fn note(x: f64, y: f64, text: &str) -> Note {
 
 fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     let mut panel = Panel::new(
-        "(a) bifurcation curves",
+        "(a)",
         Axis::linear("μ₁").within(-REACH, REACH),
         Axis::linear("μ₂").within(-REACH, REACH),
     );

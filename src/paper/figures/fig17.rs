@@ -13,8 +13,8 @@ use crate::paper::{Made, Make, Pieces, Product, Sheet};
 pub const FIGURE: Product = Product {
     id: "fig17",
     title: "Roots of the cubic of an asymmetric steady state",
-    caption: "The asymmetric steady state at V_H = 0.06 V*, where s₁ = 0.00835 and s₂ = −0.00428: their sum is positive, against \
-the paper's assumption.\n\n(a) The real roots of (30) are where Q₃(s) meets the line L(s), thin. Solid: at K = 0.00691, where Q₃ \
+    caption: "The asymmetric steady state at V_H = 0.06 V*, where s_1 = 0.00835 and s_2 = −0.00428: their sum is positive, against \
+the paper's assumption.\n\n(a) The real roots of (30) are where Q_3(s) meets the line L(s), thin. Solid: at K = 0.00691, where Q_3 \
 touches L. Dashed: at half of that, where two roots are real and positive. Dash-dotted: at K = k_c* = 0.1179 (34), where the \
 other two roots are imaginary and nothing is to be seen of them.\n\n(b) The three roots as K grows: real parts solid, the \
 imaginary part dashed. Two positive roots become a complex pair at the first tangency, cross the imaginary axis at k_c*, and \
