@@ -172,7 +172,7 @@ fn score(entry: &Value) -> Score {
     };
     let second = &entry["second"];
     let second = match second["method"].as_str() {
-        Some(method) => format!("{} ({method})", answer(&second["value"])),
+        Some(method) => format!("{} ({method})", answer(&second["computed"])),
         None => String::new(),
     };
     Score {

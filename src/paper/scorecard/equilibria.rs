@@ -41,10 +41,7 @@ fn extrema(law: &AnyLaw) -> Result<[f64; 2]> {
 pub fn of_section_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let law = pieces.law();
     let [v_peak, v_trough] = extrema(&law)?;
-    let counts = [
-        counted(&law, 2.0 * v_peak)?,
-        counted(&law, 2.0 * v_trough)?,
-    ];
+    let counts = [counted(&law, 2.0 * v_peak)?, counted(&law, 2.0 * v_trough)?];
     let there = counts == [Some([1, 2]), Some([2, 3])];
     let diagram = pieces.branches("fig05")?;
     let coefficients: Vec<f64> = pitchforks(&diagram.special)
@@ -121,8 +118,16 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let diagram = pieces.branches("fig05")?;
     let mut all = vec![at_the_ends(pieces)?];
     let named = [
-        ("pitchfork-at-2V_M", "the pitchfork at V_H = 2 V_M", "supercritical"),
-        ("pitchfork-at-2V_m", "the pitchfork at V_H = 2 V_m", "subcritical"),
+        (
+            "pitchfork-at-2V_M",
+            "the pitchfork at V_H = 2 V_M",
+            "supercritical",
+        ),
+        (
+            "pitchfork-at-2V_m",
+            "the pitchfork at V_H = 2 V_m",
+            "subcritical",
+        ),
     ];
     for ((special, (id, quantity, printed)), v) in
         pitchforks(&diagram.special).zip(named).zip(extrema)
@@ -130,8 +135,14 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let place = "section 4.2; Figs 5, 6";
         all.push(
             Entry::claim((id, place), quantity, printed, word(special.criticality))
-                .beside("stability of the states beside it", Answer::Word(way(&law, v)?))
-                .noted(format!("at V_H = {:.9}, by the sign of tau_ss'''", special.driving.value)),
+                .beside(
+                    "stability of the states beside it",
+                    Answer::Word(way(&law, v)?),
+                )
+                .noted(format!(
+                    "at V_H = {:.9}, by the sign of tau_ss'''",
+                    special.driving.value
+                )),
         );
     }
     let fold = diagram.special.iter().find(|s| s.label == Label::Lp);
@@ -242,7 +253,14 @@ fn slow_interface(pieces: &Pieces<'_>, v_peak: f64) -> Result<Entry> {
         ("slow-interface-below-V_M", "section 4.2; Fig. 5(d)"),
         "the slower interface of an asymmetric equilibrium has V < V_M, up to V_sn",
         "always",
-        whether(largest.max(at_fold) < v_peak, "always", "but for the last bit before V_sn"),
+        whether(
+            largest.max(at_fold) < v_peak,
+            "always",
+            "but for the last bit before V_sn",
+        ),
     )
-    .noted(format!("at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is V_M", at_fold / v_peak - 1.0)))
+    .noted(format!(
+        "at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is V_M",
+        at_fold / v_peak - 1.0
+    )))
 }

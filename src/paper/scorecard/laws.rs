@@ -4,7 +4,7 @@ use super::exact::{self, Strength};
 use super::{Answer, Entry, holds, missing, of_rounded_parameters};
 use crate::error::Result;
 use crate::friction::{Extremum, Parameters};
-use crate::number::{DoubleDouble, Real, Uncertain};
+use crate::number::{DoubleDouble, Uncertain};
 use crate::paper::Pieces;
 
 /// V* in m/s; a; a_v; b; R, of Heslot et al. (1994).

@@ -42,7 +42,10 @@ fn stick_slip(stiff: &Run, soft: &Run) -> Result<Entry> {
         "below K_c only",
         word([grows(stiff)?, grows(soft)?]),
     )
-    .beside("eigenvalues of one interface", Answer::Word(word([alone(stiff)?, alone(soft)?])))
+    .beside(
+        "eigenvalues of one interface",
+        Answer::Word(word([alone(stiff)?, alone(soft)?])),
+    )
     .noted(format!(
         "runs at K = {} and {}, K_c = {:.6}; the text gives no stiffness",
         stiff.plan.loading.stiffness,
@@ -66,7 +69,10 @@ fn of_the_text(law: &AnyLaw) -> Result<Vec<Entry>> {
         unstable &= found.verdict == Verdict::Unstable;
         // k_c/F_V = (beta-1) V_H/2  (27)
         let expected = 0.5 * onset;
-        let near = found.eigenvalues.iter().map(|z| (z - expected).norm() / expected);
+        let near = found
+            .eigenvalues
+            .iter()
+            .map(|z| (z - expected).norm() / expected);
         transverse.push(near.fold(f64::INFINITY, f64::min));
     }
     let moved = transverse.iter().fold(0.0_f64, |a, &b| a.max(b));
@@ -96,7 +102,11 @@ fn of_the_text(law: &AnyLaw) -> Result<Vec<Entry>> {
 /// The slip rates at the end of a longer run of the same scene, from its start or with the interfaces exchanged.
 fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
     let (stress, [first, second]) = run_of.plan.start;
-    let start = if exchanged { [second, first] } else { [first, second] };
+    let start = if exchanged {
+        [second, first]
+    } else {
+        [first, second]
+    };
     let plan = Plan {
         start: (stress, start),
         until: LONG,
@@ -108,10 +118,14 @@ fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
     if let Some(failure) = outcome.failure {
         return Err(failure);
     }
-    let last = outcome.last.ok_or_else(|| missing("a run without an end"))?;
+    let last = outcome
+        .last
+        .ok_or_else(|| missing("a run without an end"))?;
     let at = |name: &str| {
         let column = plan.columns.iter().position(|column| column.name() == name);
-        column.map(|i| last[i]).ok_or_else(|| missing("a run without slip rates"))
+        column
+            .map(|i| last[i])
+            .ok_or_else(|| missing("a run without slip rates"))
     };
     Ok([at("slip_rate_1")?, at("slip_rate_2")?])
 }
@@ -164,8 +178,16 @@ fn the_weaker_one(stiff: &Run, soft: &Run) -> Result<Entry> {
 
 /// Whether the faster interface departs from V_H more and more, in thirds of the run after the first.
 fn grows(run: &Run) -> Result<bool> {
-    let column = |name| run.rows.column(name).ok_or_else(|| missing("a run without slip rates"));
-    let (time, first, second) = (column("time")?, column("slip_rate_1")?, column("slip_rate_2")?);
+    let column = |name| {
+        run.rows
+            .column(name)
+            .ok_or_else(|| missing("a run without slip rates"))
+    };
+    let (time, first, second) = (
+        column("time")?,
+        column("slip_rate_1")?,
+        column("slip_rate_2")?,
+    );
     let driving = run.plan.loading.driving;
     let third = run.plan.until / 3.0;
     let mut largest = [0.0_f64; 3];

@@ -228,9 +228,10 @@ pub fn json(entries: &[Entry]) -> Value {
 }
 
 fn object(entry: &Entry) -> Value {
-    let second = entry.second.as_ref().map(
-        |second| json!({"method": second.method, "computed": answer(&second.value)}),
-    );
+    let second = entry
+        .second
+        .as_ref()
+        .map(|second| json!({"method": second.method, "computed": answer(&second.value)}));
     json!({
         "id": entry.id,
         "where": entry.place,
@@ -297,5 +298,8 @@ fn missing(what: impl Into<String>) -> Error {
 fn of_rounded_parameters(x: Uncertain) -> Uncertain {
     /// In units of the last place.
     const UNITS: f64 = 16.0;
-    Uncertain::new(x.value, x.uncertainty + UNITS * f64::EPSILON * x.value.abs())
+    Uncertain::new(
+        x.value,
+        x.uncertainty + UNITS * f64::EPSILON * x.value.abs(),
+    )
 }

@@ -2,8 +2,7 @@
 
 use super::{Answer, Entry, missing, second_method, slab, whether};
 use crate::bifurcation::{
-    BranchRequest, BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, Parameter,
-    Special, orbits,
+    BranchRow, Criticality, Event, Label, LocusKind, LocusRequest, Special, orbits,
 };
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
@@ -25,7 +24,11 @@ pub(super) fn orbit_at(
     method: Choice,
 ) -> Result<Orbit> {
     let query = Query { symmetry, begin };
-    let found = find(&slab(pieces, driving, stiffness)?, &query, &Accuracy::of(method))?;
+    let found = find(
+        &slab(pieces, driving, stiffness)?,
+        &query,
+        &Accuracy::of(method),
+    )?;
     Ok(found.orbit)
 }
 
@@ -57,9 +60,17 @@ pub fn at_moderate_stiffness(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     } else {
         "not always the same"
     };
-    let within = symmetric.iter().all(|row| row.ln_abs_multiplier[1].is_some_and(|x| x < 0.0));
+    let within = symmetric
+        .iter()
+        .all(|row| row.ln_abs_multiplier[1].is_some_and(|x| x < 0.0));
     let at = (1.0, 0.14);
-    let again = orbit_at(pieces, at, Symmetry::Symmetric, Begin::Anywhere, second_method()?)?;
+    let again = orbit_at(
+        pieces,
+        at,
+        Symmetry::Symmetric,
+        Begin::Anywhere,
+        second_method()?,
+    )?;
     let second: Vec<Uncertain> = again.floquet.multipliers.iter().map(|m| m.ln_abs).collect();
     let place = "section 4.2; Fig. 7";
     let mut entries = vec![
@@ -152,9 +163,18 @@ fn largest_of_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let top = curves.special.iter().find(|s| s.label == Label::Top);
     let top = top.ok_or_else(|| missing("the pitchforks of orbits have no top"))?;
     let driving = top.driving.value;
-    let again = at_top(pieces, driving, top.stiffness.value, Symmetry::Symmetric, Begin::Anywhere)?;
+    let again = at_top(
+        pieces,
+        driving,
+        top.stiffness.value,
+        Symmetry::Symmetric,
+        Begin::Anywhere,
+    )?;
     Ok(Entry::number(
-        ("largest-K-of-orbit-pitchforks", "section 4.2, before Fig. 8"),
+        (
+            "largest-K-of-orbit-pitchforks",
+            "section 4.2, before Fig. 8",
+        ),
         "the largest K at which symmetric orbits are stable somewhere, that of PF",
         "a sigma/L",
         "< 0.135",
@@ -180,7 +200,9 @@ pub(super) fn at_top(
     let logarithm = |stiffness: f64| -> Result<Uncertain> {
         let orbit = orbit_at(pieces, (driving, stiffness), symmetry, begin, method)?;
         let first = orbit.floquet.multipliers.first();
-        Ok(first.ok_or_else(|| missing("an orbit without multipliers"))?.ln_abs)
+        Ok(first
+            .ok_or_else(|| missing("an orbit without multipliers"))?
+            .ln_abs)
     };
     let (mut k, mut next) = (near * (1.0 + 2.0 * OFF), near * (1.0 + OFF));
     let mut at = logarithm(k)?;
@@ -191,7 +213,10 @@ pub(super) fn at_top(
         (k, at) = (next, there);
         next = k - at.value / slope;
     }
-    Ok(Uncertain::new(next, (at.uncertainty / slope).abs() + (next - k).abs()))
+    Ok(Uncertain::new(
+        next,
+        (at.uncertainty / slope).abs() + (next - k).abs(),
+    ))
 }
 
 fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
@@ -200,12 +225,16 @@ fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
         Ok([at(Symmetry::Symmetric)?, at(Symmetry::Asymmetric)?])
     };
     let word = |orbits: &[Orbit; 2]| {
-        let stable = orbits.iter().all(|orbit| orbit.verdict() == Verdict::Stable);
+        let stable = orbits
+            .iter()
+            .all(|orbit| orbit.verdict() == Verdict::Stable);
         whether(stable, "both stable", "not both stable")
     };
     let first = both(Choice::Taylor)?;
     let second = both(second_method()?)?;
-    let logarithms = first.each_ref().map(|orbit| orbit.floquet.multipliers[0].ln_abs.value);
+    let logarithms = first
+        .each_ref()
+        .map(|orbit| orbit.floquet.multipliers[0].ln_abs.value);
     let periods = first.each_ref().map(|orbit| orbit.period.value);
     Ok(Entry::claim(
         ("coexistence", "section 4.2, K < 0.135; Fig. 10"),
@@ -222,21 +251,20 @@ fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
 
 /// The branch of asymmetric orbits from the Hopf point at the larger V_H, K = 0.05.
 fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
-    let (mut rows, mut special) = (Vec::new(), Vec::new());
-    let request = BranchRequest {
-        symmetry: Some(Symmetry::Asymmetric),
-        ..BranchRequest::new(slab(pieces, 1.0, 0.05)?, Parameter::Driving, (0.15, 400.0))
+    let branches = pieces.branches("fig09")?;
+    // From a Hopf point of the asymmetric equilibrium, at fast driving.
+    let begins = |branch: &&[BranchRow]| {
+        let begin = &branch[0];
+        begin.label == Some(Label::Hb) && begin.driving > 1.0 && begin.state[0] != begin.state[1]
     };
-    orbits::branch(&request, &mut |event| {
-        match event {
-            Event::Branch(row) => rows.push(row),
-            Event::Special(point) => special.push(point),
-            Event::Locus(_) => {}
-        }
-        ControlFlow::Continue(())
-    })?;
-    let labels: Vec<Label> = special.iter().map(|s: &Special| s.label).collect();
-    let fold = rows.iter().position(|row: &BranchRow| row.label == Some(Label::Sn));
+    let mut all = branches.rows.chunk_by(|a, b| a.branch == b.branch);
+    let rows = all.find(begins);
+    let rows = rows.ok_or_else(|| missing("no orbits from H_a^2 at K = 0.05"))?;
+    let special: Vec<&BranchRow> = rows.iter().filter(|row| row.label.is_some()).collect();
+    let labels: Vec<Label> = special.iter().filter_map(|row| row.label).collect();
+    let fold = rows
+        .iter()
+        .position(|row: &BranchRow| row.label == Some(Label::Sn));
     let (before, after) = rows.split_at(fold.unwrap_or(rows.len()));
     let all = |rows: &[BranchRow], verdict| {
         let mut plain = rows.iter().filter(|row| row.label.is_none());
@@ -245,7 +273,8 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
     let as_told = labels == [Label::Hb, Label::Sn, Label::Pf]
         && all(before, Verdict::Stable)
         && all(after, Verdict::Unstable);
-    let pitchfork = special.iter().find(|s| s.label == Label::Pf);
+    let mut points = branches.special.iter();
+    let pitchfork = points.find(|s| s.label == Label::Pf && s.driving.value > 1.0);
     let pitchfork = pitchfork.ok_or_else(|| missing("no pitchfork of orbits at K = 0.05"))?;
     let way = match pitchfork.criticality {
         Some(Criticality::Supercritical) => "supercritical",
@@ -253,8 +282,15 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
         _ => "undecided",
     };
     let place = "section 4.2; Fig. 9";
-    let beside = whether(all(after, Verdict::Unstable), "subcritical", "supercritical");
-    let at: Vec<String> = special.iter().map(|s| format!("{:.6}", s.driving.value)).collect();
+    let beside = whether(
+        all(after, Verdict::Unstable),
+        "subcritical",
+        "supercritical",
+    );
+    let at: Vec<String> = special
+        .iter()
+        .map(|row| format!("{:.6}", row.driving))
+        .collect();
     Ok([
         Entry::claim(
             ("branch-from-H_a^2", place),
@@ -277,11 +313,17 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
 /// How far the period doublings are from the pitchforks of orbits, at two small K.
 fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let branches = pieces.branches("fig09")?;
+    // At slow driving, where both are.
     let last = |label: Label, all: &[Special]| {
-        let these = all.iter().filter(|s| s.label == label).map(|s| s.driving.value);
-        these.fold(0.0, f64::max)
+        let these = all
+            .iter()
+            .filter(|s| s.label == label && s.driving.value < 0.1);
+        these.map(|s| s.driving.value).fold(0.0, f64::max)
     };
-    let (double, fork) = (last(Label::Pd, &branches.special), last(Label::Pf, &branches.special));
+    let (double, fork) = (
+        last(Label::Pd, &branches.special),
+        last(Label::Pf, &branches.special),
+    );
     let curves = pieces.curves("fig12-period-doubling")?;
     let ends = curves.special.iter().filter(|s| s.label == Label::Ep);
     let softest = ends.max_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
@@ -314,5 +356,8 @@ fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
         "aligned",
         whether(aligned && distances[1] > 0.0, "aligned", "apart"),
     )
-    .noted(format!("PF is at larger V_H by the part {:.1e} at K = 0.05 and {:.1e} at K = {k}", distances[0], distances[1])))
+    .noted(format!(
+        "PF is at larger V_H by the part {:.1e} at K = 0.05 and {:.1e} at K = {k}",
+        distances[0], distances[1]
+    )))
 }

@@ -35,7 +35,9 @@ pub fn single_interface(_: &Pieces<'_>) -> Result<Vec<Entry>> {
             "(b-a)/a",
             computed,
         )
-        .noted(format!("from the eigenvalues at k_c: {one:.6} at V = V*, {ten:.4} at V = 10 V*, in (V*/L)^2"))
+        .noted(format!(
+            "from the eigenvalues at k_c: {one:.6} at V = V*, {ten:.4} at V = 10 V*, in (V*/L)^2"
+        ))
         .misprinted("the factor (V/L)^2 is missing, which is 1 at V = V* in units of L/V*"),
     ])
 }
@@ -78,7 +80,11 @@ impl Pair {
         let [one, two] = [1, 0].map(|i| Letters::at(law, state.slip_rate[i]));
         Pair {
             s: [one.s, two.s],
-            a: [one.a_s / one.s, two.a_s / two.s, one.compliance + two.compliance],
+            a: [
+                one.a_s / one.s,
+                two.a_s / two.s,
+                one.compliance + two.compliance,
+            ],
         }
     }
 
@@ -131,8 +137,13 @@ fn weakening_states(law: &AnyLaw) -> Result<Vec<(f64, Equilibrium)>> {
     for i in 0..STATES {
         let driving = from * (to / from).powf(i as f64 / (STATES - 1) as f64);
         let states = steady_states(law, driving, 2, Solver::Newton)?.equilibria;
-        let state = states.into_iter().find(|e| e.symmetry == Symmetry::Asymmetric);
-        all.push((driving, state.ok_or_else(|| missing("no asymmetric steady state"))?));
+        let state = states
+            .into_iter()
+            .find(|e| e.symmetry == Symmetry::Asymmetric);
+        all.push((
+            driving,
+            state.ok_or_else(|| missing("no asymmetric steady state"))?,
+        ));
     }
     Ok(all)
 }
@@ -171,7 +182,9 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let [s1, s2] = Pair::at(&law, &state).s;
         (s1 + s2) / s1
     });
-    let (least, most) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let (least, most) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+        (a.min(x), b.max(x))
+    });
     let sign = match (least > 0.0, most < 0.0) {
         (true, _) => "positive",
         (_, true) => "negative",
@@ -201,7 +214,11 @@ fn critical_stiffness_of_pairs(law: &AnyLaw) -> Result<Entry> {
     let mut largest: f64 = 0.0;
     for stiffness in [0.05, 0.14, 0.3] {
         let loading = crate::model::Loading::new(1.0, stiffness)?;
-        let slab = crate::orbit::Slab { law: *law, interfaces: 2, loading };
+        let slab = crate::orbit::Slab {
+            law: *law,
+            interfaces: 2,
+            loading,
+        };
         let along = crate::bifurcation::Parameter::Driving;
         for point in hopf_points(&slab, Symmetry::Asymmetric, along)? {
             let by_formula = Pair::at(law, &point.equilibrium).critical();
