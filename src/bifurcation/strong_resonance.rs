@@ -170,7 +170,7 @@ impl ResonanceCycle {
     pub fn fold(mu2: f64) -> Result<Self> {
         let inner = Homoclinic::at(mu2)?.amplitude;
         // next to the homoclinic orbits the saddle's trace is positive and decides; large cycles are stable
-        let range = (1.001 * inner, 2.0 * inner);
+        let range = (1.005 * inner, 1.3 * inner);
         let amplitude = secant_root("a fold of cycles", range, 1e-13, |a| {
             Ok(Self::of(Around::Origin, mu2, a)?.log_multiplier)
         })?;
