@@ -5,6 +5,7 @@
 pub mod equilibria;
 pub mod orbits;
 mod request;
+pub mod strong_resonance;
 
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;

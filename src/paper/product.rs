@@ -48,7 +48,10 @@ pub struct Product {
 
 /// All, in the order of the paper.
 pub const PRODUCTS: &[&Product] = &[
+    &figures::fig01::FIGURE,
+    &figures::fig02::FIGURE,
     &figures::fig03::FIGURE,
+    &figures::fig04::FIGURE,
     &figures::fig05::FIGURE,
     &figures::fig06::FIGURE,
     &figures::fig07::FIGURE,
@@ -59,7 +62,9 @@ pub const PRODUCTS: &[&Product] = &[
     &figures::fig12::FIGURE,
     &figures::fig13::FIGURE,
     &figures::fig14::FIGURE,
+    &figures::fig15::FIGURE,
     &figures::fig16::FIGURE,
+    &figures::fig17::FIGURE,
     &scorecard::TABLE1,
     &scorecard::SCORECARD,
 ];
