@@ -41,10 +41,7 @@ fn extrema(law: &AnyLaw) -> Result<[f64; 2]> {
 pub fn of_section_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let law = pieces.law();
     let [v_peak, v_trough] = extrema(&law)?;
-    let counts = [
-        counted(&law, 2.0 * v_peak)?,
-        counted(&law, 2.0 * v_trough)?,
-    ];
+    let counts = [counted(&law, 2.0 * v_peak)?, counted(&law, 2.0 * v_trough)?];
     let there = counts == [Some([1, 2]), Some([2, 3])];
     let diagram = pieces.branches("fig05")?;
     let coefficients: Vec<f64> = pitchforks(&diagram.special)
@@ -67,14 +64,18 @@ pub fn of_section_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "holds",
             holds(there && (limit / coefficient - 1.0).abs() < 1e-6),
         )
-        .noted(format!("the steady states are counted at 1e-9 below and above, with certain signs: 1 and 2 at 2 V_M, 2 and 3 at 2 V_m; the coefficient of (24) is {coefficient:.9}, and {limit:.9} the limit of [(V_1 - V_2)/2]^2/(V_H - 2 V_M) of steady states beside 2 V_M")),
+        .noted(format!("the steady states are counted at 1e-9 below and above, with certain signs: 1 \
+            and 2 at 2 V_M, 2 and 3 at 2 V_m; the coefficient of (24) is {coefficient:.9}, and \
+            {limit:.9} the limit of [(V_1 - V_2)/2]^2/(V_H - 2 V_M) of steady states beside 2 V_M")),
         Entry::claim(
             ("steeper-strengthening", "section 3.2.1, last paragraph"),
-            "asymmetric states near an extremum require that strengthening is steeper than weakening, tau_ss''' > 0",
+            "asymmetric states near an extremum require that strengthening is steeper than weakening, \
+                tau_ss''' > 0",
             "required",
             whether(other < 0.0 || counts[1] == counts[0], "required", "not required"),
         )
-        .noted("at V_m tau_ss''' < 0, and asymmetric states are there all the same, subcritical and unstable"),
+        .noted("at V_m tau_ss''' < 0, and asymmetric states are there all the same, subcritical and \
+            unstable"),
     ])
 }
 
@@ -121,8 +122,16 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let diagram = pieces.branches("fig05")?;
     let mut all = vec![at_the_ends(pieces)?];
     let named = [
-        ("pitchfork-at-2V_M", "the pitchfork at V_H = 2 V_M", "supercritical"),
-        ("pitchfork-at-2V_m", "the pitchfork at V_H = 2 V_m", "subcritical"),
+        (
+            "pitchfork-at-2V_M",
+            "the pitchfork at V_H = 2 V_M",
+            "supercritical",
+        ),
+        (
+            "pitchfork-at-2V_m",
+            "the pitchfork at V_H = 2 V_m",
+            "subcritical",
+        ),
     ];
     for ((special, (id, quantity, printed)), v) in
         pitchforks(&diagram.special).zip(named).zip(extrema)
@@ -130,8 +139,14 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let place = "section 4.2; Figs 5, 6";
         all.push(
             Entry::claim((id, place), quantity, printed, word(special.criticality))
-                .beside("stability of the states beside it", Answer::Word(way(&law, v)?))
-                .noted(format!("at V_H = {:.9}, by the sign of tau_ss'''", special.driving.value)),
+                .beside(
+                    "stability of the states beside it",
+                    Answer::Word(way(&law, v)?),
+                )
+                .noted(format!(
+                    "at V_H = {:.9}, by the sign of tau_ss'''",
+                    special.driving.value
+                )),
         );
     }
     let fold = diagram.special.iter().find(|s| s.label == Label::Lp);
@@ -184,7 +199,10 @@ fn unstable_pair(law: &AnyLaw, from: f64, to: f64) -> Result<Entry> {
         "unstable pair",
         whether(unstable && ends, "unstable pair", "otherwise"),
     )
-    .noted("counted with certain signs within, and at 1e-9 inside and outside of both ends; K = 0.01, 0.45, 10"))
+    .noted(
+        "counted with certain signs within, and at 1e-9 inside and outside of both ends; K = 0.01, \
+        0.45, 10",
+    ))
 }
 
 fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
@@ -201,7 +219,8 @@ fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
     let near = (beta - 1.0).powf(beta - 1.0) / 100.0 * (101.0 / (1e-3 * beta)).powf(beta);
     Ok(vec![
         Entry::number(("V_sn", place), "V_sn, the fold of the asymmetric equilibria", "V*", "4.30e4", fold)
-            .beside_number("Newton's method in 31 digits, decimal parameters", exact, 2.0 * f64::EPSILON * exact),
+            .beside_number("Newton's method in 31 digits, decimal \
+                parameters", exact, 2.0 * f64::EPSILON * exact),
         Entry::claim(
             ("stress-at-V_sn", place),
             "tau_ss(V_sn) = tau_ss(V_M)",
@@ -209,7 +228,8 @@ fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
             whether(at_peak == at_fold, "exactly", "nearly"),
         )
         .noted(format!(
-            "tau_ss(V_sn) - tau_ss(V_M) = {:.2e}; at the fold the faster interface has {:.6}, V_sn less the slower one's rate, and tau_ss there is still {:.1e} below that at V_M",
+            "tau_ss(V_sn) - tau_ss(V_M) = {:.2e}; at the fold the faster interface has {:.6}, V_sn less \
+                the slower one's rate, and tau_ss there is still {:.1e} below that at V_M",
             at_fold - at_peak,
             fast.to_f64(),
             (Strength::Residual.steady_stress(DoubleDouble::constant(v_peak)) - Strength::Residual.steady_stress(slow)).to_f64(),
@@ -242,7 +262,14 @@ fn slow_interface(pieces: &Pieces<'_>, v_peak: f64) -> Result<Entry> {
         ("slow-interface-below-V_M", "section 4.2; Fig. 5(d)"),
         "the slower interface of an asymmetric equilibrium has V < V_M, up to V_sn",
         "always",
-        whether(largest.max(at_fold) < v_peak, "always", "but for the last bit before V_sn"),
+        whether(
+            largest.max(at_fold) < v_peak,
+            "always",
+            "but for the last bit before V_sn",
+        ),
     )
-    .noted(format!("at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is V_M", at_fold / v_peak - 1.0)))
+    .noted(format!(
+        "at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is V_M",
+        at_fold / v_peak - 1.0
+    )))
 }

@@ -26,7 +26,12 @@ impl Curve {
         let request = LocusRequest {
             symmetry: Some(symmetry),
             criticality: true,
-            ..LocusRequest::new(slab(pieces, 1.0, 0.1)?, LocusKind::Hopf, (1e-3, 1e6), (SOFTEST, 1.0))
+            ..LocusRequest::new(
+                slab(pieces, 1.0, 0.1)?,
+                LocusKind::Hopf,
+                (1e-3, 1e6),
+                (SOFTEST, 1.0),
+            )
         };
         let (mut rows, mut special) = (Vec::new(), Vec::new());
         equilibria::locus(&request, &mut |event| {
@@ -72,7 +77,13 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         there += count(pieces, stiffness, Symmetry::Symmetric)?;
     }
     let none = |count: usize| whether(count == 0, "none", "some");
-    let beyond = |curve: &Curve, k: f64| curve.rows.iter().filter(move |row| row.stiffness.value > k).count();
+    let beyond = |curve: &Curve, k: f64| {
+        curve
+            .rows
+            .iter()
+            .filter(move |row| row.stiffness.value > k)
+            .count()
+    };
     let above = beyond(&symmetric, 0.2) + beyond(&asymmetric, 0.45);
     let lefts = [symmetric.ends()?[0], asymmetric.ends()?[0]].map(|v| v / (2.0 * v_peak) - 1.0);
     let right = asymmetric.ends()?[1] / v_trough - 1.0;
@@ -83,36 +94,58 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "none",
             none(there),
         )
-        .beside("the largest K of both curves of Hopf points", Answer::Word(none(above))),
+        .beside(
+            "the largest K of both curves of Hopf points",
+            Answer::Word(none(above)),
+        ),
         Entry::claim(
             ("approach-to-2V_M", "section 4.2; Fig. 6"),
             "where both curves of Hopf points go as K -> 0, at small V_H",
             "2 V_M",
-            whether(lefts.iter().all(|part| (0.0..1e-3).contains(part)), "2 V_M", "elsewhere"),
+            whether(
+                lefts.iter().all(|part| (0.0..1e-3).contains(part)),
+                "2 V_M",
+                "elsewhere",
+            ),
         )
-        .noted(format!("at K = {SOFTEST:e} V_H exceeds 2 V_M by the parts {:.1e} and {:.1e}", lefts[0], lefts[1])),
+        .noted(format!(
+            "at K = {SOFTEST:e} V_H exceeds 2 V_M by the parts {:.1e} and {:.1e}",
+            lefts[0], lefts[1]
+        )),
         Entry::claim(
             ("end-of-asymmetric-hopf", "section 4.2; Fig. 6"),
             "where the curve of asymmetric Hopf points vanishes at large V_H",
             "V_m",
             whether(right.abs() < 1e-5, "V_m", "elsewhere"),
         )
-        .noted(format!("at K = {SOFTEST:e} V_H is V_m but for the part {right:.1e}")),
+        .noted(format!(
+            "at K = {SOFTEST:e} V_H is V_m but for the part {right:.1e}"
+        )),
         always_supercritical(pieces, &asymmetric)?,
         top(pieces, &symmetric)?,
     ])
 }
 
 fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
-    let to = |way: Criticality| curve.rows.iter().filter(move |row| row.criticality == Some(way));
+    let to = |way: Criticality| {
+        curve
+            .rows
+            .iter()
+            .filter(move |row| row.criticality == Some(way))
+    };
     let all = to(Criticality::Supercritical).count() == curve.rows.len();
     let degenerate = curve.special.iter().any(|s| s.label == Label::Gh);
     // Orbits beside the Hopf points at K = 0.14: the first and the last of the branch.
     let branches = pieces.branches("fig07")?;
-    let orbits = branches.rows.iter().filter(|row| row.state[0] != row.state[1] && row.label.is_none());
+    let orbits = branches
+        .rows
+        .iter()
+        .filter(|row| row.state[0] != row.state[1] && row.label.is_none());
     let orbits: Vec<_> = orbits.collect();
     let ends = [orbits.first(), orbits.last()];
-    let stable = ends.iter().all(|row| row.is_some_and(|row| row.verdict == Verdict::Stable));
+    let stable = ends
+        .iter()
+        .all(|row| row.is_some_and(|row| row.verdict == Verdict::Stable));
     let word = |it_is| whether(it_is, "always supercritical", "not always supercritical");
     Ok(Entry::claim(
         ("asymmetric-hopf-supercritical", "section 4.2; Fig. 6"),
@@ -120,8 +153,16 @@ fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
         "always supercritical",
         word(all && !degenerate),
     )
-    .beside("Floquet multipliers of the orbits beside both Hopf points at K = 0.14", Answer::Word(word(stable)))
-    .noted(format!("the first Lyapunov coefficient in 31 digits is negative at all {} points of the curve from K = {SOFTEST:e}, and nowhere zero", curve.rows.len())))
+    .beside(
+        "Floquet multipliers of the orbits beside both Hopf points at K = \
+        0.14",
+        Answer::Word(word(stable)),
+    )
+    .noted(format!(
+        "the first Lyapunov coefficient in 31 digits is negative at all {} points of the \
+        curve from K = {SOFTEST:e}, and nowhere zero",
+        curve.rows.len()
+    )))
 }
 
 fn top(pieces: &Pieces<'_>, symmetric: &Curve) -> Result<Entry> {
@@ -138,6 +179,10 @@ fn top(pieces: &Pieces<'_>, symmetric: &Curve) -> Result<Entry> {
         "< 0.2",
         top.stiffness,
     )
-    .beside_number("half the largest k_c(V), in intervals", 0.5 * value, 0.5 * uncertainty)
+    .beside_number(
+        "half the largest k_c(V), in intervals",
+        0.5 * value,
+        0.5 * uncertainty,
+    )
     .noted(format!("at V_H = {:.6}", top.driving.value)))
 }

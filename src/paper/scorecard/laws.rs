@@ -4,7 +4,7 @@ use super::exact::{self, Strength};
 use super::{Answer, Entry, holds, missing, of_rounded_parameters};
 use crate::error::Result;
 use crate::friction::{Extremum, Parameters};
-use crate::number::{DoubleDouble, Real, Uncertain};
+use crate::number::{DoubleDouble, Uncertain};
 use crate::paper::Pieces;
 
 /// V* in m/s; a; a_v; b; R, of Heslot et al. (1994).
@@ -92,7 +92,8 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             of_rounded_parameters(Uncertain::new(near_trough, 0.0)),
         )
         .beside("31 digits, decimal parameters", exactly(less_one * 1.01e3))
-        .noted("the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is the limit of the larger root for small c"),
+        .noted("the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is the limit \
+            of the larger root for small c"),
         Entry::number(
             ("mu-maximum", "section 4.1, Fig. 4"),
             "mu_ss(V_M) of law (35)",

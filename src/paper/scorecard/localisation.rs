@@ -42,7 +42,10 @@ fn stick_slip(stiff: &Run, soft: &Run) -> Result<Entry> {
         "below K_c only",
         word([grows(stiff)?, grows(soft)?]),
     )
-    .beside("eigenvalues of one interface", Answer::Word(word([alone(stiff)?, alone(soft)?])))
+    .beside(
+        "eigenvalues of one interface",
+        Answer::Word(word([alone(stiff)?, alone(soft)?])),
+    )
     .noted(format!(
         "runs at K = {} and {}, K_c = {:.6}; the text gives no stiffness",
         stiff.plan.loading.stiffness,
@@ -66,22 +69,28 @@ fn of_the_text(law: &AnyLaw) -> Result<Vec<Entry>> {
         unstable &= found.verdict == Verdict::Unstable;
         // k_c/F_V = (beta-1) V_H/2  (27)
         let expected = 0.5 * onset;
-        let near = found.eigenvalues.iter().map(|z| (z - expected).norm() / expected);
+        let near = found
+            .eigenvalues
+            .iter()
+            .map(|z| (z - expected).norm() / expected);
         transverse.push(near.fold(f64::INFINITY, f64::min));
     }
     let moved = transverse.iter().fold(0.0_f64, |a, &b| a.max(b));
     let place = "Fig. 3, caption";
     Ok(vec![
-        Entry::number(("stress-of-fig-3", place), "tau of the steady states of one interface at V_H = V*", "a sigma", "10.7", of_rounded_parameters(stress))
+        Entry::number(("stress-of-fig-3", place), "tau of the steady states of one interface at V_H = \
+            V*", "a sigma", "10.7", of_rounded_parameters(stress))
             .beside_number("a_v/a in 31 digits", in_decimals, 4.0 * f64::EPSILON * in_decimals)
-            .misprinted(&format!("tau_ss(V*) = a_v/a rounds to 10.6; 10.7 is neither this nor that of the symmetric state, {symmetric:.4}")),
+            .misprinted(&format!("tau_ss(V*) = a_v/a rounds to 10.6; 10.7 is neither this nor that of \
+                the symmetric state, {symmetric:.4}")),
         Entry::claim(
             ("no-effect-of-stiffness", "section 3.3"),
             "effect of the stiffness on the symmetric state with the Dieterich-Ruina law, which is unstable",
             "none",
             whether(unstable && moved < 1e-12, "none", "some"),
         )
-        .noted("unstable for K from 1e-3 to 1e3 by Routh-Hurwitz in interval arithmetic, always with the eigenvalue k_c/F_V = (beta-1) V_H/2 of (26)"),
+        .noted("unstable for K from 1e-3 to 1e3 by Routh-Hurwitz in interval arithmetic, always with \
+            the eigenvalue k_c/F_V = (beta-1) V_H/2 of (26)"),
         Entry::number(
             ("K_c", "section 3.3"),
             "K_c = (b-a)/a of one interface with the Dieterich-Ruina law",
@@ -96,7 +105,11 @@ fn of_the_text(law: &AnyLaw) -> Result<Vec<Entry>> {
 /// The slip rates at the end of a longer run of the same scene, from its start or with the interfaces exchanged.
 fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
     let (stress, [first, second]) = run_of.plan.start;
-    let start = if exchanged { [second, first] } else { [first, second] };
+    let start = if exchanged {
+        [second, first]
+    } else {
+        [first, second]
+    };
     let plan = Plan {
         start: (stress, start),
         until: LONG,
@@ -108,10 +121,14 @@ fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
     if let Some(failure) = outcome.failure {
         return Err(failure);
     }
-    let last = outcome.last.ok_or_else(|| missing("a run without an end"))?;
+    let last = outcome
+        .last
+        .ok_or_else(|| missing("a run without an end"))?;
     let at = |name: &str| {
         let column = plan.columns.iter().position(|column| column.name() == name);
-        column.map(|i| last[i]).ok_or_else(|| missing("a run without slip rates"))
+        column
+            .map(|i| last[i])
+            .ok_or_else(|| missing("a run without slip rates"))
     };
     Ok([at("slip_rate_1")?, at("slip_rate_2")?])
 }
@@ -140,7 +157,11 @@ fn localises(stiff: &Run, soft: &Run) -> Result<Entry> {
         "localises",
         whether(localised, "localises", "is shared"),
     )
-    .noted(format!("at t = {LONG} the slower interface has lost {:.1} and {:.1} orders of magnitude, at K = 0.45 and 0.395", orders[0], orders[1])))
+    .noted(format!(
+        "at t = {LONG} the slower interface has lost {:.1} and {:.1} orders of magnitude, at \
+        K = 0.45 and 0.395",
+        orders[0], orders[1]
+    )))
 }
 
 fn the_weaker_one(stiff: &Run, soft: &Run) -> Result<Entry> {
@@ -164,8 +185,16 @@ fn the_weaker_one(stiff: &Run, soft: &Run) -> Result<Entry> {
 
 /// Whether the faster interface departs from V_H more and more, in thirds of the run after the first.
 fn grows(run: &Run) -> Result<bool> {
-    let column = |name| run.rows.column(name).ok_or_else(|| missing("a run without slip rates"));
-    let (time, first, second) = (column("time")?, column("slip_rate_1")?, column("slip_rate_2")?);
+    let column = |name| {
+        run.rows
+            .column(name)
+            .ok_or_else(|| missing("a run without slip rates"))
+    };
+    let (time, first, second) = (
+        column("time")?,
+        column("slip_rate_1")?,
+        column("slip_rate_2")?,
+    );
     let driving = run.plan.loading.driving;
     let third = run.plan.until / 3.0;
     let mut largest = [0.0_f64; 3];

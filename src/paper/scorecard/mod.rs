@@ -29,13 +29,16 @@ use crate::orbit::Slab;
 use serde_json::{Value, json};
 
 /// How the entries are computed, in a sentence.
-pub const METHOD: &str = "steady states and their bifurcations from closed forms and enclosed zeros; orbits by multiple shooting with Taylor series at 1e-16; runs as their scenes say; every entry with its own second method where it has one";
+pub const METHOD: &str = "steady states and their bifurcations from closed forms and enclosed zeros; \
+    orbits by multiple shooting with Taylor series at 1e-16; runs as their scenes say; every entry with \
+    its own second method where it has one";
 
 /// Table 1 again.
 pub const TABLE1: Product = Product {
     id: "table1",
     title: "Coordinates of the strong resonances along the torus bifurcation curve",
-    caption: "Of each resonance V_H, its logarithm and K: as printed, as computed, and as computed by a second method from \
+    caption: "Of each resonance V_H, its logarithm and K: as printed, as computed, and as computed by a \
+        second method from \
               nodes cut to a few digits. The resonance 1:2 agrees in V_H and K; the others are printed 0.3 to 4 % away from \
               where both methods find them.",
     alt: "A table of five strong resonances, each with three numbers: printed, computed, computed otherwise.",
@@ -47,9 +50,11 @@ pub const TABLE1: Product = Product {
 pub const SCORECARD: Product = Product {
     id: "scorecard",
     title: "What the paper says and what is computed",
-    caption: "Every number that the text prints and every claim that a computation can decide. A number agrees if rounding \
+    caption: "Every number that the text prints and every claim that a computation can decide. A number \
+        agrees if rounding \
               the computed one to the printed digits gives it, a bound if it is right and tight, a claim if it holds.",
-    alt: "A list of numbers and claims, each with where it is, what is printed, what is computed and the verdict.",
+    alt: "A list of numbers and claims, each with where it is, what is printed, what is computed and \
+        the verdict.",
     scenes: &[
         "fig06-orbit-pitchforks",
         "fig12",
@@ -228,9 +233,10 @@ pub fn json(entries: &[Entry]) -> Value {
 }
 
 fn object(entry: &Entry) -> Value {
-    let second = entry.second.as_ref().map(
-        |second| json!({"method": second.method, "computed": answer(&second.value)}),
-    );
+    let second = entry
+        .second
+        .as_ref()
+        .map(|second| json!({"method": second.method, "computed": answer(&second.value)}));
     json!({
         "id": entry.id,
         "where": entry.place,
@@ -297,5 +303,8 @@ fn missing(what: impl Into<String>) -> Error {
 fn of_rounded_parameters(x: Uncertain) -> Uncertain {
     /// In units of the last place.
     const UNITS: f64 = 16.0;
-    Uncertain::new(x.value, x.uncertainty + UNITS * f64::EPSILON * x.value.abs())
+    Uncertain::new(
+        x.value,
+        x.uncertainty + UNITS * f64::EPSILON * x.value.abs(),
+    )
 }

@@ -25,7 +25,11 @@ pub(super) fn orbit_at(
     method: Choice,
 ) -> Result<Orbit> {
     let query = Query { symmetry, begin };
-    let found = find(&slab(pieces, driving, stiffness)?, &query, &Accuracy::of(method))?;
+    let found = find(
+        &slab(pieces, driving, stiffness)?,
+        &query,
+        &Accuracy::of(method),
+    )?;
     Ok(found.orbit)
 }
 
@@ -57,9 +61,17 @@ pub fn at_moderate_stiffness(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     } else {
         "not always the same"
     };
-    let within = symmetric.iter().all(|row| row.ln_abs_multiplier[1].is_some_and(|x| x < 0.0));
+    let within = symmetric
+        .iter()
+        .all(|row| row.ln_abs_multiplier[1].is_some_and(|x| x < 0.0));
     let at = (1.0, 0.14);
-    let again = orbit_at(pieces, at, Symmetry::Symmetric, Begin::Anywhere, second_method()?)?;
+    let again = orbit_at(
+        pieces,
+        at,
+        Symmetry::Symmetric,
+        Begin::Anywhere,
+        second_method()?,
+    )?;
     let second: Vec<Uncertain> = again.floquet.multipliers.iter().map(|m| m.ln_abs).collect();
     let place = "section 4.2; Fig. 7";
     let mut entries = vec![
@@ -71,7 +83,8 @@ pub fn at_moderate_stiffness(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         )
         .beside("multipliers at V_H = 1 by a second integrator", Answer::Word(word(again.verdict())))
         .noted(format!(
-            "ln |mu| = {:.6} and {:.6} there; within the subspace psi_1 = psi_2 they are {}, as the text says",
+            "ln |mu| = {:.6} and {:.6} there; within the subspace psi_1 = psi_2 they are {}, as the \
+                text says",
             second[0].value,
             second[1].value,
             whether(within, "all stable", "not all stable")
@@ -128,14 +141,17 @@ fn likeness(symmetric: &[&BranchRow], asymmetric: &[&BranchRow]) -> Result<[Entr
             "smaller",
             whether(b < 1.0, "smaller", "not always smaller"),
         )
-        .noted(format!("their ratio is {a:.3} to {b:.3} from V_H = 0.2 to 100; nearer to the Hopf points where they vanish the symmetric orbits are the smaller ones")),
+        .noted(format!("their ratio is {a:.3} to {b:.3} from V_H = 0.2 to 100; nearer to the Hopf \
+            points where they vanish the symmetric orbits are the smaller ones")),
         Entry::claim(
             ("periods-at-0.14", "section 4.2; Fig. 7(b)"),
             "the periods of symmetric and asymmetric orbits, K = 0.14",
             "very similar",
             whether(part < SIMILAR, "very similar", "unlike"),
         )
-        .noted(format!("the ratio of the asymmetric to the symmetric one is {s:.3} to {t:.3} from V_H = 0.2 to 100, where they fall from {longest:.0} to {shortest:.2}: on the logarithmic axis of the figure they are within the part {part:.3} of that")),
+        .noted(format!("the ratio of the asymmetric to the symmetric one is {s:.3} to {t:.3} from V_H = \
+            0.2 to 100, where they fall from {longest:.0} to {shortest:.2}: on the logarithmic axis of \
+            the figure they are within the part {part:.3} of that")),
     ])
 }
 
@@ -152,9 +168,18 @@ fn largest_of_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let top = curves.special.iter().find(|s| s.label == Label::Top);
     let top = top.ok_or_else(|| missing("the pitchforks of orbits have no top"))?;
     let driving = top.driving.value;
-    let again = at_top(pieces, driving, top.stiffness.value, Symmetry::Symmetric, Begin::Anywhere)?;
+    let again = at_top(
+        pieces,
+        driving,
+        top.stiffness.value,
+        Symmetry::Symmetric,
+        Begin::Anywhere,
+    )?;
     Ok(Entry::number(
-        ("largest-K-of-orbit-pitchforks", "section 4.2, before Fig. 8"),
+        (
+            "largest-K-of-orbit-pitchforks",
+            "section 4.2, before Fig. 8",
+        ),
         "the largest K at which symmetric orbits are stable somewhere, that of PF",
         "a sigma/L",
         "< 0.135",
@@ -180,7 +205,9 @@ pub(super) fn at_top(
     let logarithm = |stiffness: f64| -> Result<Uncertain> {
         let orbit = orbit_at(pieces, (driving, stiffness), symmetry, begin, method)?;
         let first = orbit.floquet.multipliers.first();
-        Ok(first.ok_or_else(|| missing("an orbit without multipliers"))?.ln_abs)
+        Ok(first
+            .ok_or_else(|| missing("an orbit without multipliers"))?
+            .ln_abs)
     };
     let (mut k, mut next) = (near * (1.0 + 2.0 * OFF), near * (1.0 + OFF));
     let mut at = logarithm(k)?;
@@ -191,7 +218,10 @@ pub(super) fn at_top(
         (k, at) = (next, there);
         next = k - at.value / slope;
     }
-    Ok(Uncertain::new(next, (at.uncertainty / slope).abs() + (next - k).abs()))
+    Ok(Uncertain::new(
+        next,
+        (at.uncertainty / slope).abs() + (next - k).abs(),
+    ))
 }
 
 fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
@@ -200,12 +230,16 @@ fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
         Ok([at(Symmetry::Symmetric)?, at(Symmetry::Asymmetric)?])
     };
     let word = |orbits: &[Orbit; 2]| {
-        let stable = orbits.iter().all(|orbit| orbit.verdict() == Verdict::Stable);
+        let stable = orbits
+            .iter()
+            .all(|orbit| orbit.verdict() == Verdict::Stable);
         whether(stable, "both stable", "not both stable")
     };
     let first = both(Choice::Taylor)?;
     let second = both(second_method()?)?;
-    let logarithms = first.each_ref().map(|orbit| orbit.floquet.multipliers[0].ln_abs.value);
+    let logarithms = first
+        .each_ref()
+        .map(|orbit| orbit.floquet.multipliers[0].ln_abs.value);
     let periods = first.each_ref().map(|orbit| orbit.period.value);
     Ok(Entry::claim(
         ("coexistence", "section 4.2, K < 0.135; Fig. 10"),
@@ -236,7 +270,9 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
         ControlFlow::Continue(())
     })?;
     let labels: Vec<Label> = special.iter().map(|s: &Special| s.label).collect();
-    let fold = rows.iter().position(|row: &BranchRow| row.label == Some(Label::Sn));
+    let fold = rows
+        .iter()
+        .position(|row: &BranchRow| row.label == Some(Label::Sn));
     let (before, after) = rows.split_at(fold.unwrap_or(rows.len()));
     let all = |rows: &[BranchRow], verdict| {
         let mut plain = rows.iter().filter(|row| row.label.is_none());
@@ -253,12 +289,20 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
         _ => "undecided",
     };
     let place = "section 4.2; Fig. 9";
-    let beside = whether(all(after, Verdict::Unstable), "subcritical", "supercritical");
-    let at: Vec<String> = special.iter().map(|s| format!("{:.6}", s.driving.value)).collect();
+    let beside = whether(
+        all(after, Verdict::Unstable),
+        "subcritical",
+        "supercritical",
+    );
+    let at: Vec<String> = special
+        .iter()
+        .map(|s| format!("{:.6}", s.driving.value))
+        .collect();
     Ok([
         Entry::claim(
             ("branch-from-H_a^2", place),
-            "the asymmetric orbits from H_a^2: stable, unstable after a fold SN, ending on the symmetric ones at PF^2",
+            "the asymmetric orbits from H_a^2: stable, unstable after a fold SN, ending on the \
+                symmetric ones at PF^2",
             "holds",
             super::holds(as_told),
         )
@@ -269,7 +313,10 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
             "subcritical",
             way,
         )
-        .beside("multipliers of the asymmetric orbits that end there", Answer::Word(beside))
+        .beside(
+            "multipliers of the asymmetric orbits that end there",
+            Answer::Word(beside),
+        )
         .noted("by the cubic coefficient, K = 0.05"),
     ])
 }
@@ -278,10 +325,16 @@ fn from_the_second_hopf_point(pieces: &Pieces<'_>) -> Result<[Entry; 2]> {
 fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let branches = pieces.branches("fig09")?;
     let last = |label: Label, all: &[Special]| {
-        let these = all.iter().filter(|s| s.label == label).map(|s| s.driving.value);
+        let these = all
+            .iter()
+            .filter(|s| s.label == label)
+            .map(|s| s.driving.value);
         these.fold(0.0, f64::max)
     };
-    let (double, fork) = (last(Label::Pd, &branches.special), last(Label::Pf, &branches.special));
+    let (double, fork) = (
+        last(Label::Pd, &branches.special),
+        last(Label::Pf, &branches.special),
+    );
     let curves = pieces.curves("fig12-period-doubling")?;
     let ends = curves.special.iter().filter(|s| s.label == Label::Ep);
     let softest = ends.max_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
@@ -314,5 +367,8 @@ fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
         "aligned",
         whether(aligned && distances[1] > 0.0, "aligned", "apart"),
     )
-    .noted(format!("PF is at larger V_H by the part {:.1e} at K = 0.05 and {:.1e} at K = {k}", distances[0], distances[1])))
+    .noted(format!(
+        "PF is at larger V_H by the part {:.1e} at K = 0.05 and {:.1e} at K = {k}",
+        distances[0], distances[1]
+    )))
 }

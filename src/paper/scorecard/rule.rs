@@ -63,7 +63,13 @@ impl Decimal {
 
 /// The verdict, and whether it is the same wherever the true value lies within its uncertainty. A misprint is never found here.
 pub fn judge(printed: &str, computed: &Answer) -> (Verdict, bool) {
-    let verdict = |agrees: bool| if agrees { Verdict::Agrees } else { Verdict::Differs };
+    let verdict = |agrees: bool| {
+        if agrees {
+            Verdict::Agrees
+        } else {
+            Verdict::Differs
+        }
+    };
     let x = match computed {
         Answer::Word(word) => return (verdict(*word == printed), true),
         Answer::Number(x) => x,

@@ -15,7 +15,11 @@ const LATE: f64 = 0.5;
 
 /// A column of the later part of a run.
 fn late(run: &Run, name: &str) -> Result<Vec<f64>> {
-    let column = |name| run.rows.column(name).ok_or_else(|| missing("a run without its columns"));
+    let column = |name| {
+        run.rows
+            .column(name)
+            .ok_or_else(|| missing("a run without its columns"))
+    };
     let (time, values) = (column("time")?, column(name)?);
     let begin = LATE * run.plan.until;
     let both = time.iter().zip(values);
@@ -32,21 +36,53 @@ pub fn of_fig_8(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let run = pieces.run("fig08b")?;
     let states = [late(&run, "state_1")?, late(&run, "state_2")?].map(|all| range(&all));
     // The faster interface is the one whose state falls farther.
-    let [fast, slow] = if states[0].0 < states[1].0 { states } else { [states[1], states[0]] };
+    let [fast, slow] = if states[0].0 < states[1].0 {
+        states
+    } else {
+        [states[1], states[0]]
+    };
     let residual = Parameters::heslot_1994().residual_strength;
     let at = (run.plan.loading.driving, run.plan.loading.stiffness);
-    let orbit = orbit_at(pieces, at, Symmetry::Asymmetric, Begin::Anywhere, Choice::Taylor)?;
-    let far = |least: f64| whether(least < 0.1 * residual, "much less than c", "not much less than c");
+    let orbit = orbit_at(
+        pieces,
+        at,
+        Symmetry::Asymmetric,
+        Begin::Anywhere,
+        Choice::Taylor,
+    )?;
+    let far = |least: f64| {
+        whether(
+            least < 0.1 * residual,
+            "much less than c",
+            "not much less than c",
+        )
+    };
     // "Of order 0.1" is between the geometric means with 0.01 and with 1.
     let tenth = |x: f64| (0.1 / 10_f64.sqrt()..0.1 * 10_f64.sqrt()).contains(&x);
     let of_order = tenth(slow.0) && tenth(slow.1);
     let place = "section 4.2; Fig. 8(b)";
     Ok(vec![
-        Entry::claim(("state-of-the-fast-interface", place), "the state of the fast interface in a stick-slip event", "much less than c", far(fast.0))
-            .beside("the periodic orbit, by multiple shooting", Answer::Word(far(orbit.state_min)))
-            .noted(format!("it falls to {:.3e}, c = {residual}; K = {}, V_H = {}, chosen by the scene", fast.0, at.1, at.0)),
-        Entry::claim(("state-of-the-slow-interface", place), "the state of the slow interface meanwhile", "of order 0.1", whether(of_order, "of order 0.1", "otherwise"))
-            .noted(format!("it stays between {:.3} and {:.3}", slow.0, slow.1)),
+        Entry::claim(
+            ("state-of-the-fast-interface", place),
+            "the state of the fast interface in a stick-slip event",
+            "much less than c",
+            far(fast.0),
+        )
+        .beside(
+            "the periodic orbit, by multiple shooting",
+            Answer::Word(far(orbit.state_min)),
+        )
+        .noted(format!(
+            "it falls to {:.3e}, c = {residual}; K = {}, V_H = {}, chosen by the scene",
+            fast.0, at.1, at.0
+        )),
+        Entry::claim(
+            ("state-of-the-slow-interface", place),
+            "the state of the slow interface meanwhile",
+            "of order 0.1",
+            whether(of_order, "of order 0.1", "otherwise"),
+        )
+        .noted(format!("it stays between {:.3} and {:.3}", slow.0, slow.1)),
     ])
 }
 
@@ -55,7 +91,10 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let run = pieces.run("fig11")?;
     let (first, second) = (late(&run, "state_1")?, late(&run, "state_2")?);
     let apart = |i: usize| (first[i] / second[i]).ln().abs();
-    let last = first.len().checked_sub(1).ok_or_else(|| missing("fig11 has no rows"))?;
+    let last = first
+        .len()
+        .checked_sub(1)
+        .ok_or_else(|| missing("fig11 has no rows"))?;
     let (begin, end) = (run.plan.start.1, apart(last));
     let at = (run.plan.loading.driving, run.plan.loading.stiffness);
     let method = second_method()?;
@@ -69,8 +108,14 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "the symmetric orbit",
             word(end < 1e-9),
         )
-        .beside("stability of the symmetric orbit, by a second integrator", Answer::Word(word(stable)))
-        .noted(format!("|ln psi_1 - ln psi_2| falls from {:.3} to {end:.0e}", (begin[0] - begin[1]).abs())),
+        .beside(
+            "stability of the symmetric orbit, by a second integrator",
+            Answer::Word(word(stable)),
+        )
+        .noted(format!(
+            "|ln psi_1 - ln psi_2| falls from {:.3} to {end:.0e}",
+            (begin[0] - begin[1]).abs()
+        )),
     ])
 }
 
@@ -90,8 +135,13 @@ pub fn of_fig_13(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "torus",
             map.outcome.regime.name(),
         )
-        .beside("two Lyapunov exponents that vanish", Answer::Word(whether(vanish, "torus", "no torus")))
-        .noted(format!("the returns lie on one closed curve, the rotation number is {rotation:.6}")),
+        .beside(
+            "two Lyapunov exponents that vanish",
+            Answer::Word(whether(vanish, "torus", "no torus")),
+        )
+        .noted(format!(
+            "the returns lie on one closed curve, the rotation number is {rotation:.6}"
+        )),
     ])
 }
 
@@ -116,7 +166,12 @@ pub fn of_fig_16(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "four-fold",
             word(if periodic { returns } else { 0 }),
         )
-        .beside("after how many returns the slip rates repeat", Answer::Word(word(seen)))
-        .noted(format!("at V_H = {driving}, which the scene chooses: a stable orbit that returns four times")),
+        .beside(
+            "after how many returns the slip rates repeat",
+            Answer::Word(word(seen)),
+        )
+        .noted(format!(
+            "at V_H = {driving}, which the scene chooses: a stable orbit that returns four times"
+        )),
     ])
 }

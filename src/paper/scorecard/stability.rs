@@ -35,7 +35,9 @@ pub fn single_interface(_: &Pieces<'_>) -> Result<Vec<Entry>> {
             "(b-a)/a",
             computed,
         )
-        .noted(format!("from the eigenvalues at k_c: {one:.6} at V = V*, {ten:.4} at V = 10 V*, in (V*/L)^2"))
+        .noted(format!(
+            "from the eigenvalues at k_c: {one:.6} at V = V*, {ten:.4} at V = 10 V*, in (V*/L)^2"
+        ))
         .misprinted("the factor (V/L)^2 is missing, which is 1 at V = V* in units of L/V*"),
     ])
 }
@@ -78,7 +80,11 @@ impl Pair {
         let [one, two] = [1, 0].map(|i| Letters::at(law, state.slip_rate[i]));
         Pair {
             s: [one.s, two.s],
-            a: [one.a_s / one.s, two.a_s / two.s, one.compliance + two.compliance],
+            a: [
+                one.a_s / one.s,
+                two.a_s / two.s,
+                one.compliance + two.compliance,
+            ],
         }
     }
 
@@ -131,8 +137,13 @@ fn weakening_states(law: &AnyLaw) -> Result<Vec<(f64, Equilibrium)>> {
     for i in 0..STATES {
         let driving = from * (to / from).powf(i as f64 / (STATES - 1) as f64);
         let states = steady_states(law, driving, 2, Solver::Newton)?.equilibria;
-        let state = states.into_iter().find(|e| e.symmetry == Symmetry::Asymmetric);
-        all.push((driving, state.ok_or_else(|| missing("no asymmetric steady state"))?));
+        let state = states
+            .into_iter()
+            .find(|e| e.symmetry == Symmetry::Asymmetric);
+        all.push((
+            driving,
+            state.ok_or_else(|| missing("no asymmetric steady state"))?,
+        ));
     }
     Ok(all)
 }
@@ -171,7 +182,9 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let [s1, s2] = Pair::at(&law, &state).s;
         (s1 + s2) / s1
     });
-    let (least, most) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| (a.min(x), b.max(x)));
+    let (least, most) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
+        (a.min(x), b.max(x))
+    });
     let sign = match (least > 0.0, most < 0.0) {
         (true, _) => "positive",
         (_, true) => "negative",
@@ -180,7 +193,8 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     Ok(vec![
         Entry::claim(
             ("symmetric-state", "section 3.2.2, after (28)"),
-            "the symmetric state is stable where V_H/2 is on a strengthening part and unstable where on the weakening one, whatever K",
+            "the symmetric state is stable where V_H/2 is on a strengthening part and unstable where on \
+                the weakening one, whatever K",
             "holds",
             holds(as_told),
         )
@@ -191,7 +205,8 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "negative",
             sign,
         )
-        .noted(format!("(s_1 + s_2)/s_1 is between {least:.3} and {most:.3} from 2 V_M to V_m: the slower interface's G_psi is much smaller")),
+        .noted(format!("(s_1 + s_2)/s_1 is between {least:.3} and {most:.3} from 2 V_M to V_m: the \
+            slower interface's G_psi is much smaller")),
         critical_stiffness_of_pairs(&law)?,
     ])
 }
@@ -201,7 +216,11 @@ fn critical_stiffness_of_pairs(law: &AnyLaw) -> Result<Entry> {
     let mut largest: f64 = 0.0;
     for stiffness in [0.05, 0.14, 0.3] {
         let loading = crate::model::Loading::new(1.0, stiffness)?;
-        let slab = crate::orbit::Slab { law: *law, interfaces: 2, loading };
+        let slab = crate::orbit::Slab {
+            law: *law,
+            interfaces: 2,
+            loading,
+        };
         let along = crate::bifurcation::Parameter::Driving;
         for point in hopf_points(&slab, Symmetry::Asymmetric, along)? {
             let by_formula = Pair::at(law, &point.equilibrium).critical();
@@ -214,7 +233,9 @@ fn critical_stiffness_of_pairs(law: &AnyLaw) -> Result<Entry> {
         "holds",
         holds(largest < 1e-9),
     )
-    .noted(format!("at the Hopf points that the eigenvalues of (30) have at K = 0.05, 0.14 and 0.3 it differs from K by at most the part {largest:.0e}; it is the larger root of (42) also where s_1 + s_2 > 0")))
+    .noted(format!("at the Hopf points that the eigenvalues of (30) have at K = 0.05, 0.14 and 0.3 it \
+        differs from K by at most the part {largest:.0e}; it is the larger root of (42) also where s_1 \
+        + s_2 > 0")))
 }
 
 /// Appendix A.
@@ -245,8 +266,15 @@ pub fn of_the_appendix(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "one",
             word,
         )
-        .beside("how often a pair of eigenvalues has the sum zero, over ten decades of K", Answer::Word(second))
-        .noted("said under s_1 + s_2 < 0, which never is; k_c^* is the larger one, and at the smaller one, below k_c^**, the pair is real: no Hopf point"),
+        .beside(
+            "how often a pair of eigenvalues has the sum zero, over ten decades of \
+            K",
+            Answer::Word(second),
+        )
+        .noted(
+            "said under s_1 + s_2 < 0, which never is; k_c^* is the larger one, and at the smaller \
+            one, below k_c^**, the pair is real: no Hopf point",
+        ),
     ])
 }
 

@@ -58,7 +58,12 @@ pub(super) fn resonances(pieces: &Pieces<'_>) -> Result<Vec<Special>> {
     let curves = pieces.curves("fig12")?;
     let mut all = Vec::new();
     for label in [Label::R4, Label::R3, Label::R2] {
-        let mut these: Vec<Special> = curves.special.iter().filter(|s| s.label == label).cloned().collect();
+        let mut these: Vec<Special> = curves
+            .special
+            .iter()
+            .filter(|s| s.label == label)
+            .cloned()
+            .collect();
         these.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
         all.extend(these);
     }
@@ -72,7 +77,10 @@ pub(super) fn resonances(pieces: &Pieces<'_>) -> Result<Vec<Special>> {
 /// V_H and K by the second method.
 pub(super) fn again(pieces: &Pieces<'_>, special: &Special) -> Result<[Uncertain; 2]> {
     let [driving, stiffness, _] = crosscheck(pieces, special)?;
-    Ok([moved(special.driving, driving), moved(special.stiffness, stiffness)])
+    Ok([
+        moved(special.driving, driving),
+        moved(special.stiffness, stiffness),
+    ])
 }
 
 /// log10 V_H, V_H and K.
@@ -95,17 +103,39 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
                 _ => "Table 1",
             };
             let quantity = match column.label {
-                Label::R4 => ["log10 V_H of the resonance 1:4", "V_H of the resonance 1:4", "K of the resonance 1:4"][i],
-                Label::R3 => ["log10 V_H of the resonance 1:3", "V_H of the resonance 1:3", "K of the resonance 1:3"][i],
-                _ => ["log10 V_H of the resonance 1:2", "V_H of the resonance 1:2", "K of the resonance 1:2"][i],
+                Label::R4 => [
+                    "log10 V_H of the resonance 1:4",
+                    "V_H of the resonance 1:4",
+                    "K of the resonance 1:4",
+                ][i],
+                Label::R3 => [
+                    "log10 V_H of the resonance 1:3",
+                    "V_H of the resonance 1:3",
+                    "K of the resonance 1:3",
+                ][i],
+                _ => [
+                    "log10 V_H of the resonance 1:2",
+                    "V_H of the resonance 1:2",
+                    "K of the resonance 1:2",
+                ][i],
             };
             let printed = column.numbers[i];
-            let entry = Entry::number((column.ids[i], place), quantity, UNITS[i], printed, first[i]);
+            let entry = Entry::number(
+                (column.ids[i], place),
+                quantity,
+                UNITS[i],
+                printed,
+                first[i],
+            );
             let off = off(printed, first[i].value);
             all.push(
                 entry
                     .beside(BY_SECOND, Answer::Number(second[i]))
-                    .noted(format!("the printed {} is off by {:.2} %", ["V_H", "V_H", "K"][i], 100.0 * off)),
+                    .noted(format!(
+                        "the printed {} is off by {:.2} %",
+                        ["V_H", "V_H", "K"][i],
+                        100.0 * off
+                    )),
             );
         }
     }
@@ -159,6 +189,10 @@ pub fn table1(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: None,
-        method: "resonances along the torus curve of fig12: orbits by multiple shooting with Taylor series at 1e-16, in three solutions; second_method: the same conditions from nodes cut to a few digits, by CVODE's BDF at 1e-12 (Rodas5P in a build without SUNDIALS); relative_difference is that of the printed V_H or K from the computed one, also where the logarithm is printed".into(),
+        method: "resonances along the torus curve of fig12: orbits by multiple shooting with Taylor \
+            series at 1e-16, in three solutions; second_method: the same conditions from nodes cut to a \
+            few digits, by CVODE's BDF at 1e-12 (Rodas5P in a build without SUNDIALS); \
+            relative_difference is that of the printed V_H or K from the computed one, also where the \
+            logarithm is printed".into(),
     })
 }

@@ -25,7 +25,13 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let (driving, stiffness) = (top.driving.value, top.stiffness.value);
     // A little above it the orbit is stable, and runs find it.
     let above = (driving, 1.02 * stiffness);
-    let settled = orbit_at(pieces, above, Symmetry::Asymmetric, Begin::Anywhere, Choice::Taylor)?;
+    let settled = orbit_at(
+        pieces,
+        above,
+        Symmetry::Asymmetric,
+        Begin::Anywhere,
+        Choice::Taylor,
+    )?;
     let begin = Begin::At {
         start: (settled.point[0], [settled.point[1], settled.point[2]]),
         period: Some(settled.period.value),
@@ -41,7 +47,8 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         )
         .beside(AT_THE_TOP, Answer::Number(second))
         .noted(format!(
-            "at V_H = {driving:.6}; the orbits become stable again in a {} at K = 0.14 and a {} at K = 0.05, as the text says",
+            "at V_H = {driving:.6}; the orbits become stable again in a {} at K = 0.14 and a {} at K = \
+                0.05, as the text says",
             stable_again(pieces, "fig07")?,
             stable_again(pieces, "fig09")?,
         )),
@@ -51,7 +58,10 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
 /// In what the asymmetric orbits of a scene become stable again, as V_H grows.
 fn stable_again(pieces: &Pieces<'_>, scene: &str) -> Result<&'static str> {
     let branches = pieces.branches(scene)?;
-    let rows = branches.rows.iter().filter(|row| row.state[0] != row.state[1]);
+    let rows = branches
+        .rows
+        .iter()
+        .filter(|row| row.state[0] != row.state[1]);
     let rows: Vec<_> = rows.collect();
     let mut windows = rows.windows(3).filter(|three| {
         let one = three.iter().all(|row| row.branch == three[0].branch);
@@ -67,7 +77,9 @@ fn stable_again(pieces: &Pieces<'_>, scene: &str) -> Result<&'static str> {
 /// Section 4.3.
 pub fn of_section_4_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let curves = pieces.curves("fig12")?;
-    let double = resonances(pieces)?.into_iter().find(|s| s.label == Label::R2);
+    let double = resonances(pieces)?
+        .into_iter()
+        .find(|s| s.label == Label::R2);
     let double = double.ok_or_else(|| missing("the torus bifurcations have no resonance 1:2"))?;
     let [_, stiffness] = again(pieces, &double)?;
     let angles = curves.rows.iter().filter_map(|row| row.angle_over_pi);
@@ -89,7 +101,9 @@ pub fn of_section_4_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "-> 1",
             whether(last > 0.999 && last <= 1.0, "-> 1", "otherwise"),
         )
-        .noted(format!("the largest on the points of the curve is {last:.6}; there the curve ends")),
+        .noted(format!(
+            "the largest on the points of the curve is {last:.6}; there the curve ends"
+        )),
     ])
 }
 
@@ -136,24 +150,58 @@ fn meeting(pieces: &Pieces<'_>, double: &Special) -> Result<String> {
 pub fn of_fig_16(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let branches = pieces.branches("fig07")?;
     let of = |label: Label| -> Result<[&Special; 2]> {
-        let mut all: Vec<_> = branches.special.iter().filter(|s| s.label == label).collect();
+        let mut all: Vec<_> = branches
+            .special
+            .iter()
+            .filter(|s| s.label == label)
+            .collect();
         all.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
-        all.try_into().map_err(|_| missing("fig07 has not two torus bifurcations and two period doublings"))
+        all.try_into()
+            .map_err(|_| missing("fig07 has not two torus bifurcations and two period doublings"))
     };
     let ([first, last], doublings) = (of(Label::Tr)?, of(Label::Pd)?);
     let printed = [
-        ("TR-first", first, "V_H of the first torus bifurcation at K = 0.14", "0.0767"),
-        ("PD-first", doublings[0], "V_H of the first period doubling at K = 0.14", "0.0842"),
-        ("PD-last", doublings[1], "V_H of the last period doubling at K = 0.14", "0.0980"),
-        ("TR-last", last, "V_H of the last torus bifurcation at K = 0.14", "0.1000"),
+        (
+            "TR-first",
+            first,
+            "V_H of the first torus bifurcation at K = 0.14",
+            "0.0767",
+        ),
+        (
+            "PD-first",
+            doublings[0],
+            "V_H of the first period doubling at K = 0.14",
+            "0.0842",
+        ),
+        (
+            "PD-last",
+            doublings[1],
+            "V_H of the last period doubling at K = 0.14",
+            "0.0980",
+        ),
+        (
+            "TR-last",
+            last,
+            "V_H of the last torus bifurcation at K = 0.14",
+            "0.1000",
+        ),
     ];
     let mut all = vec![way(pieces, first)?];
     for (id, special, quantity, printed) in printed {
         let [driving, _] = again(pieces, special)?;
         all.push(
-            Entry::number((id, "Fig. 16, caption"), quantity, "V*", printed, special.driving)
-                .beside(BY_SECOND, Answer::Number(driving))
-                .misprinted("two methods agree on the computed value to nine digits, and the torus bifurcations of the same caption are right"),
+            Entry::number(
+                (id, "Fig. 16, caption"),
+                quantity,
+                "V*",
+                printed,
+                special.driving,
+            )
+            .beside(BY_SECOND, Answer::Number(driving))
+            .misprinted(
+                "two methods agree on the computed value to nine digits, and the torus \
+                    bifurcations of the same caption are right",
+            ),
         );
     }
     Ok(all)
@@ -186,7 +234,10 @@ fn way(pieces: &Pieces<'_>, torus: &Special) -> Result<Entry> {
         Answer::Word(whether(between, "supercritical", "no torus found")),
     )
     .noted(format!(
-        "by a hair: the cubic coefficient is {coefficient:.5}; at V_H = {ABOVE} the distance of returns from the orbit grows from {:.4} to {:.4} and falls from {:.4} to {:.4}, to a torus between; at {BELOW}, where the orbit is stable, returns that begin 0.3 away stay {:.2} away, so that simulations look subcritical",
+        "by a hair: the cubic coefficient is {coefficient:.5}; at V_H = {ABOVE} the distance of returns \
+            from the orbit grows from {:.4} to {:.4} and falls from {:.4} to {:.4}, to a torus between; \
+            at {BELOW}, where the orbit is stable, returns that begin 0.3 away stay {:.2} away, so that \
+            simulations look subcritical",
         inside[0], inside[1], outside[0], outside[1], far[1]
     )))
 }
@@ -198,7 +249,10 @@ fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) ->
     const WINDOW: usize = 500;
     const TOLERANCE: f64 = 1e-15;
     let orbit = torus.orbit.as_ref();
-    let node = &orbit.ok_or_else(|| missing("a torus bifurcation without its orbit"))?.nodes().0[0];
+    let node = &orbit
+        .ok_or_else(|| missing("a torus bifurcation without its orbit"))?
+        .nodes()
+        .0[0];
     let begin = Begin::At {
         start: (node[0], [node[1], node[2]]),
         period: torus.period.map(|period| period.value),
@@ -220,10 +274,23 @@ fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) ->
     let mut taylor = Choice::Taylor.integrator::<3>(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let start = fixed + State::<3>::new(0.0, beside, 0.0);
     let mut seen = |_: usize, _: Option<&Return<3>>| Control::Continue;
-    let found = record(&mut *taylor, &*field, &start, &surface, &watching, &mut seen);
-    let all: Vec<f64> = found.returns.iter().map(|at| (at.state - fixed).norm()).collect();
+    let found = record(
+        &mut *taylor,
+        &*field,
+        &start,
+        &surface,
+        &watching,
+        &mut seen,
+    );
+    let all: Vec<f64> = found
+        .returns
+        .iter()
+        .map(|at| (at.state - fixed).norm())
+        .collect();
     if all.len() < RETURNS {
-        return Err(missing("a run beside the torus bifurcation that does not come back"));
+        return Err(missing(
+            "a run beside the torus bifurcation that does not come back",
+        ));
     }
     let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
     Ok([largest(&all[..WINDOW]), largest(&all[RETURNS - WINDOW..])])
