@@ -1,13 +1,15 @@
 //! Steady states of the two interfaces, their pitchforks and the fold V_sn: sections 3.2.1 and 4.2, Fig. 5.
 
 use super::exact::{self, Strength};
-use super::{Answer, Entry, holds, missing, of_rounded_parameters, slab, whether};
-use crate::bifurcation::{Criticality, Label, Special};
+use super::{
+    Answer, Entry, criticality_word, extrema, holds, missing, of_rounded_parameters, slab, whether,
+};
+use crate::bifurcation::{Label, Special};
 use crate::equilibrium::{
     Equilibrium, Solver, SteadyStates, Symmetry, Verdict, stability, steady_states,
 };
 use crate::error::Result;
-use crate::friction::{AnyLaw, Extremum, steady_stress};
+use crate::friction::{AnyLaw, steady_stress};
 use crate::number::{DoubleDouble, Real, Uncertain};
 use crate::paper::Pieces;
 
@@ -27,14 +29,6 @@ fn counted(law: &AnyLaw, driving: f64) -> Result<Option<[usize; 2]>> {
     let (below, above) = (below?, above?);
     let certain = below.complete && above.complete;
     Ok(certain.then_some([below.equilibria.len(), above.equilibria.len()]))
-}
-
-/// V_M and V_m.
-fn extrema(law: &AnyLaw) -> Result<[f64; 2]> {
-    match Extremum::all(law)[..] {
-        [maximum, minimum] => Ok([maximum.slip_rate.value, minimum.slip_rate.value]),
-        _ => Err(missing("the spinodal law has no two extrema")),
-    }
 }
 
 /// The states of different slip rates that the text of 3.2.1 finds near the extrema.
@@ -60,22 +54,32 @@ pub fn of_section_3(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     Ok(vec![
         Entry::claim(
             ("pitchforks-at-extrema", "section 3.2.1, (23), (24)"),
-            "asymmetric states part from the symmetric one at V_H = 2 V_e, with the amplitude of (24)",
+            "asymmetric states part from the symmetric one at V_H = 2 V_e, with the amplitude \
+             of (24)",
             "holds",
             holds(there && (limit / coefficient - 1.0).abs() < 1e-6),
         )
-        .noted(format!("the steady states are counted at 1e-9 below and above, with certain signs: 1 \
-            and 2 at 2 V_M, 2 and 3 at 2 V_m; the coefficient of (24) is {coefficient:.9}, and \
-            {limit:.9} the limit of [(V_1 - V_2)/2]^2/(V_H - 2 V_M) of steady states beside 2 V_M")),
+        .noted(format!(
+            "the steady states are counted at 1e-9 below and above, with certain \
+         signs: 1 and 2 at 2 V_M, 2 and 3 at 2 V_m; the coefficient of (24) is \
+         {coefficient:.9}, and {limit:.9} the limit of [(V_1 - V_2)/2]^2/(V_H - 2 V_M) of \
+         steady states beside 2 V_M"
+        )),
         Entry::claim(
             ("steeper-strengthening", "section 3.2.1, last paragraph"),
-            "asymmetric states near an extremum require that strengthening is steeper than weakening, \
-                tau_ss''' > 0",
+            "asymmetric states near an extremum require that strengthening is steeper than \
+             weakening, tau_ss''' > 0",
             "required",
-            whether(other < 0.0 || counts[1] == counts[0], "required", "not required"),
+            whether(
+                other < 0.0 || counts[1] == counts[0],
+                "required",
+                "not required",
+            ),
         )
-        .noted("at V_m tau_ss''' < 0, and asymmetric states are there all the same, subcritical and \
-            unstable"),
+        .noted(
+            "at V_m tau_ss''' < 0, and asymmetric states are there all the same, \
+         subcritical and unstable",
+        ),
     ])
 }
 
@@ -107,18 +111,10 @@ fn way(law: &AnyLaw, v: f64) -> Result<&'static str> {
     })
 }
 
-fn word(criticality: Option<Criticality>) -> &'static str {
-    match criticality {
-        Some(Criticality::Supercritical) => "supercritical",
-        Some(Criticality::Subcritical) => "subcritical",
-        _ => "undecided",
-    }
-}
-
 /// The spinodal branch of Fig. 5, its pitchforks and its fold.
 pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let law = pieces.law();
-    let extrema = extrema(&law)?;
+    let extrema = super::extrema(&law)?;
     let diagram = pieces.branches("fig05")?;
     let mut all = vec![at_the_ends(pieces)?];
     let named = [
@@ -138,15 +134,20 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     {
         let place = "section 4.2; Figs 5, 6";
         all.push(
-            Entry::claim((id, place), quantity, printed, word(special.criticality))
-                .beside(
-                    "stability of the states beside it",
-                    Answer::Word(way(&law, v)?),
-                )
-                .noted(format!(
-                    "at V_H = {:.9}, by the sign of tau_ss'''",
-                    special.driving.value
-                )),
+            Entry::claim(
+                (id, place),
+                quantity,
+                printed,
+                criticality_word(special.criticality),
+            )
+            .beside(
+                "stability of the states beside it",
+                Answer::Word(way(&law, v)?),
+            )
+            .noted(format!(
+                "at V_H = {:.9}, by the sign of tau_ss'''",
+                special.driving.value
+            )),
         );
     }
     let fold = diagram.special.iter().find(|s| s.label == Label::Lp);
@@ -200,8 +201,8 @@ fn unstable_pair(law: &AnyLaw, from: f64, to: f64) -> Result<Entry> {
         whether(unstable && ends, "unstable pair", "otherwise"),
     )
     .noted(
-        "counted with certain signs within, and at 1e-9 inside and outside of both ends; K = 0.01, \
-        0.45, 10",
+        "counted with certain signs within, and at 1e-9 inside and outside of both ends; K = \
+         0.01, 0.45, 10",
     ))
 }
 
@@ -218,9 +219,20 @@ fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
     let beta = 0.0489_f64 / 0.0349;
     let near = (beta - 1.0).powf(beta - 1.0) / 100.0 * (101.0 / (1e-3 * beta)).powf(beta);
     Ok(vec![
-        Entry::number(("V_sn", place), "V_sn, the fold of the asymmetric equilibria", "V*", "4.30e4", fold)
-            .beside_number("Newton's method in 31 digits, decimal \
-                parameters", exact, 2.0 * f64::EPSILON * exact),
+        Entry::number(
+            ("V_sn", place),
+            "V_sn, the fold of the asymmetric \
+         equilibria",
+            "V*",
+            "4.30e4",
+            fold,
+        )
+        .beside_number(
+            "Newton's method in 31 digits, decimal \
+             parameters",
+            exact,
+            2.0 * f64::EPSILON * exact,
+        ),
         Entry::claim(
             ("stress-at-V_sn", place),
             "tau_ss(V_sn) = tau_ss(V_M)",
@@ -228,11 +240,14 @@ fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
             whether(at_peak == at_fold, "exactly", "nearly"),
         )
         .noted(format!(
-            "tau_ss(V_sn) - tau_ss(V_M) = {:.2e}; at the fold the faster interface has {:.6}, V_sn less \
-                the slower one's rate, and tau_ss there is still {:.1e} below that at V_M",
+            "tau_ss(V_sn) - tau_ss(V_M) = {:.2e}; at the fold the faster interface has {:.6}, \
+             V_sn less the slower one's rate, and tau_ss there is still {:.1e} below that at \
+             V_M",
             at_fold - at_peak,
             fast.to_f64(),
-            (Strength::Residual.steady_stress(DoubleDouble::constant(v_peak)) - Strength::Residual.steady_stress(slow)).to_f64(),
+            (Strength::Residual.steady_stress(DoubleDouble::constant(v_peak))
+                - Strength::Residual.steady_stress(slow))
+            .to_f64(),
         )),
         Entry::number(
             ("V_sn-approximate", place),
@@ -241,7 +256,11 @@ fn the_fold(law: &AnyLaw, v_peak: f64, fold: Uncertain) -> Result<Vec<Entry>> {
             "4.440e4",
             of_rounded_parameters(Uncertain::new(near, 16.0 * f64::EPSILON * near)),
         )
-        .beside_number("31 digits, decimal parameters", in_31_digits, 2.0 * f64::EPSILON * near),
+        .beside_number(
+            "31 digits, decimal parameters",
+            in_31_digits,
+            2.0 * f64::EPSILON * near,
+        ),
     ])
 }
 
@@ -269,7 +288,8 @@ fn slow_interface(pieces: &Pieces<'_>, v_peak: f64) -> Result<Entry> {
         ),
     )
     .noted(format!(
-        "at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is V_M",
+        "at V_sn it exceeds V_M by the part {:.2e}: the fold is not where the slower rate is \
+         V_M",
         at_fold / v_peak - 1.0
     )))
 }

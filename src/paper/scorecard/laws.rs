@@ -78,12 +78,26 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let less_one = exact::beta::<DoubleDouble>() - 1.0;
     let place = "section 4.1, after (36)";
     Ok(vec![
-        Entry::number(("V_M", place), "V_M of law (35)", "V*", "0.025", of_rounded_parameters(maximum.slip_rate))
-            .beside(DIGITS_31, exactly(peak))
-            .noted(format!("the approximation 1/(R (beta-1)) gives {near_peak:.7}")),
-        Entry::number(("V_m", place), "V_m of law (35)", "V*", "405.16", of_rounded_parameters(minimum.slip_rate))
-            .beside(DIGITS_31, exactly(trough))
-            .noted("the printed number is that of the approximation"),
+        Entry::number(
+            ("V_M", place),
+            "V_M of law (35)",
+            "V*",
+            "0.025",
+            of_rounded_parameters(maximum.slip_rate),
+        )
+        .beside(DIGITS_31, exactly(peak))
+        .noted(format!(
+            "the approximation 1/(R (beta-1)) gives {near_peak:.7}"
+        )),
+        Entry::number(
+            ("V_m", place),
+            "V_m of law (35)",
+            "V*",
+            "405.16",
+            of_rounded_parameters(minimum.slip_rate),
+        )
+        .beside(DIGITS_31, exactly(trough))
+        .noted("the printed number is that of the approximation"),
         Entry::number(
             ("V_m-approximate", place),
             "(1+R)(beta-1)/(R c), to which V_m comes near",
@@ -92,8 +106,10 @@ pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             of_rounded_parameters(Uncertain::new(near_trough, 0.0)),
         )
         .beside("31 digits, decimal parameters", exactly(less_one * 1.01e3))
-        .noted("the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is the limit \
-            of the larger root for small c"),
+        .noted(
+            "the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is \
+         the limit of the larger root for small c",
+        ),
         Entry::number(
             ("mu-maximum", "section 4.1, Fig. 4"),
             "mu_ss(V_M) of law (35)",
