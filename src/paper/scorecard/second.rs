@@ -28,9 +28,9 @@ pub const AT_THE_TOP: &str = "where |mu| = 1 at that V_H, by Rodas5P";
 
 /// The words of the multipliers of an orbit found again.
 #[cfg(feature = "sundials")]
-pub const MULTIPLIERS: &str = "its multipliers by CVODE's BDF";
+pub const MULTIPLIERS: &str = "multipliers by CVODE's BDF";
 #[cfg(not(feature = "sundials"))]
-pub const MULTIPLIERS: &str = "its multipliers by Rodas5P";
+pub const MULTIPLIERS: &str = "multipliers by Rodas5P";
 
 /// The second integrator.
 pub fn second_method() -> Result<Choice> {
