@@ -1,12 +1,12 @@
 //! The curves of Hopf points in the plane of V_H and K: Fig. 6.
 
-use super::{Answer, Entry, missing, slab, whether};
+use super::{Answer, Entry, extrema, missing, slab, whether};
 use crate::bifurcation::{
     Criticality, Event, Label, LocusKind, LocusRequest, LocusRow, Parameter, Special, equilibria,
 };
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::friction::{Extremum, critical_stiffness_maximum};
+use crate::friction::critical_stiffness_maximum;
 use crate::number::Uncertain;
 use crate::orbit::hopf_points;
 use crate::paper::Pieces;
@@ -65,65 +65,63 @@ fn count(pieces: &Pieces<'_>, stiffness: f64, symmetry: Symmetry) -> Result<usiz
 
 /// All of it.
 pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let law = pieces.law();
     let symmetric = Curve::of(pieces, Symmetry::Symmetric)?;
     let asymmetric = Curve::of(pieces, Symmetry::Asymmetric)?;
-    let [v_peak, v_trough] = match Extremum::all(&law)[..] {
-        [maximum, minimum] => [maximum.slip_rate.value, minimum.slip_rate.value],
-        _ => return Err(missing("the spinodal law has no two extrema")),
-    };
+    let [v_peak, v_trough] = extrema(&pieces.law())?;
+    Ok(vec![
+        no_hopf_points(pieces, &symmetric, &asymmetric)?,
+        left_ends([symmetric.ends()?[0], asymmetric.ends()?[0]], v_peak),
+        right_end(asymmetric.ends()?[1], v_trough),
+        always_supercritical(pieces, &asymmetric)?,
+        top(pieces, &symmetric)?,
+    ])
+}
+
+fn no_hopf_points(pieces: &Pieces<'_>, symmetric: &Curve, asymmetric: &Curve) -> Result<Entry> {
     let mut there = count(pieces, 0.45, Symmetry::Asymmetric)?;
     for stiffness in [0.45, 0.3, 0.2] {
         there += count(pieces, stiffness, Symmetry::Symmetric)?;
     }
-    let none = |count: usize| whether(count == 0, "none", "some");
-    let beyond = |curve: &Curve, k: f64| {
-        curve
-            .rows
-            .iter()
-            .filter(move |row| row.stiffness.value > k)
-            .count()
-    };
-    let above = beyond(&symmetric, 0.2) + beyond(&asymmetric, 0.45);
-    let lefts = [symmetric.ends()?[0], asymmetric.ends()?[0]].map(|v| v / (2.0 * v_peak) - 1.0);
-    let right = asymmetric.ends()?[1] / v_trough - 1.0;
-    Ok(vec![
-        Entry::claim(
-            ("no-hopf", "Figs 5, 6"),
-            "Hopf points of equilibria at K = 0.45, and of symmetric ones at K = 0.3 and 0.2",
-            "none",
-            none(there),
-        )
-        .beside(
-            "the largest K of both curves of Hopf points",
-            Answer::Word(none(above)),
-        ),
-        Entry::claim(
-            ("approach-to-2V_M", "section 4.2; Fig. 6"),
-            "where both curves of Hopf points go as K -> 0, at small V_H",
-            "2 V_M",
-            whether(
-                lefts.iter().all(|part| (0.0..1e-3).contains(part)),
-                "2 V_M",
-                "elsewhere",
-            ),
-        )
-        .noted(format!(
-            "at K = {SOFTEST:e} V_H exceeds 2 V_M by the parts {:.1e} and {:.1e}",
-            lefts[0], lefts[1]
-        )),
-        Entry::claim(
-            ("end-of-asymmetric-hopf", "section 4.2; Fig. 6"),
-            "where the curve of asymmetric Hopf points vanishes at large V_H",
-            "V_m",
-            whether(right.abs() < 1e-5, "V_m", "elsewhere"),
-        )
-        .noted(format!(
-            "at K = {SOFTEST:e} V_H is V_m but for the part {right:.1e}"
-        )),
-        always_supercritical(pieces, &asymmetric)?,
-        top(pieces, &symmetric)?,
-    ])
+    let beyond = |curve: &Curve, k: f64| curve.rows.iter().any(|row| row.stiffness.value > k);
+    let above = beyond(symmetric, 0.2) || beyond(asymmetric, 0.45);
+    Ok(Entry::claim(
+        ("no-hopf", "Figs 5, 6"),
+        "Hopf points of equilibria at K = 0.45, and of symmetric ones at K = 0.3 and 0.2",
+        "none",
+        whether(there == 0, "none", "some"),
+    )
+    .beside(
+        "the largest K of both curves of Hopf points",
+        Answer::Word(whether(above, "some", "none")),
+    ))
+}
+
+fn left_ends(ends: [f64; 2], v_peak: f64) -> Entry {
+    let parts = ends.map(|v| v / (2.0 * v_peak) - 1.0);
+    let near = parts.iter().all(|part| (0.0..1e-4).contains(part));
+    Entry::claim(
+        ("approach-to-2V_M", "section 4.2; Fig. 6"),
+        "where both curves of Hopf points go as K -> 0, at small V_H",
+        "2 V_M",
+        whether(near, "2 V_M", "elsewhere"),
+    )
+    .noted(format!(
+        "at K = {SOFTEST:e} V_H exceeds 2 V_M by the parts {:.1e} and {:.1e}",
+        parts[0], parts[1]
+    ))
+}
+
+fn right_end(end: f64, v_trough: f64) -> Entry {
+    let part = end / v_trough - 1.0;
+    Entry::claim(
+        ("end-of-asymmetric-hopf", "section 4.2; Fig. 6"),
+        "where the curve of asymmetric Hopf points vanishes at large V_H",
+        "V_m",
+        whether(part.abs() < 1e-5, "V_m", "elsewhere"),
+    )
+    .noted(format!(
+        "at K = {SOFTEST:e} V_H is V_m but for the part {part:.1e}"
+    ))
 }
 
 fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
@@ -153,8 +151,15 @@ fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
         "always supercritical",
         word(all && !degenerate),
     )
-    .beside("Floquet multipliers of the orbits beside both Hopf points at K = 0.14", Answer::Word(word(stable)))
-    .noted(format!("the first Lyapunov coefficient in 31 digits is negative at all {} points of the curve from K = {SOFTEST:e}, and nowhere zero", curve.rows.len())))
+    .beside(
+        "Floquet multipliers of the orbits beside both Hopf points at K = 0.14",
+        Answer::Word(word(stable)),
+    )
+    .noted(format!(
+        "the first Lyapunov coefficient in 31 digits is negative at all {} points of the \
+         curve from K = {SOFTEST:e}, and nowhere zero",
+        curve.rows.len()
+    )))
 }
 
 fn top(pieces: &Pieces<'_>, symmetric: &Curve) -> Result<Entry> {

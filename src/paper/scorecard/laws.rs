@@ -63,43 +63,51 @@ pub fn of_section_2(_: &Pieces<'_>) -> Result<Vec<Entry>> {
     ])
 }
 
+/// Where the approximations are printed.
+const PLACE: &str = "section 4.1, after (36)";
+
 /// The extrema of the spinodal law.
 pub fn of_section_4(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let extrema = Extremum::all(&pieces.law());
-    let [maximum, minimum] = extrema[..] else {
+    let [maximum, minimum] = Extremum::all(&pieces.law())[..] else {
         return Err(missing("the spinodal law has no two extrema"));
     };
-    let [peak, trough] = [maximum, minimum].map(|e| Strength::Residual.extremum(e.slip_rate.value));
+    let near = |e: Extremum| Strength::Residual.extremum(e.slip_rate.value);
+    let peak = near(maximum);
     let mu = Strength::Residual.steady_stress(peak) * exact::direct_effect();
-    let beta = B / A;
-    // V_M ~ 1/(R (beta-1)) and V_m ~ (1+R)(beta-1)/(R c)
-    let near_peak = 1.0 / (R * (beta - 1.0));
-    let near_trough = (1.0 + R) * (beta - 1.0) / (R * 1e-3);
-    let less_one = exact::beta::<DoubleDouble>() - 1.0;
-    let place = "section 4.1, after (36)";
+    let approximate = 1.0 / (R * (B / A - 1.0));
+    let entry = |id, quantity, printed, x| Entry::number((id, PLACE), quantity, "V*", printed, x);
+    let rates = [maximum, minimum].map(|e| of_rounded_parameters(e.slip_rate));
+    let of_mu = ("mu-maximum", "section 4.1; Fig. 4");
+    let mu_words = "mu_ss(V_M) of law (35)";
     Ok(vec![
-        Entry::number(("V_M", place), "V_M of law (35)", "V*", "0.025", of_rounded_parameters(maximum.slip_rate))
+        entry("V_M", "V_M of law (35)", "0.025", rates[0])
             .beside(DIGITS_31, exactly(peak))
-            .noted(format!("the approximation 1/(R (beta-1)) gives {near_peak:.7}")),
-        Entry::number(("V_m", place), "V_m of law (35)", "V*", "405.16", of_rounded_parameters(minimum.slip_rate))
-            .beside(DIGITS_31, exactly(trough))
+            .noted(format!(
+                "the approximation 1/(R (beta-1)) gives {approximate:.7}"
+            )),
+        entry("V_m", "V_m of law (35)", "405.16", rates[1])
+            .beside(DIGITS_31, exactly(near(minimum)))
             .noted("the printed number is that of the approximation"),
-        Entry::number(
-            ("V_m-approximate", place),
-            "(1+R)(beta-1)/(R c), to which V_m comes near",
-            "V*",
-            "405.16",
-            of_rounded_parameters(Uncertain::new(near_trough, 0.0)),
-        )
-        .beside("31 digits, decimal parameters", exactly(less_one * 1.01e3))
-        .noted("the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is the limit of the larger root for small c"),
-        Entry::number(
-            ("mu-maximum", "section 4.1, Fig. 4"),
-            "mu_ss(V_M) of law (35)",
-            "",
-            "0.405",
-            scaled(maximum.stress, A),
-        )
-        .beside(DIGITS_31, exactly(mu)),
+        approximate_minimum(),
+        Entry::number(of_mu, mu_words, "", "0.405", scaled(maximum.stress, A))
+            .beside(DIGITS_31, exactly(mu)),
     ])
+}
+
+/// V_m ~ (1+R)(beta-1)/(R c)
+fn approximate_minimum() -> Entry {
+    let near = (1.0 + R) * (B / A - 1.0) / (R * 1e-3);
+    let less_one = exact::beta::<DoubleDouble>() - 1.0;
+    Entry::number(
+        ("V_m-approximate", PLACE),
+        "(1+R)(beta-1)/(R c), to which V_m comes near",
+        "V*",
+        "405.16",
+        of_rounded_parameters(Uncertain::new(near, 0.0)),
+    )
+    .beside("31 digits, decimal parameters", exactly(less_one * 1.01e3))
+    .noted(
+        "the formula is garbled in the text at hand, 1 + R beta - 1/(R c); this one is the limit \
+         of the larger root for small c",
+    )
 }

@@ -6,12 +6,15 @@
 
 mod equilibria;
 mod exact;
+mod fig16;
 mod hopf;
 mod laws;
 mod localisation;
 mod orbits;
 mod rule;
 mod runs;
+mod second;
+mod small_stiffness;
 mod stability;
 mod table1;
 mod torus;
@@ -21,24 +24,29 @@ pub use table1::table1;
 
 use super::pieces::Pieces;
 use super::product::{Make, Product};
+use crate::bifurcation::Criticality;
+use crate::equilibrium::Verdict as Stability;
 use crate::error::{Error, Result};
-use crate::integrate::Choice;
+use crate::friction::{AnyLaw, Extremum};
 use crate::model::Loading;
 use crate::number::Uncertain;
 use crate::orbit::Slab;
 use serde_json::{Value, json};
 
 /// How the entries are computed, in a sentence.
-pub const METHOD: &str = "steady states and their bifurcations from closed forms and enclosed zeros; orbits by multiple shooting with Taylor series at 1e-16; runs as their scenes say; every entry with its own second method where it has one";
+pub const METHOD: &str = "steady states and their bifurcations from closed forms and enclosed \
+ zeros; orbits by multiple shooting with Taylor series at 1e-16; runs as their scenes say; \
+ every entry with its own second method where it has one";
 
 /// Table 1 again.
 pub const TABLE1: Product = Product {
     id: "table1",
     title: "Coordinates of the strong resonances along the torus bifurcation curve",
-    caption: "Of each resonance V_H, its logarithm and K: as printed, as computed, and as computed by a second method from \
-              nodes cut to a few digits. The resonance 1:2 agrees in V_H and K; the others are printed 0.3 to 4 % away from \
-              where both methods find them.",
-    alt: "A table of five strong resonances, each with three numbers: printed, computed, computed otherwise.",
+    caption: "Of each resonance V_H, its logarithm and K: as printed, as computed, and as \
+     computed by a second method from nodes cut to a few digits. The resonance 1:2 agrees in \
+     V_H and K; the others are printed 0.3 to 4 % away from where both methods find them.",
+    alt: "A table of five strong resonances, each with three numbers: printed, computed, \
+     computed otherwise.",
     scenes: &["fig12"],
     make: Make::Table(table1),
 };
@@ -47,9 +55,11 @@ pub const TABLE1: Product = Product {
 pub const SCORECARD: Product = Product {
     id: "scorecard",
     title: "What the paper says and what is computed",
-    caption: "Every number that the text prints and every claim that a computation can decide. A number agrees if rounding \
-              the computed one to the printed digits gives it, a bound if it is right and tight, a claim if it holds.",
-    alt: "A list of numbers and claims, each with where it is, what is printed, what is computed and the verdict.",
+    caption: "Every number that the text prints and every claim that a computation can \
+     decide. A number agrees if rounding the computed one to the printed digits gives it, a \
+     bound if it is right and tight, a claim if it holds.",
+    alt: "A list of numbers and claims, each with where it is, what is printed, what is \
+     computed and the verdict.",
     scenes: &[
         "fig06-orbit-pitchforks",
         "fig12",
@@ -133,7 +143,10 @@ impl Entry {
         if decided {
             entry
         } else {
-            entry.noted("the uncertainty reaches across the edge of what rounds to the printed one")
+            entry.noted(
+                "the uncertainty reaches across the edge of what rounds to the \
+             printed one",
+            )
         }
     }
 
@@ -202,14 +215,14 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     all.extend(equilibria::of_section_4(pieces)?);
     all.extend(hopf::entries(pieces)?);
     all.extend(runs::of_fig_8(pieces)?);
-    all.extend(orbits::at_moderate_stiffness(pieces)?);
-    all.extend(orbits::at_small_stiffness(pieces)?);
+    all.extend(orbits::entries(pieces)?);
+    all.extend(small_stiffness::entries(pieces)?);
     all.extend(runs::of_fig_11(pieces)?);
     all.extend(torus::of_section_4_2(pieces)?);
     all.extend(runs::of_fig_13(pieces)?);
     all.extend(table1::entries(pieces)?);
     all.extend(torus::of_section_4_3(pieces)?);
-    all.extend(torus::of_fig_16(pieces)?);
+    all.extend(fig16::entries(pieces)?);
     all.extend(runs::of_fig_16(pieces)?);
     all.extend(stability::of_the_appendix(pieces)?);
     Ok(all)
@@ -252,21 +265,6 @@ fn answer(answer: &Answer) -> Value {
     }
 }
 
-/// The words of a second computation of a special orbit.
-#[cfg(feature = "sundials")]
-const BY_SECOND: &str = "CVODE's BDF, from nodes cut to a few digits";
-#[cfg(not(feature = "sundials"))]
-const BY_SECOND: &str = "Rodas5P, from nodes cut to a few digits";
-
-/// The method of second computations of orbits: one that shares no step with Taylor's.
-fn second_method() -> Result<Choice> {
-    #[cfg(feature = "sundials")]
-    const SECOND: &str = "cvode-bdf";
-    #[cfg(not(feature = "sundials"))]
-    const SECOND: &str = "rodas5p";
-    Choice::named(SECOND)
-}
-
 /// The paper's two interfaces at V_H and K.
 fn slab(pieces: &Pieces<'_>, driving: f64, stiffness: f64) -> Result<Slab> {
     Ok(Slab {
@@ -302,4 +300,34 @@ fn of_rounded_parameters(x: Uncertain) -> Uncertain {
         x.value,
         x.uncertainty + UNITS * f64::EPSILON * x.value.abs(),
     )
+}
+
+/// V_M and V_m.
+fn extrema(law: &AnyLaw) -> Result<[f64; 2]> {
+    match Extremum::all(law)[..] {
+        [maximum, minimum] => Ok([maximum.slip_rate.value, minimum.slip_rate.value]),
+        _ => Err(missing("the spinodal law has no two extrema")),
+    }
+}
+
+/// Least and greatest.
+fn range(all: impl Iterator<Item = f64>) -> (f64, f64) {
+    let none = (f64::INFINITY, f64::NEG_INFINITY);
+    all.fold(none, |(least, most), x| (least.min(x), most.max(x)))
+}
+
+fn criticality_word(criticality: Option<Criticality>) -> &'static str {
+    match criticality {
+        Some(Criticality::Supercritical) => "supercritical",
+        Some(Criticality::Subcritical) => "subcritical",
+        Some(Criticality::Undecided) | None => "undecided",
+    }
+}
+
+fn stability_word(verdict: Stability) -> &'static str {
+    match verdict {
+        Stability::Stable => "stable",
+        Stability::Unstable => "unstable",
+        Stability::Undecided => "undecided",
+    }
 }

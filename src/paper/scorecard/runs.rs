@@ -1,11 +1,12 @@
 //! Runs in time and their return maps: Figs 8, 11, 13 and 16.
 
-use super::orbits::orbit_at;
-use super::{Answer, Entry, missing, second_method, whether};
+use super::second::{MULTIPLIERS, orbit_at, second_method};
+use super::{Answer, Entry, missing, range, whether};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::friction::Parameters;
 use crate::integrate::Choice;
+use crate::model::Loading;
 use crate::orbit::Begin;
 use crate::paper::{Pieces, Run};
 use crate::section::Regime;
@@ -26,64 +27,50 @@ fn late(run: &Run, name: &str) -> Result<Vec<f64>> {
     Ok(both.filter(|(t, _)| **t >= begin).map(|(_, x)| x).collect())
 }
 
-fn range(all: &[f64]) -> (f64, f64) {
-    let ends = (f64::INFINITY, f64::NEG_INFINITY);
-    all.iter().fold(ends, |(a, b), &x| (a.min(x), b.max(x)))
-}
-
 /// Stick-slip at larger V_H, Fig. 8(b).
 pub fn of_fig_8(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let run = pieces.run("fig08b")?;
-    let states = [late(&run, "state_1")?, late(&run, "state_2")?].map(|all| range(&all));
+    let [first, second] = [late(&run, "state_1")?, late(&run, "state_2")?];
+    let states = [range(first.into_iter()), range(second.into_iter())];
     // The faster interface is the one whose state falls farther.
-    let [fast, slow] = if states[0].0 < states[1].0 {
-        states
-    } else {
-        [states[1], states[0]]
-    };
-    let residual = Parameters::heslot_1994().residual_strength;
-    let at = (run.plan.loading.driving, run.plan.loading.stiffness);
-    let orbit = orbit_at(
-        pieces,
-        at,
-        Symmetry::Asymmetric,
-        Begin::Anywhere,
-        Choice::Taylor,
-    )?;
-    let far = |least: f64| {
-        whether(
-            least < 0.1 * residual,
-            "much less than c",
-            "not much less than c",
-        )
-    };
+    let fast = usize::from(states[1].0 < states[0].0);
+    Ok(vec![
+        fast_interface(pieces, &run, states[fast].0)?,
+        slow_interface(states[1 - fast]),
+    ])
+}
+
+fn fast_interface(pieces: &Pieces<'_>, run: &Run, least: f64) -> Result<Entry> {
+    let c = Parameters::heslot_1994().residual_strength;
+    let Loading { driving, stiffness } = run.plan.loading;
+    let (at, kind) = ((driving, stiffness), Symmetry::Asymmetric);
+    let orbit = orbit_at(pieces, at, kind, Begin::Anywhere, Choice::Taylor)?;
+    let word = |least: f64| whether(least < 0.1 * c, "much less than c", "not much less than c");
+    Ok(Entry::claim(
+        ("state-of-the-fast-interface", "section 4.2; Fig. 8(b)"),
+        "the state of the fast interface in a stick-slip event",
+        "much less than c",
+        word(least),
+    )
+    .beside(
+        "the periodic orbit, by multiple shooting",
+        Answer::Word(word(orbit.state_min)),
+    )
+    .noted(format!(
+        "it falls to {least:.3e}, c = {c}; K = {stiffness}, V_H = {driving}, chosen by the scene"
+    )))
+}
+
+fn slow_interface((least, most): (f64, f64)) -> Entry {
     // "Of order 0.1" is between the geometric means with 0.01 and with 1.
     let tenth = |x: f64| (0.1 / 10_f64.sqrt()..0.1 * 10_f64.sqrt()).contains(&x);
-    let of_order = tenth(slow.0) && tenth(slow.1);
-    let place = "section 4.2; Fig. 8(b)";
-    Ok(vec![
-        Entry::claim(
-            ("state-of-the-fast-interface", place),
-            "the state of the fast interface in a stick-slip event",
-            "much less than c",
-            far(fast.0),
-        )
-        .beside(
-            "the periodic orbit, by multiple shooting",
-            Answer::Word(far(orbit.state_min)),
-        )
-        .noted(format!(
-            "it falls to {:.3e}, c = {residual}; K = {}, V_H = {}, chosen by the scene",
-            fast.0, at.1, at.0
-        )),
-        Entry::claim(
-            ("state-of-the-slow-interface", place),
-            "the state of the slow interface meanwhile",
-            "of order 0.1",
-            whether(of_order, "of order 0.1", "otherwise"),
-        )
-        .noted(format!("it stays between {:.3} and {:.3}", slow.0, slow.1)),
-    ])
+    Entry::claim(
+        ("state-of-the-slow-interface", "section 4.2; Fig. 8(b)"),
+        "the state of the slow interface meanwhile",
+        "of order 0.1",
+        whether(tenth(least) && tenth(most), "of order 0.1", "otherwise"),
+    )
+    .noted(format!("it stays between {least:.3} and {most:.3}"))
 }
 
 /// Fig. 11: from an asymmetric start to the symmetric orbit.
@@ -108,10 +95,7 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "the symmetric orbit",
             word(end < 1e-9),
         )
-        .beside(
-            "stability of the symmetric orbit, by a second integrator",
-            Answer::Word(word(stable)),
-        )
+        .beside(MULTIPLIERS, Answer::Word(word(stable)))
         .noted(format!(
             "|ln psi_1 - ln psi_2| falls from {:.3} to {end:.0e}",
             (begin[0] - begin[1]).abs()

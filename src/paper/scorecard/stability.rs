@@ -1,10 +1,10 @@
 //! Linear stability of steady sliding: sections 3.1 and 3.2.2, appendix A. The paper's letters are taken from the friction law
 //! here once more, beside what the room of equilibria does.
 
-use super::{Answer, Entry, holds, missing, whether};
+use super::{Answer, Entry, extrema, holds, missing, range, whether};
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};
 use crate::error::Result;
-use crate::friction::{AnyLaw, Extremum, Law, Parameters, critical_stiffness};
+use crate::friction::{AnyLaw, Law, Parameters, critical_stiffness};
 use crate::number::Jet;
 use crate::orbit::hopf_points;
 use crate::paper::Pieces;
@@ -148,13 +148,6 @@ fn weakening_states(law: &AnyLaw) -> Result<Vec<(f64, Equilibrium)>> {
     Ok(all)
 }
 
-fn extrema(law: &AnyLaw) -> Result<[f64; 2]> {
-    match Extremum::all(law)[..] {
-        [maximum, minimum] => Ok([maximum.slip_rate.value, minimum.slip_rate.value]),
-        _ => Err(missing("the spinodal law has no two extrema")),
-    }
-}
-
 /// The verdicts on the symmetric state at these rates of an interface, whatever the stiffness; `None` if they are not all one.
 fn symmetric(law: &AnyLaw, rates: &[f64]) -> Result<Option<Verdict>> {
     let mut verdicts = Vec::new();
@@ -182,9 +175,7 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         let [s1, s2] = Pair::at(&law, &state).s;
         (s1 + s2) / s1
     });
-    let (least, most) = sums.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), x| {
-        (a.min(x), b.max(x))
-    });
+    let (least, most) = range(sums);
     let sign = match (least > 0.0, most < 0.0) {
         (true, _) => "positive",
         (_, true) => "negative",
@@ -193,7 +184,8 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     Ok(vec![
         Entry::claim(
             ("symmetric-state", "section 3.2.2, after (28)"),
-            "the symmetric state is stable where V_H/2 is on a strengthening part and unstable where on the weakening one, whatever K",
+            "the symmetric state is stable where V_H/2 is on a strengthening part and \
+             unstable where on the weakening one, whatever K",
             "holds",
             holds(as_told),
         )
@@ -204,7 +196,10 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "negative",
             sign,
         )
-        .noted(format!("(s_1 + s_2)/s_1 is between {least:.3} and {most:.3} from 2 V_M to V_m: the slower interface's G_psi is much smaller")),
+        .noted(format!(
+            "(s_1 + s_2)/s_1 is between {least:.3} and {most:.3} from 2 V_M to \
+         V_m: the slower interface's G_psi is much smaller"
+        )),
         critical_stiffness_of_pairs(&law)?,
     ])
 }
@@ -226,12 +221,19 @@ fn critical_stiffness_of_pairs(law: &AnyLaw) -> Result<Entry> {
         }
     }
     Ok(Entry::claim(
-        ("critical-stiffness-of-asymmetric", "section 3.2.2, (34) with (43)"),
+        (
+            "critical-stiffness-of-asymmetric",
+            "section 3.2.2, (34) with (43)",
+        ),
         "k_c^* is the stiffness at which the asymmetric equilibrium has its Hopf point",
         "holds",
         holds(largest < 1e-9),
     )
-    .noted(format!("at the Hopf points that the eigenvalues of (30) have at K = 0.05, 0.14 and 0.3 it differs from K by at most the part {largest:.0e}; it is the larger root of (42) also where s_1 + s_2 > 0")))
+    .noted(format!(
+        "at the Hopf points that the eigenvalues of (30) have at K = 0.05, 0.14 \
+     and 0.3 it differs from K by at most the part {largest:.0e}; it is the larger root of \
+     (42) also where s_1 + s_2 > 0"
+    )))
 }
 
 /// Appendix A.
@@ -262,8 +264,14 @@ pub fn of_the_appendix(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             "one",
             word,
         )
-        .beside("how often a pair of eigenvalues has the sum zero, over ten decades of K", Answer::Word(second))
-        .noted("said under s_1 + s_2 < 0, which never is; k_c^* is the larger one, and at the smaller one, below k_c^**, the pair is real: no Hopf point"),
+        .beside(
+            "how often a pair of eigenvalues has the sum zero, over ten decades of K",
+            Answer::Word(second),
+        )
+        .noted(
+            "said under s_1 + s_2 < 0, which never is; k_c^* is the larger one, and at the \
+             smaller one, below k_c^**, the pair is real: no Hopf point",
+        ),
     ])
 }
 

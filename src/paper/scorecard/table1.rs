@@ -1,7 +1,7 @@
 //! Table 1: the strong resonances along the curve of torus bifurcations.
 
-use super::torus::{crosscheck, moved};
-use super::{Answer, BY_SECOND, Entry, missing};
+use super::second::{BY_SECOND, again};
+use super::{Answer, Entry, missing};
 use crate::bifurcation::{Label, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -9,45 +9,78 @@ use crate::output::Cell;
 use crate::paper::product::Made;
 use crate::paper::{Pieces, Sheet};
 
-/// A column of the printed table: resonance, names of its three entries, and what is printed there.
+/// A column of the printed table: the resonance, and of each of its numbers the entry's name, what it is, and as printed.
 struct Printed {
     label: Label,
     name: &'static str,
-    ids: [&'static str; 3],
-    numbers: [&'static str; 3],
+    numbers: [[&'static str; 3]; 3],
 }
 
-/// As printed: log10 V_H, V_H, K.
 const TABLE: [Printed; 5] = [
     Printed {
         label: Label::R4,
         name: "1:4",
-        ids: ["1:4-first-log10-V_H", "1:4-first-V_H", "1:4-first-K"],
-        numbers: ["-1.2582", "0.0552", "0.0387"],
+        numbers: [
+            [
+                "1:4-first-log10-V_H",
+                "log10 V_H/V* of the resonance 1:4",
+                "-1.2582",
+            ],
+            ["1:4-first-V_H", "V_H of the resonance 1:4", "0.0552"],
+            ["1:4-first-K", "K of the resonance 1:4", "0.0387"],
+        ],
     },
     Printed {
         label: Label::R4,
         name: "1:4",
-        ids: ["1:4-second-log10-V_H", "1:4-second-V_H", "1:4-second-K"],
-        numbers: ["-1.0859", "0.0821", "0.1566"],
+        numbers: [
+            [
+                "1:4-second-log10-V_H",
+                "log10 V_H/V* of the resonance 1:4",
+                "-1.0859",
+            ],
+            ["1:4-second-V_H", "V_H of the resonance 1:4", "0.0821"],
+            ["1:4-second-K", "K of the resonance 1:4", "0.1566"],
+        ],
     },
     Printed {
         label: Label::R4,
         name: "1:4",
-        ids: ["1:4-third-log10-V_H", "1:4-third-V_H", "1:4-third-K"],
-        numbers: ["-0.9447", "0.1136", "0.1956"],
+        numbers: [
+            [
+                "1:4-third-log10-V_H",
+                "log10 V_H/V* of the resonance 1:4",
+                "-0.9447",
+            ],
+            ["1:4-third-V_H", "V_H of the resonance 1:4", "0.1136"],
+            ["1:4-third-K", "K of the resonance 1:4", "0.1956"],
+        ],
     },
     Printed {
         label: Label::R3,
         name: "1:3",
-        ids: ["1:3-log10-V_H", "1:3-V_H", "1:3-K"],
-        numbers: ["-0.9761", "0.1057", "0.1617"],
+        numbers: [
+            [
+                "1:3-log10-V_H",
+                "log10 V_H/V* of the resonance 1:3",
+                "-0.9761",
+            ],
+            ["1:3-V_H", "V_H of the resonance 1:3", "0.1057"],
+            ["1:3-K", "K of the resonance 1:3", "0.1617"],
+        ],
     },
     Printed {
         label: Label::R2,
         name: "1:2",
-        ids: ["1:2-log10-V_H", "1:2-V_H", "1:2-K"],
-        numbers: ["-1.0027", "0.0994", "0.1376"],
+        numbers: [
+            [
+                "1:2-log10-V_H",
+                "log10 V_H/V* of the resonance 1:2",
+                "-1.0027",
+            ],
+            ["1:2-V_H", "V_H of the resonance 1:2", "0.0994"],
+            ["1:2-K", "K of the resonance 1:2", "0.1376"],
+        ],
     },
 ];
 const QUANTITIES: [&str; 3] = ["log10(V_H/V*)", "V_H/V*", "K"];
@@ -74,15 +107,6 @@ pub(super) fn resonances(pieces: &Pieces<'_>) -> Result<Vec<Special>> {
     Ok(all)
 }
 
-/// V_H and K by the second method.
-pub(super) fn again(pieces: &Pieces<'_>, special: &Special) -> Result<[Uncertain; 2]> {
-    let [driving, stiffness, _] = crosscheck(pieces, special)?;
-    Ok([
-        moved(special.driving, driving),
-        moved(special.stiffness, stiffness),
-    ])
-}
-
 /// log10 V_H, V_H and K.
 fn three([driving, stiffness]: [Uncertain; 2]) -> [Uncertain; 3] {
     let logarithm = driving.value.log10();
@@ -97,46 +121,15 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     for (special, column) in resonances(pieces)?.iter().zip(&TABLE) {
         let first = three([special.driving, special.stiffness]);
         let second = three(again(pieces, special)?);
-        for i in 0..3 {
+        for (i, [id, quantity, printed]) in column.numbers.into_iter().enumerate() {
             let place = match (column.label, i) {
                 (Label::R2, 1 | 2) => "Table 1; Fig. 14, caption",
                 _ => "Table 1",
             };
-            let quantity = match column.label {
-                Label::R4 => [
-                    "log10 V_H of the resonance 1:4",
-                    "V_H of the resonance 1:4",
-                    "K of the resonance 1:4",
-                ][i],
-                Label::R3 => [
-                    "log10 V_H of the resonance 1:3",
-                    "V_H of the resonance 1:3",
-                    "K of the resonance 1:3",
-                ][i],
-                _ => [
-                    "log10 V_H of the resonance 1:2",
-                    "V_H of the resonance 1:2",
-                    "K of the resonance 1:2",
-                ][i],
-            };
-            let printed = column.numbers[i];
-            let entry = Entry::number(
-                (column.ids[i], place),
-                quantity,
-                UNITS[i],
-                printed,
-                first[i],
-            );
-            let off = off(printed, first[i].value);
-            all.push(
-                entry
-                    .beside(BY_SECOND, Answer::Number(second[i]))
-                    .noted(format!(
-                        "the printed {} is off by {:.2} %",
-                        ["V_H", "V_H", "K"][i],
-                        100.0 * off
-                    )),
-            );
+            let entry = Entry::number((id, place), quantity, UNITS[i], printed, first[i]);
+            let entry = entry.beside(BY_SECOND, Answer::Number(second[i]));
+            let (what, off) = (["V_H", "V_H", "K"][i], 100.0 * off(printed, first[i].value));
+            all.push(entry.noted(format!("the printed {what} is off by {off:.2} %")));
         }
     }
     Ok(all)
@@ -162,8 +155,7 @@ pub fn table1(pieces: &Pieces<'_>) -> Result<Made> {
     for (special, column) in resonances(pieces)?.iter().zip(&TABLE) {
         let first = three([special.driving, special.stiffness]);
         let second = three(again(pieces, special)?);
-        for i in 0..3 {
-            let printed = column.numbers[i];
+        for (i, [_, _, printed]) in column.numbers.into_iter().enumerate() {
             rows.push(vec![
                 Cell::from(column.name),
                 Cell::from(QUANTITIES[i]),
@@ -189,6 +181,11 @@ pub fn table1(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: None,
-        method: "resonances along the torus curve of fig12: orbits by multiple shooting with Taylor series at 1e-16, in three solutions; second_method: the same conditions from nodes cut to a few digits, by CVODE's BDF at 1e-12 (Rodas5P in a build without SUNDIALS); relative_difference is that of the printed V_H or K from the computed one, also where the logarithm is printed".into(),
+        method: "resonances along the torus curve of fig12: orbits by multiple shooting with \
+         Taylor series at 1e-16, in three solutions; second_method: the same conditions from \
+         nodes cut to a few digits, by CVODE's BDF at 1e-12 (Rodas5P in a build without \
+         SUNDIALS); relative_difference is that of the printed V_H or K from the computed \
+         one, also where the logarithm is printed"
+            .into(),
     })
 }

@@ -1,21 +1,14 @@
-//! Torus bifurcations and period doublings: section 4.3, Figs 12 to 14 and 16.
+//! The curve of torus bifurcations: sections 4.2 and 4.3, Figs 12 and 14.
 
-use super::orbits::{AT_THE_TOP, at_top, orbit_at};
-use super::table1::{again, resonances};
-use super::{Answer, BY_SECOND, Entry, missing, second_method, slab, whether};
-use crate::bifurcation::{Criticality, Label, LocusRow, Special};
+use super::second::{AT_THE_TOP, BY_SECOND, again, at_top, orbit_at};
+use super::table1::resonances;
+use super::{Answer, Entry, missing, whether};
+use crate::bifurcation::{Label, LocusRow, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::field::State;
-use crate::integrate::{Choice, Control, MAX_STEPS, Tolerances};
-use crate::number::Uncertain;
-use crate::number::polynomial::Crossing;
+use crate::integrate::Choice;
 use crate::orbit::Begin;
 use crate::paper::Pieces;
-use crate::section::{Return, Surface, Watching, record};
-
-/// K of Figs 7 and 16.
-const STIFFNESS: f64 = 0.14;
 
 /// Where asymmetric orbits lose their stability, and how they have it again: the end of section 4.2.
 pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
@@ -47,7 +40,8 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         )
         .beside(AT_THE_TOP, Answer::Number(second))
         .noted(format!(
-            "at V_H = {driving:.6}; the orbits become stable again in a {} at K = 0.14 and a {} at K = 0.05, as the text says",
+            "at V_H = {driving:.6}; the orbits become stable again in a {} at K = 0.14 and a \
+             {} at K = 0.05, as the text says",
             stable_again(pieces, "fig07")?,
             stable_again(pieces, "fig09")?,
         )),
@@ -127,11 +121,15 @@ fn finite_gradients(rows: &[LocusRow]) -> Entry {
     let listed: Vec<String> = slopes.iter().map(|s| format!("{s:.3}")).collect();
     Entry::claim(
         ("gradient-at-1:3-and-1:4", "section 4.3.2"),
-        "the gradient of the torus curve at the resonances 1:3 and 1:4, and the curve on both sides",
+        "the gradient of the torus curve at the resonances 1:3 and 1:4, and the curve on both \
+         sides",
         "finite",
         whether(alike && slopes.len() == 4, "finite", "not finite"),
     )
-    .noted(format!("dK/dV_H is about {} there, in order along the curve", listed.join(", ")))
+    .noted(format!(
+        "dK/dV_H is about {} there, in order along the curve",
+        listed.join(", ")
+    ))
 }
 
 /// How far the resonance 1:2 is from that on the curve of period doublings.
@@ -141,157 +139,7 @@ fn meeting(pieces: &Pieces<'_>, double: &Special) -> Result<String> {
     let there = there.ok_or_else(|| missing("the period doublings have no resonance 1:2"))?;
     let apart = (there.stiffness.value / double.stiffness.value - 1.0).abs();
     Ok(format!(
-        "the same point ends the curve of period doublings, found by itself, to the part {apart:.0e}"
+        "the same point ends the curve of period doublings, found by itself, to the part \
+         {apart:.0e}"
     ))
-}
-
-/// The caption of Fig. 16, and which way the torus bifurcation goes.
-pub fn of_fig_16(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let branches = pieces.branches("fig07")?;
-    let of = |label: Label| -> Result<[&Special; 2]> {
-        let mut all: Vec<_> = branches
-            .special
-            .iter()
-            .filter(|s| s.label == label)
-            .collect();
-        all.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
-        all.try_into()
-            .map_err(|_| missing("fig07 has not two torus bifurcations and two period doublings"))
-    };
-    let ([first, last], doublings) = (of(Label::Tr)?, of(Label::Pd)?);
-    let printed = [
-        (
-            "TR-first",
-            first,
-            "V_H of the first torus bifurcation at K = 0.14",
-            "0.0767",
-        ),
-        (
-            "PD-first",
-            doublings[0],
-            "V_H of the first period doubling at K = 0.14",
-            "0.0842",
-        ),
-        (
-            "PD-last",
-            doublings[1],
-            "V_H of the last period doubling at K = 0.14",
-            "0.0980",
-        ),
-        (
-            "TR-last",
-            last,
-            "V_H of the last torus bifurcation at K = 0.14",
-            "0.1000",
-        ),
-    ];
-    let mut all = vec![way(pieces, first)?];
-    for (id, special, quantity, printed) in printed {
-        let [driving, _] = again(pieces, special)?;
-        all.push(
-            Entry::number((id, "Fig. 16, caption"), quantity, "V*", printed, special.driving)
-                .beside(BY_SECOND, Answer::Number(driving))
-                .misprinted("two methods agree on the computed value to nine digits, and the torus bifurcations of the same caption are right"),
-        );
-    }
-    Ok(all)
-}
-
-/// Which way the first torus bifurcation goes: by its cubic coefficient; by returns above it, which come from both sides to a
-/// torus; and how returns below it that begin far off look as if it went the other way.
-fn way(pieces: &Pieces<'_>, torus: &Special) -> Result<Entry> {
-    /// V_H above and below.
-    const ABOVE: f64 = 0.0767405;
-    const BELOW: f64 = 0.0767;
-    let word = match torus.criticality {
-        Some(Criticality::Supercritical) => "supercritical",
-        Some(Criticality::Subcritical) => "subcritical",
-        _ => "undecided",
-    };
-    let inside = distances(pieces, torus, ABOVE, 0.01)?;
-    let outside = distances(pieces, torus, ABOVE, 0.05)?;
-    let far = distances(pieces, torus, BELOW, 0.3)?;
-    let between = inside[0] < inside[1] && inside[1] < outside[1] && outside[1] < outside[0];
-    let coefficient = torus.coefficient.unwrap_or(f64::NAN);
-    Ok(Entry::claim(
-        ("torus-at-0.14", "section 4.3.2; Fig. 16(a)"),
-        "the torus bifurcation at K = 0.14, V_H = 0.0767",
-        "subcritical",
-        word,
-    )
-    .beside(
-        "returns above the bifurcation, from inside and outside of a torus",
-        Answer::Word(whether(between, "supercritical", "no torus found")),
-    )
-    .noted(format!(
-        "by a hair: the cubic coefficient is {coefficient:.5}; at V_H = {ABOVE} the distance of returns from the orbit grows from {:.4} to {:.4} and falls from {:.4} to {:.4}, to a torus between; at {BELOW}, where the orbit is stable, returns that begin 0.3 away stay {:.2} away, so that simulations look subcritical",
-        inside[0], inside[1], outside[0], outside[1], far[1]
-    )))
-}
-
-/// The largest distance from the orbit's own return among early and among late returns, of a run that begins beside it.
-fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) -> Result<[f64; 2]> {
-    /// Returns, and how many of them are looked at in either part.
-    const RETURNS: usize = 3000;
-    const WINDOW: usize = 500;
-    const TOLERANCE: f64 = 1e-15;
-    let orbit = torus.orbit.as_ref();
-    let node = &orbit
-        .ok_or_else(|| missing("a torus bifurcation without its orbit"))?
-        .nodes()
-        .0[0];
-    let begin = Begin::At {
-        start: (node[0], [node[1], node[2]]),
-        period: torus.period.map(|period| period.value),
-    };
-    let at = (driving, STIFFNESS);
-    let orbit = orbit_at(pieces, at, Symmetry::Asymmetric, begin, Choice::Taylor)?;
-    let fixed = State::<3>::from_column_slice(&orbit.point);
-    let slab = slab(pieces, driving, STIFFNESS)?;
-    let field = slab.whole();
-    // The orbit's point is where it falls through this very stress.
-    let surface = Surface::stress(slab.steady_stress(), Crossing::Downwards);
-    let watching = Watching {
-        skip: 0,
-        returns: RETURNS,
-        patience: 100.0 * slab.rough_period(),
-        accuracy: TOLERANCE,
-        waypoints: false,
-    };
-    let mut taylor = Choice::Taylor.integrator::<3>(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
-    let start = fixed + State::<3>::new(0.0, beside, 0.0);
-    let mut seen = |_: usize, _: Option<&Return<3>>| Control::Continue;
-    let found = record(
-        &mut *taylor,
-        &*field,
-        &start,
-        &surface,
-        &watching,
-        &mut seen,
-    );
-    let all: Vec<f64> = found
-        .returns
-        .iter()
-        .map(|at| (at.state - fixed).norm())
-        .collect();
-    if all.len() < RETURNS {
-        return Err(missing(
-            "a run beside the torus bifurcation that does not come back",
-        ));
-    }
-    let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
-    Ok([largest(&all[..WINDOW]), largest(&all[RETURNS - WINDOW..])])
-}
-
-/// A number that a second method found.
-pub(super) fn moved(first: Uncertain, part: f64) -> Uncertain {
-    let value = first.value * (1.0 + part);
-    Uncertain::new(value, (value - first.value).abs() + first.uncertainty)
-}
-
-/// The second method.
-pub(super) fn crosscheck(pieces: &Pieces<'_>, special: &Special) -> Result<[f64; 3]> {
-    let slab = slab(pieces, special.driving.value, special.stiffness.value)?;
-    let parts = crate::bifurcation::orbits::crosscheck(&slab, special, second_method()?)?;
-    parts.ok_or_else(|| missing("a special point without its orbit"))
 }
