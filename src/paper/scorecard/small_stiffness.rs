@@ -149,7 +149,8 @@ fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let k = end.stiffness.value;
     let forks = pieces.curves("fig06-orbit-pitchforks")?;
     let mut landed = forks.special.iter();
-    let fork = landed.find(|s| s.label == Label::Uz && s.stiffness.value == k && s.driving.value < 1.0);
+    let fork =
+        landed.find(|s| s.label == Label::Uz && s.stiffness.value == k && s.driving.value < 1.0);
     let fork = fork.ok_or_else(|| missing("the pitchforks of orbits have no landing there"))?;
     let distances = [
         last(Label::Pf, &at_005.special) / last(Label::Pd, &at_005.special) - 1.0,
