@@ -14,9 +14,9 @@ use crate::views::branch_lines;
 pub const FIGURE: Product = Product {
     id: "fig05",
     title: "Steady states at K = 0.45",
-    caption: "All steady states of the two interfaces: stable solid, unstable dashed. Both share the slip (blue) but between the pitchforks at V_H = 2V_M and 2V_m, where this state is unstable and an asymmetric one (vermillion) exists with a slow and a fast interface. It comes into being supercritically at 2V_M and ends at the saddle-node V_sn = 4.298e4 V*, from where an unstable branch leads back to the subcritical pitchfork at 2V_m.
+    caption: "All steady states of the two interfaces: stable solid, unstable dashed. Both share the slip (blue) but between the pitchforks at V_H = 2 V_M and 2 V_m, where this state is unstable and an asymmetric one (vermillion) exists with a slow and a fast interface. It comes into being supercritically at 2 V_M and ends at the saddle-node V_sn = 4.298e4 V*, from where an unstable branch leads back to the subcritical pitchfork at 2 V_m.
 
-(a) The stress follows τ_ss(V_H/2) (thin dashed) where both slide, and τ_ss(V_H) (thin dotted) where one slides alone. (b) The same about 2V_M. (c) The states, (d) the slip rates: the slow interface creeps below V_M, and all but stops where V_H is large.",
+(a) The stress follows τ_ss(V_H/2) (thin dashed) where both slide, and τ_ss(V_H) (thin dotted) where one slides alone. (b) The same about 2 V_M. (c) The states, (d) the slip rates: the slow interface creeps below V_M, and all but stops where V_H is large.",
     alt: "Four panels of steady states against driving velocity: stress, stress enlarged near the first pitchfork, states, and slip rates. The symmetric branch is unstable between two pitchforks; an asymmetric branch connects the first pitchfork with a saddle-node and the second pitchfork.",
     scenes: &["fig05"],
     make: Make::Figure(make),
@@ -48,7 +48,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     );
     let mut stress = stress(&branches, "(a) stress");
     stress.keys = keys(labels([&*branches]));
-    let mut near = self::stress(&branches, "(b) the same near 2V_M");
+    let mut near = self::stress(&branches, "(b) the same near 2 V_M");
     near.x = near.x.within(NEAR[0].0, NEAR[0].1);
     near.y = near.y.within(NEAR[1].0, NEAR[1].1);
     Ok(Made {

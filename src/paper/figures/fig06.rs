@@ -11,7 +11,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig06",
     title: "Phase diagram of two spinodal interfaces",
-    caption: "What slides where, in the plane of driving velocity and stiffness. Equilibria: pitchforks of the symmetric state at V_H = 2V_M and 2V_m, the saddle-node of the asymmetric one at V_sn (vertical lines, for no equilibrium depends on K), and the Hopf points of the asymmetric (H_a) and of the symmetric (H_s) state. Orbits: below PF symmetric stick-slip is stable beside asymmetric stick-slip; SN is the fold at which the asymmetric orbits of the second Hopf point end; within the loop of torus (TR) and period-doubling (PD) curves asymmetric orbits are unstable and the motion is complicated. The circle is the strong resonance 1:2.
+    caption: "What slides where, in the plane of driving velocity and stiffness. Equilibria: pitchforks of the symmetric state at V_H = 2 V_M and 2 V_m, the saddle-node of the asymmetric one at V_sn (vertical lines, for no equilibrium depends on K), and the Hopf points of the asymmetric (H_a) and of the symmetric (H_s) state. Orbits: below PF symmetric stick-slip is stable beside asymmetric stick-slip; SN is the fold at which the asymmetric orbits of the second Hopf point end; within the loop of torus (TR) and period-doubling (PD) curves asymmetric orbits are unstable and the motion is complicated. The circle is the strong resonance 1:2.
 
 The paper found PF at one stiffness after another, for two-parameter continuation failed; here all curves are followed in both parameters.",
     alt: "The plane of driving velocity, logarithmic, and stiffness, with the curves of all bifurcations of equilibria and periodic orbits and the names of the regions between them.",
@@ -105,8 +105,8 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         note(6e3, 0.2, "one or both"),
         note(2.1e5, 0.33, "both slide"),
         note(8.0, 0.065, "symmetric stick-slip too"),
-        note(0.05, 0.4, "2V_M"),
-        note(810.0, 0.4, "2V_m"),
+        note(0.05, 0.4, "2 V_M"),
+        note(810.0, 0.4, "2 V_m"),
         note(4.3e4, 0.4, "V_sn"),
         note(30.0, 0.3565, "H_a"),
         note(30.0, 0.1878, "H_s"),

@@ -14,7 +14,7 @@ use crate::views::branch_lines;
 pub const FIGURE: Product = Product {
     id: "fig09",
     title: "Bifurcation diagram at small stiffness, K = 0.05, computed",
-    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same near 2V_M, where almost everything happens, and (c) within the thousandth of V_H in which the symmetric orbit grows to full size.
+    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same near 2 V_M, where almost everything happens, and (c) within the thousandth of V_H in which the symmetric orbit grows to full size.
 
 (d) to (f) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|, on a logarithmic axis, on which asymmetric orbits fall steeply towards the pitchforks where they meet the symmetric ones (not drawn, for theirs is zero). The branch from the first Hopf point does so after a torus point, two period doublings and a fold; the one from the second Hopf point comes down in V_H, folds at the saddle-node and goes back, unstable, to the symmetric branch. Between the two pitchforks the symmetric orbits are stable, beside the asymmetric ones from the fold on.",
     alt: "Six panels against driving velocity: extremes of stress over the whole range and twice enlarged near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
@@ -59,8 +59,8 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
             asymmetry("(d) asymmetry at greatest stress", &orbits, ALL),
         ],
         vec![
-            bare(stress("(b) near 2V_M", CROWD)),
-            asymmetry("(e) near 2V_M", &orbits, CROWD),
+            bare(stress("(b) near 2 V_M", CROWD)),
+            asymmetry("(e) near 2 V_M", &orbits, CROWD),
         ],
         vec![
             bare(stress("(c) nearer", THICK)),

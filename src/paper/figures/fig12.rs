@@ -11,7 +11,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig12",
     title: "Torus and period-doubling curves",
-    caption: "(a) The loop within which asymmetric orbits are unstable: the torus curve (TR) with its strong resonances 1:4, 1:3 and 1:2, and the period-doubling curve (PD), which the torus curve meets at 1:2. Both lie between the Hopf curves of the asymmetric (H_a) and the symmetric equilibrium (H_s), right of the pitchfork at 2V_M. (b) Enlarged about the resonance 1:2: the torus curve comes down and ends on the period-doubling curve.",
+    caption: "(a) The loop within which asymmetric orbits are unstable: the torus curve (TR) with its strong resonances 1:4, 1:3 and 1:2, and the period-doubling curve (PD), which the torus curve meets at 1:2. Both lie between the Hopf curves of the asymmetric (H_a) and the symmetric equilibrium (H_s), right of the pitchfork at 2 V_M. (b) Enlarged about the resonance 1:2: the torus curve comes down and ends on the period-doubling curve.",
     alt: "Two panels in the plane of driving velocity and stiffness: the closed loop of torus and period-doubling curves with marked resonances, and an enlargement where both curves meet.",
     scenes: &[
         "fig12-period-doubling",
@@ -63,7 +63,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         note(0.0835, 0.1, "unstable"),
         note(0.0634, 0.14, "H_a"),
         note(0.1235, 0.118, "H_s"),
-        note(0.0498, 0.225, "2V_M"),
+        note(0.0498, 0.225, "2 V_M"),
     ];
     Ok(Made {
         sheet,
