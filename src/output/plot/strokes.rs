@@ -45,7 +45,7 @@ pub fn first_times(line: &[Pixel], been: &mut Been) -> Vec<Vec<Pixel>> {
     for run in again.chunk_by(|a, b| a == b) {
         let stretch = &places[start..start + run.len()];
         start += run.len();
-        if run[0] && run.len() > AGAIN {
+        if run[0] && (run.len() > AGAIN || run.len() == places.len()) {
             stretches.extend((kept.len() > 1).then(|| std::mem::take(&mut kept)));
             kept.clear();
         } else {

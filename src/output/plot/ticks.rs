@@ -225,7 +225,7 @@ mod test {
         assert_eq!(thinned, ["10⁻³", "10⁰", "10³", "10⁶", "10⁹"]);
         let times = labels(0.0, 2000.0, false, 99);
         assert_eq!(times, ["0", "500", "1000", "1500", "2000"]);
-        assert_eq!(labels(0.0, 0.3, false, 4)[..2], ["0", "0.10"][..]);
+        assert_eq!(labels(0.0, 0.3, false, 9)[..3], ["0", "0.05", "0.10"][..]);
         assert_eq!(labels(0.0, 4e7, false, 99)[4], "4·10⁷");
         assert_eq!(labels(-0.2, 0.2, false, 5)[0], "−0.2");
     }
