@@ -36,12 +36,12 @@ impl Ticks {
     pub fn fitting(scale: &Scale, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let choices = choices(scale);
         // One number says nothing of an axis, if two can be had.
-        let telling = choices.iter().find(|ticks| ticks.len() > 1 && fits(ticks));
-        let mut named = telling
-            .or_else(|| choices.iter().find(|ticks| ticks.len() == 1 && fits(ticks)))
-            .or(choices.last())
-            .cloned()
-            .unwrap_or_default();
+        let with = |least: usize| choices.iter().filter(move |ticks| ticks.len() >= least);
+        let chosen = with(2)
+            .find(|ticks| fits(ticks))
+            .or_else(|| with(1).find(|ticks| fits(ticks)))
+            .or_else(|| with(1).last());
+        let mut named = chosen.cloned().unwrap_or_default();
         if !fits(&named) {
             named.truncate(1);
         }
