@@ -338,7 +338,7 @@ fn symbols_are_open_or_filled_on_white() {
             shape.place.width() < 20.0 && ![Some(INK), Some(GRID)].contains(&shape.stroke)
         };
         let shapes: Vec<&Shape> = seen.shapes.iter().filter(middle).collect();
-        let inside = shapes.iter().filter_map(|shape| shape.fill).last();
+        let inside = shapes.iter().filter_map(|shape| shape.fill).next_back();
         assert_eq!(inside, Some(if filled { red } else { PAPER }));
         assert_eq!(shapes[0].stroke, Some(PAPER), "a white edge below it");
         assert_eq!(shapes.last().and_then(|shape| shape.stroke), Some(red));

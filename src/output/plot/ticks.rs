@@ -40,7 +40,7 @@ impl Ticks {
         let chosen = with(2)
             .find(|ticks| fits(ticks))
             .or_else(|| with(1).find(|ticks| fits(ticks)))
-            .or_else(|| with(1).last());
+            .or_else(|| with(1).next_back());
         let mut named = chosen.cloned().unwrap_or_default();
         if !fits(&named) {
             named.truncate(1);
