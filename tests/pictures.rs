@@ -1,115 +1,13 @@
 //! What pictures show and where: read from the SVG as a viewer would, with the font that is built in.
 #![allow(missing_docs)]
 
-use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree, fontdb::Database};
-use std::sync::Arc;
+mod drawn;
+
+use drawn::{BLUE, GRID, INK, PAPER, Shape, seen};
+use resvg::usvg::Rect;
 use twinslip::output::plot::{
     Axis, Block, Drawing, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol,
 };
-
-const INK: [u8; 3] = [40, 40, 40];
-const GRID: [u8; 3] = [228, 228, 228];
-const PAPER: [u8; 3] = [255, 255, 255];
-const BLUE: [u8; 3] = [0, 114, 178];
-
-/// A line or an area.
-#[derive(Debug, Clone, Copy)]
-struct Shape {
-    stroke: Option<[u8; 3]>,
-    fill: Option<[u8; 3]>,
-    /// Without the breadth of the line.
-    place: Rect,
-}
-
-struct Seen {
-    width: f32,
-    height: f32,
-    words: Vec<(String, Rect)>,
-    shapes: Vec<Shape>,
-}
-
-fn seen(drawing: &Drawing) -> Seen {
-    let svg = drawing.svg().expect("a picture");
-    let font = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/font/plot.ttf"));
-    let mut fonts = Database::new();
-    fonts.load_font_data(font.expect("the font"));
-    let name = fonts.faces().next().expect("a face").families[0].0.clone();
-    fonts.set_sans_serif_family(name);
-    let options = Options {
-        fontdb: Arc::new(fonts),
-        ..Options::default()
-    };
-    let tree = Tree::from_str(&svg, &options).expect("SVG");
-    let mut seen = Seen {
-        width: tree.size().width(),
-        height: tree.size().height(),
-        words: Vec::new(),
-        shapes: Vec::new(),
-    };
-    seen.collect(tree.root());
-    seen
-}
-
-fn rgb(paint: &Paint) -> [u8; 3] {
-    match paint {
-        Paint::Color(colour) => [colour.red, colour.green, colour.blue],
-        other => panic!("{other:?}"),
-    }
-}
-
-impl Seen {
-    fn collect(&mut self, group: &Group) {
-        for node in group.children() {
-            match node {
-                Node::Group(group) => self.collect(group),
-                Node::Text(text) => {
-                    let words: String = text.chunks().iter().map(|chunk| chunk.text()).collect();
-                    self.words
-                        .push((words.trim().to_owned(), text.abs_bounding_box()));
-                }
-                Node::Path(path) => self.shapes.push(Shape {
-                    stroke: path.stroke().map(|stroke| rgb(stroke.paint())),
-                    fill: path.fill().map(|fill| rgb(fill.paint())),
-                    place: path.abs_bounding_box(),
-                }),
-                Node::Image(_) => panic!("an image"),
-            }
-        }
-    }
-
-    /// The frames: the only lines in ink that enclose something.
-    fn frames(&self) -> Vec<Rect> {
-        let ink = self
-            .shapes
-            .iter()
-            .filter(|shape| shape.stroke == Some(INK) && shape.fill.is_none());
-        ink.map(|shape| shape.place)
-            .filter(|place| place.width() > 50.0 && place.height() > 50.0)
-            .collect()
-    }
-
-    fn says(&self, words: &str) -> bool {
-        self.words.iter().any(|(text, _)| text == words)
-    }
-
-    /// Words stand apart from each other and within the picture.
-    fn assert_legible(&self) {
-        for (i, (text, a)) in self.words.iter().enumerate() {
-            let within = a.left() >= 0.0
-                && a.top() >= 0.0
-                && a.right() <= self.width
-                && a.bottom() <= self.height;
-            assert!(within, "{text:?} leaves the picture: {a:?}");
-            for (other, b) in &self.words[..i] {
-                let apart = a.left() >= b.right()
-                    || b.left() >= a.right()
-                    || a.top() >= b.bottom()
-                    || b.top() >= a.bottom();
-                assert!(apart, "{text:?} at {a:?} covers {other:?} at {b:?}");
-            }
-        }
-    }
-}
 
 fn alone(panel: Panel) -> Drawing {
     Drawing::columns(vec![vec![panel]])
@@ -125,8 +23,8 @@ fn numbers(from: f64, to: f64, many: usize) -> Vec<f64> {
     (0..many).map(|i| from + step * i as f64).collect()
 }
 
-#[test]
-fn nothing_is_drawn_outside_of_a_fixed_range() {
+/// Curves, points and words of all kinds, within the frame, beyond it and on its edge.
+fn crowded() -> Panel {
     let x = numbers(-3.0, 4.0, 500);
     let wave = x.iter().map(|x| 0.5 + 2.0 * (5.0 * x).sin()).collect();
     let turn: Vec<f64> = numbers(0.0, 30.0, 700);
@@ -159,7 +57,12 @@ fn nothing_is_drawn_outside_of_a_fixed_range() {
             colour: Some(2),
         });
     }
-    let seen = seen(&alone(panel));
+    panel
+}
+
+#[test]
+fn nothing_is_drawn_outside_of_a_fixed_range() {
+    let seen = seen(&alone(crowded()));
     let [frame] = seen.frames()[..] else {
         panic!("not one frame")
     };
