@@ -3,25 +3,11 @@
 
 mod drawn;
 
-use drawn::{BLUE, GRID, INK, PAPER, Shape, seen};
+use drawn::{BLUE, GRID, INK, PAPER, Shape, alone, numbers, seen, unit};
 use resvg::usvg::Rect;
 use twinslip::output::plot::{
     Axis, Block, Drawing, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol,
 };
-
-fn alone(panel: Panel) -> Drawing {
-    Drawing::columns(vec![vec![panel]])
-}
-
-fn unit(title: &str) -> Panel {
-    let axis = |name: &str| Axis::linear(name).within(0.0, 1.0);
-    Panel::new(title, axis("x"), axis("y"))
-}
-
-fn numbers(from: f64, to: f64, many: usize) -> Vec<f64> {
-    let step = (to - from) / (many - 1) as f64;
-    (0..many).map(|i| from + step * i as f64).collect()
-}
 
 /// Curves, points and words of all kinds, within the frame, beyond it and on its edge.
 fn crowded() -> Panel {

@@ -3,7 +3,7 @@
 
 use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree, fontdb::Database};
 use std::sync::Arc;
-use twinslip::output::plot::Drawing;
+use twinslip::output::plot::{Axis, Drawing, Panel};
 
 pub const INK: [u8; 3] = [40, 40, 40];
 pub const GRID: [u8; 3] = [228, 228, 228];
@@ -107,4 +107,21 @@ impl Seen {
             }
         }
     }
+}
+
+/// A picture of one panel.
+pub fn alone(panel: Panel) -> Drawing {
+    Drawing::columns(vec![vec![panel]])
+}
+
+/// A panel whose axes go from 0 to 1.
+pub fn unit(title: &str) -> Panel {
+    let axis = |name: &str| Axis::linear(name).within(0.0, 1.0);
+    Panel::new(title, axis("x"), axis("y"))
+}
+
+/// Equally spaced.
+pub fn numbers(from: f64, to: f64, many: usize) -> Vec<f64> {
+    let step = (to - from) / (many - 1) as f64;
+    (0..many).map(|i| from + step * i as f64).collect()
 }
