@@ -10,7 +10,7 @@ use std::collections::HashSet;
 /// Breadths of lines.
 const LINE: f64 = 1.1;
 const USUAL: f64 = 1.9;
-/// Of lines beside broader ones, and of those.
+/// Of lines that are broken or beside broader ones, and of those.
 const NARROW: f64 = 1.4;
 const WIDE: f64 = 2.7;
 /// Distance of the points along curves that names avoid.
@@ -28,10 +28,11 @@ pub fn line_width(panel: &Panel, number: usize) -> f64 {
         return if series.wide { WIDE } else { NARROW };
     }
     // The curve below is wider where another one follows, so that both are seen where they coincide.
-    if series.dots || number + 1 < panel.series.len() || series.colour.is_some() {
-        USUAL
-    } else {
-        LINE
+    let last = number + 1 == panel.series.len();
+    match series.stroke {
+        _ if series.dots || !last || series.colour.is_some() => USUAL,
+        Stroke::Solid => LINE,
+        _ => NARROW,
     }
 }
 

@@ -36,7 +36,7 @@ pub struct Frame {
 
 /// The ticks of a horizontal axis that wide.
 pub fn horizontal(scale: &Scale, width: f64) -> Ticks {
-    Ticks::fitting(scale, |ticks| {
+    Ticks::fitting(scale, width, |ticks| {
         ticks.windows(2).all(|pair| {
             let half = |tick: &Tick| 0.5 * label_width(tick);
             let apart = (scale.part(pair[1].at) - scale.part(pair[0].at)) * width;
@@ -47,7 +47,7 @@ pub fn horizontal(scale: &Scale, width: f64) -> Ticks {
 
 /// Those of a vertical one that high, with labels not wider than `limit`.
 pub fn vertical(scale: &Scale, height: f64, limit: f64) -> Ticks {
-    Ticks::fitting(scale, |ticks| {
+    Ticks::fitting(scale, height, |ticks| {
         let apart = |pair: &[Tick]| (scale.part(pair[1].at) - scale.part(pair[0].at)) * height;
         ticks.windows(2).all(|pair| apart(pair) >= BELOW)
             && ticks.iter().all(|tick| label_width(tick) <= limit)

@@ -216,6 +216,8 @@ impl<'a> Column<'a> {
             };
             top += high + draft.bottom();
             let labels = self.x.0 - self.left - before_labels(&draft.names.1) - frame::AIR;
+            // The widest label may be just as wide, up to rounding.
+            let labels = labels + 0.1;
             Placed {
                 panel: draft.panel,
                 heading: draft.heading,

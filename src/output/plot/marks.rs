@@ -1,6 +1,6 @@
 //! The points that are pointed out with their names, and words at a place.
 
-use super::canvas::{Align, Canvas, INK, MARK, PAPER, Pixel, colour};
+use super::canvas::{Align, Canvas, Colour, INK, MARK, PAPER, Pixel, colour};
 use super::clip::Window;
 use super::frame::Frame;
 use super::symbols::{self, Look};
@@ -61,7 +61,35 @@ pub fn marks(
     curves: &[Pixel],
     words: &[(Pixel, (f64, f64))],
 ) -> Result<()> {
-    let mut shown: Vec<(&Mark, names::Named)> = Vec::new();
+    let shown = shown(panel, frame)?;
+    let named: Vec<names::Named> = shown.iter().map(|(_, named)| *named).collect();
+    let centres = names::placed(&named, curves, words, frame.inside());
+    for ((mark, named), centre) in shown.iter().zip(&centres) {
+        tie(canvas, named, *centre, mark_colour(mark))?;
+    }
+    for (mark, named) in &shown {
+        let look = Look {
+            symbol: mark.symbol,
+            filled: mark.filled,
+            colour: mark_colour(mark),
+        };
+        symbols::draw(canvas, look, named.at, frame.inside())?;
+    }
+    for ((mark, _), centre) in shown.iter().zip(&centres) {
+        if !mark.label.is_empty() {
+            canvas.words(&mark.label, *centre, Align::Middle, TEXT, mark_colour(mark))?;
+        }
+    }
+    Ok(())
+}
+
+fn mark_colour(mark: &Mark) -> Colour {
+    mark.colour.map_or(MARK, colour)
+}
+
+/// The points within the frame, with the sizes of their names.
+fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<(&'a Mark, names::Named)>> {
+    let mut shown = Vec::new();
     for mark in &panel.marks {
         let Some(at) = frame.place(mark.x, mark.y) else {
             continue;
@@ -74,31 +102,16 @@ pub fn marks(
         let side = mark.side;
         shown.push((mark, names::Named { at, size, side }));
     }
-    let named: Vec<names::Named> = shown.iter().map(|(_, named)| *named).collect();
-    let centres = names::placed(&named, curves, words, frame.inside());
-    for ((mark, named), centre) in shown.iter().zip(&centres) {
-        let off = (centre.0 - named.at.0, centre.1 - named.at.1);
-        // A name that stands far off is tied to its point, up to its edge.
-        let edge = names::edge(off, named.size);
-        if named.size != (0.0, 0.0) && edge.0.hypot(edge.1) > TIED {
-            let end = (named.at.0 + edge.0, named.at.1 + edge.1);
-            let ink = mark.colour.map_or(MARK, colour);
-            canvas.line(&[named.at, end], ink, TIE)?;
-        }
+    Ok(shown)
+}
+
+/// Ties a name that stands far off to its point, up to its edge.
+fn tie(canvas: &Canvas<'_>, named: &names::Named, centre: Pixel, colour: Colour) -> Result<()> {
+    let off = (centre.0 - named.at.0, centre.1 - named.at.1);
+    let edge = names::edge(off, named.size);
+    if named.size == (0.0, 0.0) || edge.0.hypot(edge.1) <= TIED {
+        return Ok(());
     }
-    for (mark, named) in &shown {
-        let look = Look {
-            symbol: mark.symbol,
-            filled: mark.filled,
-            colour: mark.colour.map_or(MARK, colour),
-        };
-        symbols::draw(canvas, look, named.at, frame.inside())?;
-    }
-    for ((mark, _), centre) in shown.iter().zip(&centres) {
-        if !mark.label.is_empty() {
-            let ink = mark.colour.map_or(MARK, colour);
-            canvas.words(&mark.label, *centre, Align::Middle, TEXT, ink)?;
-        }
-    }
-    Ok(())
+    let end = (named.at.0 + edge.0, named.at.1 + edge.1);
+    canvas.line(&[named.at, end], colour, TIE)
 }

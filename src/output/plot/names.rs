@@ -58,43 +58,60 @@ pub fn placed(
     let mut taken: Vec<Area> = words.iter().map(area).collect();
     let mut centres = Vec::new();
     for (i, name) in names.iter().enumerate() {
-        if name.size == (0.0, 0.0) {
-            centres.push(name.at);
-            continue;
-        }
-        let candidates = candidates(name);
-        let others = || names.iter().enumerate().filter(move |&(j, _)| j != i);
-        let price = |(number, place): (usize, &Area)| {
-            let covered = taken.iter().filter(|other| place.meets(other)).count() as f64;
-            let outside = f64::from(u8::from(!place.within(frame)));
-            let points = others().filter(|(_, other)| place.holds(other.at)).count() as f64;
-            let curve = curves.iter().filter(|&&at| place.holds(at)).count() as f64;
-            let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
-            let wrong = match name.side {
-                Side::Above => dy > 0.0,
-                Side::Below => dy < 0.0,
-                Side::Free => false,
-            };
-            NAME * covered
-                + FRAME * outside
-                + POINT * points
-                + CURVE * curve
-                + FAR * dx.hypot(dy)
-                + UNUSUAL * number as f64
-                + WRONG * f64::from(u8::from(wrong))
+        let other = |&(j, _): &(usize, &Named)| j != i;
+        let points = names.iter().enumerate().filter(other);
+        let around = Around {
+            taken: &taken,
+            points: points.map(|(_, other)| other.at).collect(),
+            curves,
+            frame,
         };
+        // A name of no size needs no place.
+        let candidates = candidates(name).into_iter().enumerate();
         let best = candidates
-            .iter()
-            .enumerate()
-            .map(|candidate| (price(candidate), *candidate.1))
+            .filter(|_| name.size != (0.0, 0.0))
+            .map(|(number, place)| (around.price(name, number, &place), place))
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        if let Some((_, mut place)) = best {
-            place.centre = frame.without(place.half).nearest(place.centre);
-            centres.push(place.centre);
-            taken.push(place);
+        match best {
+            Some((_, mut place)) => {
+                place.centre = frame.without(place.half).nearest(place.centre);
+                centres.push(place.centre);
+                taken.push(place);
+            }
+            None => centres.push(name.at),
         }
     }
     centres
+}
+
+/// What a name should not cover.
+struct Around<'a> {
+    taken: &'a [Area],
+    points: Vec<Pixel>,
+    curves: &'a [Pixel],
+    frame: &'a Window,
+}
+
+impl Around<'_> {
+    /// What the candidate of that number costs.
+    fn price(&self, name: &Named, number: usize, place: &Area) -> f64 {
+        let on = |places: &[Pixel]| places.iter().filter(|&&at| place.holds(at)).count() as f64;
+        let covered = self.taken.iter().filter(|other| place.meets(other)).count() as f64;
+        let outside = f64::from(u8::from(!place.within(self.frame)));
+        let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
+        let wrong = match name.side {
+            Side::Above => dy > 0.0,
+            Side::Below => dy < 0.0,
+            Side::Free => false,
+        };
+        NAME * covered
+            + FRAME * outside
+            + POINT * on(&self.points)
+            + CURVE * on(self.curves)
+            + FAR * dx.hypot(dy)
+            + UNUSUAL * number as f64
+            + WRONG * f64::from(u8::from(wrong))
+    }
 }
 
 fn half(size: (f64, f64)) -> (f64, f64) {

@@ -4,6 +4,8 @@ use super::Axis;
 
 /// Decades on a logarithmic axis, at least.
 const NARROWEST: f64 = 0.5;
+/// Relative differences smaller than this are those of a constant.
+const CONSTANT: f64 = 1e-5;
 
 /// An axis with its range, in the coordinate that is drawn: log10 for a logarithmic axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,7 +58,7 @@ impl Scale {
         let pad = if log {
             (0.5 * (NARROWEST - (hi - lo))).max(margin * (hi - lo))
         } else {
-            let least = 1e-3 * lo.abs().max(hi.abs()).max(1e-300);
+            let least = CONSTANT * lo.abs().max(hi.abs()).max(1e-300);
             if hi - lo < least {
                 least
             } else {

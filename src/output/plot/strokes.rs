@@ -45,7 +45,7 @@ pub fn first_times(line: &[Pixel], been: &mut Been) -> Vec<Vec<Pixel>> {
     for run in again.chunk_by(|a, b| a == b) {
         let stretch = &places[start..start + run.len()];
         start += run.len();
-        if run[0] && run.len() > AGAIN {
+        if run[0] && (run.len() > AGAIN || run.len() == places.len()) {
             stretches.extend((kept.len() > 1).then(|| std::mem::take(&mut kept)));
             kept.clear();
         } else {
@@ -114,6 +114,9 @@ pub fn dashes(line: &[Pixel], pattern: &[f64]) -> Vec<Vec<Pixel>> {
     dashes
 }
 
+/// A line longer than this fills an area, where no pattern can be seen: it is drawn unbroken.
+const FILLS: f64 = 60_000.0;
+
 /// Draws a line so; a point alone as a dot.
 ///
 /// # Errors
@@ -128,21 +131,26 @@ pub fn draw(
     if let [only] = line {
         return canvas.circle(*only, 0.5 * width, colour);
     }
+    let stroke = if length(line) < FILLS {
+        stroke
+    } else {
+        Stroke::Solid
+    };
     dashes(line, &pattern(stroke, width))
         .iter()
         .try_for_each(|dash| canvas.line(dash, colour, width))
 }
 
+fn length(line: &[Pixel]) -> f64 {
+    let steps = line.windows(2);
+    steps
+        .map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1))
+        .sum()
+}
+
 #[cfg(test)]
 mod test {
     use super::*;
-
-    fn length(line: &[Pixel]) -> f64 {
-        let steps = line.windows(2);
-        steps
-            .map(|p| (p[1].0 - p[0].0).hypot(p[1].1 - p[0].1))
-            .sum()
-    }
 
     fn arc(points: i32) -> Vec<Pixel> {
         let angle = |i: i32| 3.0 * f64::from(i) / f64::from(points - 1);

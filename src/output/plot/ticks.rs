@@ -10,8 +10,8 @@ const FEW_DECADES: f64 = 2.6;
 const SHORT: f64 = 0.8;
 /// Even those leave axes shorter than this with a number or none: they have ticks at equal differences.
 const SHORTEST: f64 = 0.3;
-/// On longer ones, a small tick is at each power of ten only.
-const MANY_DECADES: f64 = 8.0;
+/// Where a decade has fewer pixels than this, a small tick is at each power of ten only.
+const DECADE: f64 = 45.0;
 
 /// A tick with its label.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,20 +32,20 @@ pub struct Ticks {
 }
 
 impl Ticks {
-    /// The most that fit, by the judgement of who knows how large the labels are.
-    pub fn fitting(scale: &Scale, fits: impl Fn(&[Tick]) -> bool) -> Self {
+    /// The most that fit on an axis that long in pixels, by the judgement of who knows how large the labels are.
+    pub fn fitting(scale: &Scale, pixels: f64, fits: impl Fn(&[Tick]) -> bool) -> Self {
         let choices = choices(scale);
         // One number says nothing of an axis, if two can be had.
-        let telling = choices.iter().find(|ticks| ticks.len() > 1 && fits(ticks));
-        let mut named = telling
-            .or_else(|| choices.iter().find(|ticks| ticks.len() == 1 && fits(ticks)))
-            .or(choices.last())
-            .cloned()
-            .unwrap_or_default();
+        let with = |least: usize| choices.iter().filter(move |ticks| ticks.len() >= least);
+        let chosen = with(2)
+            .find(|ticks| fits(ticks))
+            .or_else(|| with(1).find(|ticks| fits(ticks)))
+            .or_else(|| with(1).next_back());
+        let mut named = chosen.cloned().unwrap_or_default();
         if !fits(&named) {
             named.truncate(1);
         }
-        let small = small(scale, &named);
+        let small = small(scale, pixels, &named);
         Ticks { named, small }
     }
 }
@@ -134,12 +134,12 @@ fn digits_within(scale: &Scale, digits: &[f64]) -> Vec<(f64, i32, f64)> {
 }
 
 /// Logarithmic axes show by small ticks that they are.
-fn small(scale: &Scale, named: &[Tick]) -> Vec<f64> {
+fn small(scale: &Scale, pixels: f64, named: &[Tick]) -> Vec<f64> {
     const DIGITS: [f64; 9] = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0];
     if !scale.log {
         return Vec::new();
     }
-    let digits = if scale.hi - scale.lo > MANY_DECADES {
+    let digits = if pixels < DECADE * (scale.hi - scale.lo) {
         &DIGITS[..1]
     } else {
         &DIGITS[..]
@@ -210,7 +210,7 @@ mod test {
 
     fn labels(lo: f64, hi: f64, log: bool, most: usize) -> Vec<String> {
         let scale = Scale { lo, hi, log };
-        let ticks = Ticks::fitting(&scale, |ticks| ticks.len() <= most);
+        let ticks = Ticks::fitting(&scale, 400.0, |ticks| ticks.len() <= most);
         for tick in &ticks.named {
             assert!(tick.at >= lo - 1e-6 && tick.at <= hi + 1e-6, "{tick:?}");
         }
@@ -225,7 +225,7 @@ mod test {
         assert_eq!(thinned, ["10⁻³", "10⁰", "10³", "10⁶", "10⁹"]);
         let times = labels(0.0, 2000.0, false, 99);
         assert_eq!(times, ["0", "500", "1000", "1500", "2000"]);
-        assert_eq!(labels(0.0, 0.3, false, 4)[..2], ["0", "0.10"][..]);
+        assert_eq!(labels(0.0, 0.3, false, 9)[..3], ["0", "0.05", "0.10"][..]);
         assert_eq!(labels(0.0, 4e7, false, 99)[4], "4·10⁷");
         assert_eq!(labels(-0.2, 0.2, false, 5)[0], "−0.2");
     }
@@ -248,7 +248,7 @@ mod test {
             hi,
             log: true,
         };
-        assert_eq!(Ticks::fitting(&scale(3.0), |_| true).small.len(), 24);
-        assert_eq!(Ticks::fitting(&scale(12.0), |_| true).small.len(), 6);
+        assert_eq!(Ticks::fitting(&scale(3.0), 400.0, |_| true).small.len(), 24);
+        assert_eq!(Ticks::fitting(&scale(12.0), 400.0, |_| true).small.len(), 6);
     }
 }
