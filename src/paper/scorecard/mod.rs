@@ -61,10 +61,10 @@ pub const SCORECARD: Product = Product {
     alt: "A list of numbers and claims, each with where it is, what is printed, what is \
      computed and the verdict.",
     scenes: &[
-        "fig06-orbit-pitchforks",
-        "fig12",
         "fig12-period-doubling",
         "fig09",
+        "fig12",
+        "fig06-orbit-pitchforks",
         "fig07",
         "fig13-map",
         "fig16b-map",

@@ -50,7 +50,7 @@ pub fn orbit_at(
     Ok(find(&slab, &query, &Accuracy::of(method))?.orbit)
 }
 
-/// V_H and K of a special orbit, found again. The uncertainty is how far they are from the first ones, and these's own.
+/// V_H and K of a special orbit, found again. Their uncertainty is how far they are from the first ones, with that of those.
 pub fn again(pieces: &Pieces<'_>, special: &Special) -> Result<[Uncertain; 2]> {
     let (driving, stiffness) = (special.driving, special.stiffness);
     let slab = slab(pieces, driving.value, stiffness.value)?;

@@ -156,8 +156,8 @@ fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
         last(Label::Pf, &at_005.special) / last(Label::Pd, &at_005.special) - 1.0,
         fork.driving.value / end.driving.value - 1.0,
     ];
-    // K falls by a fifth, the distance to less than a fifth.
-    let falls = distances[1] > 0.0 && distances[1] < 0.2 * distances[0];
+    // The distance falls much faster than K.
+    let falls = distances[1] > 0.0 && distances[1] < 0.1 * distances[0];
     Ok(Entry::claim(
         ("doublings-at-pitchforks", "section 4.2; Figs 6, 9"),
         "the curve PD at the larger V_H beside PF as K -> 0",
