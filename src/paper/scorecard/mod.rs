@@ -31,6 +31,7 @@ use crate::friction::{AnyLaw, Extremum};
 use crate::model::Loading;
 use crate::number::Uncertain;
 use crate::orbit::Slab;
+use rayon::prelude::*;
 use serde_json::{Value, json};
 
 /// How the entries are computed, in a sentence.
@@ -201,31 +202,42 @@ impl Entry {
     }
 }
 
+/// Entries that belong together.
+type Section = fn(&Pieces<'_>) -> Result<Vec<Entry>>;
+
+/// All of them, in the order of the paper.
+const SECTIONS: [Section; 19] = [
+    laws::of_section_2,
+    stability::single_interface,
+    equilibria::of_section_3,
+    stability::two_interfaces,
+    localisation::entries,
+    laws::of_section_4,
+    equilibria::of_section_4,
+    hopf::entries,
+    runs::of_fig_8,
+    orbits::entries,
+    small_stiffness::entries,
+    runs::of_fig_11,
+    torus::of_section_4_2,
+    runs::of_fig_13,
+    table1::entries,
+    torus::of_section_4_3,
+    fig16::entries,
+    runs::of_fig_16,
+    stability::of_the_appendix,
+];
+
 /// All entries, in the order of the paper.
 ///
 /// # Errors
 /// Those of the pieces and of the computations; [`Error::NoOrbit`] where something that must be there is not.
 pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let mut all = laws::of_section_2(pieces)?;
-    all.extend(stability::single_interface(pieces)?);
-    all.extend(equilibria::of_section_3(pieces)?);
-    all.extend(stability::two_interfaces(pieces)?);
-    all.extend(localisation::entries(pieces)?);
-    all.extend(laws::of_section_4(pieces)?);
-    all.extend(equilibria::of_section_4(pieces)?);
-    all.extend(hopf::entries(pieces)?);
-    all.extend(runs::of_fig_8(pieces)?);
-    all.extend(orbits::entries(pieces)?);
-    all.extend(small_stiffness::entries(pieces)?);
-    all.extend(runs::of_fig_11(pieces)?);
-    all.extend(torus::of_section_4_2(pieces)?);
-    all.extend(runs::of_fig_13(pieces)?);
-    all.extend(table1::entries(pieces)?);
-    all.extend(torus::of_section_4_3(pieces)?);
-    all.extend(fig16::entries(pieces)?);
-    all.extend(runs::of_fig_16(pieces)?);
-    all.extend(stability::of_the_appendix(pieces)?);
-    Ok(all)
+    let sections: Vec<Vec<Entry>> = SECTIONS
+        .par_iter()
+        .map(|section| section(pieces))
+        .collect::<Result<_>>()?;
+    Ok(sections.concat())
 }
 
 /// What `scorecard.json` holds.
