@@ -12,9 +12,9 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig03",
     title: "Slip localises on the weaker of two Dieterich-Ruina interfaces",
-    caption: "Two interfaces that obey the Dieterich-Ruina law, driven at V_H = V*. From beside the symmetric steady state (open square), where both share the driving velocity, the interface that begins with the smaller state takes over; the other one all but stops and heals without end.
+    caption: "Two interfaces that obey the Dieterich-Ruina law, driven at V_H = V*. From beside the symmetric steady state (open square, under the circle of the start), where both share the driving velocity, the interface that begins with the smaller state takes over; the other one all but stops and heals without end.
 
-(a) Stiffer than the single interface needs (K = 0.45): slip settles on steady sliding of one interface (asterisk). (b) A little softer than K_c = (b - a)/a = 0.401 (K = 0.395): the interface that slides alone starts to oscillate, with slowly growing amplitude. The asterisks lie at (±1, 10.573); the 10.7 of the printed caption is not the steady stress of this law.",
+(a) Stiffer than the single interface needs (K = 0.45): slip settles on steady sliding of one interface (star). (b) A little softer than K_c = (b - a)/a = 0.401 (K = 0.395): the interface that slides alone starts to oscillate, with slowly growing amplitude. The stars lie at (±1, 10.573); the 10.7 of the printed caption is not the steady stress of this law.",
     alt: "Two rows of panels: stress against the difference of the slip rates, and stress, states and slip rates in time. In both rows one interface takes over the whole slip; in the lower row stress and slip rate then oscillate with growing amplitude.",
     scenes: &["fig03a", "fig03b"],
     make: Make::Figure(make),
