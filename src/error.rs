@@ -131,6 +131,19 @@ pub enum Error {
         /// Residual asked for.
         tolerance: f64,
     },
+    /// A branch or curve went no further than its method could.
+    #[error(
+        "the curve ends at V_H = {driving}, K = {stiffness}, where the method goes no further; try a smaller --step-limit"
+    )]
+    Stuck {
+        /// V_H reached.
+        driving: f64,
+        /// K reached.
+        stiffness: f64,
+    },
+    /// Whoever asked for it wants it no more.
+    #[error("interrupted; what was finished is kept")]
+    Interrupted,
     /// Something else was found where a periodic orbit was looked for.
     #[error("{what}; {hint}")]
     NoOrbit {

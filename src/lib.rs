@@ -21,6 +21,7 @@
 //! | [`bifurcation::equilibria`] | branches of equilibria, and curves of their bifurcations in the (V_H, K) plane |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`scene::Plan`] | what a run computes: only what its outputs need |
+//! | [`paper::reproduce()`] | the paper's figures, Table 1, scorecard and report, of which only what is missing is computed |
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
 //! L/V*. K = k L / (a sigma), R = t** V*/L, beta = b/a, gamma0 = 2 exp(-a_v/a). Numbers in parentheses are the equations of
@@ -62,7 +63,14 @@ pub mod scene;
 
 pub mod output;
 
+pub mod views;
+
+pub mod paper;
+
 pub mod cli;
+
+#[doc = include_str!("../docs/guide.md")]
+pub mod guide {}
 
 pub use error::{Error, Result};
 

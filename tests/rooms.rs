@@ -55,7 +55,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
+            "bifurcation",
+            "orbit",
             "section",
+            "equilibrium",
             "integrate",
             "model",
             "series",
@@ -66,8 +69,20 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     ),
     ("output", &[]),
     (
-        "cli",
+        "views",
         &[
+            "scene",
+            "bifurcation",
+            "orbit",
+            "equilibrium",
+            "number",
+            "output",
+        ],
+    ),
+    (
+        "paper",
+        &[
+            "views",
             "scene",
             "bifurcation",
             "orbit",
@@ -75,6 +90,23 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "equilibrium",
             "integrate",
             "model",
+            "field",
+            "friction",
+            "number",
+            "output",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "paper",
+            "views",
+            "scene",
+            "bifurcation",
+            "orbit",
+            "section",
+            "equilibrium",
+            "integrate",
             "sundials",
             "friction",
             "number",

@@ -26,7 +26,10 @@ fn every_scene_runs_and_can_be_drawn() {
         let name = scene.file_stem().unwrap().to_str().unwrap().to_owned();
         let [data, svg, png] =
             ["json", "svg", "png"].map(|end| place.join(format!("{name}.{end}")));
-        for picture in [&svg, &png] {
+        // Pixels are made of the SVG, whatever that shows: two scenes of them are enough.
+        let pixels = ["fig13", "fig13-map"].contains(&name.as_str());
+        let pictures = [Some(&svg), pixels.then_some(&png)];
+        for picture in pictures.into_iter().flatten() {
             let ended = run(&[
                 "run",
                 scene.to_str().unwrap(),
@@ -53,11 +56,10 @@ fn every_scene_runs_and_can_be_drawn() {
             _ => "phase plane",
         };
         assert!(drawn.starts_with("<svg") && drawn.contains(panel), "{name}");
-        assert!(
-            std::fs::read(png)
-                .expect("a picture")
-                .starts_with(b"\x89PNG")
-        );
+        if pixels {
+            let bytes = std::fs::read(png).expect("a picture");
+            assert!(bytes.starts_with(b"\x89PNG"), "{name}");
+        }
     }
 }
 

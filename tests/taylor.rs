@@ -15,7 +15,8 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{
     Auto, Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Taylor, Tolerances,
 };
-use twinslip::model::{Loading, Parameter, single_interface, symmetric, two_interfaces};
+use twinslip::model::normal_form::StrongResonance;
+use twinslip::model::{Loading, Parameter, Smooth, single_interface, symmetric, two_interfaces};
 
 fn taylor(tolerance: f64) -> Taylor {
     Taylor::new(Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
@@ -292,4 +293,22 @@ fn a_singularity_is_told_with_its_time() {
             other => panic!("{name}: {other:?}"),
         }
     }
+}
+
+/// What is zero at the start may change fast: the first unit of time then neither overflows nor costs steps.
+#[test]
+fn a_variable_may_start_at_zero() {
+    let field = Smooth {
+        equations: StrongResonance,
+        parameters: [-2.0, -0.5],
+    };
+    let steps = |w: f64| {
+        let mut taylor = taylor(1e-15);
+        let start = State::<2>::new(2.0, w);
+        let end = taylor.flow(&field, (0.0, 1.0), &start, None).unwrap();
+        (end, <Taylor as Integrator<2>>::work(&taylor).steps)
+    };
+    let ((at_zero, few), (beside, usual)) = (steps(0.0), steps(1e-14));
+    assert!((at_zero - beside).amax() < 1e-12);
+    assert!(few <= usual + 2, "{few} steps and {usual}");
 }

@@ -5,6 +5,7 @@
 pub mod equilibria;
 pub mod orbits;
 mod request;
+pub mod strong_resonance;
 
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
@@ -165,6 +166,17 @@ pub enum Criticality {
     Subcritical,
     /// The coefficient is zero within its error.
     Undecided,
+}
+
+impl Criticality {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Criticality::Supercritical => "supercritical",
+            Criticality::Subcritical => "subcritical",
+            Criticality::Undecided => "undecided",
+        }
+    }
 }
 
 /// A special point.

@@ -2,211 +2,15 @@
 
 use super::Ending;
 use super::continuation::Task;
-use super::diagram;
-use super::following::{self, Following, landings, range};
-use super::rows;
-use crate::bifurcation::{BranchRequest, BranchRow, Parameter, equilibria, orbits};
-use crate::error::{Error, Result};
-use crate::friction::positive;
-use crate::model::Loading;
-use crate::orbit::Slab;
-use crate::scene::{BranchOptions, Quantity, System, Units};
-use serde_json::{Value, json};
-
-pub const EXAMPLE: &str =
-    "Example, all equilibria and their Hopf points at K = 0.14, and the orbits that begin there:
-  twinslip branch equilibria --stiffness 0.14 -o equilibria.csv --plot equilibria.svg
-  twinslip branch orbits --stiffness 0.14 --from 0.05 --to 300 -o orbits.csv --plot orbits.svg";
-
-/// Of what the branches are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
-    Equilibria,
-    Orbits,
-}
-
-impl Of {
-    fn named(name: Option<&str>) -> Result<Self> {
-        match name {
-            Some("equilibria") => Ok(Of::Equilibria),
-            Some("orbits") => Ok(Of::Orbits),
-            Some(other) => Err(Error::Input(format!(
-                "there are no branches of {other:?}; choose branch equilibria or branch orbits"
-            ))),
-            None => Err(Error::Input(
-                "it is missing of what the branches are: branch equilibria or branch orbits".into(),
-            )),
-        }
-    }
-
-    fn name(self) -> &'static str {
-        match self {
-            Of::Equilibria => "equilibria",
-            Of::Orbits => "orbits",
-        }
-    }
-}
-
-/// What varies, with its name and its default range.
-pub struct Along {
-    pub parameter: Parameter,
-    name: &'static str,
-    pub quantity: Quantity,
-    range: (f64, f64),
-}
-
-impl Along {
-    fn named(name: &str) -> Result<Self> {
-        match name {
-            "driving" => Ok(Along {
-                parameter: Parameter::Driving,
-                name: "driving",
-                quantity: Quantity::SlipRate,
-                range: following::DRIVING,
-            }),
-            "stiffness" => Ok(Along {
-                parameter: Parameter::Stiffness,
-                name: "stiffness",
-                quantity: Quantity::Stiffness,
-                range: following::STIFFNESS,
-            }),
-            other => Err(Error::parameter("along", other, "driving or stiffness")),
-        }
-    }
-
-    /// Its value at a row, in the user's units.
-    pub fn of(&self, row: &BranchRow, units: &Units) -> f64 {
-        let x = match self.parameter {
-            Parameter::Driving => row.driving,
-            Parameter::Stiffness => row.stiffness,
-        };
-        units.outward(self.quantity, x)
-    }
-
-    /// From where to where, dimensionless.
-    fn ends(&self, options: &BranchOptions, units: &Units) -> Result<(f64, f64)> {
-        let end = |name, given: Option<f64>, default| {
-            given.map_or(Ok(default), |x| {
-                Ok(units.inward(self.quantity, positive(name, x)?))
-            })
-        };
-        range(
-            "the range --from --to",
-            (
-                end("from", options.from, self.range.0)?,
-                end("to", options.to, self.range.1)?,
-            ),
-        )
-    }
-}
-
-/// What is to be done, checked.
-struct Plan {
-    of: Of,
-    along: Along,
-    system: System,
-    request: BranchRequest,
-    following: Following,
-    numerics: Value,
-}
-
-impl Plan {
-    fn new(options: &BranchOptions) -> Result<Self> {
-        let of = Of::named(options.of.as_deref())?;
-        let along = Along::named(&options.along)?;
-        let system = System::new(&options.model)?;
-        let units = &system.units;
-        let ends = along.ends(options, units)?;
-        let loading = loading(&system, &along, ends.0)?;
-        let following = Following::new(&options.continuation, of == Of::Orbits)?;
-        let out = |x| units.outward(along.quantity, x);
-        let at = landings("at", options.at.as_deref(), (along.quantity, units), ends)?;
-        let numerics = json!({
-            "of": of.name(),
-            "along": along.name,
-            "from": out(ends.0),
-            "to": out(ends.1),
-            "symmetry": options.symmetry,
-            "at": at.iter().map(|&x| out(x)).collect::<Vec<f64>>(),
-            "step_limit": following.step,
-            "tolerance": following.tolerance,
-            "doublings": options.doublings,
-            "crosscheck": following.second.map(|second| second.name()),
-        });
-        let request = BranchRequest {
-            slab: Slab {
-                law: system.law,
-                interfaces: system.interfaces,
-                loading,
-            },
-            along: along.parameter,
-            range: ends,
-            symmetry: following::symmetry(&options.symmetry, system.interfaces)?,
-            at,
-            step: following.step,
-            tolerance: following.tolerance,
-            skip: Vec::new(),
-            doublings: options.doublings,
-        };
-        Ok(Plan {
-            of,
-            along,
-            system,
-            request,
-            following,
-            numerics,
-        })
-    }
-
-    fn explain(&self) {
-        let out = |x| self.system.units.outward(self.along.quantity, x);
-        let (from, to) = self.request.range;
-        eprintln!("plan of this command");
-        following::explain_symmetry(self.request.symmetry, self.system.interfaces);
-        eprintln!(
-            "  range             {} from {:e} to {:e}",
-            self.along.name,
-            out(from),
-            out(to)
-        );
-        match self.of {
-            Of::Equilibria => eprintln!(
-                "  method            all steady states in closed form or from certain brackets; the characteristic polynomials"
-            ),
-            Of::Orbits => eprintln!(
-                "  method            taylor, tangents on, multiple shooting; begins at the Hopf points"
-            ),
-        }
-        following::explain(&self.following, &self.request.at);
-    }
-}
-
-/// V_H and K; what varies begins at `from` and must not be given.
-fn loading(system: &System, along: &Along, from: f64) -> Result<Loading> {
-    let twice = |given: Option<f64>| match given {
-        None => Ok(()),
-        Some(_) => Err(Error::Input(format!(
-            "--{0} can't be given with --along {0}, for it varies; use --from and --to",
-            along.name
-        ))),
-    };
-    match along.parameter {
-        Parameter::Driving => {
-            twice(system.driving)?;
-            Loading::new(from, system.needed_stiffness()?)
-        }
-        Parameter::Stiffness => {
-            twice(system.stiffness)?;
-            Loading::new(system.needed_driving()?, from)
-        }
-    }
-}
+use crate::error::Result;
+use crate::scene::{BranchOptions, BranchPlan, Of};
+use crate::views;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
-    let plan = Plan::new(options)?;
+    let plan = BranchPlan::new(options)?;
     let task = Task {
         system: &plan.system,
-        columns: rows::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
+        columns: views::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
         numerics: plan.numerics.clone(),
         slab: &plan.request.slab,
         second: plan.following.second,
@@ -217,20 +21,11 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     };
     let report = task.report()?;
     if options.output.explain {
-        plan.explain();
+        eprintln!("{}", plan.explain());
     }
     task.run(
         &report,
-        |skip, seen| {
-            let request = BranchRequest {
-                skip: skip.to_vec(),
-                ..plan.request.clone()
-            };
-            match plan.of {
-                Of::Equilibria => equilibria::branch(&request, seen),
-                Of::Orbits => orbits::branch(&request, seen),
-            }
-        },
-        |rows, _| diagram::branches(rows, &plan.along, &plan.request.slab, &plan.system),
+        |known, seen| plan.follow(known, seen),
+        |rows, _| views::branches(rows, &plan.along, &plan.request.slab, &plan.system),
     )
 }

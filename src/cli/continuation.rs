@@ -1,6 +1,5 @@
 //! What `branch` and `locus` share: rows on their way out, special points, how a run ends.
 
-use super::fields::{self, Column};
 use super::progress::Progress;
 use super::report::{Report, unit_names};
 use super::resume::Kept;
@@ -12,6 +11,7 @@ use crate::integrate::Choice;
 use crate::orbit::Slab;
 use crate::output::{Format, RowWriter, plot, seven_digits};
 use crate::scene::{OutputOptions, Quantity, System};
+use crate::views::{self, Column};
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
@@ -151,7 +151,7 @@ impl<'a, R: Row> Task<'a, R> {
         let units = &self.system.units;
         let rows = out.rows.iter();
         let rows: Vec<Value> = rows
-            .map(|row| Value::Object(fields::object(&self.columns, row, units)))
+            .map(|row| Value::Object(views::object(&self.columns, row, units)))
             .collect();
         let result = json!({
             "rows": rows,
@@ -200,7 +200,7 @@ impl<'a, R: Row> Out<'a, R> {
     fn new(task: &'a Task<'a, R>, report: &'a Report<'a>) -> Result<Self> {
         let remarks = report.remarks(task.system, &task.numerics);
         let table = report.format == Format::Table;
-        let names = fields::names(&task.columns, table);
+        let names = views::names(&task.columns, table);
         let mut kept = Kept::default();
         if let Some(path) = task.resume {
             let plain: Vec<String> = names.iter().map(|(name, _)| name.clone()).collect();
@@ -246,7 +246,7 @@ impl<'a, R: Row> Out<'a, R> {
     fn row(&mut self, row: &R) -> io::Result<()> {
         self.open()?;
         let table = self.report.format == Format::Table;
-        let cells = fields::cells(&self.task.columns, row, &self.task.system.units, table);
+        let cells = views::cells(&self.task.columns, row, &self.task.system.units, table);
         self.writer
             .as_mut()
             .map_or(Ok(()), |writer| writer.row(&cells))

@@ -11,9 +11,6 @@ use crate::scene::{EquilibriaOptions, Quantity, System};
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-pub const EXAMPLE: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
-  twinslip equilibria --driving 1000 --stiffness 0.45";
-
 /// An equilibrium with what the stiffness makes of it.
 struct Found {
     equilibrium: Equilibrium,
@@ -192,7 +189,7 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
             cells.push(part.map(|x| units.outward(Quantity::Growth, x)).into());
         }
     }
-    let verdict = found.stability.as_ref().map(|s| verdict(s.verdict));
+    let verdict = found.stability.as_ref().map(|s| s.verdict.name());
     cells.push(verdict.map_or(Cell::Missing, Cell::from));
     if !table {
         cells.push(found.residual.into());
@@ -219,7 +216,7 @@ fn object(found: &Found, system: &System) -> Value {
         "slip_rate": out(Quantity::SlipRate, &equilibrium.slip_rate),
         "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
         "eigenvalues": eigenvalues,
-        "verdict": found.stability.as_ref().map(|s| verdict(s.verdict)),
+        "verdict": found.stability.as_ref().map(|s| s.verdict.name()),
         "residual": found.residual,
     })
 }
@@ -228,13 +225,5 @@ pub(super) fn symmetry(symmetry: Symmetry) -> &'static str {
     match symmetry {
         Symmetry::Symmetric => "symmetric",
         Symmetry::Asymmetric => "asymmetric",
-    }
-}
-
-pub(super) fn verdict(verdict: Verdict) -> &'static str {
-    match verdict {
-        Verdict::Stable => "stable",
-        Verdict::Unstable => "unstable",
-        Verdict::Undecided => "undecided",
     }
 }

@@ -7,15 +7,12 @@ use super::{Ending, written};
 use crate::error::Result;
 use crate::output::{Cell, Format, Place, Rows, object, plot};
 use crate::scene::{
-    Column, Dimension, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, System, explain,
+    Column, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, System, explain,
 };
+use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::{Path, PathBuf};
-
-pub const EXAMPLE: &str =
-    "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
-  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
 
 const EVENT_COLUMNS: [(&str, Quantity); 8] = [
     ("onset", Quantity::Time),
@@ -238,74 +235,8 @@ fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
     text
 }
 
-/// `v₁ = v₂` from `v` and `₁ = ₂`.
-fn label(name: &str, marks: &str) -> String {
-    let parts = marks.split(" = ").filter(|mark| !mark.is_empty());
-    let parts: Vec<String> = parts.map(|mark| format!("{name}{mark}")).collect();
-    parts.join(" = ")
-}
-
+/// The run in time, and the phase plane beside it.
 fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
-    let system = &plan.system;
-    let column = |name: &str| rows.column(name).unwrap_or_default();
-    let unit = |quantity| report::short_unit(&system.units, quantity);
-    // Equal interfaces are one curve, not one that hides another.
-    let curves = match plan.dimension {
-        Dimension::Single => vec![(1, "")],
-        Dimension::Symmetric => vec![(1, "₁ = ₂")],
-        Dimension::Full => vec![(1, "₁"), (2, "₂")],
-    };
-    let each = |name: &str, of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>)| -> Vec<plot::Series> {
-        let series = curves.iter().map(|(i, marks)| {
-            let (x, y) = of(*i);
-            plot::Series::new(label(name, marks), x, y)
-        });
-        series.collect()
-    };
-    let time = plot::Axis::linear(format!("time t [{}]", unit(Quantity::Time)));
-    let stress = plot::Axis::linear(format!("stress τ [{}]", unit(Quantity::Stress)));
-    let rate = plot::Axis::log(format!("slip rate v [{}]", unit(Quantity::SlipRate)));
-    let state_unit = match unit(Quantity::State).as_str() {
-        "1" => String::new(),
-        unit => format!(" [{unit}]"),
-    };
-    let panel = |title: &str, x: &plot::Axis, y: plot::Axis, series| plot::Panel {
-        title: title.into(),
-        x: x.clone(),
-        y,
-        series,
-        marks: Vec::new(),
-        zero_line: false,
-    };
-    let in_time =
-        |field: &'static str| move |i: usize| (column("time"), column(&format!("{field}_{i}")));
-    let left = vec![
-        panel(
-            "stress",
-            &time,
-            stress.clone(),
-            vec![plot::Series::new("", column("time"), column("stress"))],
-        ),
-        panel(
-            "state",
-            &time,
-            plot::Axis::log(format!("state ψ{state_unit}")),
-            each("ψ", &in_time("state")),
-        ),
-        panel(
-            "slip rate",
-            &time,
-            rate.clone(),
-            each("v", &in_time("slip_rate")),
-        ),
-    ];
-    let plane = panel(
-        "phase plane",
-        &rate,
-        stress,
-        each("v", &|i| {
-            (column(&format!("slip_rate_{i}")), column("stress"))
-        }),
-    );
-    plot::Drawing::columns(vec![left, vec![plane]])
+    let time = views::panels_in_time(plan, rows);
+    plot::Drawing::columns(vec![time, vec![views::phase_plane(plan, rows)]])
 }

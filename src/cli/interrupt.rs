@@ -26,3 +26,8 @@ pub fn unwatch() {
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
+
+/// What is set then, for those who ask it themselves.
+pub fn flag() -> &'static AtomicBool {
+    &ASKED
+}

@@ -11,10 +11,6 @@ use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
 
-pub const EXAMPLE: &str = "Example, the paper's law and its extrema:
-  twinslip law --format json
-  twinslip law --from 1e-3 --to 1e5 --points 400 -o law.csv --plot law.svg";
-
 /// The grid where none is given.
 const GRID: (f64, f64) = (1e-3, 1e6);
 
@@ -205,48 +201,39 @@ fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -
 fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let out = |quantity, x| system.units.outward(quantity, x);
-    let unit = |quantity| report::short_unit(&system.units, quantity);
+    let unit = |quantity| system.units.short_name(quantity);
     let marks = Extremum::all(&system.law)
         .iter()
-        .map(|extremum| plot::Mark {
-            x: out(Quantity::SlipRate, extremum.slip_rate.value),
-            y: system.direct_effect * extremum.stress.value,
-            label: match extremum.kind {
-                ExtremumKind::Maximum => "maximum V_M".into(),
-                ExtremumKind::Minimum => "minimum V_m".into(),
-            },
-            side: match extremum.kind {
-                ExtremumKind::Maximum => plot::Side::Above,
-                ExtremumKind::Minimum => plot::Side::Below,
-            },
+        .map(|extremum| {
+            let (name, side) = match extremum.kind {
+                ExtremumKind::Maximum => ("maximum V_M", plot::Side::Above),
+                ExtremumKind::Minimum => ("minimum V_m", plot::Side::Below),
+            };
+            let at = out(Quantity::SlipRate, extremum.slip_rate.value);
+            let friction = system.direct_effect * extremum.stress.value;
+            plot::Mark::new(at, friction, name).side(side)
         })
         .collect();
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
+    let coefficient = plot::Axis::linear("friction coefficient τₛₛ/σ");
     let friction = plot::Panel {
-        title: "steady-state friction".into(),
-        x: x.clone(),
-        y: plot::Axis::linear("friction coefficient τₛₛ/σ"),
         series: vec![plot::Series::new(
             "",
             column("slip_rate"),
             column("friction"),
         )],
         marks,
-        zero_line: false,
+        ..plot::Panel::new("steady-state friction", x.clone(), coefficient)
     };
-    let top = critical_stiffness_maximum(&system.law)?.map(|maximum| plot::Mark {
-        x: out(Quantity::SlipRate, maximum.slip_rate.value),
-        y: out(Quantity::Stiffness, maximum.stiffness.value),
-        label: "maximum".into(),
-        side: plot::Side::Above,
+    let top = critical_stiffness_maximum(&system.law)?.map(|maximum| {
+        let at = out(Quantity::SlipRate, maximum.slip_rate.value);
+        let stiffness = out(Quantity::Stiffness, maximum.stiffness.value);
+        plot::Mark::new(at, stiffness, "maximum").side(plot::Side::Above)
     });
+    let title = "critical stiffness: a stiffer single interface slides steadily";
+    let unit = unit(Quantity::Stiffness);
+    let critical = plot::Axis::linear(format!("critical stiffness k_c [{unit}]"));
     let stiffness = plot::Panel {
-        title: "critical stiffness: a stiffer single interface slides steadily".into(),
-        x,
-        y: plot::Axis::linear(format!(
-            "critical stiffness k_c [{}]",
-            unit(Quantity::Stiffness)
-        )),
         series: vec![plot::Series::new(
             "",
             column("slip_rate"),
@@ -254,6 +241,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
         )],
         marks: top.into_iter().collect(),
         zero_line: true,
+        ..plot::Panel::new(title, x, critical)
     };
     Ok(plot::Drawing::columns(vec![vec![friction, stiffness]]))
 }

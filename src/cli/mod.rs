@@ -2,10 +2,7 @@
 
 mod branch;
 mod continuation;
-mod diagram;
 mod equilibria;
-mod fields;
-mod following;
 mod integrate;
 mod interrupt;
 mod law;
@@ -13,6 +10,7 @@ mod locus;
 mod orbit;
 mod progress;
 mod report;
+mod reproduce;
 mod resume;
 mod rows;
 mod run;
@@ -21,7 +19,8 @@ mod special;
 mod stream;
 
 use crate::error::Error;
-use clap::{CommandFactory, Parser, Subcommand};
+use crate::scene;
+use clap::{Parser, Subcommand};
 use std::ffi::OsString;
 use std::process::ExitCode;
 
@@ -40,30 +39,17 @@ struct Line {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// The steady-state friction law of one interface: tau_ss(V), its extrema, the critical stiffness k_c(V)
-    #[command(after_help = law::EXAMPLE)]
-    Law(Box<crate::scene::LawOptions>),
-    /// A run in time: stress, states, slip rates, slips, stick-slip events
-    #[command(after_help = integrate::EXAMPLE)]
-    Integrate(Box<crate::scene::IntegrateOptions>),
-    /// All steady states at a driving velocity, with eigenvalues and stability
-    #[command(after_help = equilibria::EXAMPLE)]
-    Equilibria(Box<crate::scene::EquilibriaOptions>),
-    /// A periodic orbit: period, extremes, Floquet multipliers and stability, each with its error budget
-    #[command(after_help = orbit::EXAMPLE)]
-    Orbit(Box<crate::scene::OrbitOptions>),
-    /// The return map of a run to a section of constant stress: periodic, a torus, or chaotic; Lyapunov exponents
-    #[command(after_help = section::EXAMPLE)]
-    Section(Box<crate::scene::SectionOptions>),
-    /// Equilibria or periodic orbits as V_H or K varies, with their bifurcations
-    #[command(after_help = branch::EXAMPLE)]
-    Branch(Box<crate::scene::BranchOptions>),
-    /// A curve of bifurcations in the plane of V_H and K, with its special points
-    #[command(after_help = locus::EXAMPLE)]
-    Locus(Box<crate::scene::LocusOptions>),
+    #[command(flatten)]
+    Compute(scene::Command),
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
+    /// The whole paper: every figure, Table 1, a scorecard of what it says, and a report to read
+    #[command(after_help = reproduce::EXAMPLE)]
+    Reproduce(reproduce::ReproduceOptions),
+    /// One figure of the paper, as CSV and SVG
+    #[command(after_help = reproduce::FIGURE_EXAMPLE)]
+    Figure(reproduce::FigureOptions),
 }
 
 /// How a command ended, if it ended well.
@@ -108,14 +94,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         )
         .collect();
     let ended = match &line.command {
-        Command::Law(options) => law::run(options, &words),
-        Command::Integrate(options) => integrate::run(options, &words),
-        Command::Equilibria(options) => equilibria::run(options, &words),
-        Command::Orbit(options) => orbit::run(options, &words),
-        Command::Section(options) => section::run(options, &words),
-        Command::Branch(options) => branch::run(options, &words),
-        Command::Locus(options) => locus::run(options, &words),
+        Command::Compute(command) => compute(command, &words),
         Command::Run(options) => run::run(options, &words),
+        Command::Reproduce(options) => reproduce::run(options),
+        Command::Figure(options) => reproduce::run_figure(options),
     };
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
@@ -133,15 +115,17 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// The command line that scene files are read against.
-fn program() -> clap::Command {
-    Line::command()
-}
-
-/// A scene's command line, parsed like one that was typed.
-fn parse(arguments: &[String]) -> Result<Command, clap::Error> {
-    let program = std::iter::once("twinslip".to_owned());
-    Line::try_parse_from(program.chain(arguments.iter().cloned())).map(|line| line.command)
+/// What a scene file or the command line asks for.
+fn compute(command: &scene::Command, words: &[String]) -> Result<Ending, Error> {
+    match command {
+        scene::Command::Law(options) => law::run(options, words),
+        scene::Command::Integrate(options) => integrate::run(options, words),
+        scene::Command::Equilibria(options) => equilibria::run(options, words),
+        scene::Command::Orbit(options) => orbit::run(options, words),
+        scene::Command::Section(options) => section::run(options, words),
+        scene::Command::Branch(options) => branch::run(options, words),
+        scene::Command::Locus(options) => locus::run(options, words),
+    }
 }
 
 /// A failed write: to a file it is an error, to a pipe that nobody reads the end.
@@ -164,6 +148,6 @@ fn written(result: std::io::Result<()>, place: &crate::output::Place) -> Result<
 mod test {
     #[test]
     fn arguments_are_consistent() {
-        super::program().debug_assert();
+        <super::Line as clap::CommandFactory>::command().debug_assert();
     }
 }

@@ -1,6 +1,6 @@
 //! `twinslip orbit`.
 
-use super::equilibria::{symmetry as symmetry_name, verdict as verdict_name};
+use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
 use super::{Ending, written};
 use crate::equilibrium::{Symmetry, Verdict};
@@ -14,11 +14,6 @@ use crate::orbit::{
 use crate::output::{self, Cell, Format};
 use crate::scene::{OrbitOptions, Quantity, System, start};
 use serde_json::{Value, json};
-
-pub const EXAMPLE: &str = "Example, the three orbits that coexist at K = 0.05 and V_H = 0.2, the last one unstable:
-  twinslip orbit --driving 0.2 --stiffness 0.05
-  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric
-  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480";
 
 /// What is to be done, checked.
 struct Plan {
@@ -199,7 +194,7 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
         "period {} ± {:.1e} {unit}, {}; {} nodes, {} iterations, {} steps",
         period.value,
         period.uncertainty,
-        verdict_name(orbit.verdict()),
+        orbit.verdict().name(),
         orbit.nodes.len(),
         orbit.iterations,
         orbit.work.steps
@@ -324,7 +319,7 @@ fn cells(orbit: &Orbit, system: &System, table: bool) -> Vec<Cell> {
             cells.push(Cell::from(kind(multiplier.kind)));
         }
     }
-    cells.push(Cell::from(verdict_name(orbit.verdict())));
+    cells.push(Cell::from(orbit.verdict().name()));
     if !table {
         let point = outward_point(orbit, system);
         cells.extend(point.into_iter().map(Cell::Number));
@@ -378,7 +373,7 @@ fn object(orbit: &Orbit, system: &System) -> Value {
         "log_multipliers": logs,
         "trivial_defect": orbit.floquet.trivial_defect,
         "liouville_defect": orbit.floquet.liouville_defect,
-        "verdict": verdict_name(orbit.verdict()),
+        "verdict": orbit.verdict().name(),
         "method": orbit.method,
     })
 }

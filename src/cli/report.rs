@@ -166,11 +166,6 @@ pub fn uncertain(units: &Units, quantity: Quantity, x: Uncertain) -> Value {
     output::uncertain((x.value, x.uncertainty))
 }
 
-/// The unit as the label of an axis has it.
-pub fn short_unit(units: &Units, quantity: Quantity) -> String {
-    units.name(quantity).replace("sigma", "σ").replace(' ', "")
-}
-
 /// The work as an object.
 pub fn work(work: &Work) -> Value {
     json!({

@@ -1,8 +1,5 @@
-//! The rows of branches and of curves: their columns, and the way back from CSV.
+//! The rows of branches and of curves, and the way back from CSV.
 
-use super::equilibria::verdict as verdict_name;
-use super::fields::Column;
-use super::following::criticality;
 use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow};
 use crate::equilibrium::Verdict;
 use crate::number::Uncertain;
@@ -33,83 +30,6 @@ pub trait Row: Sized {
 /// A value whose error budget was not written.
 pub fn unknown(value: f64) -> Uncertain {
     Uncertain::new(value, f64::INFINITY)
-}
-
-/// The columns of branches of orbits or of equilibria; a table leaves out what is less looked at.
-pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>> {
-    use Quantity::{Growth, Number, SlipRate, State, Stiffness, Stress, Time};
-    type Row = BranchRow;
-    // The exponent of an equilibrium is a rate, that of an orbit belongs to its period.
-    let exponent = if orbits { Number } else { Growth };
-    let mut columns = vec![
-        Column::new("driving", SlipRate, |row: &Row| row.driving.into()),
-        Column::new("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
-        Column::new("stress", Stress, |row: &Row| row.stress.into()),
-        Column::new("stress_min", Stress, |row: &Row| row.stress_range.0.into()),
-        Column::new("stress_max", Stress, |row: &Row| row.stress_range.1.into()),
-        Column::new("period", Time, |row: &Row| row.period.into()),
-        Column::new("state_1", State, |row: &Row| row.state[0].into()),
-        Column::new("state_2", State, |row: &Row| row.state[1].into()),
-        Column::new("slip_rate_1", SlipRate, |row: &Row| row.slip_rate[0].into()),
-        Column::new("slip_rate_2", SlipRate, |row: &Row| row.slip_rate[1].into()),
-        Column::new("ln_abs_multiplier_1", exponent, |row: &Row| {
-            row.ln_abs_multiplier[0].into()
-        }),
-        Column::new("ln_abs_multiplier_2", exponent, |row: &Row| {
-            row.ln_abs_multiplier[1].into()
-        }),
-        Column::new("verdict", Number, |row: &Row| {
-            verdict_name(row.verdict).into()
-        }),
-        Column::new("label", Number, |row: &Row| {
-            row.label.map(Label::name).into()
-        }),
-        Column::new("branch", Number, |row: &Row| row.branch.into()),
-    ];
-    if interfaces == 1 {
-        columns.retain(|column| !column.name.ends_with("_2"));
-    }
-    let left_out: &[&str] = if orbits {
-        &[
-            "stress",
-            "slip_rate_1",
-            "slip_rate_2",
-            "ln_abs_multiplier_2",
-        ]
-    } else {
-        &[
-            "stress_min",
-            "stress_max",
-            "period",
-            "ln_abs_multiplier_1",
-            "ln_abs_multiplier_2",
-        ]
-    };
-    for column in &mut columns {
-        column.in_table = !left_out.contains(&column.name);
-    }
-    columns
-}
-
-/// The columns of curves.
-pub fn locus_columns() -> Vec<Column<LocusRow>> {
-    use Quantity::{Number, SlipRate, Stiffness, Time};
-    type Row = LocusRow;
-    vec![
-        Column::uncertain("driving", SlipRate, |row: &Row| row.driving.into()),
-        Column::uncertain("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
-        Column::new("period", Time, |row: &Row| row.period.into()),
-        Column::new("angle_over_pi", Number, |row: &Row| {
-            row.angle_over_pi.into()
-        }),
-        Column::new("criticality", Number, |row: &Row| {
-            row.criticality.map(criticality).into()
-        }),
-        Column::new("label", Number, |row: &Row| {
-            row.label.map(Label::name).into()
-        }),
-        Column::new("curve", Number, |row: &Row| row.curve.into()),
-    ]
 }
 
 impl Row for BranchRow {
@@ -153,7 +73,7 @@ impl Row for BranchRow {
             ln_abs_multiplier: [None; 2],
             verdict: verdicts
                 .into_iter()
-                .find(|&verdict| verdict_name(verdict) == cell("verdict"))?,
+                .find(|&verdict| verdict.name() == cell("verdict"))?,
             label: Label::named(cell("label")),
         })
     }
@@ -213,7 +133,7 @@ impl Row for LocusRow {
             angle_over_pi: number("angle_over_pi"),
             criticality: sides
                 .into_iter()
-                .find(|&side| criticality(side) == cell("criticality")),
+                .find(|&side| side.name() == cell("criticality")),
             label: Label::named(cell("label")),
         })
     }

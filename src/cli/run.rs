@@ -1,10 +1,8 @@
 //! `twinslip run SCENE.toml`.
 
-use super::{
-    Command, Ending, branch, equilibria, integrate, law, locus, orbit, parse, program, section,
-};
+use super::{Ending, compute};
 use crate::error::{Error, Result};
-use crate::scene::SceneFile;
+use crate::scene::{Command, SceneFile};
 use std::path::PathBuf;
 
 pub const EXAMPLE: &str = "Example, the torus of the paper's Fig. 13:
@@ -25,7 +23,7 @@ pub struct RunOptions {
 }
 
 pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
-    let scene = SceneFile::read(&options.scene, &program())?;
+    let scene = SceneFile::read(&options.scene, &Command::program())?;
     let (mut replaced, mut added) = (Vec::new(), Vec::new());
     let texts = [
         ("plot", path(&options.plot)),
@@ -52,26 +50,8 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
             added.push(format!("--{flag}"));
         }
     }
-    let mut arguments = scene.arguments(&replaced);
-    arguments.extend(added);
-    let command = parse(&arguments).map_err(|error| {
-        // The first line is the sentence; what follows is advice on flags, which a scene does not have.
-        let text = error.to_string();
-        let sentence = text.lines().next().unwrap_or_default();
-        let sentence = sentence.trim_start_matches("error: ").to_owned();
-        scene.locate(&Error::Input(sentence))
-    })?;
-    let ended = match &command {
-        Command::Law(options) => law::run(options, words),
-        Command::Integrate(options) => integrate::run(options, words),
-        Command::Equilibria(options) => equilibria::run(options, words),
-        Command::Orbit(options) => orbit::run(options, words),
-        Command::Section(options) => section::run(options, words),
-        Command::Branch(options) => branch::run(options, words),
-        Command::Locus(options) => locus::run(options, words),
-        Command::Run(_) => unreachable!("a scene file can't name the command run"),
-    };
-    ended.map_err(|error| match error {
+    let command = Command::of_scene(&scene, &replaced, &added)?;
+    compute(&command, words).map_err(|error| match error {
         error @ (Error::Parameter { .. } | Error::Input(_)) => scene.locate(&error),
         error => error,
     })

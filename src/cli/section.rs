@@ -6,22 +6,16 @@ use super::stream::Out;
 use super::{Ending, written};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::output::{self, Cell, Format, Rows, plot};
+use crate::output::{Cell, Format, Rows, plot};
 use crate::scene::{
     Lyapunov, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan,
     explain_section, run_section,
 };
 use crate::section::Regime;
+use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
-
-pub const EXAMPLE: &str =
-    "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:
-  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg";
-
-/// Slip rates that differ by more than this factor are drawn on logarithmic axes.
-const DECADES: f64 = 30.0;
 
 pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let plan = SectionPlan::new(options)?;
@@ -217,54 +211,11 @@ fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String
     text
 }
 
+/// The map, and beside it the states of two interfaces.
 fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
-    let units = &plan.system.units;
-    let column = |name: &str| rows.column(name).unwrap_or_default();
-    let (sums, next) = (column("slip_rate_sum"), column("next_slip_rate_sum"));
-    let ends = |x: &[f64]| {
-        let least = x.iter().copied().fold(f64::INFINITY, f64::min);
-        (least, x.iter().copied().fold(f64::NEG_INFINITY, f64::max))
-    };
-    let (least, most) = ends(&[sums.as_slice(), next.as_slice()].concat());
-    let log = least > 0.0 && most > DECADES * least;
-    let axis = |label: String, log| plot::Axis { label, log };
-    let sum = if plan.system.interfaces == 2 {
-        "v₁ + v₂"
-    } else {
-        "v"
-    };
-    let rate = report::short_unit(units, Quantity::SlipRate);
-    let panel = |title: &str, x, y, series| plot::Panel {
-        title: title.into(),
-        x,
-        y,
-        series,
-        marks: Vec::new(),
-        zero_line: false,
-    };
-    let stress = units.outward(Quantity::Stress, plan.stress);
-    let stress_unit = report::short_unit(units, Quantity::Stress);
-    let map = panel(
-        &format!(
-            "return map at τ = {} [{stress_unit}]",
-            output::seven_digits(stress)
-        ),
-        axis(format!("{sum} at return n [{rate}]"), log),
-        axis(format!("{sum} at return n + 1 [{rate}]"), log),
-        vec![
-            plot::Series::dots("", sums, next),
-            plot::Series::new("diagonal", vec![least, most], vec![least, most]),
-        ],
-    );
-    if plan.system.interfaces == 1 {
-        return plot::Drawing::columns(vec![vec![map]]);
+    let mut columns = vec![vec![views::return_map(plan, rows)]];
+    if plan.system.interfaces == 2 {
+        columns.push(vec![views::states_at_returns(rows)]);
     }
-    let state = |i: usize| column(&format!("log_state_{i}"));
-    let section = panel(
-        "states at the returns",
-        plot::Axis::linear("ln ψ₁"),
-        plot::Axis::linear("ln ψ₂"),
-        vec![plot::Series::dots("", state(1), state(2))],
-    );
-    plot::Drawing::columns(vec![vec![map], vec![section]])
+    plot::Drawing::columns(columns)
 }

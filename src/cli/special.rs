@@ -1,11 +1,10 @@
 //! Special points as objects and as a short table.
 
-use super::fields::{self, Column, Entry};
-use super::following::criticality;
-use crate::bifurcation::Special;
+use crate::bifurcation::{Criticality, Special};
 use crate::number::Uncertain;
 use crate::output::shortest;
 use crate::scene::{Quantity, System, Units};
+use crate::views::{self, special_columns};
 use serde_json::{Value, json};
 
 /// What a second method says of the special points.
@@ -17,27 +16,11 @@ pub struct Checks {
     pub differences: Vec<Option<[f64; 3]>>,
 }
 
-fn columns() -> Vec<Column<Special>> {
-    use Quantity::{Number, SlipRate, Stiffness, Time};
-    vec![
-        Column::new("label", Number, |one: &Special| one.label.name().into()),
-        Column::new("name", Number, |one| one.label.meaning().into()),
-        Column::uncertain("driving", SlipRate, |one| one.driving.into()),
-        Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
-        Column::uncertain("period", Time, |one| one.period.into()),
-        Column::new("criticality", Number, |one| {
-            one.criticality.map(criticality).into()
-        }),
-        Column::new("coefficient", Number, |one| one.coefficient.into()),
-        Column::new("note", Number, |one| Entry::Word(one.note.clone())),
-    ]
-}
-
 /// `result.special`.
 pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value> {
-    let columns = columns();
+    let columns = special_columns();
     let object = |(i, one): (usize, &Special)| {
-        let mut object = fields::object(&columns, one, units);
+        let mut object = views::object(&columns, one, units);
         if let Some(method) = checks.method {
             let difference = checks.differences.get(i).copied().flatten();
             let check = difference.map(|[driving, stiffness, period]| {
@@ -92,7 +75,7 @@ fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<Strin
         number(Quantity::SlipRate, one.driving),
         number(Quantity::Stiffness, one.stiffness),
         period.unwrap_or_default(),
-        one.criticality.map_or("", criticality).to_owned(),
+        one.criticality.map_or("", Criticality::name).to_owned(),
         difference.unwrap_or_default(),
         one.note.clone().unwrap_or_default(),
     ]

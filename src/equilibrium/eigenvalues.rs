@@ -25,6 +25,17 @@ pub enum Verdict {
     Undecided,
 }
 
+impl Verdict {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Verdict::Stable => "stable",
+            Verdict::Unstable => "unstable",
+            Verdict::Undecided => "undecided",
+        }
+    }
+}
+
 /// Eigenvalues, largest real part first, and the verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stability {

@@ -10,10 +10,12 @@ mod isolate;
 #[cfg(feature = "sundials")]
 mod kinsol;
 mod newton;
+mod pitchfork;
 
 pub use eigenvalues::{Stability, Verdict, stability};
 pub(crate) use interface::{Interface, routh_hurwitz};
 pub(crate) use isolate::quotient;
+pub use pitchfork::Pitchfork;
 
 use crate::error::Result;
 use crate::friction::{AnyLaw, Law, positive, steady_stress_within, with_law};

@@ -51,13 +51,13 @@ impl StrongResonance {
     }
 
     /// (global): mu_1 at which the origin has a pair of homoclinic orbits, for mu_2 < 0: (4/5) mu_2, and an error of the order
-    /// of |mu_2|^(3/2).
+    /// of mu_2^2, as reversing time changes the sign of sqrt(-mu_2) alone in the system scaled by it.
     pub fn homoclinic(mu2: f64) -> f64 {
         0.8 * mu2
     }
 
     /// (sn): mu_1 at which two cycles around all three steady states merge, for mu_2 < 0: 0.75225564 mu_2,
-    /// and an error of the order of |mu_2|^(3/2).
+    /// and an error of the order of mu_2^2 again.
     ///
     /// The factor is the least value of the ratio of the integrals of u^2 p and of p over the closed curves
     /// p^2/2 - u^2/2 + u^4/4 = h > 0, at h = 0.08899.

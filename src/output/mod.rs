@@ -2,6 +2,7 @@
 
 mod csv;
 mod json;
+pub mod page;
 mod place;
 pub mod plot;
 mod table;

@@ -136,7 +136,7 @@ impl Reader<'_> {
             program
                 .get_subcommands()
                 .map(Command::get_name)
-                .filter(|&name| name != "run" && name != "help")
+                .filter(|&name| name != "help")
         };
         let list = known().collect::<Vec<_>>().join(", ");
         let Some((_, value)) = table.iter().find(|(key, _)| key.get_ref() == "command") else {

@@ -25,12 +25,16 @@
 //! # Ok::<(), twinslip::Error>(())
 //! ```
 
+mod branch;
 mod column;
+mod command;
 mod continuation;
 mod estimate;
 mod event;
 mod explain;
 mod file;
+mod following;
+mod locus;
 mod options;
 mod plan;
 mod run;
@@ -39,11 +43,15 @@ mod slip;
 mod system;
 mod units;
 
+pub use branch::{Along, BranchPlan, Of};
 pub use column::{Column, Instant};
+pub use command::Command;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions};
 pub use event::Event;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
+pub use following::Following;
+pub use locus::{Curve, LocusPlan};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions,

@@ -64,6 +64,11 @@ impl Units {
         }
     }
 
+    /// The unit's name as the label of an axis has it.
+    pub fn short_name(&self, quantity: Quantity) -> String {
+        self.name(quantity).replace("sigma", "σ").replace(' ', "")
+    }
+
     /// From dimensionless to the user's units.
     pub fn outward(&self, quantity: Quantity, x: f64) -> f64 {
         match quantity {

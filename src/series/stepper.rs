@@ -12,6 +12,8 @@ const HALVINGS: usize = 60;
 /// By which the unit of time is shortened while the coefficients overflow, and how often.
 const SHORTER: f64 = 1.0 / (1u64 << 40) as f64;
 const SHORTER_UNITS: usize = 24;
+/// Size that a state of zeros is given, whose rates it shall divide without overflow.
+const LEAST: f64 = 1e-150;
 /// Bisections of a step: enough for the last bit.
 const BISECTIONS: usize = 64;
 
@@ -62,10 +64,15 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         }
         self.load();
         first_level(&self.formula, cells(&mut self.memory), ROOM, one);
-        // The time in which the state would change by its own size.
+        // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
+        let mut least = zero.like(LEAST);
+        for c in 0..C {
+            let rounding = (self.x[c].plain() * zero.like(f64::EPSILON)).abs();
+            least = Element::max(least, rounding.largest_over_interfaces());
+        }
         let mut rate = zero;
         for c in 0..C {
-            let size = Element::max(self.x[c].plain().abs(), zero.like(f64::MIN_POSITIVE));
+            let size = Element::max(self.x[c].plain().abs(), least);
             rate = Element::max(rate, (self.coefficient(c, 1).plain() / size).abs());
         }
         let rate = rate.largest_over_interfaces();

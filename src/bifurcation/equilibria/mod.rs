@@ -6,6 +6,7 @@
 mod bialternate;
 mod branch;
 mod crossing;
+mod cubic;
 mod curves;
 pub mod generic;
 mod hopf;
@@ -26,6 +27,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::orbit::HopfPoint;
+pub use cubic::{CharacteristicCubic, Tangency};
 use curves::Curve;
 use special::Teller;
 

@@ -1,76 +1,117 @@
-//! The points that are pointed out.
+//! The points that are pointed out with their names, and words at a place.
 
-use super::draw::{FINE, INK, Inside, TEXT, font, px};
-use super::scale::Scale;
-use super::{Mark, Panel, names, unrendered};
+use super::canvas::{Align, Canvas, Colour, INK, MARK, PAPER, Pixel, colour};
+use super::clip::Window;
+use super::frame::Frame;
+use super::symbols::{self, Look};
+use super::text::{self, TEXT};
+use super::{Mark, Panel, names};
 use crate::error::Result;
-use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 
-/// Radius of a point that is pointed out.
-const RADIUS: f64 = 3.4;
 /// Room between a name and its neighbours.
 const AIR: f64 = 4.0;
+/// Room around words that lines don't cross.
+const BACKING: f64 = 2.0;
 /// A name that begins farther than this from its point is tied to it.
 const TIED: f64 = 12.0;
-/// Points that are pointed out, and their names.
-const MARK: RGBColor = RGBColor(150, 30, 30);
+/// Breadth of the tie.
+const TIE: f64 = 0.7;
 
-/// Draws the points that are pointed out, with their names where there is room.
-pub fn marks(
-    area: &Inside<'_, '_>,
+/// Writes the notes that lie in the frame, and gives their middles and sizes.
+///
+/// # Errors
+/// Those of the canvas.
+pub fn notes(
+    canvas: &Canvas<'_>,
     panel: &Panel,
-    (x, y): (&Scale, &Scale),
-    curves: &[names::Pixel],
-) -> Result<()> {
-    let (width, height) = area.dim_in_pixel();
-    let frame = (f64::from(width) / FINE, f64::from(height) / FINE);
-    let style = font(TEXT, INK);
-    let shown: Vec<&Mark> = panel
-        .marks
-        .iter()
-        .filter(|mark| x.at(mark.x).is_finite() && y.at(mark.y).is_finite())
-        .collect();
-    let mut named = Vec::new();
-    for mark in &shown {
-        let (wide, high) = area
-            .estimate_text_size(&mark.label, &style)
-            .map_err(unrendered)?;
-        named.push(names::Named {
-            at: (
-                (x.at(mark.x) - x.lo) / (x.hi - x.lo) * frame.0,
-                (y.hi - y.at(mark.y)) / (y.hi - y.lo) * frame.1,
-            ),
-            size: (f64::from(wide) / FINE + AIR, f64::from(high) / FINE + AIR),
-            side: mark.side,
-        });
-    }
-    for ((mark, name), centre) in shown
-        .iter()
-        .zip(&named)
-        .zip(names::placed(&named, curves, frame))
-    {
-        let at = (x.at(mark.x), y.at(mark.y));
-        let off = (centre.0 - name.at.0, centre.1 - name.at.1);
-        let middle = (px(off.0), px(off.1));
-        area.draw(&Circle::new(at, px(RADIUS), MARK.filled()))
-            .map_err(unrendered)?;
-        if mark.label.is_empty() {
+    frame: &Frame,
+) -> Result<Vec<(Pixel, (f64, f64))>> {
+    let mut written = Vec::new();
+    for note in &panel.notes {
+        let Some(at) = frame.place(note.x, note.y) else {
             continue;
+        };
+        let size = (
+            text::width(&note.text, TEXT)? + 2.0 * BACKING,
+            TEXT + 2.0 * BACKING,
+        );
+        let half = (0.5 * size.0, 0.5 * size.1);
+        // Near a side, words move inwards.
+        let at = frame.inside().without(half).nearest(at);
+        let backing = Window {
+            x: (at.0 - half.0, at.0 + half.0),
+            y: (at.1 - half.1, at.1 + half.1),
+        };
+        canvas.area(&frame.inside().area(&backing.corners()), PAPER)?;
+        let ink = note.colour.map_or(INK, colour);
+        canvas.words(&note.text, at, Align::Middle, TEXT, ink)?;
+        written.push((at, size));
+    }
+    Ok(written)
+}
+
+/// Draws the points in the frame that are pointed out, with their names where there is room.
+///
+/// # Errors
+/// Those of the canvas.
+pub fn marks(
+    canvas: &Canvas<'_>,
+    panel: &Panel,
+    frame: &Frame,
+    curves: &[Pixel],
+    words: &[(Pixel, (f64, f64))],
+) -> Result<()> {
+    let shown = shown(panel, frame)?;
+    let named: Vec<names::Named> = shown.iter().map(|(_, named)| *named).collect();
+    let centres = names::placed(&named, curves, words, frame.inside());
+    for ((mark, named), centre) in shown.iter().zip(&centres) {
+        tie(canvas, named, *centre, mark_colour(mark))?;
+    }
+    for (mark, named) in &shown {
+        let look = Look {
+            symbol: mark.symbol,
+            filled: mark.filled,
+            colour: mark_colour(mark),
+        };
+        symbols::draw(canvas, look, named.at, frame.inside())?;
+    }
+    for ((mark, _), centre) in shown.iter().zip(&centres) {
+        if !mark.label.is_empty() {
+            canvas.words(&mark.label, *centre, Align::Middle, TEXT, mark_colour(mark))?;
         }
-        // A name that stands far off is tied to its point, up to its edge.
-        let edge = names::edge(off, name.size);
-        if edge.0.hypot(edge.1) > TIED {
-            let tie = PathElement::new(
-                vec![(0, 0), (px(edge.0), px(edge.1))],
-                MARK.mix(0.5).stroke_width(px(0.7) as u32),
-            );
-            area.draw(&(EmptyElement::at(at) + tie))
-                .map_err(unrendered)?;
-        }
-        let text = font(TEXT, MARK).pos(Pos::new(HPos::Center, VPos::Center));
-        area.draw(&(EmptyElement::at(at) + Text::new(mark.label.clone(), middle, text)))
-            .map_err(unrendered)?;
     }
     Ok(())
+}
+
+fn mark_colour(mark: &Mark) -> Colour {
+    mark.colour.map_or(MARK, colour)
+}
+
+/// The points within the frame, with the sizes of their names.
+fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<(&'a Mark, names::Named)>> {
+    let mut shown = Vec::new();
+    for mark in &panel.marks {
+        let Some(at) = frame.place(mark.x, mark.y) else {
+            continue;
+        };
+        let size = if mark.label.is_empty() {
+            (0.0, 0.0)
+        } else {
+            (text::width(&mark.label, TEXT)? + AIR, TEXT + AIR)
+        };
+        let side = mark.side;
+        shown.push((mark, names::Named { at, size, side }));
+    }
+    Ok(shown)
+}
+
+/// Ties a name that stands far off to its point, up to its edge.
+fn tie(canvas: &Canvas<'_>, named: &names::Named, centre: Pixel, colour: Colour) -> Result<()> {
+    let off = (centre.0 - named.at.0, centre.1 - named.at.1);
+    let edge = names::edge(off, named.size);
+    if named.size == (0.0, 0.0) || edge.0.hypot(edge.1) <= TIED {
+        return Ok(());
+    }
+    let end = (named.at.0 + edge.0, named.at.1 + edge.1);
+    canvas.line(&[named.at, end], colour, TIE)
 }

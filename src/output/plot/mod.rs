@@ -1,11 +1,25 @@
 //! Pictures: panels of curves, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
 //! a machine without fonts.
 
+mod canvas;
+mod clip;
+mod curves;
 mod draw;
+mod frame;
+mod layout;
+mod legend;
 mod marks;
 mod names;
+mod panel;
+mod reach;
 mod scale;
+mod strokes;
+mod symbols;
+mod text;
 mod thin;
+mod ticks;
+
+pub use panel::{Axis, Block, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol};
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;
@@ -15,8 +29,6 @@ use std::sync::Arc;
 
 /// DejaVu Sans, reduced to what labels need.
 static FONT: &[u8] = include_bytes!("../../../assets/font/plot.ttf");
-/// The names by which a viewer of the SVG finds a font like ours.
-const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 /// Pixels of a PNG per unit of the SVG.
 const PNG_ZOOM: f32 = 2.0;
 
@@ -46,123 +58,22 @@ impl Kind {
     }
 }
 
-/// One axis.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Axis {
-    /// What it measures, with the unit.
-    pub label: String,
-    /// Whether it is logarithmic: points that are not positive are then left out.
-    pub log: bool,
-}
-
-impl Axis {
-    /// Equal steps are equal differences.
-    pub fn linear(label: impl Into<String>) -> Self {
-        Axis {
-            label: label.into(),
-            log: false,
-        }
-    }
-
-    /// Equal steps are equal ratios.
-    pub fn log(label: impl Into<String>) -> Self {
-        Axis {
-            label: label.into(),
-            log: true,
-        }
-    }
-}
-
-/// One curve, or points.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Series {
-    /// Its name in the legend; empty for none.
-    pub label: String,
-    /// Abscissae.
-    pub x: Vec<f64>,
-    /// Ordinates.
-    pub y: Vec<f64>,
-    /// Whether its points stand for themselves, without a line.
-    pub dots: bool,
-    /// Whether its line is dashed.
-    pub dashed: bool,
-    /// Which of the colours; the next one without.
-    pub colour: Option<usize>,
-}
-
-impl Series {
-    /// From two columns.
-    pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Series {
-            label: label.into(),
-            x,
-            y,
-            dots: false,
-            dashed: false,
-            colour: None,
-        }
-    }
-
-    /// Points without a line between them.
-    pub fn dots(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Series {
-            dots: true,
-            ..Series::new(label, x, y)
-        }
-    }
-}
-
-/// Where the name of a point stands.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Side {
-    /// Above it.
-    Above,
-    /// Below it.
-    Below,
-    /// Where there is room.
-    Free,
-}
-
-/// A point that is pointed out.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Mark {
-    /// Abscissa.
-    pub x: f64,
-    /// Ordinate.
-    pub y: f64,
-    /// Its name; empty for none.
-    pub label: String,
-    /// Where that stands: outside of the curve's bend.
-    pub side: Side,
-}
-
-/// One pair of axes with curves.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Panel {
-    /// Above the frame.
-    pub title: String,
-    /// Horizontal.
-    pub x: Axis,
-    /// Vertical.
-    pub y: Axis,
-    /// The curves.
-    pub series: Vec<Series>,
-    /// The points.
-    pub marks: Vec<Mark>,
-    /// Whether zero on the vertical axis deserves a line.
-    pub zero_line: bool,
-}
-
-/// Panels in columns of equal width; those of a column share its height.
+/// A picture: blocks of panels, one below the other.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Drawing {
-    columns: Vec<Vec<Panel>>,
+    blocks: Vec<Block>,
 }
 
 impl Drawing {
-    /// From left to right, each from top to bottom.
+    /// One block without a title: columns from left to right, each from top to bottom.
     pub fn columns(columns: Vec<Vec<Panel>>) -> Self {
-        Drawing { columns }
+        let title = String::new();
+        Drawing::blocks(vec![Block { title, columns }])
+    }
+
+    /// Blocks from top to bottom.
+    pub fn blocks(blocks: Vec<Block>) -> Self {
+        Drawing { blocks }
     }
 
     /// The picture as SVG.
@@ -170,7 +81,7 @@ impl Drawing {
     /// # Errors
     /// [`Error::Input`] if there is nothing that can be drawn.
     pub fn svg(&self) -> Result<String> {
-        draw::svg(&self.columns)
+        draw::svg(&self.blocks)
     }
 
     /// The picture as PNG.

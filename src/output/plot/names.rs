@@ -1,9 +1,8 @@
-//! Where the names of points stand: where they cover neither each other nor the curves, as near as that allows.
+//! Where the names of points stand: where they cover neither each other nor the curves nor other words, as near as that allows.
 
 use super::Side;
-
-/// A place in pixels, y downwards.
-pub type Pixel = (f64, f64);
+use super::canvas::Pixel;
+use super::clip::Window;
 
 /// A point with the size of its name.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -29,6 +28,8 @@ const DIRECTIONS: [(f64, f64); 8] = [
     (1.0, 0.0),
     (-1.0, 0.0),
 ];
+/// Price of standing below though it should stand above, or the other way round; less than that of leaving the frame.
+const WRONG: f64 = 500.0;
 /// Price of covering another name.
 const NAME: f64 = 1000.0;
 /// Of leaving the frame.
@@ -42,46 +43,91 @@ const FAR: f64 = 0.25;
 /// Of being later in the list of directions.
 const UNUSUAL: f64 = 0.05;
 
-/// The centres of the names, in order; `curves` are points along all curves, densely.
-pub fn placed(names: &[Named], curves: &[Pixel], frame: (f64, f64)) -> Vec<Pixel> {
-    let mut taken: Vec<Area> = Vec::new();
+/// The centres of the names, in order; `curves` are points along all curves, densely, and `words` the middles and sizes of
+/// what is written in the frame already. A name of no size takes no room. All names lie within the frame if they can.
+pub fn placed(
+    names: &[Named],
+    curves: &[Pixel],
+    words: &[(Pixel, (f64, f64))],
+    frame: &Window,
+) -> Vec<Pixel> {
+    let area = |&(centre, size): &(Pixel, (f64, f64))| Area {
+        centre,
+        half: half(size),
+    };
+    let mut taken: Vec<Area> = words.iter().map(area).collect();
+    let mut centres = Vec::new();
     for (i, name) in names.iter().enumerate() {
-        let candidates = candidates(name);
-        let others = || names.iter().enumerate().filter(move |&(j, _)| j != i);
-        let price = |(number, place): (usize, &Area)| {
-            let covered = taken.iter().filter(|other| place.meets(other)).count() as f64;
-            let outside = f64::from(u8::from(!place.within(frame)));
-            let points = others().filter(|(_, other)| place.holds(other.at)).count() as f64;
-            let curve = curves.iter().filter(|&&at| place.holds(at)).count() as f64;
-            let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
-            NAME * covered
-                + FRAME * outside
-                + POINT * points
-                + CURVE * curve
-                + FAR * dx.hypot(dy)
-                + UNUSUAL * number as f64
+        let other = |&(j, _): &(usize, &Named)| j != i;
+        let points = names.iter().enumerate().filter(other);
+        let around = Around {
+            taken: &taken,
+            points: points.map(|(_, other)| other.at).collect(),
+            curves,
+            frame,
         };
+        // A name of no size needs no place.
+        let candidates = candidates(name).into_iter().enumerate();
         let best = candidates
-            .iter()
-            .enumerate()
-            .map(|candidate| (price(candidate), *candidate.1))
+            .filter(|_| name.size != (0.0, 0.0))
+            .map(|(number, place)| (around.price(name, number, &place), place))
             .min_by(|a, b| a.0.total_cmp(&b.0));
-        taken.extend(best.map(|(_, place)| place));
+        match best {
+            Some((_, mut place)) => {
+                place.centre = frame.without(place.half).nearest(place.centre);
+                centres.push(place.centre);
+                taken.push(place);
+            }
+            None => centres.push(name.at),
+        }
     }
-    taken.into_iter().map(|place| place.centre).collect()
+    centres
+}
+
+/// What a name should not cover.
+struct Around<'a> {
+    taken: &'a [Area],
+    points: Vec<Pixel>,
+    curves: &'a [Pixel],
+    frame: &'a Window,
+}
+
+impl Around<'_> {
+    /// What the candidate of that number costs.
+    fn price(&self, name: &Named, number: usize, place: &Area) -> f64 {
+        let on = |places: &[Pixel]| places.iter().filter(|&&at| place.holds(at)).count() as f64;
+        let covered = self.taken.iter().filter(|other| place.meets(other)).count() as f64;
+        let outside = f64::from(u8::from(!place.within(self.frame)));
+        let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
+        let wrong = match name.side {
+            Side::Above => dy > 0.0,
+            Side::Below => dy < 0.0,
+            Side::Free => false,
+        };
+        NAME * covered
+            + FRAME * outside
+            + POINT * on(&self.points)
+            + CURVE * on(self.curves)
+            + FAR * dx.hypot(dy)
+            + UNUSUAL * number as f64
+            + WRONG * f64::from(u8::from(wrong))
+    }
+}
+
+fn half(size: (f64, f64)) -> (f64, f64) {
+    (0.5 * size.0, 0.5 * size.1)
 }
 
 fn candidates(name: &Named) -> Vec<Area> {
     let directions = match name.side {
-        Side::Above => &DIRECTIONS[..1],
-        Side::Below => &DIRECTIONS[1..2],
+        Side::Above | Side::Below => &DIRECTIONS[..2],
         Side::Free => &DIRECTIONS[..],
     };
     let gaps = match name.side {
         Side::Free => &GAPS[..],
         _ => &GAPS[..1],
     };
-    let half = (0.5 * name.size.0, 0.5 * name.size.1);
+    let half = half(name.size);
     gaps.iter()
         .flat_map(|gap| directions.iter().map(move |direction| (gap, direction)))
         .map(|(gap, (dx, dy))| Area {
@@ -111,11 +157,8 @@ impl Area {
         (self.centre.0 - at.0).abs() < self.half.0 && (self.centre.1 - at.1).abs() < self.half.1
     }
 
-    fn within(&self, (width, height): (f64, f64)) -> bool {
-        self.centre.0 > self.half.0
-            && self.centre.1 > self.half.1
-            && self.centre.0 + self.half.0 < width
-            && self.centre.1 + self.half.1 < height
+    fn within(&self, frame: &Window) -> bool {
+        frame.without(self.half).holds(self.centre)
     }
 }
 
@@ -146,6 +189,10 @@ mod test {
 
     #[test]
     fn names_of_a_crowd_cover_neither_each_other_nor_the_curve() {
+        let frame = Window {
+            x: (0.0, 400.0),
+            y: (0.0, 200.0),
+        };
         let curve = along(&[(0.0, 100.0), (400.0, 100.0)], 3.0);
         let names: Vec<Named> = (0..9)
             .map(|i| Named {
@@ -154,7 +201,7 @@ mod test {
                 side: Side::Free,
             })
             .collect();
-        let centres = placed(&names, &curve, (400.0, 200.0));
+        let centres = placed(&names, &curve, &[], &frame);
         for (i, a) in centres.iter().enumerate() {
             assert!((a.1 - 100.0).abs() >= 7.0, "{a:?} is on the curve");
             assert!(a.0 > 12.0 && a.0 < 388.0 && a.1 > 7.0 && a.1 < 193.0);

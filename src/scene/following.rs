@@ -1,18 +1,19 @@
-//! The options that `branch` and `locus` share, checked.
+//! The options that branches and curves share, checked.
 
-use crate::bifurcation::Criticality;
+use super::continuation::ContinuationOptions;
+use super::units::{Quantity, Units};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::Choice;
-use crate::scene::{ContinuationOptions, Quantity, Units};
 
 /// V_H from, to: what the paper considers.
-pub const DRIVING: (f64, f64) = (1e-3, 1e6);
+pub(super) const DRIVING: (f64, f64) = (1e-3, 1e6);
 /// K from, to.
-pub const STIFFNESS: (f64, f64) = (1e-3, 1.0);
+pub(super) const STIFFNESS: (f64, f64) = (1e-3, 1.0);
 
 /// How to follow, checked.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Following {
     /// Factor on the step limits.
     pub step: f64,
@@ -48,7 +49,7 @@ impl Following {
 }
 
 /// One symmetry, or both.
-pub fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>> {
+pub(super) fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>> {
     match name {
         "both" => Ok(None),
         "symmetric" => Ok(Some(Symmetry::Symmetric)),
@@ -65,7 +66,7 @@ pub fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>> {
 }
 
 /// A range of a parameter, whose ends must differ.
-pub fn range(name: &str, (from, to): (f64, f64)) -> Result<(f64, f64)> {
+pub(super) fn range(name: &str, (from, to): (f64, f64)) -> Result<(f64, f64)> {
     if from == to {
         return Err(Error::Input(format!(
             "{name} begins and ends at {from:?}, but must have two different ends"
@@ -75,7 +76,7 @@ pub fn range(name: &str, (from, to): (f64, f64)) -> Result<(f64, f64)> {
 }
 
 /// Positive numbers, comma-separated, in the user's units.
-pub fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
+pub(super) fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
     text.split(',')
         .map(|word| match word.trim().parse::<f64>() {
             Ok(x) => positive(name, x),
@@ -87,7 +88,7 @@ pub fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
 }
 
 /// The values of an option to land on, dimensionless, which must lie in the range.
-pub fn landings(
+pub(super) fn landings(
     name: &str,
     text: Option<&str>,
     (quantity, units): (Quantity, &Units),
@@ -110,43 +111,33 @@ pub fn landings(
     values.into_iter().map(inside).collect()
 }
 
-/// To which side a bifurcation goes, in a word.
-pub fn criticality(criticality: Criticality) -> &'static str {
-    match criticality {
-        Criticality::Supercritical => "supercritical",
-        Criticality::Subcritical => "subcritical",
-        Criticality::Undecided => "undecided",
-    }
-}
-
-/// The line of `--explain` on the symmetry.
-pub fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) {
+/// The line of a plan on the symmetry.
+pub(super) fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) -> String {
     let words = match symmetry {
         _ if interfaces == 1 => "a single interface has none; dimension 2",
         None => "both: symmetric in dimension 2, asymmetric in 3",
         Some(Symmetry::Symmetric) => "symmetric alone, in dimension 2; the mode across beside it",
         Some(Symmetry::Asymmetric) => "asymmetric alone, in dimension 3",
     };
-    eprintln!("  symmetry          {words}");
+    format!("  symmetry          {words}\n")
 }
 
-/// The lines of `--explain` on steps, accuracy, landings and the crosscheck.
-pub fn explain(following: &Following, at: &[f64]) {
-    eprintln!("  step limits       times {}", following.step);
-    eprintln!(
-        "  special points    to {:e}, relatively",
-        following.tolerance
-    );
-    match at.len() {
-        0 => eprintln!("  landings          off: no --at values are given"),
-        n => eprintln!("  landings          on {n} values, each solved for"),
-    }
-    match following.second {
-        Some(second) => eprintln!(
-            "  crosscheck        {}, of every special point",
-            second.name()
-        ),
-        None => eprintln!("  crosscheck        off: --crosscheck is not given"),
-    }
-    eprintln!("  rows              written as they come, and kept for the picture and the object");
+/// The lines of a plan on steps, accuracy, landings and the crosscheck.
+pub(super) fn explain(following: &Following, at: &[f64]) -> String {
+    let landings = match at.len() {
+        0 => "off: no --at values are given".to_owned(),
+        n => format!("on {n} values, each solved for"),
+    };
+    let second = match following.second {
+        Some(second) => format!("{}, of every special point", second.name()),
+        None => "off: --crosscheck is not given".to_owned(),
+    };
+    format!(
+        "  step limits       times {}
+  special points    to {:e}, relatively
+  landings          {landings}
+  crosscheck        {second}
+  rows              written as they come, and kept for the picture and the object",
+        following.step, following.tolerance
+    )
 }

@@ -1,10 +1,19 @@
-//! The columns of a row, declared once with what they show: CSV, tables and objects follow from them.
+//! How rows are shown: their columns, declared once, from which CSV, tables and objects follow, and their pictures.
 
-use super::report;
 use crate::number::Uncertain;
-use crate::output::Cell;
+use crate::output::{self, Cell};
 use crate::scene::{Quantity, Units};
 use serde_json::{Map, Value, json};
+
+mod bifurcation;
+mod diagram;
+mod map;
+mod run;
+
+pub use bifurcation::{branch_columns, locus_columns, special_columns};
+pub use diagram::{axis_label, branch_lines, branches, curves};
+pub use map::{return_map, states_at_returns};
+pub use run::{panels_in_time, phase_plane};
 
 /// What a row has in a column, dimensionless.
 pub enum Entry {
@@ -132,7 +141,8 @@ pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, V
     let value = |column: &Column<R>| match (column.entry)(row) {
         Entry::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
         Entry::Uncertain(x) => x.map_or(Value::Null, |x| {
-            report::uncertain(units, column.quantity, x)
+            let x = units.outward_uncertain(column.quantity, x);
+            output::uncertain((x.value, x.uncertainty))
         }),
         Entry::Word(word) => json!(word),
         Entry::Count(n) => json!(n),

@@ -1,13 +1,11 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
-use super::branch::Along;
-use super::report;
 use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
 use crate::equilibrium::Verdict;
 use crate::orbit::Slab;
-use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Side};
+use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
 use crate::output::seven_digits;
-use crate::scene::{Quantity, System, Units};
+use crate::scene::{Along, Quantity, System, Units};
 
 /// Colours of branches on which both interfaces move alike, and of the others.
 const ALIKE: usize = 0;
@@ -21,10 +19,10 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
     let least = |row: &BranchRow| stress(row.stress_range.0);
     let most = |row: &BranchRow| stress(row.stress_range.1);
     let at = |row: &BranchRow| along.of(row, units);
-    let mut series = lines(rows, &at, &most, true);
+    let mut series = branch_lines(rows, &at, &most, true);
     let mut points = marks(rows, &at, &most, true);
     if orbits {
-        series.extend(lines(rows, &at, &least, false));
+        series.extend(branch_lines(rows, &at, &least, false));
         points.extend(marks(rows, &at, &least, false));
     }
     let symbol = match along.parameter {
@@ -38,12 +36,13 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         ("equilibria", "stress τ")
     };
     let first = Panel {
-        title: format!("{what} at {}", fixed(along, slab, units)),
-        x: x.clone(),
-        y: Axis::linear(axis_label(tau, Quantity::Stress, units)),
         series,
         marks: points,
-        zero_line: false,
+        ..Panel::new(
+            format!("{what} at {}", fixed(along, slab, units)),
+            x.clone(),
+            Axis::linear(axis_label(tau, Quantity::Stress, units)),
+        )
     };
     if !orbits {
         return Drawing::columns(vec![vec![first]]);
@@ -53,12 +52,13 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         units.outward(Quantity::Time, period)
     };
     let second = Panel {
-        title: "period".into(),
-        x,
-        y: Axis::log(axis_label("period", Quantity::Time, units)),
-        series: lines(rows, &at, &period, false),
+        series: branch_lines(rows, &at, &period, false),
         marks: marks(rows, &at, &period, true),
-        zero_line: false,
+        ..Panel::new(
+            "period",
+            x,
+            Axis::log(axis_label("period", Quantity::Time, units)),
+        )
     };
     Drawing::columns(vec![vec![first], vec![second]])
 }
@@ -78,8 +78,9 @@ fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
     format!("{name} = {value}")
 }
 
-fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
-    format!("{name} [{}]", report::short_unit(units, quantity))
+/// The label of an axis: name and unit.
+pub fn axis_label(name: &str, quantity: Quantity, units: &Units) -> String {
+    format!("{name} [{}]", units.short_name(quantity))
 }
 
 /// Consecutive rows of the same branch.
@@ -95,7 +96,7 @@ fn apart(branch: &[BranchRow]) -> bool {
 }
 
 /// Stable parts solid, all others dashed; in two colours.
-fn lines(
+pub fn branch_lines(
     rows: &[BranchRow],
     x: &dyn Fn(&BranchRow) -> f64,
     y: &dyn Fn(&BranchRow) -> f64,
@@ -118,11 +119,12 @@ fn lines(
                 ys.push(y(b));
             }
         }
-        Series {
-            dashed: !stable,
-            colour: Some(colour),
-            ..Series::new("", xs, ys)
-        }
+        let stroke = if stable {
+            Stroke::Solid
+        } else {
+            Stroke::Dashed
+        };
+        Series::new("", xs, ys).stroke(stroke).colour(colour)
     };
     let series = kinds.into_iter().map(part);
     let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
@@ -134,7 +136,8 @@ fn lines(
 fn named(series: &mut [Series], legend: bool) {
     let (mut colours, mut dashes) = (Vec::new(), false);
     for one in series.iter_mut().filter(|_| legend) {
-        let unstable = (one.dashed && !dashes).then_some("unstable");
+        let dashed = one.stroke == Stroke::Dashed;
+        let unstable = (dashed && !dashes).then_some("unstable");
         let new = !colours.contains(&one.colour);
         let name = if one.colour == Some(ALIKE) {
             "symmetric"
@@ -144,7 +147,7 @@ fn named(series: &mut [Series], legend: bool) {
         let words: Vec<&str> = new.then_some(name).into_iter().chain(unstable).collect();
         one.label = words.join(", ");
         colours.push(one.colour);
-        dashes |= one.dashed;
+        dashes |= dashed;
     }
 }
 
@@ -179,13 +182,7 @@ fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec
             |(other, mark): &(Label, Mark)| *other == label && near(mark.x, x) && near(mark.y, y);
         if !marks.iter().any(known) {
             let text = if named { label.name() } else { "" };
-            let mark = Mark {
-                x,
-                y,
-                label: text.to_owned(),
-                side: Side::Free,
-            };
-            marks.push((label, mark));
+            marks.push((label, Mark::new(x, y, text)));
         }
     }
     marks.into_iter().map(|(_, mark)| mark).collect()
@@ -199,13 +196,10 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
     let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<Series> {
         let pieces = rows.chunk_by(|a, b| a.curve == b.curve);
         pieces
-            .map(|curve| Series {
-                colour: Some(curve[0].curve),
-                ..Series::new(
-                    "",
-                    curve.iter().map(|row| driving(row.driving.value)).collect(),
-                    curve.iter().map(y).collect(),
-                )
+            .map(|curve| {
+                let driving = curve.iter().map(|row| driving(row.driving.value));
+                let series = Series::new("", driving.collect(), curve.iter().map(y).collect());
+                series.colour(curve[0].curve)
             })
             .collect()
     };
@@ -215,12 +209,13 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
         (one.label, driving(v), stiffness(k))
     });
     let plane = Panel {
-        title: name.to_owned(),
-        x: x.clone(),
-        y: Axis::linear(axis_label("K", Quantity::Stiffness, units)),
         series: series(&|row| stiffness(row.stiffness.value)),
         marks: distinct(points, true),
-        zero_line: false,
+        ..Panel::new(
+            name,
+            x.clone(),
+            Axis::linear(axis_label("K", Quantity::Stiffness, units)),
+        )
     };
     if rows.iter().all(|row| row.angle_over_pi.is_none()) {
         return Drawing::columns(vec![vec![plane]]);
@@ -230,12 +225,9 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
         Some((label, driving(row.driving.value), row.angle_over_pi?))
     });
     let angle = Panel {
-        title: "angle θ of the multipliers".into(),
-        x,
-        y: Axis::linear("θ/π"),
         series: series(&|row| row.angle_over_pi.unwrap_or(f64::NAN)),
         marks: distinct(labelled, true),
-        zero_line: false,
+        ..Panel::new("angle θ of the multipliers", x, Axis::linear("θ/π"))
     };
     Drawing::columns(vec![vec![plane], vec![angle]])
 }

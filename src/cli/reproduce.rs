@@ -1,0 +1,226 @@
+//! `twinslip reproduce` and `twinslip figure`: the whole paper again, or a part of it.
+
+use super::Ending;
+use super::interrupt;
+use super::report::sundials;
+use crate::error::{Error, Result};
+use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
+use indicatif::{ProgressBar, ProgressStyle};
+use std::collections::BTreeMap;
+use std::io::IsTerminal;
+use std::path::PathBuf;
+use std::time::{Duration, Instant};
+
+pub const EXAMPLE: &str = "Example, everything into paper/, and then only what Fig. 12 and Table 1 need into another directory:
+  twinslip reproduce
+  twinslip reproduce --only fig12,table1 --out curves";
+
+pub const FIGURE_EXAMPLE: &str = "Example, fig07.csv, fig07.svg and fig07.png here:
+  twinslip figure 7 --png";
+
+/// `reproduce`: the paper's figures, Table 1, the scorecard and a report to read.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct ReproduceOptions {
+    /// Where all files go
+    #[arg(long, value_name = "DIR", default_value = "paper")]
+    out: PathBuf,
+    /// Only some of it, comma-separated: fig01 to fig17, table1, scorecard
+    #[arg(long, value_name = "LIST")]
+    only: Option<String>,
+    /// How.
+    #[command(flatten)]
+    making: Making,
+}
+
+/// `figure`: one figure as CSV and SVG.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct FigureOptions {
+    /// Its number in the paper, 1 to 17
+    #[arg(value_name = "N")]
+    number: u8,
+    /// Where the files go
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// How.
+    #[command(flatten)]
+    making: Making,
+}
+
+/// What both share.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct Making {
+    /// Pictures as PNG too
+    #[arg(long)]
+    png: bool,
+    /// Compute again what an earlier run has left complete
+    #[arg(long)]
+    force: bool,
+    /// Threads [default: one a processor]; results do not depend on them
+    #[arg(long, value_name = "N")]
+    threads: Option<usize>,
+    /// Say nothing but errors
+    #[arg(short, long)]
+    quiet: bool,
+}
+
+pub fn run(options: &ReproduceOptions) -> Result<Ending> {
+    let products = match &options.only {
+        Some(names) => Product::listed(names)?,
+        None => PRODUCTS.to_vec(),
+    };
+    make(&options.out, products, &options.making, true)
+}
+
+pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
+    let number = options.number;
+    if !(1..=17).contains(&number) {
+        return Err(Error::parameter("figure", number, "from 1 to 17"));
+    }
+    let product = Product::named(&format!("fig{number:02}"))?;
+    make(&options.out, vec![product], &options.making, false)
+}
+
+fn make(
+    out: &std::path::Path,
+    products: Vec<&'static Product>,
+    making: &Making,
+    report: bool,
+) -> Result<Ending> {
+    if making.threads == Some(0) {
+        return Err(Error::parameter("threads", 0, "at least 1"));
+    }
+    let machine = machine();
+    let order = Order {
+        out: out.to_owned(),
+        products,
+        force: making.force,
+        png: making.png,
+        report,
+        threads: making.threads,
+        program: program(&machine),
+        machine,
+    };
+    let begun = Instant::now();
+    let bar = Bar::new(making.quiet);
+    interrupt::watch();
+    let done = reproduce(&order, interrupt::flag(), &|told| bar.tell(told));
+    interrupt::unwatch();
+    bar.finish();
+    let done = done?;
+    if !making.quiet {
+        summary(&done, &order, begun.elapsed());
+    }
+    ending(done)
+}
+
+/// What the manifest says: versions, and the class of machine.
+fn machine() -> BTreeMap<String, String> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let facts = [
+        ("twinslip", env!("CARGO_PKG_VERSION").to_owned()),
+        (
+            "SUNDIALS",
+            sundials().unwrap_or_else(|| "not built in".into()),
+        ),
+        ("architecture", std::env::consts::ARCH.to_owned()),
+        ("system", std::env::consts::OS.to_owned()),
+        ("processors", cores.to_string()),
+        ("vectors", vectors().to_owned()),
+    ];
+    facts
+        .into_iter()
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}
+
+/// The widest vectors that the processor computes with: fused multiplications change last digits.
+fn vectors() -> &'static str {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if std::arch::is_x86_feature_detected!("avx512f") {
+            return "AVX-512";
+        }
+        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
+        {
+            return "AVX2 with FMA";
+        }
+    }
+    "none"
+}
+
+/// What decides about the numbers: all of that but the number of processors, and the program itself, to the byte.
+fn program(machine: &BTreeMap<String, String>) -> String {
+    let itself = std::env::current_exe().and_then(std::fs::read);
+    let mut text = itself.map_or_else(|_| String::new(), |bytes| hash(&bytes));
+    for (name, value) in machine.iter().filter(|(name, _)| *name != "processors") {
+        text += &format!("; {name} {value}");
+    }
+    text
+}
+
+fn summary(done: &Done, order: &Order, wall: Duration) {
+    for (product, seconds) in &done.made {
+        eprintln!("{:<10} {seconds:7.2} s  {}", product.id, product.title);
+    }
+    if !done.stood.is_empty() {
+        let ids: Vec<&str> = done.stood.iter().map(|product| product.id).collect();
+        eprintln!("up to date, not made again: {}", ids.join(", "));
+    }
+    let report = if order.report { ", report.html" } else { "" };
+    eprintln!(
+        "{} made in {:.1} s{report} in {}",
+        done.made.len(),
+        wall.as_secs_f64(),
+        order.out.display()
+    );
+}
+
+/// One clear error: what can't be written goes before what was interrupted for that.
+fn ending(done: Done) -> Result<Ending> {
+    let file = |error: &Error| matches!(error, Error::File { .. });
+    if let Some((_, error)) = done.failed.iter().find(|(_, error)| file(error)) {
+        return Err(error.clone());
+    }
+    let mut ending = Ending::Done;
+    for (product, error) in &done.failed {
+        if *error == Error::Interrupted {
+            ending = Ending::Interrupted;
+        } else {
+            eprintln!("error: {}: {error}", product.id);
+            if ending == Ending::Done {
+                ending = Ending::Stuck;
+            }
+        }
+    }
+    Ok(ending)
+}
+
+/// How many products are made, on a terminal.
+struct Bar(ProgressBar);
+
+impl Bar {
+    fn new(quiet: bool) -> Self {
+        if quiet || !std::io::stderr().is_terminal() {
+            return Bar(ProgressBar::hidden());
+        }
+        let style = ProgressStyle::with_template("{bar:30} {pos} of {len}  {msg}  {elapsed}")
+            .expect("the template is valid");
+        let bar = ProgressBar::new(0).with_style(style);
+        bar.enable_steady_tick(Duration::from_millis(200));
+        Bar(bar)
+    }
+
+    fn tell(&self, told: Told<'_>) {
+        match told {
+            Told::Begun(number) => self.0.set_length(number as u64),
+            Told::Made(product, _) => {
+                self.0.inc(1);
+                self.0.set_message(product.id);
+            }
+        }
+    }
+
+    fn finish(&self) {
+        self.0.finish_and_clear();
+    }
+}

@@ -1,0 +1,143 @@
+//! What is drawn, in pixels with fractions: lines, areas and words. Only this file knows which crate writes the SVG.
+
+use super::text::FAMILY;
+use super::unrendered;
+use crate::error::Result;
+use plotters::coord::Shift;
+use plotters::element::{Drawable, PointCollection};
+use plotters::prelude::*;
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+
+/// A place in pixels, y downwards.
+pub type Pixel = (f64, f64);
+/// Red, green, blue.
+pub type Colour = RGBColor;
+
+/// Axes and words.
+pub const INK: Colour = RGBColor(40, 40, 40);
+/// Lines at the ticks.
+pub const GRID: Colour = RGBColor(228, 228, 228);
+/// Behind all.
+pub const PAPER: Colour = WHITE;
+/// Points that are pointed out, and their names.
+pub const MARK: Colour = RGBColor(150, 30, 30);
+/// Okabe and Ito: told apart by all. Grey is darker than theirs would be beside the grid, sky blue and orange come late as they
+/// are pale.
+const COLOURS: [Colour; 8] = [
+    RGBColor(0, 114, 178),
+    RGBColor(213, 94, 0),
+    RGBColor(0, 158, 115),
+    RGBColor(204, 121, 167),
+    RGBColor(86, 180, 233),
+    RGBColor(230, 159, 0),
+    RGBColor(120, 120, 120),
+    RGBColor(0, 0, 0),
+];
+/// plotters counts whole pixels: drawn this much larger and shown at normal size, curves are smooth.
+const FINE: f64 = 10.0;
+/// What plotters calls the size of a font is so much larger than the one that is written.
+pub const BACKEND: f64 = 1.24;
+
+/// The colour of that number.
+pub fn colour(number: usize) -> Colour {
+    COLOURS[number % COLOURS.len()]
+}
+
+/// Where words stand with respect to their place; always centred across their line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Align {
+    /// They begin there.
+    Left,
+    /// They are centred there.
+    Middle,
+    /// They end there.
+    Right,
+    /// They are centred there, read from below.
+    Upwards,
+}
+
+/// A picture in the making.
+pub struct Canvas<'s>(DrawingArea<SVGBackend<'s>, Shift>);
+
+/// The SVG of that size.
+///
+/// # Errors
+/// Those of the drawing.
+pub fn picture(size: (f64, f64), draw: impl FnOnce(&Canvas<'_>) -> Result<()>) -> Result<String> {
+    let mut text = String::new();
+    let (width, height) = fine(size);
+    {
+        let root = SVGBackend::with_string(&mut text, (width as u32, height as u32));
+        let canvas = Canvas(root.into_drawing_area());
+        canvas.0.fill(&PAPER).map_err(unrendered)?;
+        draw(&canvas)?;
+        canvas.0.present().map_err(unrendered)?;
+    }
+    let drawn = format!(r#"width="{width}" height="{height}""#);
+    let shown = format!(
+        r#"width="{}" height="{}""#,
+        f64::from(width) / FINE,
+        f64::from(height) / FINE
+    );
+    Ok(text.replacen(&drawn, &shown, 1))
+}
+
+fn fine((x, y): Pixel) -> (i32, i32) {
+    ((x * FINE).round() as i32, (y * FINE).round() as i32)
+}
+
+impl<'s> Canvas<'s> {
+    /// A line through these places.
+    pub fn line(&self, line: &[Pixel], colour: Colour, width: f64) -> Result<()> {
+        let style = colour.stroke_width((width * FINE).round() as u32);
+        let line: Vec<_> = line.iter().copied().map(fine).collect();
+        self.put(&PathElement::new(line, style))
+    }
+
+    /// The area within these corners.
+    pub fn area(&self, corners: &[Pixel], colour: Colour) -> Result<()> {
+        let corners: Vec<_> = corners.iter().copied().map(fine).collect();
+        self.put(&Polygon::new(corners, colour.filled()))
+    }
+
+    /// A full circle.
+    pub fn circle(&self, at: Pixel, radius: f64, colour: Colour) -> Result<()> {
+        self.put(&Circle::new(
+            fine(at),
+            (radius * FINE).round() as i32,
+            colour.filled(),
+        ))
+    }
+
+    /// Words on one line.
+    pub fn words(
+        &self,
+        text: &str,
+        at: Pixel,
+        align: Align,
+        size: f64,
+        colour: Colour,
+    ) -> Result<()> {
+        let anchor = match align {
+            Align::Left => HPos::Left,
+            Align::Right => HPos::Right,
+            Align::Middle | Align::Upwards => HPos::Center,
+        };
+        let font = (FAMILY, size * FINE * BACKEND).into_font();
+        let font = if align == Align::Upwards {
+            font.transform(FontTransform::Rotate270)
+        } else {
+            font
+        };
+        let style = font.color(&colour).pos(Pos::new(anchor, VPos::Center));
+        self.put(&Text::new(text.to_owned(), fine(at), style))
+    }
+
+    fn put<E>(&self, element: &E) -> Result<()>
+    where
+        for<'e> &'e E: PointCollection<'e, (i32, i32)>,
+        E: Drawable<SVGBackend<'s>>,
+    {
+        self.0.draw(element).map_err(unrendered)
+    }
+}

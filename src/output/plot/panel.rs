@@ -1,0 +1,283 @@
+//! What a picture consists of: curves, points and words on a pair of axes, and the panels in their blocks. Colours are numbers:
+//! 0 blue, 1 vermillion, 2 green, 3 purple, 4 sky blue, 5 orange, 6 grey, 7 black (Okabe and Ito, told apart by all).
+
+/// One axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// What it measures, with the unit.
+    pub label: String,
+    /// Whether it is logarithmic: points that are not positive are then left out.
+    pub log: bool,
+    /// Its ends, beyond which nothing is drawn; without, it holds all that is shown.
+    pub range: Option<(f64, f64)>,
+}
+
+impl Axis {
+    /// Equal steps are equal differences.
+    pub fn linear(label: impl Into<String>) -> Self {
+        Axis {
+            label: label.into(),
+            log: false,
+            range: None,
+        }
+    }
+
+    /// Equal steps are equal ratios.
+    pub fn log(label: impl Into<String>) -> Self {
+        Axis {
+            log: true,
+            ..Axis::linear(label)
+        }
+    }
+
+    /// With fixed ends. Ends that can't be drawn, as zero on a logarithmic axis, are as none.
+    #[must_use]
+    pub fn within(mut self, lo: f64, hi: f64) -> Self {
+        self.range = Some((lo, hi));
+        self
+    }
+}
+
+/// How a line is broken.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Stroke {
+    /// Not at all.
+    #[default]
+    Solid,
+    /// Into dashes.
+    Dashed,
+    /// A dash and a dot in turn.
+    DashDot,
+    /// A dash and two dots in turn.
+    DashDotDot,
+    /// Into dots.
+    Dotted,
+}
+
+/// One curve, or points.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; empty for none.
+    pub label: String,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates.
+    pub y: Vec<f64>,
+    /// Whether its points stand for themselves, without a line.
+    pub dots: bool,
+    /// How its line is broken.
+    pub stroke: Stroke,
+    /// Whether its line, or its points, are broader than the others.
+    pub wide: bool,
+    /// Which of the colours; the next one without.
+    pub colour: Option<usize>,
+}
+
+impl Series {
+    /// From two columns.
+    pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Series {
+            label: label.into(),
+            x,
+            y,
+            dots: false,
+            stroke: Stroke::Solid,
+            wide: false,
+            colour: None,
+        }
+    }
+
+    /// Points without a line between them.
+    pub fn dots(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Series {
+            dots: true,
+            ..Series::new(label, x, y)
+        }
+    }
+
+    /// With the line broken so.
+    #[must_use]
+    pub fn stroke(mut self, stroke: Stroke) -> Self {
+        self.stroke = stroke;
+        self
+    }
+
+    /// In that colour.
+    #[must_use]
+    pub fn colour(mut self, number: usize) -> Self {
+        self.colour = Some(number);
+        self
+    }
+
+    /// Broader than the others.
+    #[must_use]
+    pub fn wide(mut self) -> Self {
+        self.wide = true;
+        self
+    }
+}
+
+/// Where the name of a point stands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Above it.
+    Above,
+    /// Below it.
+    Below,
+    /// Where there is room.
+    Free,
+}
+
+/// The shape of a point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Symbol {
+    /// ●
+    #[default]
+    Circle,
+    /// ■
+    Square,
+    /// ◆
+    Diamond,
+    /// ▲
+    Triangle,
+    /// +, always a line
+    Plus,
+    /// ×, always a line
+    Cross,
+    /// ★
+    Star,
+}
+
+/// A point that is pointed out.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Abscissa.
+    pub x: f64,
+    /// Ordinate.
+    pub y: f64,
+    /// Its name; empty for none.
+    pub label: String,
+    /// Where that stands: outside of the curve's bend.
+    pub side: Side,
+    /// Its shape.
+    pub symbol: Symbol,
+    /// Whether the shape is filled, or white within.
+    pub filled: bool,
+    /// Which of the colours; dark red without.
+    pub colour: Option<usize>,
+}
+
+impl Mark {
+    /// A filled circle, its name where there is room.
+    pub fn new(x: f64, y: f64, label: impl Into<String>) -> Self {
+        Mark {
+            x,
+            y,
+            label: label.into(),
+            side: Side::Free,
+            symbol: Symbol::Circle,
+            filled: true,
+            colour: None,
+        }
+    }
+
+    /// With that shape.
+    #[must_use]
+    pub fn symbol(mut self, symbol: Symbol) -> Self {
+        self.symbol = symbol;
+        self
+    }
+
+    /// White within.
+    #[must_use]
+    pub fn open(mut self) -> Self {
+        self.filled = false;
+        self
+    }
+
+    /// With its name there.
+    #[must_use]
+    pub fn side(mut self, side: Side) -> Self {
+        self.side = side;
+        self
+    }
+
+    /// In that colour.
+    #[must_use]
+    pub fn colour(mut self, number: usize) -> Self {
+        self.colour = Some(number);
+        self
+    }
+}
+
+/// What a kind of [`Mark`] means, in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Key {
+    /// Its shape.
+    pub symbol: Symbol,
+    /// Whether that is filled.
+    pub filled: bool,
+    /// Which of the colours; dark red without.
+    pub colour: Option<usize>,
+    /// The meaning.
+    pub label: String,
+}
+
+/// Words at a place, as the name of a region.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Note {
+    /// Abscissa of their middle.
+    pub x: f64,
+    /// Ordinate of their middle.
+    pub y: f64,
+    /// The words.
+    pub text: String,
+    /// Which of the colours; that of the axes without.
+    pub colour: Option<usize>,
+}
+
+/// One pair of axes with curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// Above the frame.
+    pub title: String,
+    /// Horizontal.
+    pub x: Axis,
+    /// Vertical.
+    pub y: Axis,
+    /// The curves.
+    pub series: Vec<Series>,
+    /// The points.
+    pub marks: Vec<Mark>,
+    /// Words in the frame.
+    pub notes: Vec<Note>,
+    /// Entries of the legend after those of the curves.
+    pub keys: Vec<Key>,
+    /// Whether zero on the vertical axis deserves a line.
+    pub zero_line: bool,
+}
+
+impl Panel {
+    /// Without any curves yet.
+    pub fn new(title: impl Into<String>, x: Axis, y: Axis) -> Self {
+        Panel {
+            title: title.into(),
+            x,
+            y,
+            series: Vec::new(),
+            marks: Vec::new(),
+            notes: Vec::new(),
+            keys: Vec::new(),
+            zero_line: false,
+        }
+    }
+}
+
+/// Panels under a common title, in columns from left to right, each from top to bottom.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Block {
+    /// Above them all; empty for none.
+    pub title: String,
+    /// The panels.
+    pub columns: Vec<Vec<Panel>>,
+}

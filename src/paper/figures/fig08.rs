@@ -1,0 +1,42 @@
+//! Fig. 8: two runs at K = 0.14 from the symmetric equilibrium to the asymmetric orbit.
+
+use super::runs::{method, with_returns};
+use crate::error::Result;
+use crate::output::plot::Drawing;
+use crate::paper::pieces::Pieces;
+use crate::paper::product::{Made, Make, Product};
+use crate::paper::sheet::Sheet;
+
+/// The figure.
+pub const FIGURE: Product = Product {
+    id: "fig08",
+    title: "From the symmetric equilibrium to asymmetric stick-slip, K = 0.14",
+    caption: "Two runs from beside the symmetric equilibrium. They leave it across the symmetric subspace, pass by the asymmetric equilibrium, which is unstable too, and end on the stable asymmetric orbit. From left to right: stress, states and slip rates in time; the paths of both interfaces in the plane of slip rate and stress (the dotted line is the steady-state law); below it the path in the asymmetric subspace; the return map to the section τ = τ_ss(V_H/2), where the returns run onto a fixed point on the diagonal.
+
+(a) V_H = 0.07, just above the Hopf point: soft oscillations. (b) V_H = 10: stick-slip, a saw-tooth of stress whose drops are carried by one interface. Its state falls far below c = 0.001 while the other one stays of order 0.1. The text gives no V_H for this figure; these are chosen.",
+    alt: "Two rows of panels, each with stress, states and slip rates in time, the phase plane, the asymmetric subspace and the return map. The upper row shows small growing oscillations, the lower row a saw-tooth of stress.",
+    scenes: &["fig08a", "fig08a-map", "fig08b", "fig08b-map"],
+    make: Make::Figure(make),
+};
+
+fn make(pieces: &Pieces<'_>) -> Result<Made> {
+    let (a, b) = (pieces.run("fig08a")?, pieces.run("fig08b")?);
+    let (map_a, map_b) = (pieces.map("fig08a-map")?, pieces.map("fig08b-map")?);
+    let mut sheet = Sheet::new();
+    sheet.add_run("a", &a);
+    sheet.add_map("a returns", &map_a);
+    sheet.add_run("b", &b);
+    sheet.add_map("b returns", &map_b);
+    Ok(Made {
+        sheet,
+        drawing: Some(Drawing::blocks(vec![
+            with_returns("(a) V_H = 0.07", &a, &a.rows, &map_a),
+            with_returns("(b) V_H = 10", &b, &b.rows, &map_b),
+        ])),
+        method: format!(
+            "(a) {}; (b) {}; returns landed on exactly",
+            method(&a),
+            method(&b)
+        ),
+    })
+}

@@ -1,0 +1,92 @@
+//! Fig. 9: the bifurcation diagram at a small stiffness, of which the paper has a sketch.
+
+use super::fig07::amplitudes;
+use super::plane::{marks, method};
+use crate::bifurcation::BranchRow;
+use crate::error::Result;
+use crate::output::plot::{Axis, Drawing, Panel};
+use crate::paper::pieces::{Branches, Pieces};
+use crate::paper::product::{Made, Make, Product};
+use crate::paper::sheet::Sheet;
+use crate::views::branch_lines;
+
+/// The figure.
+pub const FIGURE: Product = Product {
+    id: "fig09",
+    title: "Bifurcation diagram at small stiffness, K = 0.05, computed",
+    caption: "The paper sketches this diagram, because symmetric and asymmetric orbits lie too near one another to be drawn. Here it is computed. (a) Extremes of stress of orbits and equilibria over the whole range of V_H. (b) The same near 2 V_M, where almost everything happens, and (c) within the thousandth of V_H in which the symmetric orbit grows to full size.
+
+(d) to (f) tell the orbits apart: how unlike the two interfaces are where stress is greatest, |ln ψ₁ − ln ψ₂|, on a logarithmic axis, on which asymmetric orbits fall steeply towards the pitchforks where they meet the symmetric ones (not drawn, for theirs is zero). The branch from the first Hopf point does so after a torus point, two period doublings and a fold; the one from the second Hopf point comes down in V_H, folds at the saddle-node and goes back, unstable, to the symmetric branch. Between the two pitchforks the symmetric orbits are stable, beside the asymmetric ones from the fold on.",
+    alt: "Six panels against driving velocity: extremes of stress over the whole range and twice enlarged near the first Hopf points, and below them the asymmetry of the orbits, which vanishes at the pitchforks of orbits.",
+    scenes: &["fig09", "fig09-equilibria"],
+    make: Make::Figure(make),
+};
+
+/// V_H in the frames: all, the crowd, and the thick of it.
+const ALL: (f64, f64) = (0.03, 1000.0);
+const CROWD: (f64, f64) = (0.0495, 0.085);
+const THICK: (f64, f64) = (0.06635, 0.06655);
+
+/// Asymmetries in the frames.
+const APART: (f64, f64) = (1e-9, 20.0);
+
+fn make(pieces: &Pieces<'_>) -> Result<Made> {
+    let (orbits, rest) = (
+        pieces.branches("fig09")?,
+        pieces.branches("fig09-equilibria")?,
+    );
+    let mut sheet = Sheet::new();
+    sheet.add_branches("orbits", &orbits);
+    sheet.add_branches("equilibria", &rest);
+    sheet.add_special(
+        "special points of orbits",
+        &orbits.special,
+        &orbits.plan.system.units,
+    );
+    sheet.add_special(
+        "special points of equilibria",
+        &rest.special,
+        &rest.plan.system.units,
+    );
+    let stress = |title: &str, driving| amplitudes(title, &orbits, &rest, driving);
+    let bare = |panel: Panel| Panel {
+        keys: Vec::new(),
+        ..panel
+    };
+    let columns = vec![
+        vec![
+            stress("(a) extremes of stress", ALL),
+            asymmetry("(d) asymmetry at greatest stress", &orbits, ALL),
+        ],
+        vec![
+            bare(stress("(b) near 2 V_M", CROWD)),
+            asymmetry("(e) near 2 V_M", &orbits, CROWD),
+        ],
+        vec![
+            bare(stress("(c) nearer", THICK)),
+            asymmetry("(f) nearer", &orbits, THICK),
+        ],
+    ];
+    Ok(Made {
+        sheet,
+        drawing: Some(Drawing::columns(columns)),
+        method: method(orbits.plan.following.tolerance),
+    })
+}
+
+/// How unlike the states are where stress is greatest.
+fn asymmetry(title: &str, orbits: &Branches, (lo, hi): (f64, f64)) -> Panel {
+    let x = |row: &BranchRow| row.driving;
+    let apart = |row: &BranchRow| (row.state[0] / row.state[1]).ln().abs();
+    let mut points = marks(&orbits.rows, x, apart);
+    points.retain(|mark| (lo..=hi).contains(&mark.x));
+    Panel {
+        series: branch_lines(&orbits.rows, &x, &apart, false),
+        marks: points,
+        ..Panel::new(
+            title,
+            Axis::log("driving velocity V_H [V*]").within(lo, hi),
+            Axis::log("|ln ψ₁ − ln ψ₂|").within(APART.0, APART.1),
+        )
+    }
+}

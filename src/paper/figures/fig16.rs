@@ -1,0 +1,48 @@
+//! Fig. 16: K = 0.14 past the torus bifurcation and near the resonance 1:4.
+
+use super::runs::{between, method, with_returns};
+use crate::error::Result;
+use crate::output::Rows;
+use crate::output::plot::Drawing;
+use crate::paper::pieces::{Pieces, Run};
+use crate::paper::product::{Made, Make, Product};
+use crate::paper::sheet::Sheet;
+
+/// The figure.
+pub const FIGURE: Product = Product {
+    id: "fig16",
+    title: "Large excursions past the torus bifurcation at K = 0.14",
+    caption: "(a) V_H = 0.0768, just past the torus point 0.07674: the run settles on no small torus, but makes large excursions, as after a subcritical bifurcation, and its largest Lyapunov exponent is positive. The cubic coefficient says that the bifurcation is supercritical, by a hair: the small torus exists up to V_H = 0.076742 or so, and then is gone. (b) V_H = 0.079: near the strong resonance 1:4 three little loops and one long excursion with a fast drop of stress follow one another; the returns have four branches. The text gives no V_H; both are chosen.",
+    alt: "Two rows of panels: stress, states and slip rates in time, the phase plane and the return map. The upper row shows irregular large excursions, the lower one a pattern of three small loops and a large one.",
+    scenes: &["fig16a", "fig16a-map", "fig16b", "fig16b-map"],
+    make: Make::Figure(make),
+};
+
+/// So much time of the end is shown.
+const SHOWN: f64 = 6000.0;
+
+fn make(pieces: &Pieces<'_>) -> Result<Made> {
+    let (a, b) = (pieces.run("fig16a")?, pieces.run("fig16b")?);
+    let (map_a, map_b) = (pieces.map("fig16a-map")?, pieces.map("fig16b-map")?);
+    let mut sheet = Sheet::new();
+    sheet.add_run("a", &a);
+    sheet.add_map("a returns", &map_a);
+    sheet.add_run("b", &b);
+    sheet.add_map("b returns", &map_b);
+    Ok(Made {
+        sheet,
+        drawing: Some(Drawing::blocks(vec![
+            with_returns("(a) V_H = 0.0768", &a, &last(&a), &map_a),
+            with_returns("(b) V_H = 0.079", &b, &last(&b), &map_b),
+        ])),
+        method: format!(
+            "(a) {}; (b) {}; returns landed on exactly",
+            method(&a),
+            method(&b)
+        ),
+    })
+}
+
+fn last(run: &Run) -> Rows {
+    between(&run.rows, run.plan.until - SHOWN, run.plan.until)
+}

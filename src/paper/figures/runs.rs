@@ -1,0 +1,144 @@
+//! Panels of runs in time and of their returns.
+
+use crate::friction::{Law, steady_stress};
+use crate::output::Rows;
+use crate::output::plot::{Axis, Block, Panel, Series, Stroke};
+use crate::paper::pieces::{Map, Run};
+use crate::scene::Dimension;
+use crate::views;
+
+/// Colours of the stronger and the weaker line: a law, a diagonal.
+const GREY: usize = 6;
+/// Returns up to this number are drawn broad.
+const FEW: usize = 400;
+/// Points of a law's curve.
+const LAW_POINTS: usize = 200;
+
+/// How runs are computed, in words.
+pub fn method(run: &Run) -> String {
+    let work = &run.outcome.work;
+    format!(
+        "{} with rtol {:e} on (tau, ln psi), {} steps",
+        run.plan.method.name(),
+        run.plan.tolerances.rtol,
+        work.steps
+    )
+}
+
+/// The rows from one time to another.
+pub fn between(rows: &Rows, from: f64, to: f64) -> Rows {
+    let mut some = Rows::new(rows.columns.clone());
+    let time = rows.columns.iter().position(|name| name == "time");
+    for row in rows.iter() {
+        if time.is_some_and(|i| (from..=to).contains(&row[i])) {
+            some.numbers.extend_from_slice(row);
+        }
+    }
+    some
+}
+
+/// A column by name.
+pub fn column(rows: &Rows, name: &str) -> Vec<f64> {
+    rows.column(name).unwrap_or_default()
+}
+
+/// What follows from two columns, row by row.
+pub fn combined(rows: &Rows, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+    let (a, b) = (column(rows, names[0]), column(rows, names[1]));
+    a.iter().zip(&b).map(|(&a, &b)| of(a, b)).collect()
+}
+
+/// Stress, states and slip rates in time; the slower interface is dashed where the paper has it so.
+pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
+    views::panels_in_time(&run.plan, rows)
+}
+
+/// The phase plane with the steady-state law as a dotted line.
+fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
+    let mut panel = views::phase_plane(&run.plan, rows);
+    let law = run.plan.system.law;
+    let rates = [column(rows, "slip_rate_1"), column(rows, "slip_rate_2")].concat();
+    let rates = rates.into_iter().filter(|&v| v > 0.0);
+    let (lo, hi) = rates.fold((f64::INFINITY, 0.0), |(lo, hi): (f64, f64), v| {
+        (lo.min(v), hi.max(v))
+    });
+    if lo < hi {
+        let at = |i: usize| lo * (hi / lo).powf(i as f64 / LAW_POINTS as f64);
+        let x: Vec<f64> = (0..=LAW_POINTS).map(at).collect();
+        let y = x.iter().map(|&v| steady_stress(&law, v)).collect();
+        let dotted = Series::new("steady-state law", x, y);
+        panel
+            .series
+            .push(dotted.stroke(Stroke::Dotted).colour(GREY));
+    }
+    debug_assert!(law.bounds_state() || lo >= 0.0);
+    panel
+}
+
+/// How far the interfaces differ: ln psi_1 - ln psi_2, against stress.
+fn asymmetry(rows: &Rows) -> Panel {
+    let apart = combined(rows, ["state_1", "state_2"], |a, b| (a / b).ln());
+    Panel {
+        series: vec![Series::new("", apart, column(rows, "stress"))],
+        ..Panel::new(
+            "asymmetric subspace",
+            Axis::linear("ln ψ₁ − ln ψ₂"),
+            Axis::linear("stress τ [aσ]"),
+        )
+    }
+}
+
+/// A run with its return map: in time, in the phase plane and the asymmetric subspace, and at the section.
+pub fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
+    Block {
+        title: title.into(),
+        columns: vec![
+            in_time(run, rows),
+            vec![plane_with_law(run, rows), asymmetry(rows)],
+            vec![return_map(map), views::states_at_returns(&map.rows)],
+        ],
+    }
+}
+
+/// A run with its path in the phase plane and in the phase space.
+pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Block {
+    let [front, side, above] = phase_space(rows);
+    let mut columns = vec![in_time(run, rows), vec![plane_with_law(run, rows), front]];
+    // Equal interfaces leave nothing to be seen across.
+    if run.plan.dimension == Dimension::Full {
+        columns.push(vec![side, above]);
+    }
+    Block {
+        title: title.into(),
+        columns,
+    }
+}
+
+/// The phase space (tau, w_1 + w_2, w_1 - w_2), w = log10 psi, seen from three sides.
+fn phase_space(rows: &Rows) -> [Panel; 3] {
+    let sum = || combined(rows, ["state_1", "state_2"], |a, b| (a * b).log10());
+    let apart = || combined(rows, ["state_1", "state_2"], |a, b| (a / b).log10());
+    let panel = |title: &str, names: [&str; 2], x: Vec<f64>, y: Vec<f64>| Panel {
+        series: vec![Series::new("", x, y)],
+        ..Panel::new(title, Axis::linear(names[0]), Axis::linear(names[1]))
+    };
+    let (tau, stress) = ("stress τ [aσ]", || column(rows, "stress"));
+    let (both, difference) = ("w₁ + w₂, w = log₁₀ ψ", "w₁ − w₂");
+    [
+        panel("phase space", [both, tau], sum(), stress()),
+        panel("from the side", [difference, tau], apart(), stress()),
+        panel("from above", [both, difference], sum(), apart()),
+    ]
+}
+
+/// The return map, its diagonal thin.
+fn return_map(map: &Map) -> Panel {
+    let mut panel = views::return_map(&map.plan, &map.rows);
+    for dots in panel.series.iter_mut().filter(|series| series.dots) {
+        dots.wide = map.rows.iter().len() <= FEW;
+    }
+    if let Some(diagonal) = panel.series.last_mut() {
+        *diagonal = diagonal.clone().stroke(Stroke::Dotted).colour(GREY);
+    }
+    panel
+}

@@ -1,0 +1,19 @@
+//! The whole paper again: its figures, Table 1, a scorecard of what it says against what is computed, and a report to read.
+//!
+//! A [`Product`] is made of [`Pieces`], what the scene files compute; a piece that several products show is computed once. What
+//! lies complete in the directory from an earlier run, made of the same scenes by the same program, is not made again.
+
+mod figures;
+mod pieces;
+mod product;
+mod record;
+mod report;
+mod run;
+pub mod scorecard;
+mod sheet;
+
+pub use pieces::{Branches, Curves, Map, Pieces, Run, SCENES};
+pub use product::{Made, Make, PRODUCTS, Product};
+pub use record::{Entry, Record, Written, hash};
+pub use run::{Done, Order, Told, reproduce};
+pub use sheet::{Part, Sheet};

@@ -1,0 +1,362 @@
+//! What scenes compute: runs, return maps, branches and curves, each once however many figures show it.
+
+use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Special};
+use crate::error::{Error, Result};
+use crate::friction::{AnyLaw, Parameters};
+use crate::integrate::Control;
+use crate::output::Rows;
+use crate::scene::{
+    BranchPlan, Column, Command, LocusPlan, Outcome, Plan, Sampling, SceneFile, SectionColumn,
+    SectionOutcome, SectionPlan, Sink, run, run_section,
+};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, OnceLock};
+use std::time::{Duration, Instant};
+
+macro_rules! scenes {
+    ($($name:literal),+ $(,)?) => {
+        /// The scene files that are shipped, by name, with their texts.
+        pub const SCENES: &[(&str, &str)] = &[$(
+            ($name, include_str!(concat!("../../scenes/", $name, ".toml"))),
+        )+];
+    };
+}
+
+scenes![
+    "fig03a",
+    "fig03b",
+    "fig05",
+    "fig06",
+    "fig06-folds",
+    "fig06-orbit-folds",
+    "fig06-orbit-pitchforks",
+    "fig06-pitchforks",
+    "fig07",
+    "fig07-equilibria",
+    "fig08a",
+    "fig08a-map",
+    "fig08b",
+    "fig08b-map",
+    "fig09",
+    "fig09-equilibria",
+    "fig10a",
+    "fig10b",
+    "fig11",
+    "fig12",
+    "fig12-period-doubling",
+    "fig13",
+    "fig13-map",
+    "fig16a",
+    "fig16a-map",
+    "fig16b",
+    "fig16b-map",
+];
+
+/// The text of a scene that is shipped.
+pub fn scene_text(name: &str) -> Option<&'static str> {
+    let found = SCENES.iter().find(|(scene, _)| *scene == name);
+    found.map(|(_, text)| *text)
+}
+
+/// A run in time, with its points as they are drawn.
+#[derive(Debug)]
+pub struct Run {
+    /// What was run.
+    pub plan: Plan,
+    /// In the columns of [`Column::pictured`].
+    pub rows: Rows,
+    /// What it came to.
+    pub outcome: Outcome,
+}
+
+/// The returns of a run.
+#[derive(Debug)]
+pub struct Map {
+    /// What was run.
+    pub plan: SectionPlan,
+    /// In the columns of [`SectionColumn::all`].
+    pub rows: Rows,
+    /// What it came to.
+    pub outcome: SectionOutcome,
+}
+
+/// Branches as a parameter varies.
+#[derive(Debug)]
+pub struct Branches {
+    /// What was followed.
+    pub plan: BranchPlan,
+    /// The points.
+    pub rows: Vec<BranchRow>,
+    /// The special ones.
+    pub special: Vec<Special>,
+}
+
+/// Curves in the (V_H, K) plane.
+#[derive(Debug)]
+pub struct Curves {
+    /// What was followed.
+    pub plan: LocusPlan,
+    /// The points.
+    pub rows: Vec<LocusRow>,
+    /// The special ones.
+    pub special: Vec<Special>,
+}
+
+#[derive(Debug, Clone)]
+enum Piece {
+    Run(Arc<Run>),
+    Map(Arc<Map>),
+    Branches(Arc<Branches>),
+    Curves(Arc<Curves>),
+}
+
+/// A piece, or why there is none, and how long that took.
+type Computed = (Result<Piece>, Duration);
+
+/// All pieces, computed when they are first asked for; safe to ask from several threads.
+#[derive(Debug)]
+pub struct Pieces<'a> {
+    cells: BTreeMap<&'static str, OnceLock<Computed>>,
+    stop: &'a AtomicBool,
+}
+
+impl<'a> Pieces<'a> {
+    /// None yet. Once `stop` is set, what is being computed ends with [`Error::Interrupted`].
+    pub fn new(stop: &'a AtomicBool) -> Self {
+        let cells = SCENES.iter().map(|&(name, _)| (name, OnceLock::new()));
+        Pieces {
+            cells: cells.collect(),
+            stop,
+        }
+    }
+
+    /// The paper's law (35).
+    pub fn law(&self) -> AnyLaw {
+        AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
+    }
+
+    /// The run of a scene.
+    ///
+    /// # Errors
+    /// Those of the scene; [`Error::Interrupted`].
+    pub fn run(&self, scene: &str) -> Result<Arc<Run>> {
+        match self.piece(scene)? {
+            Piece::Run(run) => Ok(run),
+            _ => Err(not(scene, "a run")),
+        }
+    }
+
+    /// The return map of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn map(&self, scene: &str) -> Result<Arc<Map>> {
+        match self.piece(scene)? {
+            Piece::Map(map) => Ok(map),
+            _ => Err(not(scene, "a return map")),
+        }
+    }
+
+    /// The branches of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn branches(&self, scene: &str) -> Result<Arc<Branches>> {
+        match self.piece(scene)? {
+            Piece::Branches(branches) => Ok(branches),
+            _ => Err(not(scene, "a branch")),
+        }
+    }
+
+    /// The curves of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn curves(&self, scene: &str) -> Result<Arc<Curves>> {
+        match self.piece(scene)? {
+            Piece::Curves(curves) => Ok(curves),
+            _ => Err(not(scene, "a curve")),
+        }
+    }
+
+    /// How long the piece of a scene took; `None` if nobody asked for it.
+    pub fn took(&self, scene: &str) -> Option<Duration> {
+        let computed = self.cells.get(scene)?.get()?;
+        Some(computed.1)
+    }
+
+    /// Computes the piece of a scene, if that is not done yet.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn compute(&self, scene: &str) -> Result<()> {
+        self.piece(scene).map(|_| ())
+    }
+
+    fn piece(&self, scene: &str) -> Result<Piece> {
+        let found = self.cells.get_key_value(scene);
+        let (name, cell) = found.ok_or_else(|| not(scene, "shipped"))?;
+        let (piece, _) = cell.get_or_init(|| {
+            let begun = Instant::now();
+            (self.made(name), begun.elapsed())
+        });
+        piece.clone()
+    }
+
+    fn made(&self, name: &str) -> Result<Piece> {
+        self.going_on()?;
+        let text = scene_text(name).ok_or_else(|| not(name, "shipped"))?;
+        let file = SceneFile::parse(&format!("{name}.toml"), text, &Command::program())?;
+        match Command::of_scene(&file, &[], &[])? {
+            Command::Integrate(options) => self.run_of(Plan::new(&options)?),
+            Command::Section(options) => self.map_of(SectionPlan::new(&options)?),
+            Command::Branch(options) => self.branches_of(BranchPlan::new(&options)?),
+            Command::Locus(options) => self.curves_of(LocusPlan::new(&options)?),
+            _ => Err(not(name, "a run, a map, a branch or a curve")),
+        }
+    }
+
+    fn run_of(&self, plan: Plan) -> Result<Piece> {
+        // Rows are the points that a picture takes, and nothing else is needed of the run.
+        let plan = Plan {
+            sampling: Sampling::FinalOnly,
+            picture: true,
+            ..plan
+        };
+        let columns = Column::pictured(plan.system.interfaces);
+        let mut kept = self.keep(columns.iter().map(Column::name).collect(), true);
+        let outcome = run(&plan, &mut kept)?;
+        self.ended(&outcome.failure)?;
+        let rows = kept.rows;
+        Ok(Piece::Run(Arc::new(Run {
+            plan,
+            rows,
+            outcome,
+        })))
+    }
+
+    fn map_of(&self, plan: SectionPlan) -> Result<Piece> {
+        let columns = SectionColumn::all(plan.system.interfaces);
+        let mut kept = self.keep(columns.iter().map(SectionColumn::name).collect(), false);
+        let outcome = run_section(&plan, &mut kept)?;
+        self.ended(&outcome.failure)?;
+        let rows = kept.rows;
+        Ok(Piece::Map(Arc::new(Map {
+            plan,
+            rows,
+            outcome,
+        })))
+    }
+
+    fn branches_of(&self, plan: BranchPlan) -> Result<Piece> {
+        let (mut rows, mut special) = (Vec::new(), Vec::new());
+        plan.follow(&[], &mut |event| {
+            match event {
+                Event::Branch(row) => rows.push(row),
+                Event::Special(point) => special.push(point),
+                Event::Locus(_) => {}
+            }
+            self.flow()
+        })?;
+        self.going_on()?;
+        whole(&special)?;
+        Ok(Piece::Branches(Arc::new(Branches {
+            plan,
+            rows,
+            special,
+        })))
+    }
+
+    fn curves_of(&self, plan: LocusPlan) -> Result<Piece> {
+        let (mut rows, mut special) = (Vec::new(), Vec::new());
+        plan.follow(&[], &mut |event| {
+            match event {
+                Event::Locus(row) => rows.push(row),
+                Event::Special(point) => special.push(point),
+                Event::Branch(_) => {}
+            }
+            self.flow()
+        })?;
+        self.going_on()?;
+        whole(&special)?;
+        Ok(Piece::Curves(Arc::new(Curves {
+            plan,
+            rows,
+            special,
+        })))
+    }
+
+    fn keep(&self, columns: Vec<String>, pictured: bool) -> Kept<'_> {
+        Kept {
+            rows: Rows::new(columns),
+            pictured,
+            stop: self.stop,
+        }
+    }
+
+    fn flow(&self) -> ControlFlow<()> {
+        if self.stop.load(Ordering::Relaxed) {
+            ControlFlow::Break(())
+        } else {
+            ControlFlow::Continue(())
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Interrupted`].
+    pub fn going_on(&self) -> Result<()> {
+        match self.flow() {
+            ControlFlow::Break(()) => Err(Error::Interrupted),
+            ControlFlow::Continue(()) => Ok(()),
+        }
+    }
+
+    fn ended(&self, failure: &Option<Error>) -> Result<()> {
+        self.going_on()?;
+        failure.clone().map_or(Ok(()), Err)
+    }
+}
+
+/// A branch or curve that went no further than its method could is not what a figure shall show.
+fn whole(special: &[Special]) -> Result<()> {
+    let Some(stuck) = special.iter().find(|one| one.label == Label::Mx) else {
+        return Ok(());
+    };
+    let (driving, stiffness) = (stuck.driving.value, stuck.stiffness.value);
+    Err(Error::Stuck { driving, stiffness })
+}
+
+fn not(scene: &str, what: &str) -> Error {
+    Error::Input(format!("the scene {scene} is not {what}"))
+}
+
+/// Keeps what a run yields.
+struct Kept<'a> {
+    rows: Rows,
+    /// Points of the picture are kept and not rows.
+    pictured: bool,
+    stop: &'a AtomicBool,
+}
+
+impl Sink for Kept<'_> {
+    fn row(&mut self, row: &[f64]) -> Control {
+        if !self.pictured {
+            self.rows.numbers.extend_from_slice(row);
+        }
+        Control::Continue
+    }
+
+    fn drawn(&mut self, point: &[f64]) {
+        self.rows.numbers.extend_from_slice(point);
+    }
+
+    fn reached(&mut self, _fraction: f64) -> Control {
+        if self.stop.load(Ordering::Relaxed) {
+            Control::Stop
+        } else {
+            Control::Continue
+        }
+    }
+}

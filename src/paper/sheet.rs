@@ -1,0 +1,142 @@
+//! The numbers behind a picture, as CSV: several sets of rows one below the other, each under its own name.
+
+use super::pieces::{Branches, Curves, Map, Run};
+use crate::error::{Error, Result};
+use crate::output::{Cell, CsvRows, RowWriter, Rows};
+use crate::scene::Of;
+use crate::views::{self, Column, branch_columns, locus_columns};
+
+/// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Sheet {
+    /// From top to bottom.
+    pub parts: Vec<Part>,
+}
+
+/// A set of rows with equal columns.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Part {
+    /// What it is.
+    pub name: String,
+    /// The names of its columns.
+    pub columns: Vec<String>,
+    /// As many cells each as there are columns.
+    pub rows: Vec<Vec<Cell>>,
+}
+
+impl Sheet {
+    /// Nothing yet.
+    pub fn new() -> Self {
+        Sheet::default()
+    }
+
+    /// Adds a set of rows.
+    pub fn add(&mut self, name: impl Into<String>, columns: &[&str], rows: Vec<Vec<Cell>>) {
+        self.parts.push(Part {
+            name: name.into(),
+            columns: columns.iter().map(|&column| column.to_owned()).collect(),
+            rows,
+        });
+    }
+
+    /// Adds rows of numbers as they are.
+    pub fn add_numbers(&mut self, name: impl Into<String>, rows: &Rows) {
+        let cells = |row: &[f64]| row.iter().map(|&x| Cell::Number(x)).collect();
+        self.parts.push(Part {
+            name: name.into(),
+            columns: rows.columns.clone(),
+            rows: rows.iter().map(cells).collect(),
+        });
+    }
+
+    /// Adds a run in time.
+    pub fn add_run(&mut self, name: impl Into<String>, run: &Run) {
+        self.add_numbers(name, &run.rows);
+    }
+
+    /// Adds the returns of a map.
+    pub fn add_map(&mut self, name: impl Into<String>, map: &Map) {
+        self.add_numbers(name, &map.rows);
+    }
+
+    /// Adds branches, in the columns of the command `branch`.
+    pub fn add_branches(&mut self, name: impl Into<String>, branches: &Branches) {
+        let plan = &branches.plan;
+        let columns = branch_columns(plan.of == Of::Orbits, plan.system.interfaces);
+        self.add_rows(name, &columns, &branches.rows, &plan.system.units);
+    }
+
+    /// Adds curves, in the columns of the command `locus`.
+    pub fn add_curves(&mut self, name: impl Into<String>, curves: &Curves) {
+        let units = &curves.plan.system.units;
+        self.add_rows(name, &locus_columns(), &curves.rows, units);
+    }
+
+    /// Adds special points.
+    pub fn add_special(
+        &mut self,
+        name: impl Into<String>,
+        special: &[crate::bifurcation::Special],
+        units: &crate::scene::Units,
+    ) {
+        self.add_rows(name, &views::special_columns(), special, units);
+    }
+
+    fn add_rows<R>(
+        &mut self,
+        name: impl Into<String>,
+        columns: &[Column<R>],
+        rows: &[R],
+        units: &crate::scene::Units,
+    ) {
+        let names = views::names(columns, false);
+        let cells = |row| views::cells(columns, row, units, false);
+        self.parts.push(Part {
+            name: name.into(),
+            columns: names.into_iter().map(|(name, _)| name).collect(),
+            rows: rows.iter().map(cells).collect(),
+        });
+    }
+
+    /// The CSV, below remarks.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if a row has not as many cells as its set has columns.
+    pub fn csv(&self, remarks: &[String]) -> Result<Vec<u8>> {
+        let mut columns = vec!["part".to_owned()];
+        for name in self.parts.iter().flat_map(|part| &part.columns) {
+            if !columns.contains(name) {
+                columns.push(name.clone());
+            }
+        }
+        let mut bytes = Vec::new();
+        let wrong =
+            |error: std::io::Error| Error::Input(format!("the rows can't be written: {error}"));
+        {
+            let mut csv = CsvRows::new(&mut bytes, remarks, &columns).map_err(wrong)?;
+            for part in &self.parts {
+                let places: Vec<Option<usize>> = columns
+                    .iter()
+                    .map(|name| part.columns.iter().position(|column| column == name))
+                    .collect();
+                for row in &part.rows {
+                    if row.len() != part.columns.len() {
+                        return Err(Error::Input(format!(
+                            "a row of {} has {} cells for {} columns",
+                            part.name,
+                            row.len(),
+                            part.columns.len()
+                        )));
+                    }
+                    let mut cells: Vec<Cell> = places
+                        .iter()
+                        .map(|place| place.map_or(Cell::Missing, |i| row[i].clone()))
+                        .collect();
+                    cells[0] = Cell::Text(part.name.clone());
+                    csv.row(&cells).map_err(wrong)?;
+                }
+            }
+        }
+        Ok(bytes)
+    }
+}

@@ -1,0 +1,225 @@
+//! Branches from options: what is followed, along what, from where to where.
+
+use super::continuation::BranchOptions;
+use super::following::{self, Following, landings, range};
+use super::system::System;
+use super::units::{Quantity, Units};
+use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits};
+use crate::error::{Error, Result};
+use crate::friction::positive;
+use crate::model::Loading;
+use crate::orbit::Slab;
+use serde_json::{Value, json};
+
+/// Of what the branches are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Of {
+    /// Steady states.
+    Equilibria,
+    /// Periodic orbits.
+    Orbits,
+}
+
+impl Of {
+    fn named(name: Option<&str>) -> Result<Self> {
+        match name {
+            Some("equilibria") => Ok(Of::Equilibria),
+            Some("orbits") => Ok(Of::Orbits),
+            Some(other) => Err(Error::Input(format!(
+                "there are no branches of {other:?}; choose branch equilibria or branch orbits"
+            ))),
+            None => Err(Error::Input(
+                "it is missing of what the branches are: branch equilibria or branch orbits".into(),
+            )),
+        }
+    }
+
+    fn name(self) -> &'static str {
+        match self {
+            Of::Equilibria => "equilibria",
+            Of::Orbits => "orbits",
+        }
+    }
+}
+
+/// What varies, with its name and its default range.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Along {
+    /// Which parameter.
+    pub parameter: Parameter,
+    name: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    range: (f64, f64),
+}
+
+impl Along {
+    fn named(name: &str) -> Result<Self> {
+        match name {
+            "driving" => Ok(Along {
+                parameter: Parameter::Driving,
+                name: "driving",
+                quantity: Quantity::SlipRate,
+                range: following::DRIVING,
+            }),
+            "stiffness" => Ok(Along {
+                parameter: Parameter::Stiffness,
+                name: "stiffness",
+                quantity: Quantity::Stiffness,
+                range: following::STIFFNESS,
+            }),
+            other => Err(Error::parameter("along", other, "driving or stiffness")),
+        }
+    }
+
+    /// Its value at a row, in the user's units.
+    pub fn of(&self, row: &BranchRow, units: &Units) -> f64 {
+        let x = match self.parameter {
+            Parameter::Driving => row.driving,
+            Parameter::Stiffness => row.stiffness,
+        };
+        units.outward(self.quantity, x)
+    }
+
+    /// From where to where, dimensionless.
+    fn ends(&self, options: &BranchOptions, units: &Units) -> Result<(f64, f64)> {
+        let end = |name, given: Option<f64>, default| {
+            given.map_or(Ok(default), |x| {
+                Ok(units.inward(self.quantity, positive(name, x)?))
+            })
+        };
+        range(
+            "the range --from --to",
+            (
+                end("from", options.from, self.range.0)?,
+                end("to", options.to, self.range.1)?,
+            ),
+        )
+    }
+}
+
+/// Branches that are asked for, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BranchPlan {
+    /// Of what.
+    pub of: Of,
+    /// What varies.
+    pub along: Along,
+    /// What slides.
+    pub system: System,
+    /// What is followed.
+    pub request: BranchRequest,
+    /// How.
+    pub following: Following,
+    /// The same for the output.
+    pub numerics: Value,
+}
+
+impl BranchPlan {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &BranchOptions) -> Result<Self> {
+        let of = Of::named(options.of.as_deref())?;
+        let along = Along::named(&options.along)?;
+        let system = System::new(&options.model)?;
+        let units = &system.units;
+        let ends = along.ends(options, units)?;
+        let loading = loading(&system, &along, ends.0)?;
+        let following = Following::new(&options.continuation, of == Of::Orbits)?;
+        let out = |x| units.outward(along.quantity, x);
+        let at = landings("at", options.at.as_deref(), (along.quantity, units), ends)?;
+        let numerics = json!({
+            "of": of.name(),
+            "along": along.name,
+            "from": out(ends.0),
+            "to": out(ends.1),
+            "symmetry": options.symmetry,
+            "at": at.iter().map(|&x| out(x)).collect::<Vec<f64>>(),
+            "step_limit": following.step,
+            "tolerance": following.tolerance,
+            "doublings": options.doublings,
+            "crosscheck": following.second.map(|second| second.name()),
+        });
+        let request = BranchRequest {
+            slab: Slab {
+                law: system.law,
+                interfaces: system.interfaces,
+                loading,
+            },
+            along: along.parameter,
+            range: ends,
+            symmetry: following::symmetry(&options.symmetry, system.interfaces)?,
+            at,
+            step: following.step,
+            tolerance: following.tolerance,
+            skip: Vec::new(),
+            doublings: options.doublings,
+        };
+        Ok(BranchPlan {
+            of,
+            along,
+            system,
+            request,
+            following,
+            numerics,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let out = |x| self.system.units.outward(self.along.quantity, x);
+        let (from, to) = self.request.range;
+        let method = match self.of {
+            Of::Equilibria => {
+                "all steady states in closed form or from certain brackets; the characteristic polynomials"
+            }
+            Of::Orbits => "taylor, tangents on, multiple shooting; begins at the Hopf points",
+        };
+        format!(
+            "plan of this command\n{}  range             {} from {:e} to {:e}\n  method            {method}\n{}",
+            following::explain_symmetry(self.request.symmetry, self.system.interfaces),
+            self.along.name,
+            out(from),
+            out(to),
+            following::explain(&self.following, &self.request.at)
+        )
+    }
+
+    /// Follows them, but those whose numbers are known.
+    ///
+    /// # Errors
+    /// Those of the branches.
+    pub fn follow(&self, known: &[usize], seen: Seen<'_>) -> Result<()> {
+        let request = BranchRequest {
+            skip: known.to_vec(),
+            ..self.request.clone()
+        };
+        match self.of {
+            Of::Equilibria => equilibria::branch(&request, seen),
+            Of::Orbits => orbits::branch(&request, seen),
+        }
+    }
+}
+
+/// V_H and K; what varies begins at `from` and must not be given.
+fn loading(system: &System, along: &Along, from: f64) -> Result<Loading> {
+    let twice = |given: Option<f64>| match given {
+        None => Ok(()),
+        Some(_) => Err(Error::Input(format!(
+            "--{0} can't be given with --along {0}, for it varies; use --from and --to",
+            along.name
+        ))),
+    };
+    match along.parameter {
+        Parameter::Driving => {
+            twice(system.driving)?;
+            Loading::new(from, system.needed_stiffness()?)
+        }
+        Parameter::Stiffness => {
+            twice(system.stiffness)?;
+            Loading::new(system.needed_driving()?, from)
+        }
+    }
+}

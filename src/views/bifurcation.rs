@@ -1,0 +1,97 @@
+//! What the rows of branches and curves, and special points, show.
+
+use super::{Column, Entry};
+use crate::bifurcation::{BranchRow, Criticality, Label, LocusRow, Special};
+use crate::scene::Quantity;
+
+/// The columns of branches of orbits or of equilibria; a table leaves out what is less looked at.
+pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>> {
+    use Quantity::{Growth, Number, SlipRate, State, Stiffness, Stress, Time};
+    type Row = BranchRow;
+    // The exponent of an equilibrium is a rate, that of an orbit belongs to its period.
+    let exponent = if orbits { Number } else { Growth };
+    let mut columns = vec![
+        Column::new("driving", SlipRate, |row: &Row| row.driving.into()),
+        Column::new("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
+        Column::new("stress", Stress, |row: &Row| row.stress.into()),
+        Column::new("stress_min", Stress, |row: &Row| row.stress_range.0.into()),
+        Column::new("stress_max", Stress, |row: &Row| row.stress_range.1.into()),
+        Column::new("period", Time, |row: &Row| row.period.into()),
+        Column::new("state_1", State, |row: &Row| row.state[0].into()),
+        Column::new("state_2", State, |row: &Row| row.state[1].into()),
+        Column::new("slip_rate_1", SlipRate, |row: &Row| row.slip_rate[0].into()),
+        Column::new("slip_rate_2", SlipRate, |row: &Row| row.slip_rate[1].into()),
+        Column::new("ln_abs_multiplier_1", exponent, |row: &Row| {
+            row.ln_abs_multiplier[0].into()
+        }),
+        Column::new("ln_abs_multiplier_2", exponent, |row: &Row| {
+            row.ln_abs_multiplier[1].into()
+        }),
+        Column::new("verdict", Number, |row: &Row| row.verdict.name().into()),
+        Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }),
+        Column::new("branch", Number, |row: &Row| row.branch.into()),
+    ];
+    if interfaces == 1 {
+        columns.retain(|column| !column.name.ends_with("_2"));
+    }
+    let left_out: &[&str] = if orbits {
+        &[
+            "stress",
+            "slip_rate_1",
+            "slip_rate_2",
+            "ln_abs_multiplier_2",
+        ]
+    } else {
+        &[
+            "stress_min",
+            "stress_max",
+            "period",
+            "ln_abs_multiplier_1",
+            "ln_abs_multiplier_2",
+        ]
+    };
+    for column in &mut columns {
+        column.in_table = !left_out.contains(&column.name);
+    }
+    columns
+}
+
+/// The columns of curves.
+pub fn locus_columns() -> Vec<Column<LocusRow>> {
+    use Quantity::{Number, SlipRate, Stiffness, Time};
+    type Row = LocusRow;
+    vec![
+        Column::uncertain("driving", SlipRate, |row: &Row| row.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
+        Column::new("period", Time, |row: &Row| row.period.into()),
+        Column::new("angle_over_pi", Number, |row: &Row| {
+            row.angle_over_pi.into()
+        }),
+        Column::new("criticality", Number, |row: &Row| {
+            row.criticality.map(Criticality::name).into()
+        }),
+        Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }),
+        Column::new("curve", Number, |row: &Row| row.curve.into()),
+    ]
+}
+
+/// The columns of special points.
+pub fn special_columns() -> Vec<Column<Special>> {
+    use Quantity::{Number, SlipRate, Stiffness, Time};
+    vec![
+        Column::new("label", Number, |one: &Special| one.label.name().into()),
+        Column::new("name", Number, |one| one.label.meaning().into()),
+        Column::uncertain("driving", SlipRate, |one| one.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
+        Column::uncertain("period", Time, |one| one.period.into()),
+        Column::new("criticality", Number, |one| {
+            one.criticality.map(Criticality::name).into()
+        }),
+        Column::new("coefficient", Number, |one| one.coefficient.into()),
+        Column::new("note", Number, |one| Entry::Word(one.note.clone())),
+    ]
+}

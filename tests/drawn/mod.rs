@@ -1,0 +1,127 @@
+//! What a viewer of a picture sees: the words and shapes of its SVG with their places, in the font that is built in.
+#![allow(missing_docs)]
+
+use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree, fontdb::Database};
+use std::sync::Arc;
+use twinslip::output::plot::{Axis, Drawing, Panel};
+
+pub const INK: [u8; 3] = [40, 40, 40];
+pub const GRID: [u8; 3] = [228, 228, 228];
+pub const PAPER: [u8; 3] = [255, 255, 255];
+pub const BLUE: [u8; 3] = [0, 114, 178];
+
+/// A line or an area.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape {
+    pub stroke: Option<[u8; 3]>,
+    pub fill: Option<[u8; 3]>,
+    /// Without the breadth of the line.
+    pub place: Rect,
+}
+
+pub struct Seen {
+    pub width: f32,
+    pub height: f32,
+    pub words: Vec<(String, Rect)>,
+    pub shapes: Vec<Shape>,
+}
+
+pub fn seen(drawing: &Drawing) -> Seen {
+    let svg = drawing.svg().expect("a picture");
+    let font = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/font/plot.ttf"));
+    let mut fonts = Database::new();
+    fonts.load_font_data(font.expect("the font"));
+    let name = fonts.faces().next().expect("a face").families[0].0.clone();
+    fonts.set_sans_serif_family(name);
+    let options = Options {
+        fontdb: Arc::new(fonts),
+        ..Options::default()
+    };
+    let tree = Tree::from_str(&svg, &options).expect("SVG");
+    let mut seen = Seen {
+        width: tree.size().width(),
+        height: tree.size().height(),
+        words: Vec::new(),
+        shapes: Vec::new(),
+    };
+    seen.collect(tree.root());
+    seen
+}
+
+fn rgb(paint: &Paint) -> [u8; 3] {
+    match paint {
+        Paint::Color(colour) => [colour.red, colour.green, colour.blue],
+        other => panic!("{other:?}"),
+    }
+}
+
+impl Seen {
+    fn collect(&mut self, group: &Group) {
+        for node in group.children() {
+            match node {
+                Node::Group(group) => self.collect(group),
+                Node::Text(text) => {
+                    let words: String = text.chunks().iter().map(|chunk| chunk.text()).collect();
+                    self.words
+                        .push((words.trim().to_owned(), text.abs_bounding_box()));
+                }
+                Node::Path(path) => self.shapes.push(Shape {
+                    stroke: path.stroke().map(|stroke| rgb(stroke.paint())),
+                    fill: path.fill().map(|fill| rgb(fill.paint())),
+                    place: path.abs_bounding_box(),
+                }),
+                Node::Image(_) => panic!("an image"),
+            }
+        }
+    }
+
+    /// The frames: the only lines in ink that enclose something.
+    pub fn frames(&self) -> Vec<Rect> {
+        let ink = self
+            .shapes
+            .iter()
+            .filter(|shape| shape.stroke == Some(INK) && shape.fill.is_none());
+        ink.map(|shape| shape.place)
+            .filter(|place| place.width() > 50.0 && place.height() > 50.0)
+            .collect()
+    }
+
+    pub fn says(&self, words: &str) -> bool {
+        self.words.iter().any(|(text, _)| text == words)
+    }
+
+    /// Words stand apart from each other and within the picture.
+    pub fn assert_legible(&self) {
+        for (i, (text, a)) in self.words.iter().enumerate() {
+            let within = a.left() >= 0.0
+                && a.top() >= 0.0
+                && a.right() <= self.width
+                && a.bottom() <= self.height;
+            assert!(within, "{text:?} leaves the picture: {a:?}");
+            for (other, b) in &self.words[..i] {
+                let apart = a.left() >= b.right()
+                    || b.left() >= a.right()
+                    || a.top() >= b.bottom()
+                    || b.top() >= a.bottom();
+                assert!(apart, "{text:?} at {a:?} covers {other:?} at {b:?}");
+            }
+        }
+    }
+}
+
+/// A picture of one panel.
+pub fn alone(panel: Panel) -> Drawing {
+    Drawing::columns(vec![vec![panel]])
+}
+
+/// A panel whose axes go from 0 to 1.
+pub fn unit(title: &str) -> Panel {
+    let axis = |name: &str| Axis::linear(name).within(0.0, 1.0);
+    Panel::new(title, axis("x"), axis("y"))
+}
+
+/// Equally spaced.
+pub fn numbers(from: f64, to: f64, many: usize) -> Vec<f64> {
+    let step = (to - from) / (many - 1) as f64;
+    (0..many).map(|i| from + step * i as f64).collect()
+}

@@ -1,0 +1,254 @@
+//! The whole paper by one command: what is made, what is left, and what is kept when a run ends early.
+#![allow(missing_docs)]
+
+mod command;
+
+use command::{contents, csv, folder, run};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+use std::time::Duration;
+
+/// Products that take no more than a second together, one of each kind but the scorecard.
+const QUICK: &str = "fig03,fig05,fig08";
+
+fn reproduce(out: &Path, more: &[&str]) -> command::Ended {
+    let out = out.to_str().expect("UTF-8");
+    run(&[&["reproduce", "--out", out], more].concat())
+}
+
+fn manifest(out: &Path) -> Value {
+    let text = fs::read_to_string(out.join("manifest.json")).expect("a manifest");
+    serde_json::from_str(&text).expect("JSON")
+}
+
+/// All files but those that tell of times.
+fn results(out: &Path) -> BTreeMap<String, Vec<u8>> {
+    let timeless = |name: &String| name != "manifest.json" && name != "report.html";
+    contents(out)
+        .into_iter()
+        .filter(timeless)
+        .map(|name| {
+            let bytes = fs::read(out.join(&name)).expect("a file");
+            (name, bytes)
+        })
+        .collect()
+}
+
+/// Every file that the manifest vouches for is there, to the byte, and nothing is half done.
+fn whole(out: &Path) -> usize {
+    let manifest = manifest(out);
+    let products = manifest["products"].as_object().expect("products");
+    for product in products.values() {
+        for file in product["files"].as_array().expect("files") {
+            let name = file["name"].as_str().expect("a name");
+            let bytes = fs::read(out.join(name)).expect("a file");
+            assert_eq!(file["bytes"], bytes.len(), "{name}");
+            let hash = twinslip::paper::hash(&bytes);
+            assert_eq!(file["sha256"], hash, "{name}");
+        }
+    }
+    let left = contents(out);
+    assert!(!left.iter().any(|name| name.ends_with(".tmp")), "{left:?}");
+    products.len()
+}
+
+#[test]
+fn only_what_is_asked_for_is_made_and_told_in_the_report() {
+    let out = folder("reproduce-only");
+    let ended = reproduce(&out, &["--only", "fig14,5"]);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let mut files = contents(&out);
+    files.sort();
+    let expected = [
+        "fig05.csv",
+        "fig05.svg",
+        "fig14.csv",
+        "fig14.svg",
+        "manifest.json",
+        "report.html",
+    ];
+    assert_eq!(files, expected);
+    let report = fs::read_to_string(out.join("report.html")).expect("a report");
+    for words in ["id=\"fig05\"", "id=\"fig14\"", "fig14.csv", "fig05.csv"] {
+        assert!(report.contains(words), "{words}");
+    }
+    assert!(!report.contains("id=\"fig06\""));
+    // The angle reaches pi at the end of the curve, and the CSV has it.
+    let rows = csv(&fs::read_to_string(out.join("fig14.csv")).expect("rows"));
+    let angle = rows[0].iter().position(|name| name == "angle_over_pi");
+    let angle = angle.expect("a column");
+    let largest = rows[1..]
+        .iter()
+        .filter_map(|row| row[angle].parse::<f64>().ok())
+        .fold(0.0, f64::max);
+    assert!((largest - 1.0).abs() < 1e-6, "{largest}");
+}
+
+#[test]
+fn what_stands_is_not_made_again_and_what_is_damaged_is_mended() {
+    let out = folder("reproduce-mend");
+    assert_eq!(reproduce(&out, &["--only", QUICK]).code, 0);
+    let before = results(&out);
+    let again = reproduce(&out, &["--only", QUICK]);
+    assert_eq!(again.code, 0);
+    assert!(
+        again.err.contains("not made again: fig03, fig05, fig08"),
+        "{}",
+        again.err
+    );
+    assert!(again.err.contains("\n0 made"), "{}", again.err);
+    // Deleted, cut, and changed in one byte.
+    fs::remove_file(out.join("fig03.csv")).expect("removed");
+    let mended = reproduce(&out, &["--only", QUICK]);
+    assert!(
+        mended.err.contains("not made again: fig05, fig08"),
+        "{}",
+        mended.err
+    );
+    assert_eq!(results(&out), before);
+    let path = out.join("fig05.csv");
+    let mut bytes = fs::read(&path).expect("rows");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&path, &bytes).expect("written");
+    fs::write(out.join("fig08.svg"), "<svg>").expect("written");
+    let mended = reproduce(&out, &["--only", QUICK]);
+    assert!(
+        mended.err.contains("not made again: fig03\n"),
+        "{}",
+        mended.err
+    );
+    assert_eq!(results(&out), before);
+    // A manifest that can't be read vouches for nothing.
+    fs::write(out.join("manifest.json"), "{").expect("written");
+    assert!(reproduce(&out, &["--only", "fig05"]).err.contains("1 made"));
+    assert!(
+        reproduce(&out, &["--only", "fig05", "--force"])
+            .err
+            .contains("1 made")
+    );
+    assert_eq!(results(&out), before);
+}
+
+#[test]
+fn results_do_not_depend_on_threads_or_company() {
+    let [one, two, alone] = ["1", "2", "alone"].map(|n| folder(&format!("reproduce-threads-{n}")));
+    let list = "fig03,fig05,fig08,fig10,fig12,fig14";
+    for (out, threads) in [(&one, "1"), (&two, "2")] {
+        let ended = reproduce(out, &["--only", list, "--threads", threads, "--png"]);
+        assert_eq!(ended.code, 0, "{}", ended.err);
+    }
+    let together = results(&one);
+    assert_eq!(together, results(&two));
+    assert_eq!(together.len(), 18);
+    let out = alone.to_str().expect("UTF-8");
+    assert_eq!(run(&["figure", "14", "--out", out, "-q"]).code, 0);
+    for name in ["fig14.csv", "fig14.svg"] {
+        assert_eq!(
+            fs::read(alone.join(name)).expect("a file"),
+            together[name],
+            "{name}"
+        );
+    }
+    assert!(!alone.join("report.html").exists());
+}
+
+#[test]
+fn wrong_orders_are_refused_in_one_sentence() {
+    let out = folder("reproduce-wrong");
+    let file = out.join("file");
+    fs::write(&file, "").expect("written");
+    let path = file.to_str().expect("UTF-8");
+    for (words, sentence) in [
+        (
+            vec!["reproduce", "--only", "fig18", "--out", path],
+            "there is no \"fig18\" to make",
+        ),
+        (
+            vec!["reproduce", "--only", "", "--out", path],
+            "there is no \"\" to make",
+        ),
+        (
+            vec!["reproduce", "--threads", "0", "--out", path],
+            "threads is 0, but must be at least 1",
+        ),
+        (vec!["reproduce", "--out", path], "cannot create"),
+        (
+            vec!["figure", "18"],
+            "figure is 18, but must be from 1 to 17",
+        ),
+    ] {
+        let ended = run(&words);
+        assert_eq!(ended.code, 2, "{words:?}: {}", ended.err);
+        assert!(ended.err.contains(sentence), "{words:?}: {}", ended.err);
+        assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
+    }
+    assert_eq!(contents(&out), ["file"]);
+}
+
+/// A limit on the size of files stands for a full disk: writing fails in the midst of a file.
+#[test]
+fn a_full_disk_is_one_error_and_leaves_no_half_file() {
+    let out = folder("reproduce-full");
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 60; exec {} reproduce --only fig14,fig08 --out {}",
+        env!("CARGO_BIN_EXE_twinslip"),
+        out.display()
+    );
+    let ended = Command::new("bash")
+        .args(["-c", &script])
+        .output()
+        .expect("bash");
+    let err = String::from_utf8(ended.stderr).expect("UTF-8");
+    assert_eq!(ended.status.code(), Some(2), "{err}");
+    let errors: Vec<&str> = err
+        .lines()
+        .filter(|line| line.starts_with("error"))
+        .collect();
+    assert_eq!(errors.len(), 1, "{err}");
+    assert!(
+        errors[0].contains("cannot write") && errors[0].contains("large"),
+        "{err}"
+    );
+    let left = contents(&out);
+    assert!(!left.iter().any(|name| name.ends_with(".tmp")), "{left:?}");
+    assert!(!left.contains(&"fig08.csv".to_owned()), "{left:?}");
+    // What was small enough is whole, and the next run makes the rest.
+    if out.join("manifest.json").exists() {
+        whole(&out);
+    }
+    assert_eq!(reproduce(&out, &["--only", "fig14,fig08"]).code, 0);
+    assert_eq!(whole(&out), 2);
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_leaves_what_is_finished_complete() {
+    let out = folder("reproduce-interrupted");
+    let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .args(["reproduce", "--out", out.to_str().expect("UTF-8")])
+        .stderr(std::process::Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // As soon as something is finished, and long before all is.
+    let begun = std::time::Instant::now();
+    while !out.join("manifest.json").exists() {
+        assert!(
+            begun.elapsed() < Duration::from_secs(120),
+            "nothing was finished"
+        );
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status()
+        .expect("kill");
+    assert!(killed.success());
+    let status = child.wait().expect("it ends");
+    assert_eq!(status.code(), Some(130));
+    let finished = whole(&out);
+    assert!((1..19).contains(&finished), "{finished}");
+}
