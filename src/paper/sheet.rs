@@ -1,10 +1,11 @@
 //! The numbers behind a picture, as CSV: several sets of rows one below the other, each under its own name.
 
 use super::pieces::{Branches, Curves, Map, Run};
+use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::output::{Cell, CsvRows, RowWriter, Rows};
-use crate::scene::Of;
-use crate::views::{self, Column, branch_columns, locus_columns};
+use crate::scene::{Of, Units};
+use crate::views::{self, Column, branch_columns, locus_columns, special_columns};
 
 /// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -59,40 +60,31 @@ impl Sheet {
         self.add_numbers(name, &map.rows);
     }
 
-    /// Adds branches, in the columns of the command `branch`.
-    pub fn add_branches(&mut self, name: impl Into<String>, branches: &Branches) {
+    /// Adds branches, in the columns of the command `branch`, and their special points.
+    pub fn add_branches(&mut self, name: &str, branches: &Branches) {
         let plan = &branches.plan;
         let columns = branch_columns(plan.of == Of::Orbits, plan.system.interfaces);
-        self.add_rows(name, &columns, &branches.rows, &plan.system.units);
+        self.add_rows(name.into(), &columns, &branches.rows, &plan.system.units);
+        self.add_special(name, &branches.special, &plan.system.units);
     }
 
-    /// Adds curves, in the columns of the command `locus`.
-    pub fn add_curves(&mut self, name: impl Into<String>, curves: &Curves) {
+    /// Adds curves, in the columns of the command `locus`, and their special points.
+    pub fn add_curves(&mut self, name: &str, curves: &Curves) {
         let units = &curves.plan.system.units;
-        self.add_rows(name, &locus_columns(), &curves.rows, units);
+        self.add_rows(name.into(), &locus_columns(), &curves.rows, units);
+        self.add_special(name, &curves.special, units);
     }
 
-    /// Adds special points.
-    pub fn add_special(
-        &mut self,
-        name: impl Into<String>,
-        special: &[crate::bifurcation::Special],
-        units: &crate::scene::Units,
-    ) {
-        self.add_rows(name, &views::special_columns(), special, units);
+    fn add_special(&mut self, name: &str, special: &[Special], units: &Units) {
+        let name = format!("special points of {name}");
+        self.add_rows(name, &special_columns(), special, units);
     }
 
-    fn add_rows<R>(
-        &mut self,
-        name: impl Into<String>,
-        columns: &[Column<R>],
-        rows: &[R],
-        units: &crate::scene::Units,
-    ) {
+    fn add_rows<R>(&mut self, name: String, columns: &[Column<R>], rows: &[R], units: &Units) {
         let names = views::names(columns, false);
         let cells = |row| views::cells(columns, row, units, false);
         self.parts.push(Part {
-            name: name.into(),
+            name,
             columns: names.into_iter().map(|(name, _)| name).collect(),
             rows: rows.iter().map(cells).collect(),
         });

@@ -236,6 +236,18 @@ pub struct Note {
     pub colour: Option<usize>,
 }
 
+impl Note {
+    /// In the colour of the axes.
+    pub fn new(x: f64, y: f64, text: impl Into<String>) -> Self {
+        Note {
+            x,
+            y,
+            text: text.into(),
+            colour: None,
+        }
+    }
+}
+
 /// One pair of axes with curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {

@@ -102,16 +102,10 @@ fn friction_panel() -> Panel {
 fn stiffness_panel() -> Panel {
     let y = Axis::linear("critical stiffness k_c/σ [1/m]").within(-700.0, 2e4);
     let mut panel = Panel::new("(b) stability", rate_axis(), y);
-    let note = |x: f64, y: f64, text: &str| Note {
-        x,
-        y,
-        text: text.into(),
-        colour: None,
-    };
     panel.notes = vec![
-        note(3e-6, 7e3, "unstable: stick-slip"),
-        note(3e-6, 1.8e4, "stable"),
-        note(1.6e-9, 6e3, "law (6): stable for any k"),
+        Note::new(3e-6, 7e3, "unstable: stick-slip"),
+        Note::new(3e-6, 1.8e4, "stable"),
+        Note::new(1.6e-9, 6e3, "law (6): stable for any k"),
     ];
     panel
 }

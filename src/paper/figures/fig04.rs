@@ -126,16 +126,10 @@ fn stability_panel(law: &Spinodal, sheet: &mut Sheet) -> Result<Panel> {
             cells([[v, k]]),
         );
     }
-    let note = |x: f64, y: f64, text: &str| Note {
-        x,
-        y,
-        text: text.into(),
-        colour: None,
-    };
     panel.notes = vec![
-        note(3.0, 0.17, "unstable: stick-slip"),
-        note(1.5e-3, 0.3, "stable"),
-        note(5e4, 0.3, "stable"),
+        Note::new(3.0, 0.17, "unstable: stick-slip"),
+        Note::new(1.5e-3, 0.3, "stable"),
+        Note::new(5e4, 0.3, "stable"),
     ];
     Ok(panel)
 }

@@ -29,11 +29,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let branches = pieces.branches("fig05")?;
     let mut sheet = Sheet::new();
     sheet.add_branches("steady states", &branches);
-    sheet.add_special(
-        "special points",
-        &branches.special,
-        &branches.plan.system.units,
-    );
     let rates = panel(
         &branches,
         "(d) slip rates",

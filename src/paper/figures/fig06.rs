@@ -79,11 +79,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         let curves = pieces.curves(scene)?;
         let short = name.split(':').next().unwrap_or(name);
         sheet.add_curves(short, &curves);
-        sheet.add_special(
-            format!("{short} special"),
-            &curves.special,
-            &curves.plan.system.units,
-        );
         let line = in_plane(&curves, name, (colour, stroke));
         panel.series.push(Series { wide, ..line });
     }
@@ -92,24 +87,18 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     panel
         .marks
         .extend(double.into_iter().filter(|mark| mark.label == "1:2"));
-    let note = |x: f64, y: f64, text: &str| Note {
-        x,
-        y,
-        text: text.into(),
-        colour: None,
-    };
     panel.notes = vec![
-        note(7e-3, 0.33, "both slide"),
-        note(7.0, 0.425, "one slides, steadily"),
-        note(4.0, 0.27, "asymmetric stick-slip"),
-        note(6e3, 0.2, "one or both"),
-        note(2.1e5, 0.33, "both slide"),
-        note(8.0, 0.065, "symmetric stick-slip too"),
-        note(0.05, 0.4, "2 V_M"),
-        note(810.0, 0.4, "2 V_m"),
-        note(4.3e4, 0.4, "V_sn"),
-        note(30.0, 0.3565, "H_a"),
-        note(30.0, 0.1878, "H_s"),
+        Note::new(7e-3, 0.33, "both slide"),
+        Note::new(7.0, 0.425, "one slides, steadily"),
+        Note::new(4.0, 0.27, "asymmetric stick-slip"),
+        Note::new(6e3, 0.2, "one or both"),
+        Note::new(2.1e5, 0.33, "both slide"),
+        Note::new(8.0, 0.065, "symmetric stick-slip too"),
+        Note::new(0.05, 0.4, "2 V_M"),
+        Note::new(810.0, 0.4, "2 V_m"),
+        Note::new(4.3e4, 0.4, "V_sn"),
+        Note::new(30.0, 0.3565, "H_a"),
+        Note::new(30.0, 0.1878, "H_s"),
     ];
     Ok(Made {
         sheet,

@@ -32,16 +32,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     sheet.add_branches("orbits", &orbits);
     sheet.add_branches("equilibria", &rest);
-    sheet.add_special(
-        "special points of orbits",
-        &orbits.special,
-        &orbits.plan.system.units,
-    );
-    sheet.add_special(
-        "special points of equilibria",
-        &rest.special,
-        &rest.plan.system.units,
-    );
     let tolerance = orbits.plan.following.tolerance;
     Ok(Made {
         sheet,

@@ -1,11 +1,9 @@
 //! Fig. 8: two runs at K = 0.14 from the symmetric equilibrium to the asymmetric orbit.
 
-use super::runs::{method, with_returns};
+use super::runs::of_runs;
 use crate::error::Result;
-use crate::output::plot::Drawing;
 use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
-use crate::paper::sheet::Sheet;
 
 /// The figure.
 pub const FIGURE: Product = Product {
@@ -20,23 +18,6 @@ pub const FIGURE: Product = Product {
 };
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
-    let (a, b) = (pieces.run("fig08a")?, pieces.run("fig08b")?);
-    let (map_a, map_b) = (pieces.map("fig08a-map")?, pieces.map("fig08b-map")?);
-    let mut sheet = Sheet::new();
-    sheet.add_run("a", &a);
-    sheet.add_map("a returns", &map_a);
-    sheet.add_run("b", &b);
-    sheet.add_map("b returns", &map_b);
-    Ok(Made {
-        sheet,
-        drawing: Some(Drawing::blocks(vec![
-            with_returns("(a) V_H = 0.07", &a, &a.rows, &map_a),
-            with_returns("(b) V_H = 10", &b, &b.rows, &map_b),
-        ])),
-        method: format!(
-            "(a) {}; (b) {}; returns landed on exactly",
-            method(&a),
-            method(&b)
-        ),
-    })
+    let scenes = [("fig08a", "(a) V_H = 0.07"), ("fig08b", "(b) V_H = 10")];
+    of_runs(pieces, &scenes, f64::INFINITY)
 }

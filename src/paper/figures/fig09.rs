@@ -38,16 +38,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     sheet.add_branches("orbits", &orbits);
     sheet.add_branches("equilibria", &rest);
-    sheet.add_special(
-        "special points of orbits",
-        &orbits.special,
-        &orbits.plan.system.units,
-    );
-    sheet.add_special(
-        "special points of equilibria",
-        &rest.special,
-        &rest.plan.system.units,
-    );
     let stress = |title: &str, driving| amplitudes(title, &orbits, &rest, driving);
     let bare = |panel: Panel| Panel {
         keys: Vec::new(),

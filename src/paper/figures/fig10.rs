@@ -1,10 +1,9 @@
 //! Fig. 10: the symmetric and the asymmetric orbit at K = 0.05, V_H = 0.2, both stable.
 
-use super::runs::{between, method, with_phase_space};
+use super::runs::{last, method, with_phase_space};
 use crate::error::Result;
-use crate::output::Rows;
 use crate::output::plot::Drawing;
-use crate::paper::pieces::{Pieces, Run};
+use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
 
@@ -29,13 +28,9 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: Some(Drawing::blocks(vec![
-            with_phase_space("(a) symmetric", &a, &last(&a)),
-            with_phase_space("(b) asymmetric", &b, &last(&b)),
+            with_phase_space("(a) symmetric", &a, &last(&a, SHOWN)),
+            with_phase_space("(b) asymmetric", &b, &last(&b, SHOWN)),
         ])),
         method: format!("(a) {}, in two dimensions; (b) {}", method(&a), method(&b)),
     })
-}
-
-fn last(run: &Run) -> Rows {
-    between(&run.rows, run.plan.until - SHOWN, run.plan.until)
 }

@@ -33,8 +33,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let mut sheet = Sheet::new();
     sheet.add_curves("TR", &torus);
     sheet.add_curves("PD", &doubling);
-    sheet.add_special("TR special", &torus.special, &torus.plan.system.units);
-    sheet.add_special("PD special", &doubling.special, &doubling.plan.system.units);
     let panel = |title: &str, [x, y]: [(f64, f64); 2]| Panel {
         series: vec![
             in_plane(&torus, "TR", (2, Stroke::Solid)).wide(),
@@ -53,17 +51,11 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         )
     };
     let mut whole = panel("(a)", WHOLE);
-    let note = |x, y, text: &str| Note {
-        x,
-        y,
-        text: text.into(),
-        colour: None,
-    };
     whole.notes = vec![
-        note(0.0835, 0.1, "unstable"),
-        note(0.0634, 0.14, "H_a"),
-        note(0.1235, 0.118, "H_s"),
-        note(0.0498, 0.225, "2 V_M"),
+        Note::new(0.0835, 0.1, "unstable"),
+        Note::new(0.0634, 0.14, "H_a"),
+        Note::new(0.1235, 0.118, "H_s"),
+        Note::new(0.0498, 0.225, "2 V_M"),
     ];
     Ok(Made {
         sheet,

@@ -1,11 +1,9 @@
 //! Fig. 13: the torus at K = 0.2, V_H = 0.102.
 
-use super::runs::{between, method, with_returns};
+use super::runs::of_runs;
 use crate::error::Result;
-use crate::output::plot::Drawing;
 use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
-use crate::paper::sheet::Sheet;
 
 /// The figure.
 pub const FIGURE: Product = Product {
@@ -21,19 +19,5 @@ pub const FIGURE: Product = Product {
 const SHOWN: f64 = 3500.0;
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
-    let (run, map) = (pieces.run("fig13")?, pieces.map("fig13-map")?);
-    let mut sheet = Sheet::new();
-    sheet.add_run("run", &run);
-    sheet.add_map("returns", &map);
-    let rows = between(&run.rows, run.plan.until - SHOWN, run.plan.until);
-    Ok(Made {
-        sheet,
-        drawing: Some(Drawing::blocks(vec![with_returns("", &run, &rows, &map)])),
-        method: format!(
-            "{}; {} returns after {}",
-            method(&run),
-            map.outcome.returns,
-            map.plan.skip
-        ),
-    })
+    of_runs(pieces, &[("fig13", "")], SHOWN)
 }

@@ -25,7 +25,6 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let torus = pieces.curves("fig12")?;
     let mut sheet = Sheet::new();
     sheet.add_curves("TR", &torus);
-    sheet.add_special("TR special", &torus.special, &torus.plan.system.units);
     let driving = |row: &LocusRow| row.driving.value;
     let stiffness = |row: &LocusRow| row.stiffness.value;
     Ok(Made {

@@ -91,15 +91,6 @@ fn curves() -> Result<[Vec<[f64; 2]>; 5]> {
     ])
 }
 
-fn note(x: f64, y: f64, text: &str) -> Note {
-    Note {
-        x,
-        y,
-        text: text.into(),
-        colour: None,
-    }
-}
-
 fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     let mut panel = Panel::new(
         "(a)",
@@ -117,13 +108,13 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     }
     panel.marks.push(Mark::new(0.0, 0.0, "1:2"));
     panel.notes = vec![
-        note(0.5, 0.55, "1: orbit"),
-        note(-0.45, 0.55, "2: torus"),
-        note(-0.6, -0.25, "3: torus"),
-        note(-0.69, -0.75, "4"),
-        note(0.2, -0.4, "6: doubled orbit"),
-        note(ALONG_1.1 + 0.05, L_1, "l₁"),
-        note(ALONG_2.1 + 0.05, L_2, "l₂"),
+        Note::new(0.5, 0.55, "1: orbit"),
+        Note::new(-0.45, 0.55, "2: torus"),
+        Note::new(-0.6, -0.25, "3: torus"),
+        Note::new(-0.69, -0.75, "4"),
+        Note::new(0.2, -0.4, "6: doubled orbit"),
+        Note::new(ALONG_1.1 + 0.05, L_1, "l₁"),
+        Note::new(ALONG_2.1 + 0.05, L_2, "l₂"),
     ];
     panel
 }
@@ -157,13 +148,13 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     let path = Series::new("", vec![range.0, range.1], vec![L_2; 2]);
     panel.series.push(path.stroke(Stroke::Dotted).colour(7));
     panel.notes = vec![
-        note(-1.03, -0.2, "3"),
-        note(-0.9, -0.2, "4"),
-        note(-0.777, -0.2, "5"),
-        note(-0.725, -0.2, "6"),
-        note(-0.712, L_2 + 0.07, "l₂"),
-        note(-0.785, -0.7, "−4/5"),
-        note(-0.731, -0.7, "−0.752"),
+        Note::new(-1.03, -0.2, "3"),
+        Note::new(-0.9, -0.2, "4"),
+        Note::new(-0.777, -0.2, "5"),
+        Note::new(-0.725, -0.2, "6"),
+        Note::new(-0.712, L_2 + 0.07, "l₂"),
+        Note::new(-0.785, -0.7, "−4/5"),
+        Note::new(-0.731, -0.7, "−0.752"),
     ];
     panel
 }

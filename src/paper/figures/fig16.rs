@@ -1,12 +1,9 @@
 //! Fig. 16: K = 0.14 past the torus bifurcation and near the resonance 1:4.
 
-use super::runs::{between, method, with_returns};
+use super::runs::of_runs;
 use crate::error::Result;
-use crate::output::Rows;
-use crate::output::plot::Drawing;
-use crate::paper::pieces::{Pieces, Run};
+use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
-use crate::paper::sheet::Sheet;
 
 /// The figure.
 pub const FIGURE: Product = Product {
@@ -22,27 +19,9 @@ pub const FIGURE: Product = Product {
 const SHOWN: f64 = 6000.0;
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
-    let (a, b) = (pieces.run("fig16a")?, pieces.run("fig16b")?);
-    let (map_a, map_b) = (pieces.map("fig16a-map")?, pieces.map("fig16b-map")?);
-    let mut sheet = Sheet::new();
-    sheet.add_run("a", &a);
-    sheet.add_map("a returns", &map_a);
-    sheet.add_run("b", &b);
-    sheet.add_map("b returns", &map_b);
-    Ok(Made {
-        sheet,
-        drawing: Some(Drawing::blocks(vec![
-            with_returns("(a) V_H = 0.0768", &a, &last(&a), &map_a),
-            with_returns("(b) V_H = 0.079", &b, &last(&b), &map_b),
-        ])),
-        method: format!(
-            "(a) {}; (b) {}; returns landed on exactly",
-            method(&a),
-            method(&b)
-        ),
-    })
-}
-
-fn last(run: &Run) -> Rows {
-    between(&run.rows, run.plan.until - SHOWN, run.plan.until)
+    let scenes = [
+        ("fig16a", "(a) V_H = 0.0768"),
+        ("fig16b", "(b) V_H = 0.079"),
+    ];
+    of_runs(pieces, &scenes, SHOWN)
 }

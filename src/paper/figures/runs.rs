@@ -1,13 +1,16 @@
 //! Panels of runs in time and of their returns.
 
-use crate::friction::{Law, steady_stress};
+use crate::error::Result;
+use crate::friction::steady_stress;
 use crate::output::Rows;
-use crate::output::plot::{Axis, Block, Panel, Series, Stroke};
-use crate::paper::pieces::{Map, Run};
+use crate::output::plot::{Axis, Block, Drawing, Panel, Series, Stroke};
+use crate::paper::pieces::{Map, Pieces, Run};
+use crate::paper::product::Made;
+use crate::paper::sheet::Sheet;
 use crate::scene::Dimension;
 use crate::views;
 
-/// Colours of the stronger and the weaker line: a law, a diagonal.
+/// The colour of what is drawn for comparison: a law, a diagonal.
 const GREY: usize = 6;
 /// Returns up to this number are drawn broad.
 const FEW: usize = 400;
@@ -25,14 +28,13 @@ pub fn method(run: &Run) -> String {
     )
 }
 
-/// The rows from one time to another.
-pub fn between(rows: &Rows, from: f64, to: f64) -> Rows {
-    let mut some = Rows::new(rows.columns.clone());
-    let time = rows.columns.iter().position(|name| name == "time");
-    for row in rows.iter() {
-        if time.is_some_and(|i| (from..=to).contains(&row[i])) {
-            some.numbers.extend_from_slice(row);
-        }
+/// The rows of the end of a run.
+pub fn last(run: &Run, shown: f64) -> Rows {
+    let mut some = Rows::new(run.rows.columns.clone());
+    let from = run.plan.until - shown;
+    // Time is the first column.
+    for row in run.rows.iter().filter(|row| row[0] >= from) {
+        some.numbers.extend_from_slice(row);
     }
     some
 }
@@ -48,7 +50,7 @@ pub fn combined(rows: &Rows, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> 
     a.iter().zip(&b).map(|(&a, &b)| of(a, b)).collect()
 }
 
-/// Stress, states and slip rates in time; the slower interface is dashed where the paper has it so.
+/// Stress, states and slip rates in time.
 pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
     views::panels_in_time(&run.plan, rows)
 }
@@ -71,7 +73,6 @@ fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
             .series
             .push(dotted.stroke(Stroke::Dotted).colour(GREY));
     }
-    debug_assert!(law.bounds_state() || lo >= 0.0);
     panel
 }
 
@@ -88,8 +89,31 @@ fn asymmetry(rows: &Rows) -> Panel {
     }
 }
 
+/// A figure of runs with their return maps, from scenes NAME and NAME-map, each under its title; so much time of the end is
+/// shown.
+pub fn of_runs(pieces: &Pieces<'_>, scenes: &[(&str, &str)], shown: f64) -> Result<Made> {
+    let (mut sheet, mut blocks, mut methods) = (Sheet::new(), Vec::new(), Vec::new());
+    for (scene, title) in scenes {
+        let (run, map) = (pieces.run(scene)?, pieces.map(&format!("{scene}-map"))?);
+        sheet.add_run(*scene, &run);
+        sheet.add_map(format!("{scene} returns"), &map);
+        blocks.push(with_returns(title, &run, &last(&run, shown), &map));
+        methods.push(format!(
+            "{scene}: {}; {} returns after {}, each landed on",
+            method(&run),
+            map.outcome.returns,
+            map.plan.skip
+        ));
+    }
+    Ok(Made {
+        sheet,
+        drawing: Some(Drawing::blocks(blocks)),
+        method: methods.join(". "),
+    })
+}
+
 /// A run with its return map: in time, in the phase plane and the asymmetric subspace, and at the section.
-pub fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
+fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
     Block {
         title: title.into(),
         columns: vec![

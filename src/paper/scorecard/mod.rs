@@ -1,7 +1,7 @@
 //! The scorecard: every number that the paper prints and every claim of its text that a computation can decide, beside what
 //! is computed here, and beside a second, unlike computation where there is one.
 //!
-//! The verdict is never written down: it follows from what is printed and what is computed by the [`rule`]. All that is
+//! The verdict is never written down: it follows from what is printed and what is computed by the rule. All that is
 //! curated is the wording of a claim, and why a number that differs must be a misprint.
 
 mod equilibria;
@@ -113,7 +113,7 @@ pub struct Entry {
     pub computed: Answer,
     /// Once more, otherwise.
     pub second: Option<Second>,
-    /// By the [`rule`].
+    /// By the rule.
     pub verdict: Verdict,
     /// What the answer rests on, and what is to be said of a difference.
     pub note: String,
