@@ -15,7 +15,7 @@ use crate::views::{self, Column};
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal};
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Everything that a run needs.
 pub struct Task<'a, R> {
@@ -42,32 +42,12 @@ pub struct Task<'a, R> {
 impl<'a, R: Row> Task<'a, R> {
     /// Files and format, checked before anything is computed.
     pub fn report(&self) -> Result<Report<'a>> {
-        if let Some(path) = self.plot {
-            plot::Kind::of(path)?;
-        }
-        let others: Vec<&Path> = self.plot.into_iter().map(PathBuf::as_path).collect();
-        let Some(resumed) = self.resume else {
-            return Report::new(self.output, self.words, &others);
-        };
-        let output = self.output.output.as_ref();
-        if output.is_some_and(|output| output != resumed) {
-            return Err(Error::Input(format!(
-                "--resume {} writes into that file; leave out --output",
-                resumed.display()
-            )));
-        }
-        let output = OutputOptions {
-            output: Some(resumed.clone()),
-            ..self.output.clone()
-        };
-        let report = Report::new(&output, self.words, &others)?;
-        if report.format != Format::Csv {
-            return Err(Error::Input(format!(
-                "--resume {}: only CSV can be gone on with; leave out --format, and name a file that does not end in .json",
-                resumed.display()
-            )));
-        }
-        Ok(report)
+        let (resume, plot) = (self.resume, self.plot);
+        Report::resuming(
+            self.output,
+            self.words,
+            (resume.map(PathBuf::as_path), plot.map(PathBuf::as_path)),
+        )
     }
 
     /// Computes, writes, draws; says how it ended.
@@ -169,7 +149,7 @@ impl<'a, R: Row> Task<'a, R> {
 }
 
 /// Says how to go on.
-fn interrupted(report: &Report<'_>) -> Ending {
+pub fn interrupted(report: &Report<'_>) -> Ending {
     if let (Format::Csv, Some(path)) = (report.format, report.place.path()) {
         report.say(format!(
             "interrupted; go on with --resume {}",

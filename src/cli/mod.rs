@@ -7,6 +7,7 @@ mod integrate;
 mod interrupt;
 mod law;
 mod locus;
+mod merge;
 mod orbit;
 mod progress;
 mod report;
@@ -17,6 +18,7 @@ mod run;
 mod section;
 mod special;
 mod stream;
+mod sweep;
 
 use crate::error::Error;
 use crate::scene;
@@ -25,7 +27,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
-/// maps, branches and their bifurcations.
+/// maps, branches and their bifurcations, maps of regimes.
 ///
 /// Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless --si is given.
 /// Data goes to standard output or a file, messages to standard error.
@@ -44,6 +46,9 @@ enum Command {
     /// What a scene file says
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
+    /// The files of all parts of a sweep into the one that a single run would have written
+    #[command(after_help = merge::EXAMPLE)]
+    Merge(merge::MergeOptions),
     /// The whole paper: every figure, Table 1, a scorecard of what it says, and a report to read
     #[command(after_help = reproduce::EXAMPLE)]
     Reproduce(reproduce::ReproduceOptions),
@@ -96,6 +101,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let ended = match &line.command {
         Command::Compute(command) => compute(command, &words),
         Command::Run(options) => run::run(options, &words),
+        Command::Merge(options) => merge::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Figure(options) => reproduce::run_figure(options),
     };
@@ -125,6 +131,7 @@ fn compute(command: &scene::Command, words: &[String]) -> Result<Ending, Error> 
         scene::Command::Section(options) => section::run(options, words),
         scene::Command::Branch(options) => branch::run(options, words),
         scene::Command::Locus(options) => locus::run(options, words),
+        scene::Command::Sweep(options) => sweep::run(options, words),
     }
 }
 

@@ -33,7 +33,14 @@ impl Progress {
     /// The run has come so far.
     pub fn reached(&mut self, fraction: f64) {
         self.calls += 1;
-        if !self.wanted || !self.calls.is_multiple_of(STEPS) || self.begun.elapsed() < PATIENCE {
+        if self.calls.is_multiple_of(STEPS) {
+            self.come(fraction);
+        }
+    }
+
+    /// The same for calls that stand for much work each.
+    pub fn come(&mut self, fraction: f64) {
+        if !self.wanted || self.begun.elapsed() < PATIENCE {
             return;
         }
         let bar = self.bar.get_or_insert_with(|| {

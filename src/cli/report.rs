@@ -3,7 +3,7 @@
 use crate::error::{Error, Result};
 use crate::integrate::Work;
 use crate::number::Uncertain;
-use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows};
+use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows, plot};
 use crate::scene::{OutputOptions, Quantity, System, Units};
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -45,6 +45,38 @@ impl<'a> Report<'a> {
         })
     }
 
+    /// The same where the CSV of an earlier run may be gone on with, which is then the place of the output.
+    pub fn resuming(
+        options: &OutputOptions,
+        words: &'a [String],
+        (resume, plot): (Option<&Path>, Option<&Path>),
+    ) -> Result<Self> {
+        if let Some(path) = plot {
+            plot::Kind::of(path)?;
+        }
+        let others: Vec<&Path> = plot.into_iter().collect();
+        let Some(resumed) = resume else {
+            return Report::new(options, words, &others);
+        };
+        let refused = |why: &str| Err(Error::Input(format!("--resume {}{why}", resumed.display())));
+        let output = options.output.as_deref();
+        if output.is_some_and(|output| output != resumed) {
+            return refused(" writes into that file; leave out --output");
+        }
+        let output = OutputOptions {
+            output: Some(resumed.to_owned()),
+            ..options.clone()
+        };
+        let report = Report::new(&output, words, &others)?;
+        match (report.format, report.place.path()) {
+            (Format::Csv, Some(_)) => Ok(report),
+            (_, None) => refused(": only a file can be gone on with"),
+            _ => refused(
+                ": only CSV can be gone on with; leave out --format, and name a file that does not end in .json",
+            ),
+        }
+    }
+
     /// A message on standard error.
     pub fn say(&self, text: impl std::fmt::Display) {
         if !self.quiet {
@@ -54,33 +86,7 @@ impl<'a> Report<'a> {
 
     /// The `# ` lines of CSV: program, command, parameters, units.
     pub fn remarks(&self, system: &System, numerics: &Value) -> Vec<String> {
-        let list = |pairs: &serde_json::Map<String, Value>| {
-            let pairs: Vec<String> = pairs
-                .iter()
-                .filter(|(_, value)| !value.is_null())
-                .map(|(name, value)| match value.as_str() {
-                    Some(text) => format!("{name} = {text}"),
-                    None => format!("{name} = {value}"),
-                })
-                .collect();
-            pairs.join(", ")
-        };
-        let words: Vec<String> = self.words.iter().map(|word| quoted(word)).collect();
-        let units: Vec<String> = system
-            .units
-            .names()
-            .map(|(name, unit)| format!("{name} [{unit}]"))
-            .into();
-        let mut remarks = vec![
-            format!("twinslip {}", env!("CARGO_PKG_VERSION")),
-            format!("command: {}", words.join(" ")),
-            format!("model: {}", list(system.echo())),
-        ];
-        if let Some(numerics) = numerics.as_object().filter(|map| !map.is_empty()) {
-            remarks.push(format!("numerics: {}", list(numerics)));
-        }
-        remarks.push(format!("units: {}", units.join(", ")));
-        remarks
+        remarks(self.words, system, numerics)
     }
 
     /// Opens the table or CSV.
@@ -136,6 +142,37 @@ impl<'a> Report<'a> {
         bytes.push(b'\n');
         bytes
     }
+}
+
+/// The `# ` lines of CSV made by a command: program, command, parameters, units.
+pub fn remarks(words: &[String], system: &System, numerics: &Value) -> Vec<String> {
+    let list = |pairs: &serde_json::Map<String, Value>| {
+        let pairs: Vec<String> = pairs
+            .iter()
+            .filter(|(_, value)| !value.is_null())
+            .map(|(name, value)| match value.as_str() {
+                Some(text) => format!("{name} = {text}"),
+                None => format!("{name} = {value}"),
+            })
+            .collect();
+        pairs.join(", ")
+    };
+    let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
+    let units: Vec<String> = system
+        .units
+        .names()
+        .map(|(name, unit)| format!("{name} [{unit}]"))
+        .into();
+    let mut remarks = vec![
+        format!("twinslip {}", env!("CARGO_PKG_VERSION")),
+        format!("command: {}", words.join(" ")),
+        format!("model: {}", list(system.echo())),
+    ];
+    if let Some(numerics) = numerics.as_object().filter(|map| !map.is_empty()) {
+        remarks.push(format!("numerics: {}", list(numerics)));
+    }
+    remarks.push(format!("units: {}", units.join(", ")));
+    remarks
 }
 
 /// The version of SUNDIALS, where it is built in.

@@ -40,6 +40,14 @@ impl EarlierRows {
     }
 }
 
+/// The cells of a line; `None` if its quotes do not close.
+pub fn cells_of(line: &str) -> Option<Vec<String>> {
+    let mut reader = csv::ReaderBuilder::new();
+    let mut reader = reader.has_headers(false).from_reader(line.as_bytes());
+    let record = reader.records().next()?.ok()?;
+    Some(record.iter().map(str::to_owned).collect())
+}
+
 /// Writes rows as CSV.
 pub struct CsvRows<W: Write> {
     writer: csv::Writer<W>,

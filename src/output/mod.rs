@@ -7,9 +7,9 @@ mod place;
 pub mod plot;
 mod table;
 
-pub use csv::{CsvRows, EarlierRows};
+pub use csv::{CsvRows, EarlierRows, cells_of};
 pub use json::{Envelope, Rows, object, uncertain};
-pub use place::{Place, write_whole};
+pub use place::{Place, write_whole, write_whole_by};
 pub use table::{TableRows, number as seven_digits};
 
 use crate::error::{Error, Result};

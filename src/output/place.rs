@@ -110,11 +110,27 @@ impl Place {
 /// # Errors
 /// The system's.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    write_whole_by(path, |file| file.write_all(bytes))
+}
+
+/// The same for what is not in memory all at once; `fill` writes it.
+///
+/// # Errors
+/// The system's, and those of `fill`.
+pub fn write_whole_by(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> io::Result<()> {
+    let into = |path: &Path| {
+        let mut file = io::BufWriter::new(File::create(path)?);
+        fill(&mut file)?;
+        file.flush()
+    };
     if special(path) {
-        return fs::write(path, bytes);
+        return into(path);
     }
     let temporary = beside(path);
-    let written = fs::write(&temporary, bytes).and_then(|()| fs::rename(&temporary, path));
+    let written = into(&temporary).and_then(|()| fs::rename(&temporary, path));
     if written.is_err() {
         // What is left of it is of no use; that it may not exist at all is no second error.
         let _ = fs::remove_file(&temporary);

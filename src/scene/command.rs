@@ -5,6 +5,7 @@ use super::file::SceneFile;
 use super::options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions,
 };
+use super::sweep::SweepOptions;
 use crate::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -32,6 +33,9 @@ pub enum Command {
     /// A curve of bifurcations in the plane of V_H and K, with its special points
     #[command(after_help = LOCUS)]
     Locus(Box<LocusOptions>),
+    /// The regime at every point of a grid of V_H and K, or of every start: resumable, on many threads and machines
+    #[command(after_help = SWEEP)]
+    Sweep(Box<SweepOptions>),
 }
 
 #[derive(Debug, Parser)]
@@ -94,3 +98,9 @@ const BRANCH: &str =
 const LOCUS: &str =
     "Example, the torus bifurcations of the paper's Figs 12 and 14, with their resonances:
   twinslip locus torus --stiffness-range 0.02,0.3 -o torus.csv --plot torus.svg";
+
+const SWEEP: &str = "Example, the regimes on 40 x 40 points and their map; then on with it after it was interrupted:
+  twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 -o map.csv --plot map.svg
+  twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 --resume map.csv --plot map.svg
+Which starts go to which attractor, where a symmetric and an asymmetric orbit coexist:
+  twinslip sweep --basin --driving 0.08 --stiffness 0.1 --state-1 1e-6:1:40log --state-2 1e-6:1:40log -o basin.csv";

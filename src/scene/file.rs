@@ -232,6 +232,7 @@ fn is_numeric(option: &Arg) -> bool {
     let made = option.get_value_parser().type_id();
     made == std::any::TypeId::of::<f64>()
         || made == std::any::TypeId::of::<usize>()
+        || made == std::any::TypeId::of::<u64>()
         || made == std::any::TypeId::of::<u8>()
 }
 

@@ -40,6 +40,7 @@ mod plan;
 mod run;
 mod section;
 mod slip;
+mod sweep;
 mod system;
 mod units;
 
@@ -54,12 +55,13 @@ pub use following::Following;
 pub use locus::{Curve, LocusPlan};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
-    OutputOptions, SectionOptions,
+    OutputOptions, SectionOptions, SlabOptions,
 };
 pub use plan::{Dimension, Plan, Sampling, start};
 pub use run::{Outcome, Sink, run};
 pub use section::{
     Lyapunov, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
 };
+pub use sweep::{Shard, SweepOptions, SweepPlan};
 pub use system::System;
 pub use units::{Quantity, Units};

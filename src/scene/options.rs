@@ -9,22 +9,31 @@ const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-sym
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for";
 
-/// The friction law, how many interfaces there are and how they are driven; the defaults are the paper's.
+/// What slides and how it is driven; the defaults are the paper's.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
 pub struct ModelOptions {
-    /// Friction law: spinodal (35), bounded (6), regularised-ageing (5), dieterich-ruina (4) or slip (Ruina 1983)
-    #[arg(long, value_name = "NAME", default_value = "spinodal")]
-    pub law: String,
-    /// Number of frictional interfaces in the slab, 1 or 2
-    #[arg(long, value_name = "N", default_value_t = 2)]
-    pub interfaces: u8,
     /// Driving velocity V_H [V*; m/s with --si]
     #[arg(long, value_name = "V_H", value_parser = number, allow_negative_numbers = true)]
     pub driving: Option<f64>,
     /// Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with --si]
     #[arg(long, value_name = "K", value_parser = number, allow_negative_numbers = true)]
     pub stiffness: Option<f64>,
+    /// What slides.
+    #[command(flatten)]
+    pub slab: SlabOptions,
+}
+
+/// The friction law, how many interfaces there are, and the units.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Model")]
+pub struct SlabOptions {
+    /// Friction law: spinodal (35), bounded (6), regularised-ageing (5), dieterich-ruina (4) or slip (Ruina 1983)
+    #[arg(long, value_name = "NAME", default_value = "spinodal")]
+    pub law: String,
+    /// Number of frictional interfaces in the slab, 1 or 2
+    #[arg(long, value_name = "N", default_value_t = 2)]
+    pub interfaces: u8,
     /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     pub healing_time: Option<f64>,

@@ -1,6 +1,6 @@
 //! From the model's options to a checked system, and back to what the output says about it.
 
-use super::options::ModelOptions;
+use super::options::{ModelOptions, SlabOptions};
 use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Law, Parameters, positive};
@@ -41,13 +41,25 @@ impl System {
     /// # Errors
     /// [`Error::Parameter`] for a value outside its domain, in the user's own name and number.
     pub fn new(options: &ModelOptions) -> Result<Self> {
+        Self::of(&options.slab, options.driving, options.stiffness)
+    }
+
+    /// Checks a slab, and V_H and K where they are fixed.
+    ///
+    /// # Errors
+    /// As [`System::new`].
+    pub fn of(
+        options: &SlabOptions,
+        driving: Option<f64>,
+        stiffness: Option<f64>,
+    ) -> Result<Self> {
         if !(1..=2).contains(&options.interfaces) {
             return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
         }
         // Checked in the user's numbers, before any conversion, so that the message shows what was typed.
         for (name, value) in [
-            ("driving", options.driving),
-            ("stiffness", options.stiffness),
+            ("driving", driving),
+            ("stiffness", stiffness),
             ("healing-time", options.healing_time),
         ] {
             value.map(|value| positive(name, value)).transpose()?;
@@ -72,11 +84,11 @@ impl System {
         Ok(System {
             law,
             interfaces: usize::from(options.interfaces),
-            driving: inward(Quantity::SlipRate, "driving", options.driving)?,
-            stiffness: inward(Quantity::Stiffness, "stiffness", options.stiffness)?,
+            driving: inward(Quantity::SlipRate, "driving", driving)?,
+            stiffness: inward(Quantity::Stiffness, "stiffness", stiffness)?,
             units,
             direct_effect: options.direct_effect,
-            echo: echo(options, healing_time),
+            echo: echo(options, (driving, stiffness), healing_time),
         })
     }
 
@@ -116,7 +128,7 @@ impl System {
     }
 }
 
-fn scales(options: &ModelOptions) -> Result<Scales> {
+fn scales(options: &SlabOptions) -> Result<Scales> {
     Scales::new(
         options.direct_effect,
         options.slip_length.unwrap_or(SLIP_LENGTH),
@@ -125,12 +137,16 @@ fn scales(options: &ModelOptions) -> Result<Scales> {
     )
 }
 
-fn echo(options: &ModelOptions, healing_time: f64) -> Map<String, Value> {
+fn echo(
+    options: &SlabOptions,
+    (driving, stiffness): (Option<f64>, Option<f64>),
+    healing_time: f64,
+) -> Map<String, Value> {
     let mut pairs = vec![
         ("law", json!(options.law)),
         ("interfaces", json!(options.interfaces)),
-        ("driving", json!(options.driving)),
-        ("stiffness", json!(options.stiffness)),
+        ("driving", json!(driving)),
+        ("stiffness", json!(stiffness)),
         ("healing_time", json!(healing_time)),
         ("residual_strength", json!(options.residual_strength)),
         ("direct_effect", json!(options.direct_effect)),

@@ -8,11 +8,13 @@ use serde_json::{Map, Value, json};
 mod bifurcation;
 mod diagram;
 mod map;
+mod points;
 mod run;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves};
 pub use map::{return_map, states_at_returns};
+pub use points::{REGIMES, sweep_columns, sweep_row};
 pub use run::{panels_in_time, phase_plane};
 
 /// What a row has in a column, dimensionless.

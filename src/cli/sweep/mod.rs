@@ -1,0 +1,108 @@
+//! `twinslip sweep`: rows in the order of the grid, written as soon as all before them are done.
+
+pub(super) mod file;
+mod out;
+#[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
+mod ranks;
+#[cfg(any(feature = "mpi", test))]
+mod wire;
+
+use super::continuation::interrupted;
+use super::report::Report;
+use super::{Ending, interrupt, written};
+use crate::error::{Error, Result};
+use crate::output::Format;
+use crate::scene::{SweepOptions, SweepPlan};
+use crate::sweep::{self, Units};
+use crate::views;
+use out::Out;
+use ranks::Ranks;
+use serde_json::{Value, json};
+use std::path::Path;
+
+pub fn run(options: &SweepOptions, words: &[String]) -> Result<Ending> {
+    let Some(mut ranks) = Ranks::join()? else {
+        return lead(options, words, None);
+    };
+    if !ranks.leads() {
+        ranks.serve(SweepPlan::new(options).ok().as_ref());
+        return Ok(Ending::Done);
+    }
+    let ended = lead(options, words, Some(&mut ranks));
+    ranks.dismiss();
+    ended
+}
+
+/// Computes, by the other ranks if there are any, and writes.
+fn lead(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> Result<Ending> {
+    let plan = SweepPlan::new(options)?;
+    let (resume, plot) = (options.resume.as_deref(), options.plot.as_deref());
+    let report = Report::resuming(&options.output, words, (resume, plot))?;
+    if options.output.explain {
+        eprintln!("{}", plan.explain());
+    }
+    let columns = views::sweep_columns();
+    let mut out = Out::new(&plan, &report, &columns, plot.is_some());
+    let done = resume.map_or(Ok(0), |path| out.keep(path, &columns))?;
+    if let Err(error) = out.open(resume.is_some()) {
+        return written(Err(error), &report.place);
+    }
+    let shard = plan.part();
+    let units = Units::shard(shard.index, shard.of, done);
+    interrupt::watch();
+    let mut seen = |rows: &[sweep::Row]| out.take(rows);
+    let failure = match ranks {
+        Some(ranks) => ranks.run(&plan.settings, units, interrupt::flag(), &mut seen),
+        None => sweep::run(
+            &plan.settings,
+            units,
+            plan.threads,
+            interrupt::flag(),
+            &mut seen,
+        ),
+    };
+    interrupt::unwatch();
+    let seconds = out.progress.finish().as_secs_f64();
+    if let Some(error) = out.broken.take() {
+        return written(Err(error), &report.place);
+    }
+    failure?;
+    let ending = write(&plan, &report, &out)?;
+    if let Some(path) = plot {
+        draw(&plan, &report, &out, path)?;
+    }
+    report.say(out.summary(seconds));
+    Ok(match ending {
+        _ if interrupt::asked() => interrupted(&report),
+        Ending::Done if out.nothing_decided() => Ending::Undecided,
+        ending => ending,
+    })
+}
+
+/// The object; tables and CSV are written already.
+fn write(plan: &SweepPlan, report: &Report<'_>, out: &Out<'_>) -> Result<Ending> {
+    if report.format != Format::Json {
+        return Ok(Ending::Done);
+    }
+    let units = &plan.system.units;
+    let rows = out.rows.iter();
+    let rows: Vec<Value> = rows
+        .map(|row| Value::Object(views::object(out.columns, row, units)))
+        .collect();
+    let regimes: serde_json::Map<String, Value> = out
+        .regimes()
+        .map(|(name, count)| (name.to_owned(), json!(count)))
+        .collect();
+    let result = json!({"rows": rows, "regimes": regimes});
+    let work = json!({"points": out.new});
+    let bytes = report.envelope(&plan.system, plan.numerics.clone(), result, work, None);
+    written(report.place.write(&bytes), &report.place)
+}
+
+fn draw(plan: &SweepPlan, report: &Report<'_>, out: &Out<'_>, path: &Path) -> Result<()> {
+    let _ = (plan, path);
+    if out.rows.is_empty() {
+        report.say("there is no point to draw");
+    }
+    Err(Error::Input("no pictures yet".into()))
+}

@@ -1,0 +1,52 @@
+//! Ranks of MPI in a build without it: there are none.
+
+use crate::error::{Error, Result};
+use crate::scene::SweepPlan;
+use crate::sweep::{Row, Settings, Units};
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
+
+/// Nobody.
+pub enum Ranks {}
+
+impl Ranks {
+    /// Makes sure that this process is alone.
+    ///
+    /// # Errors
+    /// [`Error::Input`] if mpirun has started several, which would all write the same file.
+    pub fn join() -> Result<Option<Self>> {
+        let several = |name: &str| {
+            let size = std::env::var(name).ok().and_then(|n| n.parse().ok());
+            size.is_some_and(|size: usize| size > 1)
+        };
+        if ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].into_iter().any(several) {
+            return Err(Error::Input(
+                "mpirun has started several processes, but this build knows nothing of MPI; build it with --features mpi"
+                    .into(),
+            ));
+        }
+        Ok(None)
+    }
+
+    pub fn leads(&self) -> bool {
+        match *self {}
+    }
+
+    pub fn serve(&self, _: Option<&SweepPlan>) {
+        match *self {}
+    }
+
+    pub fn run(
+        &mut self,
+        _: &Settings,
+        _: Units,
+        _: &AtomicBool,
+        _: &mut dyn FnMut(&[Row]) -> ControlFlow<()>,
+    ) -> Result<()> {
+        match *self {}
+    }
+
+    pub fn dismiss(&mut self) {
+        match *self {}
+    }
+}

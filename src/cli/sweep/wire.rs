@@ -1,0 +1,165 @@
+//! Rows as bytes, to the last bit, on their way from one rank to another.
+
+use crate::equilibrium::Symmetry;
+use crate::number::Uncertain;
+use crate::sweep::Row;
+use crate::views::REGIMES;
+
+/// All rows, one after the other.
+pub fn pack(rows: &[Row]) -> Vec<u8> {
+    let mut to = Vec::new();
+    for row in rows {
+        count(&mut to, row.number);
+        let [tau, ln_psi_1, ln_psi_2] = row.start;
+        numbers(&mut to, &[row.driving, row.stiffness, tau, ln_psi_1, ln_psi_2]);
+        let regime = REGIMES.iter().position(|&regime| regime == row.regime);
+        count(&mut to, regime.expect("all regimes are listed"));
+        count(
+            &mut to,
+            match row.symmetry {
+                None => 0,
+                Some(Symmetry::Symmetric) => 1,
+                Some(Symmetry::Asymmetric) => 2,
+            },
+        );
+        // No orbit closes after no return at all.
+        count(&mut to, row.returns_per_period.unwrap_or(0));
+        count(&mut to, row.returns);
+        maybe(&mut to, row.period.map(|x| [x]));
+        maybe(&mut to, row.stress_range.map(|(low, high)| [low, high]));
+        let exponent = row.lyapunov_max.map(|x| [x.value, x.uncertainty]);
+        maybe(&mut to, exponent);
+        let note = row.note.as_deref().unwrap_or_default();
+        count(&mut to, usize::from(row.note.is_some()));
+        count(&mut to, note.len());
+        to.extend_from_slice(note.as_bytes());
+    }
+    to
+}
+
+fn count(to: &mut Vec<u8>, n: usize) {
+    to.extend((n as u64).to_le_bytes());
+}
+
+fn numbers(to: &mut Vec<u8>, list: &[f64]) {
+    for x in list {
+        to.extend(x.to_le_bytes());
+    }
+}
+
+fn maybe<const N: usize>(to: &mut Vec<u8>, list: Option<[f64; N]>) {
+    count(to, usize::from(list.is_some()));
+    numbers(to, &list.unwrap_or([0.0; N]));
+}
+
+/// The rows again; `None` if these are not the bytes of any.
+pub fn unpack(bytes: &[u8]) -> Option<Vec<Row>> {
+    let mut from = From(bytes);
+    let mut rows = Vec::new();
+    while !from.0.is_empty() {
+        rows.push(from.row()?);
+    }
+    Some(rows)
+}
+
+/// What is still to be read.
+struct From<'a>(&'a [u8]);
+
+impl From<'_> {
+    fn row(&mut self) -> Option<Row> {
+        let number = self.count()?;
+        let [driving, stiffness, tau, ln_psi_1, ln_psi_2] = self.numbers()?;
+        Some(Row {
+            number,
+            driving,
+            stiffness,
+            start: [tau, ln_psi_1, ln_psi_2],
+            regime: *REGIMES.get(self.count()?)?,
+            symmetry: match self.count()? {
+                0 => None,
+                1 => Some(Symmetry::Symmetric),
+                2 => Some(Symmetry::Asymmetric),
+                _ => return None,
+            },
+            returns_per_period: Some(self.count()?).filter(|&q| q > 0),
+            returns: self.count()?,
+            period: self.maybe()?.map(|[x]| x),
+            stress_range: self.maybe()?.map(|[low, high]| (low, high)),
+            lyapunov_max: self.maybe()?.map(|[x, bound]| Uncertain::new(x, bound)),
+            note: self.note()?,
+        })
+    }
+
+    fn take(&mut self, length: usize) -> Option<&[u8]> {
+        let (taken, rest) = self.0.split_at_checked(length)?;
+        self.0 = rest;
+        Some(taken)
+    }
+
+    fn count(&mut self) -> Option<usize> {
+        let bytes = self.take(8)?.try_into().ok()?;
+        usize::try_from(u64::from_le_bytes(bytes)).ok()
+    }
+
+    fn numbers<const N: usize>(&mut self) -> Option<[f64; N]> {
+        let mut list = [0.0; N];
+        for x in &mut list {
+            *x = f64::from_le_bytes(self.take(8)?.try_into().ok()?);
+        }
+        Some(list)
+    }
+
+    fn maybe<const N: usize>(&mut self) -> Option<Option<[f64; N]>> {
+        let there = self.count()? == 1;
+        let list = self.numbers()?;
+        Some(there.then_some(list))
+    }
+
+    fn note(&mut self) -> Option<Option<String>> {
+        let there = self.count()? == 1;
+        let length = self.count()?;
+        let text = String::from_utf8(self.take(length)?.to_vec()).ok()?;
+        Some(there.then_some(text))
+    }
+}
+
+#[cfg(test)]
+mod test {
+    use super::*;
+    use crate::section::Regime;
+
+    #[test]
+    fn rows_come_back_to_the_bit() {
+        let full = Row {
+            number: 7,
+            driving: 0.1,
+            stiffness: 1.0 / 3.0,
+            start: [11.3, f64::MIN_POSITIVE.ln(), -0.0],
+            regime: Regime::Periodic,
+            symmetry: Some(Symmetry::Asymmetric),
+            returns_per_period: Some(3),
+            period: Some(1e300),
+            stress_range: Some((-1.5, 12.0)),
+            lyapunov_max: Some(Uncertain::new(-1e-3, f64::INFINITY)),
+            returns: 1234,
+            note: Some("a note, \"quoted\": ψ".into()),
+        };
+        let empty = Row {
+            number: 8,
+            regime: Regime::Undecided,
+            symmetry: None,
+            returns_per_period: None,
+            period: None,
+            stress_range: None,
+            lyapunov_max: None,
+            returns: 0,
+            note: None,
+            ..full.clone()
+        };
+        let rows = vec![full, empty];
+        let bytes = pack(&rows);
+        assert_eq!(unpack(&bytes), Some(rows));
+        assert_eq!(unpack(&[]), Some(Vec::new()));
+        assert_eq!(unpack(&bytes[..bytes.len() - 1]), None);
+    }
+}
