@@ -1,0 +1,401 @@
+//! `sweep` and `merge` as a user meets them: the same bytes however a sweep is run, killed, gone on with or shared out.
+#![allow(missing_docs)]
+
+mod command;
+
+use command::{csv, folder, object, run, twinslip};
+use std::fs;
+use std::path::Path;
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+/// Near the Hopf points at K = 0.3 and above them: rest and quick cycles.
+const GRID: &str = "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4";
+
+fn sweep(more: &str) -> command::Ended {
+    twinslip(&format!("{GRID} -q {more}"))
+}
+
+/// The sweep of one run, to compare with.
+fn whole(place: &Path, more: &str) -> String {
+    let path = place.join("whole.csv");
+    let ended = sweep(&format!("{more} -o {}", path.display()));
+    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    fs::read_to_string(path).expect("written")
+}
+
+fn refused(arguments: &str, sentence: &str) {
+    let ended = twinslip(arguments);
+    assert_eq!(ended.code, 2, "{arguments}: {}", ended.err);
+    assert_eq!(ended.out, "", "{arguments}");
+    assert!(
+        ended.err.starts_with("error: ") && ended.err.contains(sentence),
+        "{arguments}: {}",
+        ended.err
+    );
+    assert_eq!(ended.err.lines().count(), 1, "{arguments}: {}", ended.err);
+}
+
+#[test]
+fn rows_are_those_of_the_grid_in_its_order_in_all_formats() {
+    let ended = twinslip(&format!("{GRID} --format csv"));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let table = csv(&ended.out);
+    assert_eq!(
+        table[0],
+        [
+            "driving",
+            "stiffness",
+            "regime",
+            "symmetry",
+            "period",
+            "stress_min",
+            "stress_max",
+            "lyapunov_max",
+            "lyapunov_max_uncertainty",
+            "returns",
+            "period_of_orbit",
+            "start_stress",
+            "start_state_1",
+            "start_state_2",
+            "note"
+        ]
+    );
+    assert_eq!(table.len(), 1 + 24);
+    for (k, row) in table[1..].iter().enumerate() {
+        let (i, j) = ((k % 6) as f64, (k / 6) as f64);
+        let near = |cell: &str, x: f64| (cell.parse::<f64>().expect("a number") - x).abs() < 1e-12;
+        assert!(near(&row[0], 0.05 + 0.09 * i) && near(&row[1], 0.3 + 0.2 / 3.0 * j));
+    }
+    assert!(ended.err.contains("24 points in ") && ended.err.contains(" a second: "));
+    // The first lines are those of any run of it, and can be typed.
+    let typed = "# command: twinslip sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4\n";
+    assert!(ended.out.contains(typed), "{}", ended.out);
+    let made = object(GRID);
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    for (row, line) in rows.iter().zip(&table[1..]) {
+        assert_eq!(row["driving"].as_f64(), line[0].parse().ok());
+        assert_eq!(row["regime"], *line[2]);
+        let fields = ["/lyapunov_max/value", "/lyapunov_max/uncertainty"];
+        for (field, cell) in fields.iter().zip(&line[7..]) {
+            let value = row.pointer(field).and_then(|x| x.as_f64());
+            assert_eq!(value, cell.parse().ok());
+        }
+    }
+    let regimes = made["result"]["regimes"].as_object().expect("counts");
+    let sum: u64 = regimes.values().filter_map(|n| n.as_u64()).sum();
+    assert_eq!((sum, regimes.len()), (24, 5));
+    let table = sweep("--format table");
+    let line = table.out.lines().next().expect("names");
+    assert!(line.contains("regime") && !line.contains("start_"), "{line}");
+}
+
+#[test]
+fn bytes_depend_on_neither_threads_nor_words() {
+    let place = folder("sweep-threads");
+    for more in ["", "--follow", "--starts 2 --seed 7"] {
+        let one = whole(&place, &format!("{more} --threads 1"));
+        assert_eq!(one, whole(&place, &format!("{more} --threads 2")), "{more}");
+    }
+    // The same sweep in other words.
+    let path = place.join("other.csv");
+    let other = format!(
+        "sweep -q --law spinodal --stiffness 0.30:5e-1:4 --driving 5e-2:0.5:6 --seed 1 -o {}",
+        path.display()
+    );
+    assert_eq!(twinslip(&other).code, 0);
+    assert_eq!(fs::read_to_string(path).expect("written"), whole(&place, ""));
+}
+
+/// Cut off at any byte, a file is gone on with and ends as if it had never been interrupted.
+#[test]
+fn a_torn_file_is_gone_on_with() {
+    let place = folder("sweep-torn");
+    let torn = place.join("torn.csv");
+    for more in ["", "--follow", "--shard 2/3"] {
+        let whole = whole(&place, more);
+        let rows = whole.find("\n0.05,").expect("a row");
+        for part in [
+            0,
+            9,
+            rows - 5,
+            rows + 1,
+            rows + 30,
+            (rows + whole.len()) / 2,
+            whole.len() - 1,
+            whole.len(),
+        ] {
+            fs::write(&torn, &whole[..part]).expect("written");
+            let ended = sweep(&format!("{more} --resume {}", torn.display()));
+            assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{more} {part}");
+            let text = fs::read_to_string(&torn).expect("written");
+            assert!(text == whole, "{more}: {part} bytes were there");
+        }
+    }
+    // A file that is not there is begun, and -o may say so too.
+    let absent = place.join("absent.csv");
+    let path = absent.display();
+    assert_eq!(sweep(&format!("--resume {path} -o {path}")).code, 0);
+    assert_eq!(fs::read_to_string(&absent).expect("written"), whole(&place, ""));
+}
+
+/// kill -9 at random moments: each time the next run goes on, and in the end no row is lost or doubled.
+#[cfg(unix)]
+#[test]
+fn a_killed_sweep_ends_in_the_same_bytes() {
+    const KILLS: usize = 20;
+    let place = folder("sweep-killed");
+    let grid = "sweep -q --driving 0.05:0.5:40 --stiffness 0.25:0.5:25";
+    let whole = place.join("whole.csv");
+    let begun = std::time::Instant::now();
+    assert_eq!(twinslip(&format!("{grid} -o {}", whole.display())).code, 0);
+    // Where a kill falls is chance, and depends on the machine: what must hold does not.
+    let span = begun.elapsed().as_micros() as u64;
+    let path = place.join("killed.csv");
+    let resume = format!("{grid} --resume {}", path.display());
+    let mut random = std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), 0u8);
+    let mut lengths = Vec::new();
+    for kill in 0..KILLS {
+        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        let threads = 1 + kill % 2;
+        let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            .args(resume.split(' '))
+            .args(["--threads", &threads.to_string()])
+            .stderr(Stdio::null())
+            .spawn()
+            .expect("the program starts");
+        std::thread::sleep(Duration::from_micros((random >> 33) % (span / 8 + 1)));
+        child.kill().expect("SIGKILL");
+        child.wait().expect("it ends");
+        lengths.push(fs::metadata(&path).map_or(0, |data| data.len()));
+    }
+    let ended = twinslip(&resume);
+    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    let [whole, killed] = [whole, path].map(|path| fs::read(path).expect("written"));
+    assert!(whole == killed, "other bytes after {lengths:?} of {}", whole.len());
+    assert!(lengths.is_sorted(), "rows were lost: {lengths:?}");
+}
+
+#[test]
+fn files_of_other_sweeps_are_refused_and_stay() {
+    let place = folder("sweep-other");
+    let path = place.join("whole.csv");
+    let whole = whole(&place, "");
+    let resume = format!("--resume {}", path.display());
+    for (arguments, sentence) in [
+        (
+            "sweep --driving 0.05:0.5:7 --stiffness 0.3:0.5:4",
+            "it was written with driving = 0.05:0.5:6, but this run has driving = 0.05:0.5:7",
+        ),
+        (
+            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --law bounded",
+            "it was written with law = spinodal, but this run has law = bounded",
+        ),
+        (
+            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --seed 2 --starts 2",
+            "it was written with ",
+        ),
+        (
+            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --shard 1/2",
+            "it is of the whole sweep, but this run is of the part 1/2",
+        ),
+        (
+            "branch equilibria --stiffness 0.14",
+            "its columns are not those of this command",
+        ),
+        (
+            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --format json",
+            "only CSV can be gone on with",
+        ),
+        (
+            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 -o other.csv",
+            "leave out --output",
+        ),
+    ] {
+        refused(&format!("{arguments} {resume}"), sentence);
+    }
+    assert_eq!(fs::read_to_string(&path).expect("there"), whole);
+    // A row that is missing in the midst, another program, and no CSV at all.
+    let rows: Vec<&str> = whole.lines().collect();
+    let damaged = [&rows[..rows.len() - 9], &rows[rows.len() - 8..]].concat();
+    let damaged = damaged.join("\n") + "\n";
+    let older = whole.replacen("# twinslip ", "# twinslip 0.0.", 1);
+    for (text, sentence) in [
+        (damaged.as_str(), "row 16 is not that of its point"),
+        (&older, "it was written by twinslip 0.0."),
+        ("a,b\n1,2\n", "it is not the CSV of a sweep"),
+        (&format!("{whole}{}\n", rows[rows.len() - 1]), "it has more rows than the sweep"),
+    ] {
+        fs::write(&path, text).expect("written");
+        refused(&format!("{GRID} {resume}"), sentence);
+        assert_eq!(fs::read_to_string(&path).expect("there"), text);
+    }
+}
+
+#[test]
+fn parts_are_merged_to_the_bytes_of_one_run() {
+    let place = folder("sweep-parts");
+    let name = |n: usize| place.join(format!("{n}.csv")).display().to_string();
+    for more in ["", "--follow --starts 2"] {
+        let whole = whole(&place, more);
+        for part in 1..=3 {
+            let ended = sweep(&format!("{more} --shard {part}/3 -o {}", name(part)));
+            assert_eq!(ended.code, 0, "{}", ended.err);
+        }
+        let out = place.join("merged.csv").display().to_string();
+        let ended = run(&["merge", &name(3), &name(1), &name(2), "-o", &out]);
+        assert_eq!(ended.code, 0, "{}", ended.err);
+        let rows = csv(&whole).len() - 1;
+        assert!(ended.err.contains(&format!("{rows} rows of 3 parts")));
+        assert!(fs::read_to_string(&out).expect("merged") == whole, "{more}");
+    }
+    let merged = run(&["merge", &name(1), &name(2), &name(3), "-q", "-o", "-"]);
+    assert_eq!((merged.code, merged.err.as_str()), (0, ""));
+    let out = place.join("refused.csv").display().to_string();
+    let merge = |parts: &[&str]| format!("merge {} -o {out}", parts.join(" "));
+    refused(&merge(&[&name(1), &name(3)]), "the parts 2/3 are missing");
+    refused(&merge(&[&name(1), &name(2), &name(1)]), "are both the part 1/3");
+    let other = name(4);
+    let of_other = |grid: &str, shard: &str| {
+        let ended = twinslip(&format!("sweep {grid} -q --shard {shard} -o {other}"));
+        assert_eq!(ended.code, 0, "{}", ended.err);
+    };
+    of_other("--driving 0.05:0.5:6 --stiffness 0.3:0.5:5 --follow --starts 2", "3/3");
+    let mixed = merge(&[&name(1), &name(2), &other]);
+    refused(&mixed, "are of different sweeps");
+    of_other("--driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --follow --starts 2", "3/4");
+    refused(&mixed, "are of different sweeps");
+    let path = place.join("whole.csv").display().to_string();
+    refused(&merge(&[&name(1), &path]), "it is a whole sweep, not a part of one");
+    refused(&merge(&["/dev/null"]), "it is not the CSV of a sweep");
+    refused(&merge(&[&format!("{}.none", name(1))]), "cannot read");
+    refused(
+        &format!("merge {} {} {} -o {}", name(1), name(2), name(3), name(1)),
+        "both a part and the whole",
+    );
+    let text = fs::read_to_string(name(2)).expect("a part");
+    fs::write(name(2), &text[..text.len() - 3]).expect("written");
+    refused(
+        &merge(&[&name(1), &name(2), &name(3)]),
+        "it ends after 0 of 12 rows; finish it with --resume",
+    );
+    assert!(!Path::new(&out).exists());
+}
+
+#[test]
+fn wrong_grids_are_refused_in_one_sentence() {
+    let plane = |driving: &str| format!("sweep --driving {driving} --stiffness 0.14");
+    for (arguments, sentence) in [
+        ("sweep --stiffness 0.14".to_owned(), "--driving A:B:N is missing"),
+        ("sweep --driving 0.1".to_owned(), "--stiffness A:B:N is missing"),
+        (plane("0.1:0.2"), "--driving"),
+        (plane("0.1:0.2:x"), "--driving"),
+        (plane("0.1:0.2:0"), "driving"),
+        (plane("0:0.2:5"), "driving"),
+        (plane("-1:0.2:5log"), "driving"),
+        (plane("-1"), "driving is -1, but must be positive and finite"),
+        (plane("nan:1:5"), "driving"),
+        (plane("0.2:0.1:5"), "driving"),
+        (plane("1:2:99999999999999999999"), "driving"),
+        (plane("0.1 --starts 0"), "starts is 0, but must be"),
+        (plane("0.1 --threads 0"), "threads is 0, but must be at least 1"),
+        (plane("0.1 --max-returns 1"), "max-returns is 1, but must be"),
+        (plane("0.1 --rtol 2"), "rtol is 2, but must be"),
+        (plane("0.1 --interfaces 1"), "sweep needs two interfaces"),
+        (plane("0.1 --shard 0/3"), "shard is 0/3, but must be I/N"),
+        (plane("0.1 --shard 4/3"), "shard is 4/3, but must be I/N"),
+        (plane("0.1 --shard 2"), "shard is 2, but must be I/N"),
+        (plane("0.1 --plot map.pdf"), "map.pdf"),
+        (plane("0.1 --resume -"), "only a file can be gone on with"),
+        (
+            plane("0.1:0.2:2 --basin --state-1 0.1:0.2:2 --state-2 0.1:0.2:2"),
+            "with --basin --driving must be a single value, not 0.1:0.2:2",
+        ),
+    ] {
+        refused(&arguments, sentence);
+    }
+}
+
+#[test]
+fn a_basin_has_a_row_for_each_start() {
+    let ended = twinslip(
+        "sweep --basin --driving 0.5 --stiffness 0.4 --state-1 0.01:1:3log --state-2 0.1:0.9:2 --format csv -q",
+    );
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let table = csv(&ended.out);
+    let at = |name: &str| table[0].iter().position(|one| one == name).expect("it");
+    let (state_1, state_2) = (at("start_state_1"), at("start_state_2"));
+    let number = |row: &[String], at: usize| row[at].parse::<f64>().expect("a number");
+    let starts: Vec<(f64, f64)> = table[1..]
+        .iter()
+        .map(|row| (number(row, state_1), number(row, state_2)))
+        .collect();
+    let expected = [0.1, 0.9].map(|b| [0.01, 0.1, 1.0].map(|a| (a, b))).concat();
+    assert_eq!(starts.len(), expected.len());
+    for (found, expected) in starts.iter().zip(expected) {
+        let off = (found.0 / expected.0 - 1.0).abs() + (found.1 / expected.1 - 1.0).abs();
+        assert!(off < 1e-12, "{found:?} is not {expected:?}");
+    }
+}
+
+#[test]
+fn nothing_decided_has_its_own_exit_code() {
+    // A step is no run: each point is a row with its reason.
+    let ended = sweep("--max-steps 1 --format csv");
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    let table = csv(&ended.out);
+    assert!(table[1..].iter().all(|row| row[2] == "undecided"));
+    assert!(table[1..].iter().all(|row| !row[14].is_empty()));
+}
+
+/// A limit on the size of files stands for a full disk.
+#[test]
+fn a_full_disk_is_one_error_and_what_is_whole_stays() {
+    let place = folder("sweep-full");
+    let path = place.join("full.csv");
+    let grid = "sweep -q --driving 0.05:0.5:10 --stiffness 0.3:0.5:6";
+    let script = format!(
+        "trap '' XFSZ; ulimit -f 4; exec {} {grid} -o {}",
+        env!("CARGO_BIN_EXE_twinslip"),
+        path.display()
+    );
+    let ended = Command::new("bash").args(["-c", &script]).output().expect("bash");
+    let err = String::from_utf8(ended.stderr).expect("UTF-8");
+    assert_eq!(ended.status.code(), Some(2), "{err}");
+    assert_eq!(err.lines().count(), 1, "{err}");
+    assert!(err.contains("cannot write") && err.contains("large"), "{err}");
+    assert_eq!(fs::metadata(&path).expect("kept").len(), 4096);
+    assert_eq!(twinslip(&format!("{grid} --resume {}", path.display())).code, 0);
+    let other = place.join("whole.csv");
+    assert_eq!(twinslip(&format!("{grid} -o {}", other.display())).code, 0);
+    let [full, whole] = [path, other].map(|path| fs::read(path).expect("written"));
+    assert!(full == whole);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
+    let path = folder("sweep-interrupt").join("map.csv");
+    let long = format!("sweep --driving 0.05:0.5:400 --stiffness 0.3:0.5:400 -o {}", path.display());
+    let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .args(long.split(' '))
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program starts");
+    // As soon as there are rows, which is after the handler is there and long before the end.
+    let begun = std::time::Instant::now();
+    while fs::metadata(&path).map_or(0, |data| data.len()) < 4000 {
+        assert!(begun.elapsed() < Duration::from_secs(120), "no row came");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    assert!(killed.expect("kill").success());
+    let ended = child.wait_with_output().expect("it ends");
+    assert_eq!(ended.status.code(), Some(130));
+    let said = String::from_utf8_lossy(&ended.stderr);
+    assert!(said.contains("interrupted; go on with --resume"), "{said}");
+    let text = fs::read_to_string(&path).expect("kept");
+    assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
+    let table = csv(&text);
+    assert!(table.len() > 2 && table.iter().all(|row| row.len() == table[0].len()));
+}
