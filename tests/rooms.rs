@@ -40,6 +40,18 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "sweep",
+        &[
+            "section",
+            "equilibrium",
+            "integrate",
+            "model",
+            "field",
+            "friction",
+            "number",
+        ],
+    ),
+    (
         "bifurcation",
         &[
             "orbit",

@@ -57,7 +57,7 @@ impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
 }
 
 /// Trajectories on their way in lanes.
-pub(crate) trait Convoy {
+pub(crate) trait Convoy: Send {
     /// How many lanes there are.
     fn lanes(&self) -> usize;
     /// Begins at y = (tau, ln psi_1, ln psi_2) in this lane with the next step.

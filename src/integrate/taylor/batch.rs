@@ -126,12 +126,14 @@ impl Batch {
             let steps = convoy.advance(&accuracy, &limits);
             for (lane, seat) in seats.iter_mut().enumerate() {
                 let Some(here) = seat else { continue };
-                let before = here.clock.now.hi();
+                let (begin, before) = (here.clock.now, here.clock.now.hi());
                 let mut fate = self.ticked(here, &*convoy, lane, steps[lane], runs);
                 if let (Some(observer), Fate::On | Fate::Done) = (&mut observer, &fate) {
                     convoy.expansion(lane, accuracy.order, &mut expansion);
+                    (expansion.begin, expansion.length) = (begin, steps[lane]);
                     let end = State::from(convoy.state(lane));
-                    let dense = |time: f64| State::from(expansion.state(time - before));
+                    let dense =
+                        |time: f64| State::from(expansion.state(expansion.since_begin(time)));
                     let control = observer(
                         here.run,
                         &Step {

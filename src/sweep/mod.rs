@@ -1,0 +1,184 @@
+//! Maps of regimes: what runs settle on at the points of a grid, of (V_H, K) or of starts at one (V_H, K).
+//!
+//! Points are numbered, and what is found at one depends on its number and the settings alone: not on threads, lanes, chunks or
+//! neighbours, to the bit, on one kind of processor. So a sweep may be cut anywhere and taken up again, or be shared out among
+//! machines of that kind.
+//!
+//! A run is followed only as long as its verdict is open: to a stable steady state's neighbourhood that no run leaves; to a
+//! periodic point of the return map that attracts; or through enough returns to tell a torus or chaos.
+
+mod range;
+mod run;
+mod start;
+mod sweeper;
+
+pub use range::Range;
+pub use run::{Units, run};
+pub use sweeper::Sweeper;
+
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::friction::AnyLaw;
+use crate::integrate::Tolerances;
+use crate::model::Loading;
+use crate::number::Uncertain;
+use crate::section::{FEWEST_RETURNS, Regime};
+
+/// More points than this are a slip of the pen.
+const MOST_POINTS: usize = 1_000_000_000_000;
+/// More starts or returns than this, too.
+const MOST_STARTS: usize = 1000;
+const MOST_RETURNS: usize = 1_000_000;
+
+/// What varies from point to point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Grid {
+    /// V_H, fastest, and K.
+    Plane {
+        /// V_H in V*.
+        driving: Range,
+        /// K in a sigma / L.
+        stiffness: Range,
+    },
+    /// Starts at the stress tau_ss(V_H/2) of one slab: psi_1, fastest, and psi_2.
+    Basin {
+        /// V_H and K.
+        loading: Loading,
+        /// psi_1
+        state_1: Range,
+        /// psi_2
+        state_2: Range,
+    },
+}
+
+impl Grid {
+    /// The inner range, which varies fastest, and the outer one.
+    pub fn ranges(&self) -> [&Range; 2] {
+        match self {
+            Grid::Plane { driving, stiffness } => [driving, stiffness],
+            Grid::Basin {
+                state_1, state_2, ..
+            } => [state_1, state_2],
+        }
+    }
+}
+
+/// What a sweep computes. The point of number k = (j N + i) S + s is the i-th of N in the inner range, the j-th in the outer one,
+/// with the s-th of S starts.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Settings {
+    /// The interfaces' law.
+    pub law: AnyLaw,
+    /// The points.
+    pub grid: Grid,
+    /// Starts at each: the first beside the symmetric steady state, the second far from it with states far apart, the others
+    /// random. A basin has one, which is its point.
+    pub starts: usize,
+    /// Of the random starts.
+    pub seed: u64,
+    /// Whether a point starts on the attractor of the one before it in V_H, with the same K and start.
+    pub follow: bool,
+    /// Tolerance of the runs, relative and absolute.
+    pub rtol: f64,
+    /// Whether the largest exponent is wanted where the verdict needs none.
+    pub lyapunov: bool,
+    /// The most returns of a run.
+    pub max_returns: usize,
+    /// The most steps of a run.
+    pub max_steps: usize,
+}
+
+impl Settings {
+    /// How many points there are, starts counted.
+    pub fn points(&self) -> usize {
+        let [inner, outer] = self.grid.ranges();
+        inner.count * outer.count * self.starts
+    }
+
+    /// How many there are of what can be computed on its own: points, or lines of constant K where they follow one another.
+    pub fn units(&self) -> usize {
+        self.points() / self.points_per_unit()
+    }
+
+    /// Points of a unit: their numbers follow one another.
+    pub fn points_per_unit(&self) -> usize {
+        if self.follow {
+            self.grid.ranges()[0].count * self.starts
+        } else {
+            1
+        }
+    }
+
+    /// Whether they can be computed with.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the names of the command line.
+    pub fn checked(&self) -> Result<()> {
+        let names = match self.grid {
+            Grid::Plane { .. } => ["driving", "stiffness"],
+            Grid::Basin { .. } => ["state-1", "state-2"],
+        };
+        for (range, name) in self.grid.ranges().into_iter().zip(names) {
+            range.checked(name)?;
+        }
+        if let Grid::Basin { loading, .. } = self.grid {
+            Loading::new(loading.driving, loading.stiffness)?;
+            if self.follow || self.starts != 1 {
+                return Err(Error::Input(
+                    "a basin has one start at each point and none to follow; leave out --starts and --follow".into(),
+                ));
+            }
+        }
+        let within = |name: &str, value: usize, least: usize, most: usize, must| {
+            if (least..=most).contains(&value) {
+                Ok(())
+            } else {
+                Err(Error::parameter(name, value, must))
+            }
+        };
+        within("starts", self.starts, 1, MOST_STARTS, "from 1 to 1000")?;
+        let [inner, outer] = self.grid.ranges();
+        let points = inner.count.saturating_mul(outer.count);
+        let points = points.saturating_mul(self.starts);
+        within("points", points, 1, MOST_POINTS, "at most 1e12")?;
+        within(
+            "max-returns",
+            self.max_returns,
+            FEWEST_RETURNS,
+            MOST_RETURNS,
+            "from 200, which tell a torus, to 1e6",
+        )?;
+        within("max-steps", self.max_steps, 1, usize::MAX, "at least 1")?;
+        Tolerances::equal(self.rtol).map(|_| ())
+    }
+}
+
+/// What was found at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// The point's number.
+    pub number: usize,
+    /// V_H in V*.
+    pub driving: f64,
+    /// K in a sigma / L.
+    pub stiffness: f64,
+    /// tau, ln psi_1 and ln psi_2 where the run starts.
+    pub start: [f64; 3],
+    /// What it settles on.
+    pub regime: Regime,
+    /// Whether both interfaces move alike there; of steady and periodic runs.
+    pub symmetry: Option<Symmetry>,
+    /// q, of a periodic run.
+    pub returns_per_period: Option<usize>,
+    /// The time of these.
+    pub period: Option<f64>,
+    /// The least and the greatest stress there: over a period, or over the returns that were recorded.
+    pub stress_range: Option<(f64, f64)>,
+    /// The largest Lyapunov exponent of those across the flow. Where the run rests or is periodic it is negative, from
+    /// eigenvalues or multipliers; that along the flow, which is zero, is not counted.
+    pub lyapunov_max: Option<Uncertain>,
+    /// Returns of the run to the section, those let pass included.
+    pub returns: usize,
+    /// Why it is undecided, and other remarks.
+    pub note: Option<String>,
+}

@@ -1,0 +1,120 @@
+//! All units of a sweep, over the cores of a machine, handed on in order.
+
+use super::{Row, Settings, Sweeper};
+use crate::error::{Error, Result};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, mpsc};
+
+/// Points of a chunk: so many that lanes are seldom empty, so few that they are shared out evenly and flushed often.
+const CHUNK: usize = 128;
+/// Chunks that may be done before one that they must wait for, for each thread.
+const AHEAD: usize = 8;
+
+/// Which units: `first`, and then every `every`-th.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Units {
+    /// The first one.
+    pub first: usize,
+    /// From one to the next, at least 1.
+    pub every: usize,
+}
+
+impl Units {
+    /// All from the first one on.
+    pub fn from(first: usize) -> Self {
+        Units { first, every: 1 }
+    }
+
+    /// Those of the shard number `index` of `count`, counted from 1, without the first `done` of them.
+    pub fn shard(index: usize, count: usize, done: usize) -> Self {
+        Units {
+            first: index - 1 + done * count,
+            every: count,
+        }
+    }
+
+    /// How many there are of `all`.
+    fn count(&self, all: usize) -> usize {
+        all.saturating_sub(self.first).div_ceil(self.every)
+    }
+}
+
+/// Computes these units over so many threads, as many as there are cores if `None`. Rows are given to `seen` in the order of their
+/// units as soon as all before them are there, on the thread that calls; it may end the sweep, and so may `stop`, after the rows
+/// that are on their way. Rows held back for their order are bounded in number.
+///
+/// # Errors
+/// Those of [`Settings::checked`]. What fails at a point is in its row.
+pub fn run(
+    settings: &Settings,
+    units: Units,
+    threads: Option<usize>,
+    stop: &AtomicBool,
+    seen: &mut dyn FnMut(&[Row]) -> ControlFlow<()>,
+) -> Result<()> {
+    settings.checked()?;
+    if units.every == 0 {
+        return Err(Error::parameter("every", 0, "at least 1"));
+    }
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(threads.unwrap_or(0))
+        .build()
+        .map_err(|error| Error::Input(format!("no threads to compute with: {error}")))?;
+    let threads = pool.current_num_threads();
+    let all = units.count(settings.units());
+    let size = chunk(settings, all, threads);
+    let chunks = all.div_ceil(size);
+    // One for each thread that is at work at the same time.
+    let idle: Mutex<Vec<Sweeper>> = Mutex::default();
+    let compute = |index: usize| -> Result<Vec<Row>> {
+        let mut rows = Vec::new();
+        if stop.load(Ordering::Relaxed) {
+            return Ok(rows);
+        }
+        let spare = idle.lock().expect("no thread panicked").pop();
+        let mut sweeper = spare.map_or_else(|| Sweeper::new(settings), Ok)?;
+        let of_chunk = index * size..((index + 1) * size).min(all);
+        sweeper.rows(of_chunk.map(|n| units.first + n * units.every), &mut rows);
+        idle.lock().expect("no thread panicked").push(sweeper);
+        Ok(rows)
+    };
+    let compute = &compute;
+    pool.in_place_scope(|scope| {
+        let (done, results) = mpsc::channel();
+        let mut waiting = BTreeMap::new();
+        let mut begun = 0;
+        for next in 0..chunks {
+            while begun < chunks.min(next + AHEAD * threads) {
+                let (index, done) = (begun, done.clone());
+                // Nobody listens any more to what comes after the end.
+                scope.spawn(move |_| drop(done.send((index, compute(index)))));
+                begun += 1;
+            }
+            let rows = loop {
+                if let Some(rows) = waiting.remove(&next) {
+                    break rows;
+                }
+                let Ok((index, rows)) = results.recv() else {
+                    return Ok(());
+                };
+                waiting.insert(index, rows);
+            };
+            let rows: Vec<Row> = rows?;
+            if rows.is_empty() || seen(&rows).is_break() {
+                stop.store(true, Ordering::Relaxed);
+                return Ok(());
+            }
+        }
+        Ok(())
+    })
+}
+
+/// Units of a chunk: fewer where there are few, so that no thread is without.
+fn chunk(settings: &Settings, all: usize, threads: usize) -> usize {
+    /// Chunks for each thread, where there are not enough for full ones.
+    const SHARES: usize = 4;
+    let full = CHUNK.div_ceil(settings.points_per_unit());
+    full.min(all.div_ceil(SHARES * threads)).max(1)
+}
