@@ -67,6 +67,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "scene",
         &[
+            "sweep",
             "bifurcation",
             "orbit",
             "section",
@@ -84,8 +85,10 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "views",
         &[
             "scene",
+            "sweep",
             "bifurcation",
             "orbit",
+            "section",
             "equilibrium",
             "number",
             "output",
@@ -114,6 +117,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "paper",
             "views",
             "scene",
+            "sweep",
             "bifurcation",
             "orbit",
             "section",

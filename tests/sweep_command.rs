@@ -9,8 +9,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-/// Near the Hopf points at K = 0.3 and above them: rest and quick cycles.
-const GRID: &str = "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4";
+/// About the Hopf points: rest, and quick cycles.
+const GRID: &str = "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4";
 
 fn sweep(more: &str) -> command::Ended {
     twinslip(&format!("{GRID} -q {more}"))
@@ -65,11 +65,11 @@ fn rows_are_those_of_the_grid_in_its_order_in_all_formats() {
     for (k, row) in table[1..].iter().enumerate() {
         let (i, j) = ((k % 6) as f64, (k / 6) as f64);
         let near = |cell: &str, x: f64| (cell.parse::<f64>().expect("a number") - x).abs() < 1e-12;
-        assert!(near(&row[0], 0.05 + 0.09 * i) && near(&row[1], 0.3 + 0.2 / 3.0 * j));
+        assert!(near(&row[0], 0.14 + 0.072 * i) && near(&row[1], 0.3 + 0.2 / 3.0 * j));
     }
     assert!(ended.err.contains("24 points in ") && ended.err.contains(" a second: "));
     // The first lines are those of any run of it, and can be typed.
-    let typed = "# command: twinslip sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4\n";
+    let typed = "# command: twinslip sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4\n";
     assert!(ended.out.contains(typed), "{}", ended.out);
     let made = object(GRID);
     let rows = made["result"]["rows"].as_array().expect("rows");
@@ -87,7 +87,10 @@ fn rows_are_those_of_the_grid_in_its_order_in_all_formats() {
     assert_eq!((sum, regimes.len()), (24, 5));
     let table = sweep("--format table");
     let line = table.out.lines().next().expect("names");
-    assert!(line.contains("regime") && !line.contains("start_"), "{line}");
+    assert!(
+        line.contains("regime") && !line.contains("start_"),
+        "{line}"
+    );
 }
 
 #[test]
@@ -100,11 +103,14 @@ fn bytes_depend_on_neither_threads_nor_words() {
     // The same sweep in other words.
     let path = place.join("other.csv");
     let other = format!(
-        "sweep -q --law spinodal --stiffness 0.30:5e-1:4 --driving 5e-2:0.5:6 --seed 1 -o {}",
+        "sweep -q --law spinodal --stiffness 0.30:5e-1:4 --driving 1.4e-1:0.5:6 --seed 1 -o {}",
         path.display()
     );
     assert_eq!(twinslip(&other).code, 0);
-    assert_eq!(fs::read_to_string(path).expect("written"), whole(&place, ""));
+    assert_eq!(
+        fs::read_to_string(path).expect("written"),
+        whole(&place, "")
+    );
 }
 
 /// Cut off at any byte, a file is gone on with and ends as if it had never been interrupted.
@@ -114,7 +120,7 @@ fn a_torn_file_is_gone_on_with() {
     let torn = place.join("torn.csv");
     for more in ["", "--follow", "--shard 2/3"] {
         let whole = whole(&place, more);
-        let rows = whole.find("\n0.05,").expect("a row");
+        let rows = whole.find(",note\n").expect("columns") + 5;
         for part in [
             0,
             9,
@@ -136,7 +142,10 @@ fn a_torn_file_is_gone_on_with() {
     let absent = place.join("absent.csv");
     let path = absent.display();
     assert_eq!(sweep(&format!("--resume {path} -o {path}")).code, 0);
-    assert_eq!(fs::read_to_string(&absent).expect("written"), whole(&place, ""));
+    assert_eq!(
+        fs::read_to_string(&absent).expect("written"),
+        whole(&place, "")
+    );
 }
 
 /// kill -9 at random moments: each time the next run goes on, and in the end no row is lost or doubled.
@@ -145,7 +154,7 @@ fn a_torn_file_is_gone_on_with() {
 fn a_killed_sweep_ends_in_the_same_bytes() {
     const KILLS: usize = 20;
     let place = folder("sweep-killed");
-    let grid = "sweep -q --driving 0.05:0.5:40 --stiffness 0.25:0.5:25";
+    let grid = "sweep -q --driving 0.14:0.5:20 --stiffness 0.34:0.5:20";
     let whole = place.join("whole.csv");
     let begun = std::time::Instant::now();
     assert_eq!(twinslip(&format!("{grid} -o {}", whole.display())).code, 0);
@@ -156,7 +165,9 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
     let mut random = std::hash::BuildHasher::hash_one(&std::hash::RandomState::new(), 0u8);
     let mut lengths = Vec::new();
     for kill in 0..KILLS {
-        random = random.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        random = random
+            .wrapping_mul(6364136223846793005)
+            .wrapping_add(1442695040888963407);
         let threads = 1 + kill % 2;
         let mut child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
             .args(resume.split(' '))
@@ -164,7 +175,7 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
             .stderr(Stdio::null())
             .spawn()
             .expect("the program starts");
-        std::thread::sleep(Duration::from_micros((random >> 33) % (span / 8 + 1)));
+        std::thread::sleep(Duration::from_micros((random >> 33) % (span / 4 + 1)));
         child.kill().expect("SIGKILL");
         child.wait().expect("it ends");
         lengths.push(fs::metadata(&path).map_or(0, |data| data.len()));
@@ -172,7 +183,11 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
     let ended = twinslip(&resume);
     assert_eq!((ended.code, ended.err.as_str()), (0, ""));
     let [whole, killed] = [whole, path].map(|path| fs::read(path).expect("written"));
-    assert!(whole == killed, "other bytes after {lengths:?} of {}", whole.len());
+    assert!(
+        whole == killed,
+        "other bytes after {lengths:?} of {}",
+        whole.len()
+    );
     assert!(lengths.is_sorted(), "rows were lost: {lengths:?}");
 }
 
@@ -184,19 +199,19 @@ fn files_of_other_sweeps_are_refused_and_stay() {
     let resume = format!("--resume {}", path.display());
     for (arguments, sentence) in [
         (
-            "sweep --driving 0.05:0.5:7 --stiffness 0.3:0.5:4",
-            "it was written with driving = 0.05:0.5:6, but this run has driving = 0.05:0.5:7",
+            "sweep --driving 0.14:0.5:7 --stiffness 0.3:0.5:4",
+            "it was written with driving = 0.14:0.5:6, but this run has driving = 0.14:0.5:7",
         ),
         (
-            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --law bounded",
+            "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --law bounded",
             "it was written with law = spinodal, but this run has law = bounded",
         ),
         (
-            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --seed 2 --starts 2",
+            "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --seed 2 --starts 2",
             "it was written with ",
         ),
         (
-            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --shard 1/2",
+            "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --shard 1/2",
             "it is of the whole sweep, but this run is of the part 1/2",
         ),
         (
@@ -204,11 +219,11 @@ fn files_of_other_sweeps_are_refused_and_stay() {
             "its columns are not those of this command",
         ),
         (
-            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --format json",
+            "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --format json",
             "only CSV can be gone on with",
         ),
         (
-            "sweep --driving 0.05:0.5:6 --stiffness 0.3:0.5:4 -o other.csv",
+            "sweep --driving 0.14:0.5:6 --stiffness 0.3:0.5:4 -o other.csv",
             "leave out --output",
         ),
     ] {
@@ -224,7 +239,10 @@ fn files_of_other_sweeps_are_refused_and_stay() {
         (damaged.as_str(), "row 16 is not that of its point"),
         (&older, "it was written by twinslip 0.0."),
         ("a,b\n1,2\n", "it is not the CSV of a sweep"),
-        (&format!("{whole}{}\n", rows[rows.len() - 1]), "it has more rows than the sweep"),
+        (
+            &format!("{whole}{}\n", rows[rows.len() - 1]),
+            "it has more rows than the sweep",
+        ),
     ] {
         fs::write(&path, text).expect("written");
         refused(&format!("{GRID} {resume}"), sentence);
@@ -254,19 +272,31 @@ fn parts_are_merged_to_the_bytes_of_one_run() {
     let out = place.join("refused.csv").display().to_string();
     let merge = |parts: &[&str]| format!("merge {} -o {out}", parts.join(" "));
     refused(&merge(&[&name(1), &name(3)]), "the parts 2/3 are missing");
-    refused(&merge(&[&name(1), &name(2), &name(1)]), "are both the part 1/3");
+    refused(
+        &merge(&[&name(1), &name(2), &name(1)]),
+        "are both the part 1/3",
+    );
     let other = name(4);
     let of_other = |grid: &str, shard: &str| {
         let ended = twinslip(&format!("sweep {grid} -q --shard {shard} -o {other}"));
         assert_eq!(ended.code, 0, "{}", ended.err);
     };
-    of_other("--driving 0.05:0.5:6 --stiffness 0.3:0.5:5 --follow --starts 2", "3/3");
+    of_other(
+        "--driving 0.14:0.5:6 --stiffness 0.3:0.5:5 --follow --starts 2",
+        "3/3",
+    );
     let mixed = merge(&[&name(1), &name(2), &other]);
     refused(&mixed, "are of different sweeps");
-    of_other("--driving 0.05:0.5:6 --stiffness 0.3:0.5:4 --follow --starts 2", "3/4");
+    of_other(
+        "--driving 0.14:0.5:6 --stiffness 0.3:0.5:4 --follow --starts 2",
+        "3/4",
+    );
     refused(&mixed, "are of different sweeps");
     let path = place.join("whole.csv").display().to_string();
-    refused(&merge(&[&name(1), &path]), "it is a whole sweep, not a part of one");
+    refused(
+        &merge(&[&name(1), &path]),
+        "it is a whole sweep, not a part of one",
+    );
     refused(&merge(&["/dev/null"]), "it is not the CSV of a sweep");
     refused(&merge(&[&format!("{}.none", name(1))]), "cannot read");
     refused(
@@ -286,20 +316,35 @@ fn parts_are_merged_to_the_bytes_of_one_run() {
 fn wrong_grids_are_refused_in_one_sentence() {
     let plane = |driving: &str| format!("sweep --driving {driving} --stiffness 0.14");
     for (arguments, sentence) in [
-        ("sweep --stiffness 0.14".to_owned(), "--driving A:B:N is missing"),
-        ("sweep --driving 0.1".to_owned(), "--stiffness A:B:N is missing"),
+        (
+            "sweep --stiffness 0.14".to_owned(),
+            "--driving A:B:N is missing",
+        ),
+        (
+            "sweep --driving 0.1".to_owned(),
+            "--stiffness A:B:N is missing",
+        ),
         (plane("0.1:0.2"), "--driving"),
         (plane("0.1:0.2:x"), "--driving"),
         (plane("0.1:0.2:0"), "driving"),
         (plane("0:0.2:5"), "driving"),
         (plane("-1:0.2:5log"), "driving"),
-        (plane("-1"), "driving is -1, but must be positive and finite"),
+        (
+            plane("-1"),
+            "driving is -1, but must be positive and finite",
+        ),
         (plane("nan:1:5"), "driving"),
         (plane("0.2:0.1:5"), "driving"),
         (plane("1:2:99999999999999999999"), "driving"),
         (plane("0.1 --starts 0"), "starts is 0, but must be"),
-        (plane("0.1 --threads 0"), "threads is 0, but must be at least 1"),
-        (plane("0.1 --max-returns 1"), "max-returns is 1, but must be"),
+        (
+            plane("0.1 --threads 0"),
+            "threads is 0, but must be at least 1",
+        ),
+        (
+            plane("0.1 --max-returns 1"),
+            "max-returns is 1, but must be",
+        ),
         (plane("0.1 --rtol 2"), "rtol is 2, but must be"),
         (plane("0.1 --interfaces 1"), "sweep needs two interfaces"),
         (plane("0.1 --shard 0/3"), "shard is 0/3, but must be I/N"),
@@ -330,7 +375,9 @@ fn a_basin_has_a_row_for_each_start() {
         .iter()
         .map(|row| (number(row, state_1), number(row, state_2)))
         .collect();
-    let expected = [0.1, 0.9].map(|b| [0.01, 0.1, 1.0].map(|a| (a, b))).concat();
+    let expected = [0.1, 0.9]
+        .map(|b| [0.01, 0.1, 1.0].map(|a| (a, b)))
+        .concat();
     assert_eq!(starts.len(), expected.len());
     for (found, expected) in starts.iter().zip(expected) {
         let off = (found.0 / expected.0 - 1.0).abs() + (found.1 / expected.1 - 1.0).abs();
@@ -353,19 +400,28 @@ fn nothing_decided_has_its_own_exit_code() {
 fn a_full_disk_is_one_error_and_what_is_whole_stays() {
     let place = folder("sweep-full");
     let path = place.join("full.csv");
-    let grid = "sweep -q --driving 0.05:0.5:10 --stiffness 0.3:0.5:6";
+    let grid = "sweep -q --driving 0.14:0.5:10 --stiffness 0.3:0.5:6";
     let script = format!(
         "trap '' XFSZ; ulimit -f 4; exec {} {grid} -o {}",
         env!("CARGO_BIN_EXE_twinslip"),
         path.display()
     );
-    let ended = Command::new("bash").args(["-c", &script]).output().expect("bash");
+    let ended = Command::new("bash")
+        .args(["-c", &script])
+        .output()
+        .expect("bash");
     let err = String::from_utf8(ended.stderr).expect("UTF-8");
     assert_eq!(ended.status.code(), Some(2), "{err}");
     assert_eq!(err.lines().count(), 1, "{err}");
-    assert!(err.contains("cannot write") && err.contains("large"), "{err}");
+    assert!(
+        err.contains("cannot write") && err.contains("large"),
+        "{err}"
+    );
     assert_eq!(fs::metadata(&path).expect("kept").len(), 4096);
-    assert_eq!(twinslip(&format!("{grid} --resume {}", path.display())).code, 0);
+    assert_eq!(
+        twinslip(&format!("{grid} --resume {}", path.display())).code,
+        0
+    );
     let other = place.join("whole.csv");
     assert_eq!(twinslip(&format!("{grid} -o {}", other.display())).code, 0);
     let [full, whole] = [path, other].map(|path| fs::read(path).expect("written"));
@@ -376,7 +432,10 @@ fn a_full_disk_is_one_error_and_what_is_whole_stays() {
 #[test]
 fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let path = folder("sweep-interrupt").join("map.csv");
-    let long = format!("sweep --driving 0.05:0.5:400 --stiffness 0.3:0.5:400 -o {}", path.display());
+    let long = format!(
+        "sweep --driving 0.14:0.5:400 --stiffness 0.3:0.5:400 -o {}",
+        path.display()
+    );
     let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
         .args(long.split(' '))
         .stderr(Stdio::piped())
@@ -388,7 +447,9 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
         assert!(begun.elapsed() < Duration::from_secs(120), "no row came");
         std::thread::sleep(Duration::from_millis(5));
     }
-    let killed = Command::new("kill").args(["-INT", &child.id().to_string()]).status();
+    let killed = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
     assert!(killed.expect("kill").success());
     let ended = child.wait_with_output().expect("it ends");
     assert_eq!(ended.status.code(), Some(130));
@@ -397,5 +458,6 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let text = fs::read_to_string(&path).expect("kept");
     assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
     let table = csv(&text);
-    assert!(table.len() > 2 && table.iter().all(|row| row.len() == table[0].len()));
+    // Reasons may have commas.
+    assert!(table.len() > 2 && table.iter().all(|row| row.len() >= table[0].len()));
 }

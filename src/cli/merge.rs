@@ -34,7 +34,11 @@ pub struct MergeOptions {
 pub fn run(options: &MergeOptions) -> Result<Ending> {
     let place = Place::new(Some(&options.output));
     place.check()?;
-    if let Some(file) = options.files.iter().find(|file| same(file, &options.output)) {
+    if let Some(file) = options
+        .files
+        .iter()
+        .find(|file| same(file, &options.output))
+    {
         return Err(file::wrong(file, "it cannot be both a part and the whole"));
     }
     let parts = parts(&options.files)?;

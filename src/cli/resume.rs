@@ -113,7 +113,11 @@ fn whole(label: Option<Label>, last: bool) -> bool {
 }
 
 /// Whether a file was written by the same command with the same model; if not, why not.
-pub(super) fn same(earlier: &EarlierRows, remarks: &[String], columns: &[String]) -> Result<(), String> {
+pub(super) fn same(
+    earlier: &EarlierRows,
+    remarks: &[String],
+    columns: &[String],
+) -> Result<(), String> {
     if !earlier.columns.is_empty() && earlier.columns != columns {
         return Err("its columns are not those of this command".into());
     }

@@ -57,20 +57,10 @@ pub struct SweepOptions {
     pub state_2: Option<String>,
     /// Starts at each point, a row for each: the first beside the symmetric steady state, the second far from it, the others
     /// drawn by the seed
-    #[arg(
-        long,
-        value_name = "S",
-        default_value_t = 1,
-        help_heading = "Grid"
-    )]
+    #[arg(long, value_name = "S", default_value_t = 1, help_heading = "Grid")]
     pub starts: usize,
     /// Seed of the starts: the same seed, the same rows
-    #[arg(
-        long,
-        value_name = "SEED",
-        default_value_t = 1,
-        help_heading = "Grid"
-    )]
+    #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = "Grid")]
     pub seed: u64,
     /// Start each point on the attractor of its neighbour at the V_H before: fewer transients, and hysteresis is seen
     #[arg(long, help_heading = "Grid")]
@@ -82,7 +72,12 @@ pub struct SweepOptions {
     #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub rtol: f64,
     /// A point is undecided after so many returns to its section
-    #[arg(long, value_name = "N", default_value_t = 2000, help_heading = "Numerics")]
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2000,
+        help_heading = "Numerics"
+    )]
     pub max_returns: usize,
     /// A point is undecided after so many steps
     #[arg(long, value_name = "N", default_value_t = MAX_STEPS, help_heading = "Numerics")]
@@ -194,8 +189,7 @@ impl SweepPlan {
             return Err(Error::parameter("threads", 0, "at least 1"));
         }
         let needed = |name: &str, text: &Option<String>| {
-            let missing =
-                || Error::Input(format!("--{name} A:B:N is missing, and has no default"));
+            let missing = || Error::Input(format!("--{name} A:B:N is missing, and has no default"));
             Grain::parse(name, text.as_deref().ok_or_else(missing)?)
         };
         let driving = needed("driving", &options.driving)?;
@@ -303,7 +297,9 @@ impl SweepPlan {
             Some(shard) => format!("part {shard}, {} rows", self.rows()),
         };
         let follow = match settings.follow {
-            true => "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed in one go",
+            true => {
+                "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed in one go"
+            }
             false => "off: --follow is not given; points are computed on their own",
         };
         let lyapunov = match settings.lyapunov {
@@ -358,7 +354,12 @@ impl Grain {
     }
 
     fn inward(&self, quantity: Quantity, units: &Units) -> Result<Range> {
-        let end = |x| positive(&*self.name, units.inward(quantity, positive(&*self.name, x)?));
+        let end = |x| {
+            positive(
+                &*self.name,
+                units.inward(quantity, positive(&*self.name, x)?),
+            )
+        };
         Ok(Range {
             from: end(self.range.from)?,
             to: end(self.range.to)?,
@@ -377,11 +378,7 @@ impl std::fmt::Display for Grain {
         } = self.range;
         match self.single {
             true => write!(f, "{from:?}"),
-            false => write!(
-                f,
-                "{from:?}:{to:?}:{count}{}",
-                if log { "log" } else { "" }
-            ),
+            false => write!(f, "{from:?}:{to:?}:{count}{}", if log { "log" } else { "" }),
         }
     }
 }

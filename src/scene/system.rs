@@ -48,11 +48,7 @@ impl System {
     ///
     /// # Errors
     /// As [`System::new`].
-    pub fn of(
-        options: &SlabOptions,
-        driving: Option<f64>,
-        stiffness: Option<f64>,
-    ) -> Result<Self> {
+    pub fn of(options: &SlabOptions, driving: Option<f64>, stiffness: Option<f64>) -> Result<Self> {
         if !(1..=2).contains(&options.interfaces) {
             return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
         }

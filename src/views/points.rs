@@ -64,11 +64,7 @@ pub fn sweep_columns() -> Vec<Column<Row>> {
 }
 
 /// A row from the cells of its line, by the names of their columns; `None` if they are not those of a row.
-pub fn sweep_row<'a>(
-    number: usize,
-    cell: &dyn Fn(&str) -> &'a str,
-    units: &Units,
-) -> Option<Row> {
+pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Row> {
     let maybe = |name: &str, quantity| {
         let text = cell(name);
         match text.is_empty() {

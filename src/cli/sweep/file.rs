@@ -137,7 +137,11 @@ fn difference(found: &str, expected: &str) -> String {
             format!("of the part {}", &remark[SHARD.len()..])
         })
     };
-    if !theirs.remarks.iter().any(|r| r.starts_with("command: twinslip sweep")) {
+    if !theirs
+        .remarks
+        .iter()
+        .any(|r| r.starts_with("command: twinslip sweep"))
+    {
         return "it is not the CSV of a sweep".into();
     }
     if let Err(why) = same(&theirs, &ours.remarks, &ours.columns) {
@@ -178,12 +182,7 @@ fn belongs(plan: &SweepPlan, number: usize, line: &str) -> bool {
 }
 
 /// A row from its line; `None` if the line is none.
-pub fn row(
-    plan: &SweepPlan,
-    columns: &[Column<Row>],
-    number: usize,
-    line: &str,
-) -> Option<Row> {
+pub fn row(plan: &SweepPlan, columns: &[Column<Row>], number: usize, line: &str) -> Option<Row> {
     let names = views::names(columns, false);
     let cells = crate::output::cells_of(line)?;
     let cell = |name: &str| {
@@ -213,7 +212,9 @@ pub fn remarks_of(path: &Path) -> Result<Vec<String>> {
 pub fn plan_of(path: &Path) -> Result<SweepPlan> {
     let remarks = remarks_of(path)?;
     let told = |subject: &str| {
-        let mut found = remarks.iter().filter_map(|remark| remark.strip_prefix(subject));
+        let mut found = remarks
+            .iter()
+            .filter_map(|remark| remark.strip_prefix(subject));
         found.next()
     };
     let Some(command) = told("command: ") else {

@@ -19,7 +19,10 @@ impl Ranks {
             let size = std::env::var(name).ok().and_then(|n| n.parse().ok());
             size.is_some_and(|size: usize| size > 1)
         };
-        if ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"].into_iter().any(several) {
+        if ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"]
+            .into_iter()
+            .any(several)
+        {
             return Err(Error::Input(
                 "mpirun has started several processes, but this build knows nothing of MPI; build it with --features mpi"
                     .into(),

@@ -11,7 +11,10 @@ pub fn pack(rows: &[Row]) -> Vec<u8> {
     for row in rows {
         count(&mut to, row.number);
         let [tau, ln_psi_1, ln_psi_2] = row.start;
-        numbers(&mut to, &[row.driving, row.stiffness, tau, ln_psi_1, ln_psi_2]);
+        numbers(
+            &mut to,
+            &[row.driving, row.stiffness, tau, ln_psi_1, ln_psi_2],
+        );
         let regime = REGIMES.iter().position(|&regime| regime == row.regime);
         count(&mut to, regime.expect("all regimes are listed"));
         count(

@@ -1,0 +1,92 @@
+#!/usr/bin/env bash
+# Builds with the feature mpi and compares the bytes of a sweep by one process, by 1, 2 and 4 ranks, and after a rank has died.
+# Not among the tests of ./test: it needs an MPI, which ./setup libopenmpi-dev openmpi-bin installs.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+for program in mpirun mpicc; do
+    command -v "$program" >/dev/null || {
+        echo "$program is not here: run ./setup libopenmpi-dev openmpi-bin first" >&2
+        exit 1
+    }
+done
+# A program that is built already may be given.
+if [ $# -gt 0 ]; then
+    program=$1
+else
+    cargo build --quiet --release --features mpi
+    program=${CARGO_TARGET_DIR:-target}/release/twinslip
+fi
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+# Ranks may be more than cores, and of root in a container.
+export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+ranks() {
+    local n=$1
+    shift
+    mpirun --oversubscribe -n "$n" "$program" sweep -q "$@"
+}
+same() {
+    cmp "$1" "$2" || {
+        echo "FAILED: $3" >&2
+        exit 1
+    }
+    echo "ok: $3"
+}
+
+for grid in "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20" "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20 --follow --starts 2"; do
+    read -ra words <<<"$grid"
+    "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
+    for n in 1 2 4; do
+        ranks "$n" "${words[@]}" -o "$folder/ranks.csv"
+        same "$folder/alone.csv" "$folder/ranks.csv" "$n ranks, $grid"
+    done
+done
+
+words=(--driving 0.14:0.5:20 --stiffness 0.34:0.5:20)
+"$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
+
+# The object too, which takes rows and not lines.
+"$program" sweep -q "${words[@]}" --format json | sed 's/"command":\[[^]]*\]//' >"$folder/alone.json"
+ranks 3 "${words[@]}" --format json | sed 's/"command":\[[^]]*\]//' >"$folder/ranks.json"
+same "$folder/alone.json" "$folder/ranks.json" "3 ranks, JSON"
+
+# One part of three by ranks, the others without.
+for part in 1 2 3; do
+    if [ "$part" = 2 ]; then
+        ranks 2 "${words[@]}" --shard 2/3 -o "$folder/2.csv"
+    else
+        "$program" sweep -q "${words[@]}" --shard "$part/3" -o "$folder/$part.csv"
+    fi
+done
+"$program" merge -q "$folder"/[123].csv -o "$folder/merged.csv"
+same "$folder/alone.csv" "$folder/merged.csv" "a part by ranks, merged"
+
+# What one rank refuses is said once, and nobody waits.
+if told=$(ranks 3 --driving 1:2:0 --stiffness 1 2>&1); then
+    echo "FAILED: a wrong grid was taken" >&2
+    exit 1
+fi
+[ "$(grep -c '^error: ' <<<"$told")" = 1 ] || {
+    echo "FAILED: a wrong grid gave $told" >&2
+    exit 1
+}
+echo "ok: a wrong grid is refused once"
+
+# A rank that computes is killed as soon as there are rows.
+ranks 3 "${words[@]}" -o "$folder/killed.csv" >"$folder/told" 2>&1 &
+run=$!
+until [ "$(wc -l <"$folder/killed.csv" 2>/dev/null || echo 0)" -gt 10 ] || ! kill -0 "$run" 2>/dev/null; do
+    sleep 0.01
+done
+# The last that mpirun started has not the rank 0. If the run was faster, there is nothing to kill.
+victim=$(pgrep -P "$run" -n twinslip 2>/dev/null || pgrep -n -f "$folder/killed.csv" || true)
+[ -n "$victim" ] && kill -9 "$victim" 2>/dev/null || true
+if wait "$run"; then
+    echo "note: the run ended before the rank could be killed"
+else
+    rows=$(wc -l <"$folder/killed.csv")
+    echo "ok: a dead rank ends the run, $rows lines stay"
+fi
+ranks 2 "${words[@]}" --resume "$folder/killed.csv"
+same "$folder/alone.csv" "$folder/killed.csv" "gone on with after a rank died"
