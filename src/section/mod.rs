@@ -11,7 +11,11 @@ mod surface;
 
 pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
 pub use lyapunov::{Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, spectrum};
+pub(crate) use periodicity::periodic_point;
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+pub(crate) use regime::aperiodic;
 pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
-pub use returns::{Ended, Record, Return, Watching, record};
+pub(crate) use rest::{equilibrium_near, growth, newton_step};
+pub(crate) use returns::{AT_START, Recorder, Watched};
+pub use returns::{Ended, Record, Return, Watching, record, usual_patience};
 pub use surface::{Chart, Landing, Surface, half_driving_stress, return_map};

@@ -6,7 +6,7 @@
 
 use super::rest::equilibrium_near;
 use super::returns::{Record, Return};
-use super::surface::{Surface, return_map};
+use super::surface::{Landing, Surface, return_map};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
@@ -23,6 +23,8 @@ const ARRIVED: f64 = 1e-6;
 const PER_ACCURACY: f64 = 1e3;
 /// What a distance must have shrunk to over the recording, where it is above that.
 const SHRUNK: f64 = 0.7;
+/// A periodic point that comes back as close as this sooner has the shorter period.
+const SAME: f64 = 1e-6;
 /// A multiplier within this of one in modulus leaves stability open.
 const NEUTRAL: f64 = 1e-7;
 /// Newton's method ends at this step, or fails.
@@ -43,7 +45,7 @@ pub struct Periodic<const N: usize> {
     pub point: State<N>,
     /// The time of q returns.
     pub period: Uncertain,
-    /// The largest modulus of the multipliers, less than one.
+    /// The largest modulus of the multipliers; less than one where it attracts.
     pub multiplier: f64,
     /// How far, in the largest component, the last return was from the point.
     pub distance: f64,
@@ -76,9 +78,11 @@ pub fn periodicity<const N: usize>(
                 taylor: &mut taylor,
                 returns,
                 arrived,
+                converged: CONVERGED,
                 q,
             }
-            .attracting_point();
+            .point()
+            .filter(Periodic::attracts);
             if found.is_some() {
                 return Ok(found);
             }
@@ -87,23 +91,59 @@ pub fn periodicity<const N: usize>(
     Ok(None)
 }
 
+/// The q-periodic point near the last of these returns, attracting or not, which they have come closer to or arrived at; to within
+/// about the square of `converged`, and the integrator's tolerance.
+pub(crate) fn periodic_point<const N: usize>(
+    field: &dyn VectorField<N>,
+    surface: &Surface<N>,
+    taylor: &mut Taylor,
+    returns: &[Return<N>],
+    (accuracy, converged): (f64, f64),
+    q: usize,
+) -> Option<Periodic<N>> {
+    Search {
+        field,
+        surface,
+        taylor,
+        returns,
+        arrived: ARRIVED.max(PER_ACCURACY * accuracy),
+        converged,
+        q,
+    }
+    .point()
+}
+
+impl<const N: usize> Periodic<N> {
+    /// Whether the point attracts, beyond doubt.
+    pub(crate) fn attracts(&self) -> bool {
+        self.multiplier <= 1.0 - NEUTRAL
+    }
+}
+
 struct Search<'a, const N: usize> {
     field: &'a dyn VectorField<N>,
     surface: &'a Surface<N>,
     taylor: &'a mut Taylor,
     returns: &'a [Return<N>],
     arrived: f64,
+    /// Newton's method ends at this step.
+    converged: f64,
     q: usize,
 }
 
 impl<const N: usize> Search<'_, N> {
-    fn attracting_point(&mut self) -> Option<Periodic<N>> {
+    fn point(&mut self) -> Option<Periodic<N>> {
         let last = self.returns.len() - 1;
         let from = self.returns[last].state;
         let mut point = self.surface.nearest(&from);
         let mut size = f64::INFINITY;
         for _ in 0..ITERATIONS {
-            let (to, derivative, time) = self.iterate(&point)?;
+            let along = self.iterate(&point)?;
+            let Landing {
+                state: to,
+                derivative,
+                ..
+            } = *along.last()?;
             let inside = self.surface.directions(&point);
             let reduced = reduce(&derivative, &inside);
             let residual = inside.transpose() * matrix(&(to - point));
@@ -122,29 +162,30 @@ impl<const N: usize> Search<'_, N> {
                 return None;
             }
             // Rounding ends the convergence too, where the map magnifies it.
-            if size < CONVERGED || (size < ROUNDING && size > 0.5 * before) {
-                return self.judged(point, &reduced, time, size);
+            if size < self.converged || (size < ROUNDING && size > 0.5 * before) {
+                return self.judged(point, &along, size);
             }
         }
         None
     }
 
-    fn judged(
-        &self,
-        point: State<N>,
-        reduced: &DMatrix<f64>,
-        time: f64,
-        error: f64,
-    ) -> Option<Periodic<N>> {
+    fn judged(&self, point: State<N>, along: &[Landing<N>], error: f64) -> Option<Periodic<N>> {
         // An equilibrium on the section is no orbit.
         if equilibrium_near(self.field, &point, self.arrived).is_some() {
             return None;
         }
+        // A point may come back sooner, where its multipliers turn the returns around it by a part of a turn.
+        let sooner = |d: &usize| {
+            self.q.is_multiple_of(*d)
+                && (along[d - 1].state - point).amax() < SAME.max(10.0 * error)
+        };
+        let q = (1..self.q).find(sooner).unwrap_or(self.q);
+        let Landing {
+            time, derivative, ..
+        } = along[q - 1];
+        let reduced = reduce(&derivative, &self.surface.directions(&point));
         let moduli = reduced.complex_eigenvalues().map(|z| z.norm());
         let multiplier = moduli.iter().copied().fold(0.0, f64::max);
-        if multiplier > 1.0 - NEUTRAL {
-            return None;
-        }
         let n = self.returns.len();
         let phase = |i: &usize| (n - 1 - i).is_multiple_of(self.q);
         let distance = |i: usize| (self.returns[i].state - point).amax();
@@ -157,7 +198,7 @@ impl<const N: usize> Search<'_, N> {
         // The time of return is flat at the point to the order of the step, within the error of the integration.
         let rounding = time * (error + 1e3 * TOLERANCE);
         Some(Periodic {
-            returns: self.q,
+            returns: q,
             point,
             period: Uncertain::new(time, rounding),
             multiplier,
@@ -165,19 +206,28 @@ impl<const N: usize> Search<'_, N> {
         })
     }
 
-    /// q returns from a point: where they lead, their derivative and their time.
-    fn iterate(&mut self, from: &State<N>) -> Option<(State<N>, Jacobian<N>, f64)> {
+    /// q returns from a point, each with the time since and the derivative in the point.
+    fn iterate(&mut self, from: &State<N>) -> Option<Vec<Landing<N>>> {
         // Twice what the run itself took, where it was near.
         let last = self.returns.len() - 1;
         let patience = 2.0 * (self.returns[last].time - self.returns[last - self.q].time);
-        let (mut y, mut derivative, mut time) = (*from, Jacobian::<N>::identity(), 0.0);
+        let mut here = Landing {
+            time: 0.0,
+            state: *from,
+            derivative: Jacobian::<N>::identity(),
+        };
+        let mut along = Vec::with_capacity(self.q);
         for _ in 0..self.q {
-            let landing = return_map(self.field, self.surface, self.taylor, &y, patience).ok()?;
-            derivative = landing.derivative * derivative;
-            time += landing.time;
-            y = landing.state;
+            let taylor = &mut *self.taylor;
+            let next = return_map(self.field, self.surface, taylor, &here.state, patience).ok()?;
+            here = Landing {
+                time: here.time + next.time,
+                state: next.state,
+                derivative: next.derivative * here.derivative,
+            };
+            along.push(here);
         }
-        Some((y, derivative, time))
+        Some(along)
     }
 }
 

@@ -111,11 +111,21 @@ pub fn verdict<const N: usize>(
             "fewer than 200 returns that do not close in on a periodic point; record more, or skip more",
         ));
     }
+    Ok(aperiodic(surface, returns, record.accuracy, exponents))
+}
+
+/// The regime of returns, 200 or more, that close in on no periodic point.
+pub(crate) fn aperiodic<const N: usize>(
+    surface: &Surface<N>,
+    returns: &[Return<N>],
+    accuracy: f64,
+    exponents: Option<Exponents<'_>>,
+) -> Verdict<N> {
     let mut verdict = wandering(&points(surface, returns), exponents);
     if let Some(curve) = &mut verdict.curve {
-        curve.rotation.uncertainty += PER_ACCURACY * record.accuracy;
+        curve.rotation.uncertainty += PER_ACCURACY * accuracy;
     }
-    Ok(verdict)
+    verdict
 }
 
 /// The regime of returns that are not periodic.

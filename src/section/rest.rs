@@ -1,6 +1,6 @@
 //! Equilibria that a run comes to: near ones, and those that it spirals into so slowly that it would take too long to wait.
 
-use crate::field::{State, VectorField};
+use crate::field::{Jacobian, State, VectorField};
 use nalgebra::DMatrix;
 
 /// Newton's method from a spiral ends at this step, or fails.
@@ -13,7 +13,7 @@ const AS_SAID: std::ops::Range<f64> = 0.6..1.6;
 const LEAST: f64 = 0.02;
 
 /// The equilibrium within `distance` of a state in every component, by a step of Newton's method, and whether it is stable.
-pub(super) fn equilibrium_near<const N: usize>(
+pub(crate) fn equilibrium_near<const N: usize>(
     field: &dyn VectorField<N>,
     y: &State<N>,
     distance: f64,
@@ -47,16 +47,43 @@ pub(super) fn spirals_into<const N: usize>(
     None
 }
 
-fn newton_step<const N: usize>(field: &dyn VectorField<N>, y: &State<N>) -> Option<State<N>> {
-    let jacobian = DMatrix::from_iterator(N, N, field.jacobian(y).iter().copied());
-    let f = DMatrix::from_iterator(N, 1, field.f(y).iter().copied());
-    let step = jacobian.lu().solve(&f)?;
-    let finite = step.iter().all(|x| x.is_finite());
-    finite.then(|| State::from_fn(|i, _| step[i]))
+/// How far Newton's method says that a state is from an equilibrium.
+pub(crate) fn newton_step<const N: usize>(
+    field: &dyn VectorField<N>,
+    y: &State<N>,
+) -> Option<State<N>> {
+    let step = solve(field.jacobian(y), field.f(y))?;
+    step.iter().all(|x| x.is_finite()).then_some(step)
+}
+
+/// The solution of A x = b by elimination with partial pivoting: runs ask for it so often that it shall not allocate.
+fn solve<const N: usize>(mut a: Jacobian<N>, mut b: State<N>) -> Option<State<N>> {
+    for k in 0..N {
+        let pivot = (k..N).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
+        if a[(pivot, k)] == 0.0 {
+            return None;
+        }
+        a.swap_rows(k, pivot);
+        b.swap_rows(k, pivot);
+        for i in k + 1..N {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k..N {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..N).rev() {
+        for j in k + 1..N {
+            b[k] -= a[(k, j)] * b[j];
+        }
+        b[k] /= a[(k, k)];
+    }
+    Some(b)
 }
 
 /// The largest real part of the eigenvalues.
-fn growth<const N: usize>(field: &dyn VectorField<N>, y: &State<N>) -> f64 {
+pub(crate) fn growth<const N: usize>(field: &dyn VectorField<N>, y: &State<N>) -> f64 {
     let jacobian = DMatrix::from_iterator(N, N, field.jacobian(y).iter().copied());
     let parts = jacobian.complex_eigenvalues().map(|z| z.re);
     parts.iter().copied().fold(f64::NEG_INFINITY, f64::max)

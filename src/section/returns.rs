@@ -6,12 +6,12 @@ use super::surface::Surface;
 use crate::error::{Error, Result};
 use crate::field::{State, VectorField};
 use crate::integrate::{Control, Integrator, Step};
-use crate::series::{Passage, Section, Zeros};
+use crate::series::{Passage, Zeros};
 
 /// Steps between two looks for an equilibrium.
 const BETWEEN_LOOKS: usize = 32;
 /// A start so close to an equilibrium, in every component, would leave it by rounding alone.
-const AT_START: f64 = 1e-11;
+pub(crate) const AT_START: f64 = 1e-11;
 /// Steps between two waypoints: over so few no tangent shrinks by more than doubles can tell from its largest.
 const BETWEEN_WAYPOINTS: usize = 6;
 
@@ -46,6 +46,13 @@ impl Watching {
         const PER_ACCURACY: f64 = 10.0;
         LEAST.max(PER_ACCURACY * self.accuracy)
     }
+}
+
+/// A patience that is enough: a time, for what heals, and times in which the loading alone raises the stress by one.
+pub fn usual_patience(driving: f64, stiffness: f64) -> f64 {
+    const HEALING: f64 = 1e4;
+    const LOADINGS: f64 = 1e3;
+    HEALING + LOADINGS / (stiffness * driving)
 }
 
 /// How a recording ended.
@@ -106,16 +113,21 @@ pub fn record<const N: usize>(
             accuracy: watching.accuracy,
         };
     }
-    let mut recorder = Recorder::new(field, surface, watching, see);
+    let mut recorder = Recorder::new();
+    let watched = Watched {
+        field,
+        surface,
+        watching,
+    };
     let all = (watching.skip + watching.returns) as f64;
     // The patience ends a run before this, but a flow needs an end.
     let span = (0.0, 2.0 * (all + 1.0) * watching.patience);
-    let mut observer = |step: &Step<'_, N>| recorder.step(step);
+    let mut observer = |step: &Step<'_, N>| recorder.step(&watched, step, see);
     let flowed = integrator.flow(field, span, start, Some(&mut observer));
     let ended = match (flowed, recorder.ended.take()) {
         (Err(error), _) => Ended::Failed(error),
         (Ok(_), Some(ended)) => ended,
-        (Ok(_), None) => Ended::Failed(recorder.no_return(span.1)),
+        (Ok(_), None) => Ended::Failed(recorder.no_return(surface, span.1)),
     };
     let mut waypoints = recorder.waypoints;
     if let Some(last) = recorder.returns.last() {
@@ -129,41 +141,38 @@ pub fn record<const N: usize>(
     }
 }
 
+/// What a recorder watches a run by.
+#[derive(Clone, Copy)]
+pub(crate) struct Watched<'a, const N: usize> {
+    pub field: &'a dyn VectorField<N>,
+    pub surface: &'a Surface<N>,
+    pub watching: &'a Watching,
+}
+
+/// Told of every return, with the number of those before it, and of the end of every step, where it is told of none.
+pub(crate) type See<'a, const N: usize> = &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control;
+
 /// Sees the steps of a run.
-struct Recorder<'a, const N: usize> {
-    field: &'a dyn VectorField<N>,
-    surface: &'a Surface<N>,
-    section: Section<N>,
-    watching: &'a Watching,
-    see: &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
+pub(crate) struct Recorder<const N: usize> {
     /// Of the height over the surface; its sign is carried over steps of either kind.
     zeros: Zeros,
     found: Vec<Passage<N>>,
-    passed: usize,
-    returns: Vec<Return<N>>,
+    pub passed: usize,
+    /// After those let pass.
+    pub returns: Vec<Return<N>>,
     waypoints: Vec<Return<N>>,
-    steps: usize,
+    pub steps: usize,
     /// The time of the last return, and the lowest and highest height since.
     since: f64,
     range: (f64, f64),
     /// Where the patience has been over once: when, and how far the run had swung until then.
     window: Option<(f64, f64)>,
-    ended: Option<Ended<N>>,
+    pub ended: Option<Ended<N>>,
 }
 
-impl<'a, const N: usize> Recorder<'a, N> {
-    fn new(
-        field: &'a dyn VectorField<N>,
-        surface: &'a Surface<N>,
-        watching: &'a Watching,
-        see: &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
-    ) -> Self {
+impl<const N: usize> Recorder<N> {
+    pub fn new() -> Self {
         Recorder {
-            field,
-            surface,
-            section: surface.section(),
-            watching,
-            see,
             zeros: Zeros::default(),
             found: Vec::new(),
             passed: 0,
@@ -177,29 +186,39 @@ impl<'a, const N: usize> Recorder<'a, N> {
         }
     }
 
-    fn step(&mut self, step: &Step<'_, N>) -> Result<Control> {
+    /// The run goes on from another state or to another surface: no crossing is due between.
+    pub fn resume(&mut self, time: f64) {
+        self.since = time;
+        self.zeros.sign = 0.0;
+        self.window = None;
+        self.range = (f64::INFINITY, f64::NEG_INFINITY);
+    }
+
+    /// Sees a step, the next of the same run.
+    pub fn step(
+        &mut self,
+        watched: &Watched<'_, N>,
+        step: &Step<'_, N>,
+        see: See<'_, N>,
+    ) -> Result<Control> {
+        let Watched { field, surface, .. } = *watched;
         self.steps += 1;
         self.found.clear();
         match step.series {
             Some(series) => {
-                let direction = Some(self.surface.direction);
-                series.crossings(&self.section, direction, &mut self.zeros, &mut self.found);
+                let direction = Some(surface.direction);
+                let section = surface.section();
+                series.crossings(&section, direction, &mut self.zeros, &mut self.found);
                 for passage in &mut self.found {
                     passage.time = (series.begin + passage.time).hi();
                 }
             }
-            None => crossings(
-                self.field,
-                self.surface,
-                step,
-                &mut self.zeros,
-                &mut self.found,
-            )?,
+            None => crossings(field, surface, step, &mut self.zeros, &mut self.found)?,
         }
         for k in 0..self.found.len() {
             let Passage { time, state, .. } = self.found[k];
             let state = State::from(state);
-            self.arrive(Return { time, state });
+            self.arrive(watched, Return { time, state }, see);
             if self.ended.is_some() {
                 return Ok(Control::Stop);
             }
@@ -208,10 +227,10 @@ impl<'a, const N: usize> Recorder<'a, N> {
             time: step.t1,
             state: *step.y1,
         };
-        if (self.see)(self.passed, None) == Control::Stop {
+        if see(self.passed, None) == Control::Stop {
             self.ended = Some(Ended::Stopped);
         }
-        self.between_returns(&here);
+        self.between_returns(watched, &here);
         Ok(if self.ended.is_some() {
             Control::Stop
         } else {
@@ -219,22 +238,22 @@ impl<'a, const N: usize> Recorder<'a, N> {
         })
     }
 
-    fn arrive(&mut self, here: Return<N>) {
-        let Watching { skip, returns, .. } = *self.watching;
+    fn arrive(&mut self, watched: &Watched<'_, N>, here: Return<N>, see: See<'_, N>) {
+        let Watching { skip, returns, .. } = *watched.watching;
         let recorded = self.passed >= skip;
         if recorded {
             self.returns.push(here);
-            if self.watching.waypoints {
+            if watched.watching.waypoints {
                 self.waypoints.push(here);
             }
         }
-        let told = (self.see)(self.passed, Some(&here));
+        let told = see(self.passed, Some(&here));
         self.passed += 1;
         self.since = here.time;
         self.window = None;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
         // An equilibrium may lie on the section: then its noise returns for ever.
-        self.look(&here);
+        self.look(watched, &here);
         if self.ended.is_none() && self.passed == skip + returns {
             self.ended = Some(Ended::Complete);
         }
@@ -243,28 +262,28 @@ impl<'a, const N: usize> Recorder<'a, N> {
         }
     }
 
-    fn between_returns(&mut self, here: &Return<N>) {
-        let height = self.surface.height(&here.state);
+    fn between_returns(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
+        let height = watched.surface.height(&here.state);
         self.range = (self.range.0.min(height), self.range.1.max(height));
         if self.steps.is_multiple_of(BETWEEN_WAYPOINTS)
-            && self.watching.waypoints
+            && watched.watching.waypoints
             && !self.returns.is_empty()
         {
             self.waypoints.push(*here);
         }
         let begun = self.window.map_or(self.since, |(begun, _)| begun);
-        let late = here.time - begun > self.watching.patience;
+        let late = here.time - begun > watched.watching.patience;
         if late || self.steps.is_multiple_of(BETWEEN_LOOKS) {
-            self.look(here);
+            self.look(watched, here);
         }
         if late && self.ended.is_none() {
-            self.late(here);
+            self.late(watched, here);
         }
     }
 
     /// Ends at a stable equilibrium.
-    fn look(&mut self, here: &Return<N>) {
-        let near = equilibrium_near(self.field, &here.state, self.watching.settled());
+    fn look(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
+        let near = equilibrium_near(watched.field, &here.state, watched.watching.settled());
         if let Some((equilibrium, stable @ true)) = near {
             self.ended = Some(Ended::Steady {
                 time: here.time,
@@ -276,18 +295,18 @@ impl<'a, const N: usize> Recorder<'a, N> {
 
     /// The patience is over. A run that spirals into an equilibrium as slowly as its eigenvalues say has one window more to
     /// show it.
-    fn late(&mut self, here: &Return<N>) {
+    fn late(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
         let size = self.range.1 - self.range.0;
         let window = here.time - self.window.map_or(self.since, |(begun, _)| begun);
         if let Some((_, before)) = self.window {
-            let spiral = spirals_into(self.field, &here.state, (before, size), window);
+            let spiral = spirals_into(watched.field, &here.state, (before, size), window);
             self.ended = Some(match spiral {
                 Some(equilibrium) => Ended::Steady {
                     time: here.time,
                     equilibrium,
                     stable: true,
                 },
-                None => Ended::Failed(self.no_return(here.time)),
+                None => Ended::Failed(self.no_return(watched.surface, here.time)),
             });
         } else if window > 0.0 {
             self.window = Some((here.time, size));
@@ -295,8 +314,9 @@ impl<'a, const N: usize> Recorder<'a, N> {
         }
     }
 
-    fn no_return(&self, t: f64) -> Error {
-        let offset = self.surface.offset;
+    /// That it has not returned until now.
+    pub fn no_return(&self, surface: &Surface<N>, t: f64) -> Error {
+        let offset = surface.offset;
         Error::NoReturn {
             since: self.since,
             t,

@@ -7,10 +7,13 @@
 //! A run is followed only as long as its verdict is open: to a stable steady state's neighbourhood that no run leaves; to a
 //! periodic point of the return map that attracts; or through enough returns to tell a torus or chaos.
 
+mod capture;
+mod judge;
 mod range;
 mod run;
 mod start;
 mod sweeper;
+mod watch;
 
 pub use range::Range;
 pub use run::{Units, run};

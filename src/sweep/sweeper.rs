@@ -1,22 +1,57 @@
-//! What runs settle on at points of a grid.
+//! What runs settle on at points of a grid: runs in lanes, judged one by one.
 
+use super::judge::{FIRST_STAGE, Judge, Told, undecided};
 use super::start::{Point, point};
+use super::watch::Run;
 use super::{Row, Settings};
-use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::State;
-use crate::integrate::{Control, Taylor, Tolerances};
-use crate::model::two_interfaces;
-use crate::number::polynomial::Crossing;
-use crate::section::{
-    Ended, Record, Regime, Return, Surface, Watching, at_equilibrium, half_driving_stress, record,
-    verdict,
-};
+use crate::integrate::{Batch, BatchRun, Integrator, Step, Taylor, Tolerances};
+use crate::section::Watching;
 
-/// Computes rows; one for each thread.
+/// The least difference of the log states with which a run follows another: from equal ones it could not leave the symmetry.
+const APART: f64 = 1e-4;
+
+/// Computes rows; one for each thread. Its buffers grow to what a chunk of points needs, and nothing is allocated from step to
+/// step.
+///
+/// ```
+/// use twinslip::friction::{AnyLaw, Parameters};
+/// use twinslip::section::Regime;
+/// use twinslip::sweep::{Grid, Range, Settings, Sweeper};
+/// # fn main() -> twinslip::Result<()> {
+/// let settings = Settings {
+///     law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+///     grid: Grid::Plane {
+///         driving: Range::parse("driving", "0.05:0.07:2")?,
+///         stiffness: Range::parse("stiffness", "0.14:0.14:1")?,
+///     },
+///     starts: 1,
+///     seed: 0,
+///     follow: false,
+///     rtol: 1e-9,
+///     lyapunov: false,
+///     max_returns: 2000,
+///     max_steps: 10_000_000,
+/// };
+/// let mut rows = Vec::new();
+/// Sweeper::new(&settings)?.rows(0..settings.units(), &mut rows);
+/// // The Hopf point of the asymmetric steady state lies at V_H = 0.06304.
+/// assert_eq!(rows[0].regime, Regime::Steady);
+/// assert_eq!(rows[1].regime, Regime::Periodic);
+/// # Ok(())
+/// # }
+/// ```
 pub struct Sweeper {
     settings: Settings,
-    taylor: Taylor,
+    flows: Flows,
+    judge: Judge,
+}
+
+/// How runs are advanced.
+enum Flows {
+    Lanes(Batch),
+    OneByOne(Taylor),
 }
 
 impl Sweeper {
@@ -24,109 +59,140 @@ impl Sweeper {
     /// Those of [`Settings::checked`].
     pub fn new(settings: &Settings) -> Result<Self> {
         settings.checked()?;
+        let tolerances = Tolerances::equal(settings.rtol)?;
+        let batch = Batch::new(settings.law, tolerances, settings.max_steps)?;
         Ok(Sweeper {
             settings: settings.clone(),
-            taylor: Taylor::new(Tolerances::equal(settings.rtol)?, settings.max_steps)?,
+            flows: Flows::Lanes(batch),
+            judge: Judge::new(settings)?,
         })
     }
 
-    /// Appends the rows of these units, in their order.
+    /// One that takes its runs one after the other, without lanes: to measure these by. Its rows differ by rounding.
+    ///
+    /// # Errors
+    /// Those of [`Sweeper::new`].
+    pub fn one_by_one(settings: &Settings) -> Result<Self> {
+        let tolerances = Tolerances::equal(settings.rtol)?;
+        let taylor = Taylor::new(tolerances, settings.max_steps)?;
+        Ok(Sweeper {
+            flows: Flows::OneByOne(taylor),
+            ..Self::new(settings)?
+        })
+    }
+
+    /// Appends the rows of these units, in their order. A point that fails is a row too, undecided, with its reason.
     pub fn rows(&mut self, units: impl IntoIterator<Item = usize>, out: &mut Vec<Row>) {
-        let each = self.settings.points_per_unit();
-        for unit in units {
-            let mut last: Vec<Option<State<3>>> = vec![None; self.settings.starts];
-            for number in unit * each..(unit + 1) * each {
-                let mut point = point(&self.settings, number);
-                let of_start = &mut last[number % self.settings.starts];
-                if let (true, Some(state)) = (self.settings.follow, *of_start) {
-                    point.start = state;
+        let units: Vec<usize> = units.into_iter().collect();
+        if self.settings.follow {
+            self.lines(&units, out);
+            return;
+        }
+        let points = units.iter().map(|&unit| point(&self.settings, unit));
+        let told = self.settle(points.collect());
+        out.extend(told.into_iter().map(|told| told.row));
+    }
+
+    /// Lines of points that follow one another, side by side.
+    fn lines(&mut self, lines: &[usize], out: &mut Vec<Row>) {
+        let (starts, each) = (self.settings.starts, self.settings.points_per_unit());
+        let mut attractors: Vec<Option<State<3>>> = vec![None; lines.len() * starts];
+        let mut columns: Vec<Vec<Told>> = Vec::new();
+        for column in (0..each).step_by(starts) {
+            let mut points = Vec::with_capacity(attractors.len());
+            for (l, line) in lines.iter().enumerate() {
+                for s in 0..starts {
+                    let mut point = point(&self.settings, line * each + column + s);
+                    if let Some(mut state) = attractors[l * starts + s] {
+                        if (state[2] - state[1]).abs() < APART {
+                            state[2] = state[1] + APART;
+                        }
+                        point.start = state;
+                    }
+                    points.push(point);
                 }
-                let (row, end) = self.row(&point);
-                *of_start = end;
-                out.push(row);
+            }
+            let told = self.settle(points);
+            for (attractor, told) in attractors.iter_mut().zip(&told) {
+                *attractor = told.attractor;
+            }
+            columns.push(told);
+        }
+        for l in 0..lines.len() {
+            for column in &columns {
+                let rows = column[l * starts..(l + 1) * starts].iter();
+                out.extend(rows.map(|told| told.row.clone()));
             }
         }
     }
 
-    fn row(&mut self, point: &Point) -> (Row, Option<State<3>>) {
-        let Settings {
-            law,
-            rtol,
-            max_returns,
-            ..
-        } = self.settings;
-        let field = two_interfaces(law, point.loading);
-        let tau = half_driving_stress(&law, point.loading.driving, 2);
-        let surface = Surface::<3>::stress(tau, Crossing::Downwards);
-        let skip = max_returns / 2;
+    /// What these points' runs settle on: all go on side by side until each is to be judged, and those that are not settled then go
+    /// round again.
+    fn settle(&mut self, points: Vec<Point>) -> Vec<Told> {
+        let settings = &self.settings;
         let watching = Watching {
-            skip,
-            returns: max_returns - skip,
-            patience: 1e4 + 1e3 / (point.loading.stiffness * point.loading.driving),
-            accuracy: rtol,
+            skip: 0,
+            returns: settings.max_returns + 1,
+            patience: 0.0,
+            accuracy: settings.rtol,
             waypoints: false,
         };
-        let see = &mut |_: usize, _: Option<&Return<3>>| Control::Continue;
-        let found = record(
-            &mut self.taylor,
-            &*field,
-            &point.start,
-            &surface,
-            &watching,
-            see,
-        );
-        let mut row = Row {
-            number: point.number,
-            driving: point.loading.driving,
-            stiffness: point.loading.stiffness,
-            start: point.start.into(),
-            regime: Regime::Undecided,
-            symmetry: None,
-            returns_per_period: None,
-            period: None,
-            stress_range: None,
-            lyapunov_max: None,
-            returns: found.returns.len(),
-            note: None,
-        };
-        let end = ended(&found);
-        match &found.ended {
-            Ended::Failed(error) => row.note = Some(error.to_string()),
-            Ended::Steady { equilibrium, .. } => {
-                row.regime = Regime::Steady;
-                row.symmetry = Some(symmetry(equilibrium));
-                row.stress_range = Some((equilibrium[0], equilibrium[0]));
-                row.lyapunov_max = Some(at_equilibrium(&*field, equilibrium)[0]);
+        let stage = FIRST_STAGE.min(settings.max_returns);
+        let mut runs: Vec<Run> = points
+            .into_iter()
+            .map(|point| Run::new(settings.law, point, watching, stage))
+            .collect();
+        let mut told: Vec<Option<Told>> = runs.iter().map(|_| None).collect();
+        let mut active: Vec<usize> = (0..runs.len()).collect();
+        loop {
+            active.retain(|&i| told[i].is_none());
+            if active.is_empty() {
+                return told.into_iter().flatten().collect();
             }
-            _ => match verdict(&*field, &surface, &found, None) {
-                Err(error) => row.note = Some(error.to_string()),
-                Ok(verdict) => {
-                    row.regime = verdict.regime;
-                    row.note = verdict.why.map(str::to_owned);
-                    if let Some(periodic) = verdict.periodic {
-                        row.symmetry = Some(symmetry(&periodic.point));
-                        row.returns_per_period = Some(periodic.returns);
-                        row.period = Some(periodic.period.value);
-                    }
-                }
-            },
+            let failed = self.advance(&mut runs, &active);
+            for (&i, failed) in active.iter().zip(failed) {
+                told[i] = match failed {
+                    Some(why) => Some(undecided(&runs[i], why)),
+                    None => self.judge.judge(&mut runs[i]),
+                };
+            }
         }
-        (row, end)
     }
-}
 
-/// Where a run came to.
-fn ended(record: &Record<3>) -> Option<State<3>> {
-    match &record.ended {
-        Ended::Steady { equilibrium, .. } => Some(*equilibrium),
-        _ => record.returns.last().map(|at| at.state),
-    }
-}
-
-fn symmetry(y: &State<3>) -> Symmetry {
-    if (y[1] - y[2]).abs() < 1e-6 {
-        Symmetry::Symmetric
-    } else {
-        Symmetry::Asymmetric
+    /// Takes the runs to where they are to be judged; what failed, in words.
+    fn advance(&mut self, runs: &mut [Run], active: &[usize]) -> Vec<Option<String>> {
+        // A run that has ended at its start has no way to go.
+        let span = |run: &Run| match run.recorder.ended {
+            Some(_) => (run.time, run.time),
+            None => (run.time, run.end()),
+        };
+        match &mut self.flows {
+            Flows::Lanes(batch) => {
+                let ways: Vec<BatchRun> = active
+                    .iter()
+                    .map(|&i| BatchRun {
+                        loading: runs[i].point.loading,
+                        start: runs[i].state,
+                        t: span(&runs[i]),
+                    })
+                    .collect();
+                let mut observer = |k: usize, step: &Step<'_, 3>| runs[active[k]].step(step);
+                let ends = batch.flow(&ways, Some(&mut observer));
+                let failed = ends.into_iter().map(Result::err);
+                failed.map(|e| e.map(|e| e.to_string())).collect()
+            }
+            Flows::OneByOne(taylor) => {
+                let mut one = |&i: &usize| {
+                    let run = &mut runs[i];
+                    let (t, start) = (span(run), run.state);
+                    // The same formula, apart from what the run keeps of its steps.
+                    let field = crate::model::two_interfaces(self.settings.law, run.point.loading);
+                    let mut observer = |step: &Step<'_, 3>| run.step(step);
+                    let end = taylor.flow(&*field, t, &start, Some(&mut observer));
+                    end.err().map(|error| error.to_string())
+                };
+                active.iter().map(&mut one).collect()
+            }
+        }
     }
 }

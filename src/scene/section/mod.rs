@@ -15,11 +15,8 @@ use crate::friction::positive;
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 use crate::number::polynomial::Crossing;
-use crate::section::{FEWEST_FOR_EXPONENTS, half_driving_stress};
+use crate::section::{FEWEST_FOR_EXPONENTS, half_driving_stress, usual_patience};
 
-/// The patience where none is given: a time, for what heals, and times in which the loading alone raises the stress by one.
-const PATIENCE: f64 = 1e4;
-const PATIENCE_LOADINGS: f64 = 1e3;
 /// More returns than this are a slip of the pen.
 const MOST_RETURNS: usize = 100_000_000;
 
@@ -71,7 +68,7 @@ impl SectionPlan {
                 let patience = positive("patience", patience)?;
                 system.units.inward(Quantity::Time, patience)
             }
-            None => PATIENCE + PATIENCE_LOADINGS / (loading.stiffness * loading.driving),
+            None => usual_patience(loading.driving, loading.stiffness),
         };
         if !(1..=MOST_RETURNS).contains(&options.returns) {
             return Err(Error::parameter(

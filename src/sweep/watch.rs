@@ -1,0 +1,222 @@
+//! A run on its way: its returns, and whether they tell yet what it settles on.
+
+use super::capture::Capture;
+use super::start::Point;
+use crate::error::Result;
+use crate::field::State;
+use crate::friction::AnyLaw;
+use crate::integrate::{Control, Step};
+use crate::model::{Driven, two_interfaces};
+use crate::number::polynomial::Crossing;
+use crate::section::{
+    AT_START, Ended, LONGEST_PERIOD, Recorder, Return, Surface, Watched, Watching,
+    equilibrium_near, half_driving_stress, usual_patience,
+};
+use crate::series::Expansion;
+
+/// Steps between two looks whether an equilibrium has caught the run.
+const BETWEEN_LOOKS: usize = 24;
+/// Part of the usual patience: some 20 periods of stick-slip.
+const PATIENCE: f64 = 0.1;
+/// A run that swings by less is at rest.
+const SWING: f64 = 1e-7;
+/// Returns that have come this close to each other after q, and come closer, make q a candidate; those closer than the second at
+/// once.
+const NEAR: f64 = 1e-3;
+const ARRIVED: f64 = 1e-6;
+/// What distances must shrink to from a window of returns to the next.
+const SHRUNK: f64 = 0.7;
+/// The least returns in a window.
+const WINDOW: usize = 3;
+/// Where so many more rounds would bring a candidate to [`ARRIVED`], they are waited for: Newton's method takes as long.
+const WORTH_WAITING: f64 = 12.0;
+
+/// A run of a sweep.
+pub(super) struct Run {
+    pub point: Point,
+    pub field: Box<dyn Driven<3>>,
+    pub surface: Surface<3>,
+    pub watching: Watching,
+    pub recorder: Recorder<3>,
+    capture: Capture,
+    /// The time and the state reached.
+    pub time: f64,
+    pub state: State<3>,
+    /// Returns before this one tell nothing any more.
+    pub fresh: usize,
+    /// The number of returns before which no candidate is looked for again, and at which the run is judged anyway.
+    pub next_look: usize,
+    pub next_stage: usize,
+    /// A candidate for the number of returns per period.
+    pub candidate: Option<usize>,
+    /// The least and the greatest stress since the last stage began.
+    pub stress: (f64, f64),
+    /// Whether it was pushed off an unstable orbit.
+    pub pushed: bool,
+    /// Whether the section was moved.
+    moved: bool,
+}
+
+impl Run {
+    pub fn new(law: AnyLaw, point: Point, watching: Watching, stage: usize) -> Self {
+        let field = two_interfaces(law, point.loading);
+        let tau = half_driving_stress(&law, point.loading.driving, 2);
+        let mut run = Run {
+            field,
+            surface: Surface::stress(tau, Crossing::Downwards),
+            watching: Watching {
+                patience: PATIENCE * usual_patience(point.loading.driving, point.loading.stiffness),
+                ..watching
+            },
+            recorder: Recorder::new(),
+            capture: Capture::default(),
+            time: 0.0,
+            state: point.start,
+            fresh: 0,
+            next_look: 2 * WINDOW + 1,
+            next_stage: stage,
+            candidate: None,
+            stress: (f64::INFINITY, f64::NEG_INFINITY),
+            pushed: false,
+            moved: false,
+            point,
+        };
+        run.recorder.returns.reserve(2 * stage);
+        if let Some((equilibrium, stable)) = equilibrium_near(&*run.field, &run.state, AT_START) {
+            run.recorder.ended = Some(Ended::Steady {
+                time: 0.0,
+                equilibrium,
+                stable,
+            });
+        }
+        run
+    }
+
+    /// A time that the run ends before.
+    pub fn end(&self) -> f64 {
+        let all = (self.watching.skip + self.watching.returns + 1) as f64;
+        2.0 * all * self.watching.patience
+    }
+
+    /// Sees a step; the run stops where it is to be judged.
+    pub fn step(&mut self, step: &Step<'_, 3>) -> Result<Control> {
+        (self.time, self.state) = (step.t1, *step.y1);
+        let passed = self.recorder.passed;
+        let watched = Watched {
+            field: &*self.field,
+            surface: &self.surface,
+            watching: &self.watching,
+        };
+        let go_on = &mut |_: usize, _: Option<&Return<3>>| Control::Continue;
+        let told = self.recorder.step(&watched, step, go_on)?;
+        self.see_stress(step);
+        if told == Control::Stop {
+            return Ok(told);
+        }
+        if self.recorder.passed > passed {
+            let n = self.recorder.returns.len();
+            self.candidate = self.period();
+            if self.candidate.is_some() || n >= self.next_stage {
+                return Ok(Control::Stop);
+            }
+        }
+        if self.recorder.steps.is_multiple_of(BETWEEN_LOOKS)
+            && let Some(equilibrium) = self.capture.of(&*self.field, step.y1)
+        {
+            self.recorder.ended = Some(Ended::Steady {
+                time: step.t1,
+                equilibrium,
+                stable: true,
+            });
+            return Ok(Control::Stop);
+        }
+        Ok(Control::Continue)
+    }
+
+    /// Moves the section to where a run swings that does not cross it, as just after a Hopf point of the asymmetric steady state;
+    /// once.
+    pub fn surface_moves_between(&mut self, lowest: f64, highest: f64) -> bool {
+        if self.moved || !(highest - lowest > SWING) {
+            return false;
+        }
+        self.moved = true;
+        self.surface.offset = 0.5 * (lowest + highest);
+        self.fresh = self.recorder.returns.len();
+        self.recorder.resume(self.time);
+        true
+    }
+
+    fn see_stress(&mut self, step: &Step<'_, 3>) {
+        see(&mut self.stress, step.y1[0]);
+        if let Some(turn) = step.series.and_then(turn) {
+            see(&mut self.stress, turn);
+        }
+    }
+
+    /// The returns that tell.
+    pub fn returns(&self) -> &[Return<3>] {
+        &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
+    }
+
+    /// The smallest number of returns after which the last ones have come close to where they were, and ever closer.
+    fn period(&self) -> Option<usize> {
+        let returns = self.returns();
+        let n = returns.len();
+        if self.recorder.returns.len() < self.next_look {
+            return None;
+        }
+        let apart = |i: usize, q: usize| (returns[i].state - returns[i - q].state).amax();
+        (1..=LONGEST_PERIOD.min(n / 3)).find(|&q| {
+            let window = q.max(WINDOW).max(n / 8);
+            if apart(n - 1, q) > NEAR || n < 2 * window + q {
+                return false;
+            }
+            let largest =
+                |range: std::ops::Range<usize>| range.map(|i| apart(i, q)).fold(0.0, f64::max);
+            let late = largest(n - window..n);
+            let early = largest(n - 2 * window..n - window);
+            if late > NEAR || late > SHRUNK * early {
+                // Arrived where rounding moves it about.
+                return late < 1e-2 * ARRIVED;
+            }
+            let wait = (late / ARRIVED).ln() / (early / late).ln() * window as f64;
+            wait <= 0.0 || wait > WORTH_WAITING * q as f64
+        })
+    }
+}
+
+/// Widens a range.
+pub(super) fn see(range: &mut (f64, f64), x: f64) {
+    *range = (range.0.min(x), range.1.max(x));
+}
+
+/// The stress where it turns within a step, if it does once: where its rate changes sign, by halving and Newton's method on the
+/// polynomial of the step.
+pub(super) fn turn(series: &Expansion<3>) -> Option<f64> {
+    const ITERATIONS: usize = 30;
+    let stress = &series.variables[0][..=series.order];
+    let end = series.length / series.unit;
+    let rate = |s: f64| {
+        let mut sum = 0.0;
+        for (k, c) in stress.iter().enumerate().skip(1).rev() {
+            sum = sum * s + k as f64 * c;
+        }
+        sum
+    };
+    let (mut low, mut high) = (0.0, end);
+    let begin = rate(low);
+    if begin * rate(high) >= 0.0 {
+        return None;
+    }
+    // The stress is flat where it turns: half the digits of the time are all it needs.
+    for _ in 0..ITERATIONS {
+        let middle = 0.5 * (low + high);
+        if rate(middle) * begin > 0.0 {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let s = 0.5 * (low + high);
+    Some(stress.iter().rev().fold(0.0, |sum, c| sum * s + c))
+}
