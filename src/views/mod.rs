@@ -14,7 +14,7 @@ mod run;
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves};
 pub use map::{return_map, states_at_returns};
-pub use points::{REGIMES, sweep_columns, sweep_row};
+pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{panels_in_time, phase_plane};
 
 /// What a row has in a column, dimensionless.

@@ -1,6 +1,6 @@
 //! What the rows of a sweep show, and how they are read again.
 
-use super::{Column, Entry};
+use super::{Column, Entry, Outcome};
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;
 use crate::scene::{Quantity, Units};
@@ -103,4 +103,17 @@ pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Unit
         returns: cell("returns").parse().ok()?,
         note: text("note").map(str::to_owned),
     })
+}
+
+/// What a picture shows of a row.
+pub fn outcome(row: &Row) -> Outcome {
+    Outcome {
+        number: row.number,
+        regime: row.regime,
+        symmetry: row.symmetry,
+        returns_per_period: row.returns_per_period,
+        period: row.period,
+        stress_range: row.stress_range,
+        lyapunov_max: row.lyapunov_max,
+    }
 }

@@ -2,6 +2,7 @@
 
 pub(super) mod file;
 mod out;
+mod picture;
 #[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
 mod ranks;
 #[cfg(any(feature = "mpi", test))]
@@ -10,7 +11,7 @@ mod wire;
 use super::continuation::interrupted;
 use super::report::Report;
 use super::{Ending, interrupt, written};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{SweepOptions, SweepPlan};
 use crate::sweep::{self, Units};
@@ -18,7 +19,6 @@ use crate::views;
 use out::Out;
 use ranks::Ranks;
 use serde_json::{Value, json};
-use std::path::Path;
 
 pub fn run(options: &SweepOptions, words: &[String]) -> Result<Ending> {
     let Some(mut ranks) = Ranks::join()? else {
@@ -69,7 +69,7 @@ fn lead(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     failure?;
     let ending = write(&plan, &report, &out)?;
     if let Some(path) = plot {
-        draw(&plan, &report, &out, path)?;
+        picture::draw(&plan, &report, &out.rows, path)?;
     }
     report.say(out.summary(seconds));
     Ok(match ending {
@@ -97,12 +97,4 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &Out<'_>) -> Result<Ending>
     let work = json!({"points": out.new});
     let bytes = report.envelope(&plan.system, plan.numerics.clone(), result, work, None);
     written(report.place.write(&bytes), &report.place)
-}
-
-fn draw(plan: &SweepPlan, report: &Report<'_>, out: &Out<'_>, path: &Path) -> Result<()> {
-    let _ = (plan, path);
-    if out.rows.is_empty() {
-        report.say("there is no point to draw");
-    }
-    Err(Error::Input("no pictures yet".into()))
 }

@@ -1,0 +1,113 @@
+//! What a user can set of sweeps; as in `options` above, these fields are the flags and the keys of a scene file.
+
+use super::super::options::{OutputOptions, SlabOptions, number};
+use crate::integrate::MAX_STEPS;
+use clap::Parser;
+use std::path::PathBuf;
+
+/// `sweep`: the regime at every point of a grid.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+pub struct SweepOptions {
+    /// What slides.
+    #[command(flatten)]
+    pub slab: SlabOptions,
+    /// N values of V_H from A to B, both included; with log equally spaced in ln V_H. One value may stand alone
+    #[arg(
+        long,
+        value_name = "A:B:N[log]",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub driving: Option<String>,
+    /// M values of K from A to B, both included; with log equally spaced in ln K. One value may stand alone
+    #[arg(
+        long,
+        value_name = "A:B:M[log]",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub stiffness: Option<String>,
+    /// Starts of runs instead of V_H and K: to which attractor each leads at the one V_H and K given
+    #[arg(long, requires_all = ["state_1", "state_2"], conflicts_with_all = ["follow", "starts"], help_heading = "Grid")]
+    pub basin: bool,
+    /// With --basin: the values of psi1 to start from
+    #[arg(
+        long = "state-1",
+        value_name = "A:B:N[log]",
+        requires = "basin",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub state_1: Option<String>,
+    /// With --basin: the values of psi2 to start from
+    #[arg(
+        long = "state-2",
+        value_name = "A:B:M[log]",
+        requires = "basin",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub state_2: Option<String>,
+    /// Starts at each point, a row for each: the first beside the symmetric steady state, the second far from it, the others
+    /// drawn by the seed
+    #[arg(long, value_name = "S", default_value_t = 1, help_heading = "Grid")]
+    pub starts: usize,
+    /// Seed of the starts: the same seed, the same rows
+    #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = "Grid")]
+    pub seed: u64,
+    /// Start each point on the attractor of its neighbour at the V_H before: fewer transients, and hysteresis is seen
+    #[arg(long, help_heading = "Grid")]
+    pub follow: bool,
+    /// The largest Lyapunov exponent of every point, not only of those whose regime needs it
+    #[arg(long, help_heading = "Numerics")]
+    pub lyapunov: bool,
+    /// Relative local error tolerance
+    #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
+    pub rtol: f64,
+    /// A point is undecided after so many returns to its section
+    #[arg(
+        long,
+        value_name = "N",
+        default_value_t = 2000,
+        help_heading = "Numerics"
+    )]
+    pub max_returns: usize,
+    /// A point is undecided after so many steps
+    #[arg(long, value_name = "N", default_value_t = MAX_STEPS, help_heading = "Numerics")]
+    pub max_steps: usize,
+    /// Threads [default: one a processor]; rows do not depend on them
+    #[arg(long, value_name = "N", help_heading = "Running")]
+    pub threads: Option<usize>,
+    /// Compute only the I-th of N parts of the grid, I from 1; twinslip merge puts the files of all parts together
+    #[arg(
+        long,
+        value_name = "I/N",
+        allow_hyphen_values = true,
+        help_heading = "Running"
+    )]
+    pub shard: Option<String>,
+    /// Go on with FILE, the CSV of an interrupted run of the same sweep: rows that are complete in it are kept
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub resume: Option<PathBuf>,
+    /// Draw the map of regimes as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
+    /// Bifurcations to draw over the map, comma-separated, as locus has them, or none
+    #[arg(
+        long,
+        value_name = "NAMES",
+        default_value = "pitchfork,hopf,orbit-pitchfork,period-doubling,torus",
+        help_heading = "Output"
+    )]
+    pub curves: String,
+    /// Where results go.
+    #[command(flatten)]
+    pub output: OutputOptions,
+}
+
+/// The command line of a sweep, as its files tell it.
+#[derive(Parser)]
+pub(super) struct Line {
+    #[command(flatten)]
+    pub options: SweepOptions,
+}

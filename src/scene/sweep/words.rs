@@ -1,0 +1,70 @@
+//! A sweep in words that equal sweeps share, whatever was typed.
+
+use super::options::{Line, SweepOptions};
+use clap::Parser;
+use serde_json::{Value, json};
+
+/// The settings for the output.
+pub(super) fn numerics(options: &SweepOptions, grid: &[(&str, String)]) -> Value {
+    let mut pairs: serde_json::Map<String, Value> = grid
+        .iter()
+        .map(|(name, text)| (name.replace('-', "_"), json!(text)))
+        .collect();
+    let others = [
+        ("basin", json!(options.basin)),
+        ("starts", json!(options.starts)),
+        ("seed", json!(options.seed)),
+        ("follow", json!(options.follow)),
+        ("lyapunov", json!(options.lyapunov)),
+        ("rtol", json!(options.rtol)),
+        ("max_returns", json!(options.max_returns)),
+        ("max_steps", json!(options.max_steps)),
+    ];
+    pairs.extend(others.map(|(name, value)| (name.to_owned(), value)));
+    Value::Object(pairs)
+}
+
+/// The words in a fixed order, each setting with its value unless that is the default.
+pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<String> {
+    let default = Line::parse_from(["sweep"]).options;
+    let mut words = vec!["twinslip".to_owned(), "sweep".to_owned()];
+    for (name, text) in grid {
+        words.extend([format!("--{name}"), text.clone()]);
+    }
+    let texts = |options: &SweepOptions| {
+        let slab = &options.slab;
+        let maybe = |x: Option<f64>| x.map(|x| format!("{x:?}"));
+        let plain = |x: f64| Some(format!("{x:?}"));
+        let count = |n: usize| Some(n.to_string());
+        [
+            ("law", Some(slab.law.clone())),
+            ("healing-time", maybe(slab.healing_time)),
+            ("residual-strength", plain(slab.residual_strength)),
+            ("direct-effect", plain(slab.direct_effect)),
+            ("evolution-effect", plain(slab.evolution_effect)),
+            ("reference-friction", plain(slab.reference_friction)),
+            ("slip-length", maybe(slab.slip_length)),
+            ("reference-rate", maybe(slab.reference_rate)),
+            ("normal-stress", maybe(slab.normal_stress)),
+            ("starts", count(options.starts)),
+            ("seed", Some(options.seed.to_string())),
+            ("rtol", plain(options.rtol)),
+            ("max-returns", count(options.max_returns)),
+            ("max-steps", count(options.max_steps)),
+        ]
+    };
+    for ((name, text), (_, usual)) in texts(options).into_iter().zip(texts(&default)) {
+        if let Some(text) = text.filter(|text| Some(text) != usual.as_ref()) {
+            words.extend([format!("--{name}"), text]);
+        }
+    }
+    let switches = [
+        ("si", options.slab.si),
+        ("basin", options.basin),
+        ("follow", options.follow),
+        ("lyapunov", options.lyapunov),
+    ];
+    let on = switches.into_iter().filter(|(_, on)| *on);
+    words.extend(on.map(|(name, _)| format!("--{name}")));
+    words
+}
