@@ -74,6 +74,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "scene",
             "bifurcation",
             "orbit",
+            "section",
             "equilibrium",
             "number",
             "output",
