@@ -50,7 +50,7 @@ fn every_scene_runs_and_can_be_drawn() {
         );
         let drawn = std::fs::read_to_string(svg).expect("a picture");
         let has = |field: &str| made["result"].get(field).is_some();
-        let panel = match (has("regime"), has("special")) {
+        let panel = match (has("regime"), has("special") || has("regimes")) {
             (true, _) => "return map",
             (_, true) => "V_H [V*]",
             _ => "phase plane",

@@ -10,12 +10,14 @@ mod diagram;
 mod map;
 mod points;
 mod run;
+mod sweep;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves};
 pub use map::{return_map, states_at_returns};
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{panels_in_time, phase_plane};
+pub use sweep::{Outcome, Side, basin_map, regime_map};
 
 /// What a row has in a column, dimensionless.
 pub enum Entry {

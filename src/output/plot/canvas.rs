@@ -1,4 +1,5 @@
-//! What is drawn, in pixels with fractions: lines, areas and words. Only this file knows which crate writes the SVG.
+//! What is drawn, in pixels with fractions: lines, areas and words. Only this file knows which crate writes the SVG, and what
+//! that crate cannot write.
 
 use super::text::FAMILY;
 use super::unrendered;
@@ -7,6 +8,8 @@ use plotters::coord::Shift;
 use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::*;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
+use std::cell::RefCell;
+use std::fmt::Write;
 
 /// A place in pixels, y downwards.
 pub type Pixel = (f64, f64);
@@ -38,6 +41,11 @@ const FINE: f64 = 10.0;
 /// What plotters calls the size of a font is so much larger than the one that is written.
 pub const BACKEND: f64 = 1.24;
 
+/// The colour with these parts.
+pub fn rgb(red: u8, green: u8, blue: u8) -> Colour {
+    RGBColor(red, green, blue)
+}
+
 /// The colour of that number.
 pub fn colour(number: usize) -> Colour {
     COLOURS[number % COLOURS.len()]
@@ -57,7 +65,11 @@ pub enum Align {
 }
 
 /// A picture in the making.
-pub struct Canvas<'s>(DrawingArea<SVGBackend<'s>, Shift>);
+pub struct Canvas<'s> {
+    area: DrawingArea<SVGBackend<'s>, Shift>,
+    /// Elements that plotters doesn't write, in the places that [`holder`] keeps.
+    own: RefCell<Vec<String>>,
+}
 
 /// The SVG of that size.
 ///
@@ -66,13 +78,18 @@ pub struct Canvas<'s>(DrawingArea<SVGBackend<'s>, Shift>);
 pub fn picture(size: (f64, f64), draw: impl FnOnce(&Canvas<'_>) -> Result<()>) -> Result<String> {
     let mut text = String::new();
     let (width, height) = fine(size);
-    {
+    let own = {
         let root = SVGBackend::with_string(&mut text, (width as u32, height as u32));
-        let canvas = Canvas(root.into_drawing_area());
-        canvas.0.fill(&PAPER).map_err(unrendered)?;
+        let canvas = Canvas {
+            area: root.into_drawing_area(),
+            own: RefCell::default(),
+        };
+        canvas.area.fill(&PAPER).map_err(unrendered)?;
         draw(&canvas)?;
-        canvas.0.present().map_err(unrendered)?;
-    }
+        canvas.area.present().map_err(unrendered)?;
+        canvas.own.into_inner()
+    };
+    let text = completed(&text, &own);
     let drawn = format!(r#"width="{width}" height="{height}""#);
     let shown = format!(
         r#"width="{}" height="{}""#,
@@ -80,6 +97,43 @@ pub fn picture(size: (f64, f64), draw: impl FnOnce(&Canvas<'_>) -> Result<()>) -
         f64::from(height) / FINE
     );
     Ok(text.replacen(&drawn, &shown, 1))
+}
+
+/// The one point of an area without extent, which keeps the place of one of our own elements: in a corner of the picture, where
+/// nothing else is.
+fn holder(number: usize) -> (i32, i32) {
+    const ROW: usize = 1000;
+    ((number % ROW) as i32, (number / ROW) as i32)
+}
+
+/// The text with our own elements in their places.
+fn completed(text: &str, own: &[String]) -> String {
+    let mut whole = String::with_capacity(text.len() + own.iter().map(String::len).sum::<usize>());
+    let mut next = own.iter().enumerate().peekable();
+    for line in text.split_inclusive('\n') {
+        let held = next.next_if(|(number, _)| {
+            let (x, y) = holder(*number);
+            line.contains(&format!("points=\"{x},{y} {x},{y} {x},{y}"))
+        });
+        whole.push_str(held.map_or(line, |(_, element)| element));
+    }
+    whole
+}
+
+/// The outline of an area in the language of paths, in steps from corner to corner.
+fn outline(path: &mut String, corners: &[Pixel]) {
+    let mut before = None;
+    for (x, y) in corners.iter().copied().map(fine) {
+        let step = match before {
+            None => write!(path, "M{x} {y}"),
+            Some((a, b)) if b == y => write!(path, "h{}", x - a),
+            Some((a, b)) if a == x => write!(path, "v{}", y - b),
+            Some((a, b)) => write!(path, "l{} {}", x - a, y - b),
+        };
+        step.expect("a string takes all");
+        before = Some((x, y));
+    }
+    path.push('z');
 }
 
 fn fine((x, y): Pixel) -> (i32, i32) {
@@ -98,6 +152,27 @@ impl<'s> Canvas<'s> {
     pub fn area(&self, corners: &[Pixel], colour: Colour) -> Result<()> {
         let corners: Vec<_> = corners.iter().copied().map(fine).collect();
         self.put(&Polygon::new(corners, colour.filled()))
+    }
+
+    /// Areas in one colour that share sides without a seam; `upright` ones, with all sides along the axes, also with areas of
+    /// other colours.
+    pub fn areas(&self, areas: &[Vec<Pixel>], colour: Colour, upright: bool) -> Result<()> {
+        let RGBColor(r, g, b) = colour;
+        // A side between two pixels would be drawn by both neighbours in part, and let the ground through.
+        let edges = if upright {
+            r#" shape-rendering="crispEdges""#
+        } else {
+            ""
+        };
+        let mut path = format!("<path fill=\"#{r:02X}{g:02X}{b:02X}\"{edges} d=\"");
+        areas.iter().for_each(|area| outline(&mut path, area));
+        path.push_str("\"/>\n");
+        let place = {
+            let mut own = self.own.borrow_mut();
+            own.push(path);
+            holder(own.len() - 1)
+        };
+        self.put(&Polygon::new([place; 3], colour.filled()))
     }
 
     /// A full circle.
@@ -138,6 +213,6 @@ impl<'s> Canvas<'s> {
         for<'e> &'e E: PointCollection<'e, (i32, i32)>,
         E: Drawable<SVGBackend<'s>>,
     {
-        self.0.draw(element).map_err(unrendered)
+        self.area.draw(element).map_err(unrendered)
     }
 }

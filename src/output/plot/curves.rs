@@ -1,6 +1,6 @@
 //! The curves of a panel in its frame.
 
-use super::canvas::{Canvas, Colour, Pixel, colour};
+use super::canvas::{Canvas, Colour, PAPER, Pixel, colour};
 use super::frame::Frame;
 use super::thin::thinned;
 use super::{Panel, Series, Stroke, names, strokes, symbols};
@@ -13,6 +13,8 @@ const USUAL: f64 = 1.9;
 /// Of lines that are broken or beside broader ones, and of those.
 const NARROW: f64 = 1.4;
 const WIDE: f64 = 2.7;
+/// Room between a curve and the map that it lies on.
+const CASING: f64 = 1.0;
 /// Distance of the points along curves that names avoid.
 const SAMPLES: f64 = 2.5;
 
@@ -43,6 +45,10 @@ pub fn line_width(panel: &Panel, number: usize) -> f64 {
 pub fn curves(canvas: &Canvas<'_>, panel: &Panel, frame: &Frame) -> Result<Vec<Pixel>> {
     let mut seen = Vec::new();
     for (number, series) in panel.series.iter().enumerate() {
+        if panel.cells.is_some() {
+            let breadth = line_width(panel, number);
+            casing(canvas, series, frame, breadth)?;
+        }
         let look = (series_colour(series, number), line_width(panel, number));
         if series.dots {
             seen.extend(dots(canvas, series, frame, look)?);
@@ -51,6 +57,15 @@ pub fn curves(canvas: &Canvas<'_>, panel: &Panel, frame: &Frame) -> Result<Vec<P
         }
     }
     Ok(seen)
+}
+
+/// What sets a curve off from a map: the same, broader, in white.
+fn casing(canvas: &Canvas<'_>, series: &Series, frame: &Frame, breadth: f64) -> Result<()> {
+    if series.dots {
+        return dots(canvas, series, frame, (PAPER, breadth + CASING)).map(drop);
+    }
+    let whole = series.clone().stroke(Stroke::Solid);
+    line(canvas, &whole, frame, (PAPER, breadth + 2.0 * CASING)).map(drop)
 }
 
 fn line(

@@ -1,6 +1,7 @@
 //! Draws all panels, each from what lies behind to what lies before.
 
 use super::canvas::{Align, Canvas, INK, picture};
+use super::cells::cells;
 use super::curves::curves;
 use super::layout::{Placed, page};
 use super::marks::{marks, notes};
@@ -33,6 +34,9 @@ fn draw(canvas: &Canvas<'_>, placed: &Placed<'_>) -> Result<()> {
     placed.heading.draw(canvas, corner)?;
     frame.draw_names(canvas, (&placed.names.0, &placed.names.1), placed.left)?;
     frame.draw_grid(canvas, panel.zero_line)?;
+    if let Some(map) = &panel.cells {
+        cells(canvas, map, frame)?;
+    }
     let seen = curves(canvas, panel, frame)?;
     let words = notes(canvas, panel, frame)?;
     marks(canvas, panel, frame, &seen, &words)?;

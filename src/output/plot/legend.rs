@@ -2,6 +2,7 @@
 //! room on a line goes to the next.
 
 use super::canvas::{Align, Canvas, Colour, INK, MARK, Pixel, colour};
+use super::cells::tint;
 use super::clip::Window;
 use super::curves::{line_width, series_colour};
 use super::symbols::{self, Look};
@@ -20,16 +21,20 @@ const AFTER_ENTRY: f64 = 16.0;
 const SAMPLE: f64 = 32.0;
 /// Room between a sample and its name.
 const GAP: f64 = 7.0;
+/// Side of a square, and breadth of its outline.
+const SQUARE: f64 = 11.0;
+const OUTLINE: f64 = 0.6;
 /// Lines and points of the legend are not finer than this.
 const FINEST: f64 = 1.6;
 
 /// What stands before a name.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 enum Sample {
     Nothing,
     Line(Stroke, f64),
     Dots(f64),
     Symbol(Look),
+    Squares(Vec<Colour>),
 }
 
 /// Words with what stands before them.
@@ -67,6 +72,15 @@ impl Heading {
             limit,
         };
         flow.add(Sample::Nothing, &panel.title, INK, AFTER_TITLE)?;
+        for swatch in panel.cells.iter().flat_map(|map| &map.swatches) {
+            let colours: Vec<Colour> = swatch.shades.iter().copied().map(tint).collect();
+            let sample = if colours.is_empty() {
+                Sample::Nothing
+            } else {
+                Sample::Squares(colours)
+            };
+            flow.add(sample, &swatch.label, INK, AFTER_ENTRY)?;
+        }
         for (i, series) in panel.series.iter().enumerate() {
             let colour = series_colour(series, i);
             let width = line_width(panel, i).max(FINEST);
@@ -110,15 +124,16 @@ impl Heading {
 
 impl Sample {
     /// Of the room before the words.
-    fn width(self) -> f64 {
+    fn width(&self) -> f64 {
         match self {
             Sample::Nothing => 0.0,
             Sample::Line(..) => SAMPLE + GAP,
             Sample::Dots(_) | Sample::Symbol(_) => 2.0 * symbols::HALF + GAP,
+            Sample::Squares(colours) => SQUARE * colours.len() as f64 + GAP,
         }
     }
 
-    fn draw(self, canvas: &Canvas<'_>, (x, y): Pixel, colour: Colour) -> Result<()> {
+    fn draw(&self, canvas: &Canvas<'_>, (x, y): Pixel, colour: Colour) -> Result<()> {
         let all = Window {
             x: (f64::NEG_INFINITY, f64::INFINITY),
             y: (f64::NEG_INFINITY, f64::INFINITY),
@@ -126,12 +141,31 @@ impl Sample {
         match self {
             Sample::Nothing => Ok(()),
             Sample::Line(stroke, width) => {
-                strokes::draw(canvas, &[(x, y), (x + SAMPLE, y)], stroke, width, colour)
+                strokes::draw(canvas, &[(x, y), (x + SAMPLE, y)], *stroke, *width, colour)
             }
-            Sample::Dots(radius) => canvas.circle((x + symbols::HALF, y), radius, colour),
-            Sample::Symbol(look) => symbols::draw(canvas, look, (x + symbols::HALF, y), &all),
+            Sample::Dots(radius) => canvas.circle((x + symbols::HALF, y), *radius, colour),
+            Sample::Symbol(look) => symbols::draw(canvas, *look, (x + symbols::HALF, y), &all),
+            Sample::Squares(colours) => squares(canvas, (x, y), colours),
         }
     }
+}
+
+/// Squares side by side from there, with an outline around all, as the palest ones are nearly white.
+fn squares(canvas: &Canvas<'_>, (x, y): Pixel, colours: &[Colour]) -> Result<()> {
+    let side = |i: usize| x + SQUARE * i as f64;
+    let strip = |from: usize, to: usize| {
+        let place = Window {
+            x: (side(from), side(to)),
+            y: (y - 0.5 * SQUARE, y + 0.5 * SQUARE),
+        };
+        place.corners().to_vec()
+    };
+    for (i, &colour) in colours.iter().enumerate() {
+        canvas.areas(&[strip(i, i + 1)], colour, true)?;
+    }
+    let mut outline = strip(0, colours.len());
+    outline.push(outline[0]);
+    canvas.line(&outline, INK, OUTLINE)
 }
 
 /// Entries set one after the other.
@@ -155,8 +189,10 @@ impl Flow {
                 self.used = 0.0;
             }
             let middle = AROUND / 2.0 + (self.heading.lines as f64 - 0.5) * LINE;
-            let first = if i == 0 { sample } else { Sample::Nothing };
-            let indent = if i == 0 { 0.0 } else { sample.width() };
+            let (first, indent) = match i {
+                0 => (sample.clone(), 0.0),
+                _ => (Sample::Nothing, sample.width()),
+            };
             self.heading.entries.push(Entry {
                 at: (self.used + indent, middle),
                 sample: first,

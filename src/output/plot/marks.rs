@@ -38,16 +38,26 @@ pub fn notes(
         let half = (0.5 * size.0, 0.5 * size.1);
         // Near a side, words move inwards.
         let at = frame.inside().without(half).nearest(at);
-        let backing = Window {
-            x: (at.0 - half.0, at.0 + half.0),
-            y: (at.1 - half.1, at.1 + half.1),
-        };
-        canvas.area(&frame.inside().area(&backing.corners()), PAPER)?;
+        backed(canvas, frame, at, size)?;
         let ink = note.colour.map_or(INK, colour);
         canvas.words(&note.text, at, Align::Middle, TEXT, ink)?;
         written.push((at, size));
     }
     Ok(written)
+}
+
+/// White behind words of that size with their middle there.
+fn backed(
+    canvas: &Canvas<'_>,
+    frame: &Frame,
+    at: Pixel,
+    (width, height): (f64, f64),
+) -> Result<()> {
+    let backing = Window {
+        x: (at.0 - 0.5 * width, at.0 + 0.5 * width),
+        y: (at.1 - 0.5 * height, at.1 + 0.5 * height),
+    };
+    canvas.area(&frame.inside().area(&backing.corners()), PAPER)
 }
 
 /// Draws the points in the frame that are pointed out, with their names where there is room.
@@ -75,8 +85,12 @@ pub fn marks(
         };
         symbols::draw(canvas, look, named.at, frame.inside())?;
     }
-    for ((mark, _), centre) in shown.iter().zip(&centres) {
+    for ((mark, named), centre) in shown.iter().zip(&centres) {
         if !mark.label.is_empty() {
+            // Dark red is hard to read on a map.
+            if panel.cells.is_some() {
+                backed(canvas, frame, *centre, named.size)?;
+            }
             canvas.words(&mark.label, *centre, Align::Middle, TEXT, mark_colour(mark))?;
         }
     }

@@ -1,7 +1,8 @@
-//! Pictures: panels of curves, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
+//! Pictures: panels of curves and maps, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
 //! a machine without fonts.
 
 mod canvas;
+mod cells;
 mod clip;
 mod curves;
 mod draw;
@@ -19,7 +20,9 @@ mod text;
 mod thin;
 mod ticks;
 
-pub use panel::{Axis, Block, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol};
+pub use panel::{
+    Axis, Block, Cells, Key, Mark, Note, Panel, Series, Shade, Side, Stroke, Swatch, Symbol,
+};
 
 use crate::error::{Error, Result};
 use crate::output::write_whole;

@@ -1,4 +1,4 @@
-//! What a picture consists of: curves, points and words on a pair of axes, and the panels in their blocks. Colours are numbers:
+//! What a picture consists of: maps, curves, points and words on a pair of axes, and the panels in their blocks. Colours are numbers:
 //! 0 blue, 1 vermillion, 2 green, 3 purple, 4 sky blue, 5 orange, 6 grey, 7 black (Okabe and Ito, told apart by all).
 
 /// One axis.
@@ -248,6 +248,54 @@ impl Note {
     }
 }
 
+/// What fills an area: a colour, mixed with white.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Shade {
+    /// Red, green, blue.
+    pub colour: [u8; 3],
+    /// From 0, the colour, to 1, white.
+    pub lightness: f64,
+}
+
+impl Shade {
+    /// The colour as it is.
+    pub const fn new(colour: [u8; 3]) -> Self {
+        Shade {
+            colour,
+            lightness: 0.0,
+        }
+    }
+
+    /// Mixed with white.
+    #[must_use]
+    pub fn lighter(mut self, lightness: f64) -> Self {
+        self.lightness = lightness;
+        self
+    }
+}
+
+/// What shades mean, in the legend.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Swatch {
+    /// Squares side by side; none for words alone.
+    pub shades: Vec<Shade>,
+    /// The meaning.
+    pub label: String,
+}
+
+/// A map: the cells of a grid, filled, behind all curves.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Cells {
+    /// Abscissae of the edges, growing, one more than there are columns.
+    pub x_edges: Vec<f64>,
+    /// Ordinates of the edges, growing, one more than there are rows.
+    pub y_edges: Vec<f64>,
+    /// What fills each cell, the lowest row first, each from left to right: nothing, one shade, or several in stripes.
+    pub fills: Vec<Vec<Shade>>,
+    /// Their entries in the legend.
+    pub swatches: Vec<Swatch>,
+}
+
 /// One pair of axes with curves.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
@@ -257,6 +305,8 @@ pub struct Panel {
     pub x: Axis,
     /// Vertical.
     pub y: Axis,
+    /// A map behind the curves.
+    pub cells: Option<Cells>,
     /// The curves.
     pub series: Vec<Series>,
     /// The points.
@@ -276,6 +326,7 @@ impl Panel {
             title: title.into(),
             x,
             y,
+            cells: None,
             series: Vec::new(),
             marks: Vec::new(),
             notes: Vec::new(),

@@ -17,10 +17,12 @@ const FREE_MARGIN: f64 = 0.1;
 /// # Errors
 /// [`crate::error::Error::Input`] if the panel shows nothing and has no fixed ranges.
 pub fn scales(panel: &Panel) -> Result<(Scale, Scale)> {
-    // A function of time ends with its data; a phase plane needs air around it, and so do names above and below.
+    // A function of time ends with its data, and so does a map; a phase plane needs air around it, and so do names above and
+    // below.
     let function = |series: &Series| !series.dots && series.x.is_sorted();
-    let tight = panel.series.iter().all(function);
+    let tight = panel.cells.is_some() || panel.series.iter().all(function);
     let margin = match panel.marks.first().map(|mark| mark.side) {
+        _ if panel.cells.is_some() => 0.0,
         None => MARGIN,
         Some(Side::Free) => FREE_MARGIN,
         Some(_) => MARKED_MARGIN,
@@ -70,6 +72,13 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
             }
             let finite = point.0.is_finite() && point.1.is_finite();
             before = finite.then_some(point);
+        }
+    }
+    for map in &panel.cells {
+        let corners = |edges: &[f64]| edges.first().copied().zip(edges.last().copied());
+        if let (Some(x), Some(y)) = (corners(&map.x_edges), corners(&map.y_edges)) {
+            take(at(x.0, y.0));
+            take(at(x.1, y.1));
         }
     }
     let places = panel.marks.iter().map(|mark| (mark.x, mark.y));

@@ -35,12 +35,7 @@ impl Grain {
 
     /// The same, dimensionless.
     pub fn inward(&self, quantity: Quantity, units: &Units) -> Result<Range> {
-        let end = |x| {
-            positive(
-                &*self.name,
-                units.inward(quantity, positive(&*self.name, x)?),
-            )
-        };
+        let end = |x| positive(&self.name, units.inward(quantity, positive(&self.name, x)?));
         Ok(Range {
             from: end(self.range.from)?,
             to: end(self.range.to)?,

@@ -1,0 +1,174 @@
+//! Regimes over the (V_H, K) plane, with curves of bifurcations over them.
+
+use super::tints::{Kind, LIGHTEST};
+use super::{Outcome, Side};
+use crate::bifurcation::LocusRow;
+use crate::output::plot::{Cells, Drawing, Panel, Series, Shade, Stroke, Swatch};
+use crate::scene::{Quantity, Units};
+use crate::views::axis_label;
+
+/// Steps of lightness between the least and the largest exponent: few enough that cells still merge.
+const STEPS: usize = 6;
+/// Black, the only colour that no regime has.
+const BLACK: usize = 7;
+const STROKES: [Stroke; 5] = [
+    Stroke::Solid,
+    Stroke::Dashed,
+    Stroke::DashDot,
+    Stroke::Dotted,
+    Stroke::DashDotDot,
+];
+
+/// The regimes over V_H and K, with named curves over them. Points that are missing, as of a sweep that goes on, stay white.
+/// Where several starts end differently the cell has stripes of all regimes; a start that is undecided shows only where no other
+/// has a verdict, as it says nothing of another attractor. Chaos is the darker the larger the exponent; attractors of the same
+/// regime are not told apart.
+pub fn regime_map(
+    outcomes: &[Outcome],
+    (driving, stiffness): (&Side, &Side),
+    starts: usize,
+    curves: &[(&str, &[LocusRow])],
+    units: &Units,
+) -> Drawing {
+    let label = |name, quantity| axis_label(name, quantity, units);
+    let (x, x_edges) = driving.axis(label("V_H", Quantity::SlipRate), |x| {
+        units.outward(Quantity::SlipRate, x)
+    });
+    let (y, y_edges) = stiffness.axis(label("K", Quantity::Stiffness), |x| {
+        units.outward(Quantity::Stiffness, x)
+    });
+    let columns = driving.values.len();
+    let starts = starts.max(1);
+    let exponents = Exponents::of(outcomes);
+    let mut found = vec![Vec::new(); columns * stiffness.values.len()];
+    for outcome in outcomes {
+        if let Some(cell) = found.get_mut(outcome.number / starts) {
+            cell.push((Kind::of(outcome), exponents.shade(outcome)));
+        }
+    }
+    let fills: Vec<_> = found.iter_mut().map(|cell| told(cell)).collect();
+    let mut title = format!("regimes at {columns} × {} points", stiffness.values.len());
+    if starts > 1 {
+        title += &format!(", {starts} starts each");
+    }
+    let striped = fills.iter().any(|fill| fill.len() > 1);
+    let map = Cells {
+        x_edges,
+        y_edges,
+        fills: fills
+            .into_iter()
+            .map(|fill| fill.into_iter().map(|(_, shade)| shade).collect())
+            .collect(),
+        swatches: swatches(outcomes, &found, &exponents, striped, units),
+    };
+    let panel = Panel {
+        cells: Some(map),
+        series: over(curves, units),
+        ..Panel::new(title, x, y)
+    };
+    Drawing::columns(vec![vec![panel]])
+}
+
+/// What a cell shows of what its starts found: each regime once, in the order of the legend.
+fn told(found: &mut Vec<(Kind, Shade)>) -> Vec<(Kind, Shade)> {
+    // Of chaos the darkest.
+    found.sort_by(|a, b| {
+        let lightness = a.1.lightness.total_cmp(&b.1.lightness);
+        a.0.cmp(&b.0).then(lightness)
+    });
+    found.dedup_by_key(|(kind, _)| *kind);
+    if found.len() > 1 {
+        found.retain(|(kind, _)| *kind != Kind::Undecided);
+    }
+    found.clone()
+}
+
+/// The largest exponents of chaotic points.
+struct Exponents(Option<(f64, f64)>);
+
+impl Exponents {
+    fn of(outcomes: &[Outcome]) -> Self {
+        let chaotic = outcomes.iter().filter(|one| Kind::of(one) == Kind::Chaotic);
+        let values = chaotic.filter_map(|one| Some(one.lyapunov_max?.value));
+        Exponents(values.fold(None, |reach: Option<(f64, f64)>, x| {
+            let (lo, hi) = reach.unwrap_or((x, x));
+            Some((lo.min(x), hi.max(x)))
+        }))
+    }
+
+    /// The colour of a point.
+    fn shade(&self, outcome: &Outcome) -> Shade {
+        let kind = Kind::of(outcome);
+        match (kind, self.0, outcome.lyapunov_max) {
+            (Kind::Chaotic, Some((lo, hi)), Some(x)) if lo < hi => {
+                let part = (x.value - lo) / (hi - lo);
+                lighter(
+                    ((1.0 - part) * STEPS as f64)
+                        .floor()
+                        .min(STEPS as f64 - 1.0),
+                )
+            }
+            _ => kind.shade(),
+        }
+    }
+}
+
+/// Chaos, so many steps lighter.
+fn lighter(steps: f64) -> Shade {
+    Kind::Chaotic
+        .shade()
+        .lighter(LIGHTEST * steps / (STEPS - 1) as f64)
+}
+
+/// The legend: the regimes that there are.
+fn swatches(
+    outcomes: &[Outcome],
+    found: &[Vec<(Kind, Shade)>],
+    exponents: &Exponents,
+    striped: bool,
+    units: &Units,
+) -> Vec<Swatch> {
+    let symmetries = outcomes.iter().any(|one| one.symmetry.is_some());
+    let mut kinds: Vec<Kind> = found.iter().flatten().map(|(kind, _)| *kind).collect();
+    kinds.sort();
+    kinds.dedup();
+    let swatch = |kind: Kind| match (kind, exponents.0) {
+        (Kind::Chaotic, Some((lo, hi))) if lo < hi => {
+            let rate = |x| format!("{:.0e}", units.outward(Quantity::Growth, x));
+            let unit = units.short_name(Quantity::Growth);
+            Swatch {
+                shades: (0..STEPS).rev().map(|i| lighter(i as f64)).collect(),
+                label: format!("chaotic, exponent {} to {} [{unit}]", rate(lo), rate(hi)),
+            }
+        }
+        _ => Swatch {
+            shades: vec![kind.shade()],
+            label: kind.words(symmetries).to_owned(),
+        },
+    };
+    let stripes = striped.then(|| Swatch {
+        shades: Vec::new(),
+        label: "striped: the starts end differently".to_owned(),
+    });
+    kinds.into_iter().map(swatch).chain(stripes).collect()
+}
+
+/// Curves, told apart by their strokes.
+fn over(curves: &[(&str, &[LocusRow])], units: &Units) -> Vec<Series> {
+    let series = |(i, (name, rows)): (usize, &(&str, &[LocusRow]))| {
+        let (mut x, mut y) = (Vec::new(), Vec::new());
+        for piece in rows.chunk_by(|a, b| a.curve == b.curve) {
+            for row in piece {
+                x.push(units.outward(Quantity::SlipRate, row.driving.value));
+                y.push(units.outward(Quantity::Stiffness, row.stiffness.value));
+            }
+            // Curves don't go on into one another.
+            x.push(f64::NAN);
+            y.push(f64::NAN);
+        }
+        let series = Series::new(*name, x, y).colour(BLACK);
+        series.stroke(STROKES[i % STROKES.len()])
+    };
+    let shown = curves.iter().filter(|(_, rows)| !rows.is_empty());
+    shown.enumerate().map(series).collect()
+}
