@@ -68,8 +68,8 @@ pub(crate) trait Convoy: Send {
     fn advance(&mut self, accuracy: &Accuracy, limits: &[f64; MAX_LANES]) -> [f64; MAX_LANES];
     /// The state reached in this lane.
     fn state(&self, lane: usize) -> [f64; 3];
-    /// The series at the beginning of the last step in this lane.
-    fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>);
+    /// The series at the beginning of the last step, of every lane.
+    fn expansions(&self, order: usize, into: &mut [Expansion<3>]);
 }
 
 /// As many lanes as this processor has, compiled for this law; `None` where it has none.
@@ -193,14 +193,6 @@ impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
     }
 }
 
-/// A series in one lane.
-#[cfg(target_arch = "x86_64")]
-fn copy<E: Wide>(series: &[E], lane: usize, into: &mut [f64]) {
-    for (x, all) in into.iter_mut().zip(series) {
-        *x = all.spilled()[lane];
-    }
-}
-
 #[cfg(target_arch = "x86_64")]
 macro_rules! convoys {
     ($($token:ident $element:ident)*) => { $(
@@ -236,16 +228,29 @@ macro_rules! convoys {
                 [tau, p.ln(), q.ln()]
             }
 
-            fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>) {
-                into.order = order;
-                into.unit = self.stepper.unit().lanes()[lane];
-                into.chart = logarithms;
-                for (i, series) in into.variables.iter_mut().enumerate() {
-                    copy(self.stepper.series(i), lane, &mut series[..=order]);
+            fn expansions(&self, order: usize, into: &mut [Expansion<3>]) {
+                let units = self.stepper.unit().lanes();
+                for (lane, into) in into.iter_mut().enumerate().take($element::LANES) {
+                    into.order = order;
+                    into.unit = units[lane];
+                    into.chart = logarithms;
                 }
-                for (i, series) in into.slip_rates.iter_mut().enumerate() {
-                    if let Some(v) = self.stepper.watched_series(i) {
-                        copy(v, lane, &mut series[..order]);
+                // Each coefficient is taken out of its vector once, for all lanes.
+                for i in 0..3 {
+                    for (k, all) in self.stepper.series(i)[..=order].iter().enumerate() {
+                        for (into, x) in into.iter_mut().zip(all.spilled()) {
+                            into.variables[i][k] = x;
+                        }
+                    }
+                }
+                for i in 0..2 {
+                    let Some(rates) = self.stepper.watched_series(i) else {
+                        continue;
+                    };
+                    for (k, all) in rates.iter().enumerate().take(order) {
+                        for (into, x) in into.iter_mut().zip(all.spilled()) {
+                            into.slip_rates[i][k] = x;
+                        }
                     }
                 }
             }

@@ -11,6 +11,8 @@ use nalgebra::{SMatrix, SVector};
 
 /// Distance, in every component, at which an equilibrium is looked for.
 const NEAR: f64 = 0.3;
+/// At an equilibrium, for what rounding may hold there.
+const AT_REST: f64 = 1e-5;
 /// There are three; more are remembered for what Newton's method may invent.
 const MOST: usize = 8;
 /// Newton's method ends at this step, or fails.
@@ -48,6 +50,14 @@ impl Capture {
         let captured = here.around(y);
         self.known.push(here);
         captured
+    }
+
+    /// Whether y is at an unstable equilibrium that it was found near before.
+    pub fn rests_unstably(&self, y: &State<3>) -> bool {
+        let at = |here: &Neighbourhood| (y - here.equilibrium).amax() < AT_REST;
+        self.known
+            .iter()
+            .any(|here| here.holds.is_none() && at(here))
     }
 }
 

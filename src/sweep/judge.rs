@@ -8,28 +8,27 @@ use crate::field::State;
 use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use crate::number::Uncertain;
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, Periodic, Regime, Spectrum, Watching, aperiodic, at_equilibrium,
-    periodic_point, record, spectrum, verdict,
+    Ended, Periodic, Regime, Spectrum, Watching, aperiodic, at_equilibrium, periodic_point, record,
+    spectrum,
 };
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
-/// The tolerance with which periodic points are found, and the step at which Newton's method ends; the error then is its square.
-const TOLERANCE: f64 = 1e-11;
+/// The step at which Newton's method ends; the error then is its square.
 const CONVERGED: f64 = 1e-6;
+/// The tolerance with which an orbit is gone round once, for its period and its stress.
+const TOLERANCE: f64 = 1e-11;
 /// Returns after which a run that has not settled is judged: each time twice as many.
 pub(super) const FIRST_STAGE: usize = 64;
 /// Returns without which neither torus nor chaos is told: those before are let pass.
 const FEWEST_TO_WANDER: usize = 512;
-/// Returns before exponents are asked for, and for them.
+/// Returns before exponents are asked for. For them there are more each time.
 const FEWEST_TO_ASK: usize = 1024;
-const FOR_EXPONENTS: usize = 1000;
+const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 /// A candidate that is none is not looked at again before this part more returns.
 const LATER: f64 = 1.3;
-/// The push off an unstable orbit that a run is held on by rounding, in ln psi_2.
-const PUSH: f64 = 1e-3;
 /// A run this close to an unstable orbit is held on it.
-const HELD: f64 = 1e-6;
+const ON_ORBIT: f64 = 1e-5;
 
 /// Judges runs; its integrators are used over and over.
 pub(super) struct Judge {
@@ -66,11 +65,20 @@ impl Judge {
                 return match error {
                     Error::NoReturn {
                         lowest, highest, ..
-                    } if run.surface_moves_between(lowest, highest) => None,
+                    } if run.surface_moves_between(lowest, highest)
+                        || run.let_go(run.state)
+                        || run.waits_longer() =>
+                    {
+                        None
+                    }
                     error => Some(undecided(run, error.to_string())),
                 };
             }
             Some(Ended::Complete | Ended::Stopped) | None => (),
+        }
+        if std::mem::take(&mut run.held) {
+            run.let_go(run.state);
+            return None;
         }
         if run.recorder.steps >= self.settings.max_steps {
             return Some(undecided(
@@ -105,7 +113,7 @@ impl Judge {
         let found = periodic_point(
             &*run.field,
             &run.surface,
-            &mut self.fine,
+            &mut self.coarse,
             run.returns(),
             accuracy,
             q,
@@ -114,13 +122,8 @@ impl Judge {
             return self.orbit(run, &found);
         }
         let y = run.returns().last()?.state;
-        if (y - found.point).amax() < HELD && (y[1] - y[2]).abs() < HELD {
-            // Nothing but rounding holds it, and what holds in the mirror holds here: either side will do.
-            run.state = y;
-            run.state[2] += PUSH;
-            run.pushed = true;
-            run.fresh = run.recorder.returns.len();
-            run.recorder.resume(run.time);
+        if (y - found.point).amax() < ON_ORBIT {
+            run.let_go(y);
         }
         None
     }
@@ -179,9 +182,11 @@ impl Judge {
 
     /// Records anew from where the run is, now with its tangents.
     fn with_exponents(&mut self, run: &mut Run) -> std::result::Result<Told, &'static str> {
+        // A quarter of what there were: a longer run has shown that it needs more.
+        let returns = run.recorder.returns.len() / 4;
         let watching = Watching {
             skip: 0,
-            returns: FOR_EXPONENTS.min(self.settings.max_returns.max(FEWEST_FOR_EXPONENTS)),
+            returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
             waypoints: true,
             ..run.watching
         };
@@ -193,24 +198,16 @@ impl Judge {
         for point in &recorded.waypoints {
             see(&mut stress, point.state[0]);
         }
-        let of_run = run.recorder.returns.len();
-        let told = |regime| {
-            let mut told = begun(run, regime);
-            told.row.returns = of_run + recorded.returns.len();
-            told
-        };
         if let Ended::Steady { equilibrium, .. } = recorded.ended {
             return Ok(steady(run, equilibrium, true));
         }
         let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
-        let made = verdict(field, surface, &recorded, Some(found.known()));
-        let made = made.map_err(|_| "its periodic points cannot be looked for")?;
-        match (made.regime, made.periodic) {
-            (Regime::Periodic, Some(periodic)) => {
-                self.orbit(run, &periodic).ok_or("its orbit fails")
-            }
-            (regime @ (Regime::Torus | Regime::Chaotic), _) => {
-                let mut told = told(regime);
+        let known = Some(found.known());
+        let made = aperiodic(surface, &recorded.returns, self.settings.rtol, known);
+        match made.regime {
+            Regime::Torus | Regime::Chaotic => {
+                let mut told = begun(run, made.regime);
+                told.row.returns += recorded.returns.len();
                 told.attractor = recorded.returns.last().map(|at| at.state);
                 told.row.stress_range = Some(stress);
                 told.row.lyapunov_max = across(&found);
@@ -260,8 +257,8 @@ fn begun(run: &Run, regime: Regime) -> Told {
             stress_range: None,
             lyapunov_max: None,
             returns: run.recorder.passed,
-            note: run.pushed.then(|| {
-                "held by rounding on an unstable symmetric orbit, and let go by 0.001 in ln psi2"
+            note: (run.pushes > 0).then(|| {
+                "equal interfaces, held by rounding where that is unstable, were let go by 0.001 in ln psi2"
                     .into()
             }),
         },

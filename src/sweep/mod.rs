@@ -74,8 +74,10 @@ pub struct Settings {
     pub law: AnyLaw,
     /// The points.
     pub grid: Grid,
-    /// Starts at each: the first beside the symmetric steady state, the second far from it with states far apart, the others
-    /// random. A basin has one, which is its point.
+    /// Starts at each: the first beside the symmetric steady state, the second with equal interfaces, which it leaves only where
+    /// they part by themselves, the third far from it with states far apart, the others random. The equal ones matter: a
+    /// symmetric orbit that is stable may attract only what is symmetric to a part in a million. A basin has one start, which is
+    /// its point.
     pub starts: usize,
     /// Of the random starts.
     pub seed: u64,

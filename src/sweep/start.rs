@@ -10,6 +10,8 @@ use rand_chacha::rand_core::{Rng, SeedableRng};
 
 /// ln psi_2 - ln psi_1 of the start beside the symmetric steady state.
 const BESIDE: f64 = 0.01;
+/// ln psi of the symmetric start, less that of the symmetric steady state: it swings from the beginning.
+const SWUNG: f64 = -1.0;
 /// The far start: how much more stress, and how much less of ln psi_2, than at the symmetric steady state.
 const FAR: (f64, f64) = (1.0, -4.0);
 /// The same of random starts, at the least and at the most.
@@ -40,7 +42,8 @@ pub(super) fn point(settings: &Settings, number: usize) -> Point {
             let w = settings.law.steady_state(0.5 * loading.driving).ln();
             let start = match s {
                 0 => State::<3>::new(tau, w, w + BESIDE),
-                1 => State::<3>::new(tau + FAR.0, w, w + FAR.1),
+                1 => State::<3>::new(tau, w + SWUNG, w + SWUNG),
+                2 => State::<3>::new(tau + FAR.0, w, w + FAR.1),
                 _ => random(settings.seed, number, (tau, w)),
             };
             Point {

@@ -7,9 +7,10 @@ use super::{Row, Settings};
 use crate::error::Result;
 use crate::field::State;
 use crate::integrate::{Batch, BatchRun, Integrator, Step, Taylor, Tolerances};
-use crate::section::Watching;
+use crate::section::{Regime, Watching};
 
-/// The least difference of the log states with which a run follows another: from equal ones it could not leave the symmetry.
+/// The difference of the log states with which a run follows a symmetric steady state: from equal ones it would come to rest
+/// where that is unstable.
 const APART: f64 = 1e-4;
 
 /// Computes rows; one for each thread. Its buffers grow to what a chunk of points needs, and nothing is allocated from step to
@@ -103,10 +104,7 @@ impl Sweeper {
             for (l, line) in lines.iter().enumerate() {
                 for s in 0..starts {
                     let mut point = point(&self.settings, line * each + column + s);
-                    if let Some(mut state) = attractors[l * starts + s] {
-                        if (state[2] - state[1]).abs() < APART {
-                            state[2] = state[1] + APART;
-                        }
+                    if let Some(state) = attractors[l * starts + s] {
                         point.start = state;
                     }
                     points.push(point);
@@ -115,6 +113,11 @@ impl Sweeper {
             let told = self.settle(points);
             for (attractor, told) in attractors.iter_mut().zip(&told) {
                 *attractor = told.attractor;
+                if let (Regime::Steady, Some(y)) = (told.row.regime, attractor)
+                    && (y[2] - y[1]).abs() < APART
+                {
+                    y[2] = y[1] + APART;
+                }
             }
             columns.push(told);
         }

@@ -26,6 +26,12 @@ const NEAR: f64 = 1e-3;
 const ARRIVED: f64 = 1e-6;
 /// What distances must shrink to from a window of returns to the next.
 const SHRUNK: f64 = 0.7;
+/// Interfaces of a run that is held in symmetry are no farther apart, in ln psi; it is let go by the second, and so often.
+const HELD: f64 = 1e-6;
+const PUSH: f64 = 1e-3;
+const MOST_PUSHES: usize = 2;
+/// Runs that are judged before so many returns are not judged by the stress on the way: its turns take time.
+const STRESS_FROM: usize = 512;
 /// The least returns in a window.
 const WINDOW: usize = 3;
 /// Where so many more rounds would bring a candidate to [`ARRIVED`], they are waited for: Newton's method takes as long.
@@ -51,10 +57,13 @@ pub(super) struct Run {
     pub candidate: Option<usize>,
     /// The least and the greatest stress since the last stage began.
     pub stress: (f64, f64),
-    /// Whether it was pushed off an unstable orbit.
-    pub pushed: bool,
-    /// Whether the section was moved.
+    /// How often it was let go from an unstable orbit.
+    pub pushes: usize,
+    /// Whether it rests where it would not but for rounding.
+    pub held: bool,
+    /// Whether the section was moved, and a return waited for as long as it is usual.
     moved: bool,
+    waited: bool,
 }
 
 impl Run {
@@ -77,8 +86,10 @@ impl Run {
             next_stage: stage,
             candidate: None,
             stress: (f64::INFINITY, f64::NEG_INFINITY),
-            pushed: false,
+            pushes: 0,
+            held: false,
             moved: false,
+            waited: false,
             point,
         };
         run.recorder.returns.reserve(2 * stage);
@@ -120,9 +131,10 @@ impl Run {
                 return Ok(Control::Stop);
             }
         }
-        if self.recorder.steps.is_multiple_of(BETWEEN_LOOKS)
-            && let Some(equilibrium) = self.capture.of(&*self.field, step.y1)
-        {
+        if !self.recorder.steps.is_multiple_of(BETWEEN_LOOKS) {
+            return Ok(Control::Continue);
+        }
+        if let Some(equilibrium) = self.capture.of(&*self.field, step.y1) {
             self.recorder.ended = Some(Ended::Steady {
                 time: step.t1,
                 equilibrium,
@@ -130,7 +142,17 @@ impl Run {
             });
             return Ok(Control::Stop);
         }
-        Ok(Control::Continue)
+        self.held = self.is_held(step.y1) && self.capture.rests_unstably(step.y1);
+        Ok(if self.held {
+            Control::Stop
+        } else {
+            Control::Continue
+        })
+    }
+
+    /// Whether the interfaces are alike, and the run may be let go.
+    fn is_held(&self, y: &State<3>) -> bool {
+        (y[1] - y[2]).abs() < HELD && self.pushes < MOST_PUSHES
     }
 
     /// Moves the section to where a run swings that does not cross it, as just after a Hopf point of the asymmetric steady state;
@@ -146,7 +168,35 @@ impl Run {
         true
     }
 
+    /// Waits as long as it is usual, once: close to a bifurcation a run may creep.
+    pub fn waits_longer(&mut self) -> bool {
+        let longer = !self.waited;
+        if longer {
+            self.waited = true;
+            self.watching.patience /= PATIENCE;
+            self.recorder.resume(self.time);
+        }
+        longer
+    }
+
+    /// Lets a run go from an unstable state or orbit of equal interfaces that nothing but rounding holds it on. What holds for one
+    /// side holds for its mirror image: either will do. Whether there was anything to let go.
+    pub fn let_go(&mut self, y: State<3>) -> bool {
+        let held = self.is_held(&y);
+        if held {
+            self.pushes += 1;
+            self.state = y;
+            self.state[2] += PUSH;
+            self.fresh = self.recorder.returns.len();
+            self.recorder.resume(self.time);
+        }
+        held
+    }
+
     fn see_stress(&mut self, step: &Step<'_, 3>) {
+        if self.next_stage < STRESS_FROM {
+            return;
+        }
         see(&mut self.stress, step.y1[0]);
         if let Some(turn) = step.series.and_then(turn) {
             see(&mut self.stress, turn);

@@ -113,7 +113,8 @@ impl Batch {
         let mut next = 0;
         let mut seats: [Option<Seat>; MAX_LANES] = [const { None }; MAX_LANES];
         let mut limits = [1.0; MAX_LANES];
-        let mut expansion = Expansion::new();
+        // On the heap, and once: they are large.
+        let mut expansions = vec![Expansion::new(); convoy.lanes()];
         let accuracy = self.taylor.accuracy;
         for (lane, seat) in seats.iter_mut().enumerate().take(convoy.lanes()) {
             *seat = self.seated(&mut *convoy, lane, runs, &mut next, &mut ends);
@@ -124,12 +125,15 @@ impl Batch {
                 *limit = remaining.map_or(1.0, |remaining| remaining.hi());
             }
             let steps = convoy.advance(&accuracy, &limits);
+            if observer.is_some() {
+                convoy.expansions(accuracy.order, &mut expansions);
+            }
             for (lane, seat) in seats.iter_mut().enumerate() {
                 let Some(here) = seat else { continue };
                 let (begin, before) = (here.clock.now, here.clock.now.hi());
                 let mut fate = self.ticked(here, &*convoy, lane, steps[lane], runs);
                 if let (Some(observer), Fate::On | Fate::Done) = (&mut observer, &fate) {
-                    convoy.expansion(lane, accuracy.order, &mut expansion);
+                    let expansion = &mut expansions[lane];
                     (expansion.begin, expansion.length) = (begin, steps[lane]);
                     let end = State::from(convoy.state(lane));
                     let dense =
@@ -142,7 +146,7 @@ impl Batch {
                             t1: here.clock.now.hi(),
                             y1: &end,
                             dense: &dense,
-                            series: Some(&expansion),
+                            series: Some(expansion),
                         },
                     );
                     here.y = end;
