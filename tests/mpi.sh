@@ -74,7 +74,7 @@ fi
 echo "ok: a wrong grid is refused once"
 
 # A rank that computes is killed as soon as there are rows.
-words=(--driving 1:10:40 --stiffness 0.3:0.5:20)
+words=(--driving 1:10:20 --stiffness 0.3:0.5:10)
 "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
 ranks 3 "${words[@]}" -o "$folder/killed.csv" >"$folder/told" 2>&1 &
 run=$!
@@ -92,6 +92,6 @@ if wait "$run"; then
     exit 1
 fi
 rows=$(($(lines) - 6))
-echo "ok: a dead rank ends the run, $rows rows of 800 stay"
+echo "ok: a dead rank ends the run, $rows rows of 200 stay"
 ranks 2 "${words[@]}" --resume "$folder/killed.csv"
 same "$folder/alone.csv" "$folder/killed.csv" "gone on with after a rank died"
