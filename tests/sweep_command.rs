@@ -433,7 +433,7 @@ fn a_full_disk_is_one_error_and_what_is_whole_stays() {
 fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let path = folder("sweep-interrupt").join("map.csv");
     let long = format!(
-        "sweep --driving 0.14:0.5:400 --stiffness 0.3:0.5:400 -o {}",
+        "sweep --driving 0.14:0.5:2000 --stiffness 0.36:0.5:2000 -o {}",
         path.display()
     );
     let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
