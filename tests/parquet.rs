@@ -1,99 +1,99 @@
-//! What is written as Parquet is read back by another implementation.
+//! What is written as Parquet is read back, by the same library and by another implementation.
 #![cfg(feature = "parquet")]
 #![allow(missing_docs)]
 
-use parquet2::encoding::hybrid_rle::HybridRleDecoder;
-use parquet2::page::{DataPage, Page, split_buffer};
-use parquet2::read::{decompress, get_page_iterator, read_metadata};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
 use std::fs::{self, File};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::process::Command;
 use twinslip::output::parquet::{GROUP, from_csv};
 
-/// The present values of a column as bytes, and which rows have one.
-fn column(file: &mut File, number: usize) -> (Vec<u8>, Vec<bool>) {
-    let metadata = read_metadata(file).expect("metadata");
-    let (mut values, mut present) = (Vec::new(), Vec::new());
-    for group in &metadata.row_groups {
-        let chunk = &group.columns()[number];
-        let pages = get_page_iterator(chunk, &mut *file, None, vec![], 1 << 28).expect("pages");
-        for page in pages {
-            let page = decompress(page.expect("a page"), &mut vec![]).expect("no compression");
-            let Page::Data(page) = page else {
-                panic!("a dictionary")
-            };
-            let (_, levels, bytes) = split_buffer(&page).expect("a page in parts");
-            values.extend_from_slice(bytes);
-            present.extend(levels_of(&page, levels));
-        }
-    }
-    (values, present)
+/// More than one group, the last one short.
+const ROWS: usize = GROUP + 1234;
+
+fn number(i: usize) -> Option<f64> {
+    (i % 7 != 3).then(|| (i as f64 * 0.1).sin() * 1e-300)
 }
 
-fn levels_of(page: &DataPage, levels: &[u8]) -> Vec<bool> {
-    let rows = page.num_values();
-    if page.descriptor.max_def_level == 0 {
-        return vec![true; rows];
-    }
-    let decoder = HybridRleDecoder::try_new(levels, 1, rows).expect("levels");
-    decoder.map(|level| level.expect("a level") == 1).collect()
+fn word(i: usize) -> &'static str {
+    ["periodic", "", "ψ, \"a\""][i % 3]
 }
 
-fn eights(bytes: &[u8]) -> impl Iterator<Item = [u8; 8]> + '_ {
-    bytes
-        .chunks_exact(8)
-        .map(|eight| eight.try_into().expect("eight"))
-}
-
-#[test]
-fn another_reader_finds_the_same_rows() {
-    let folder = PathBuf::from(env!("CARGO_TARGET_TMPDIR"));
-    let (csv, out) = (folder.join("rows.csv"), folder.join("rows.parquet"));
-    // More than one group, the last one short.
-    let rows = GROUP + 1234;
-    let number = |i: usize| (i % 7 != 3).then(|| (i as f64 * 0.1).sin() * 1e-300);
-    let word = |i: usize| ["periodic", "", "ψ, \"a\""][i % 3];
+/// A file of all kinds of columns, made from CSV.
+fn converted(name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let csv = folder.join(name).with_extension("csv");
+    let out = csv.with_extension("parquet");
     let mut text = String::from("# command: a \"b, c\nnumber,driving,regime\n");
-    for i in 0..rows {
+    for i in 0..ROWS {
         let x = number(i).map_or(String::new(), |x| format!("{x:e}"));
         text += &format!("{i},{x},\"{}\"\n", word(i).replace('"', "\"\""));
     }
     fs::write(&csv, text).expect("written");
     from_csv(&csv, &out, &["number"], &["regime"]).expect("converted");
+    out
+}
 
-    let mut file = File::open(&out).expect("there");
-    let metadata = read_metadata(&mut file).expect("metadata");
-    assert_eq!((metadata.num_rows, metadata.row_groups.len()), (rows, 2));
-    let pairs = metadata.key_value_metadata.clone().expect("remarks");
+#[test]
+fn rows_and_remarks_are_read_back() {
+    let file = File::open(converted("again")).expect("there");
+    let reader = SerializedFileReader::new(file).expect("Parquet");
+    let metadata = reader.metadata().file_metadata();
+    let groups = reader.metadata().num_row_groups();
+    assert_eq!((metadata.num_rows(), groups), (ROWS as i64, 2));
+    let pairs = metadata.key_value_metadata().expect("remarks");
     let command = pairs.iter().find(|pair| pair.key == "command");
     assert_eq!(command.unwrap().value.as_deref(), Some("a \"b, c"));
-    let names = metadata
-        .schema_descr
-        .columns()
-        .iter()
-        .map(|c| c.path_in_schema.join("."));
-    assert_eq!(names.collect::<Vec<_>>(), ["number", "driving", "regime"]);
+    let mut count = 0;
+    for (i, row) in reader.get_row_iter(None).expect("rows").enumerate() {
+        let row = row.expect("a row");
+        let fields: Vec<Field> = row
+            .get_column_iter()
+            .map(|(_, field)| field.clone())
+            .collect();
+        let word = match word(i) {
+            "" => Field::Null,
+            word => Field::Str(word.to_owned()),
+        };
+        let expected = [
+            Field::ULong(i as u64),
+            number(i).map_or(Field::Null, Field::Double),
+            word,
+        ];
+        assert_eq!(fields, expected, "row {i}");
+        count += 1;
+    }
+    assert_eq!(count, ROWS);
+}
 
-    let (counts, _) = column(&mut file, 0);
-    assert!(eights(&counts).map(u64::from_le_bytes).eq(0..rows as u64));
-    let (numbers, there) = column(&mut file, 1);
-    let mut numbers = eights(&numbers).map(f64::from_le_bytes);
-    for (i, there) in there.iter().enumerate() {
-        // To the bit.
-        let read = there.then(|| numbers.next().expect("a number").to_bits());
-        assert_eq!(read, number(i).map(f64::to_bits), "row {i}");
-    }
-    let (words, there) = column(&mut file, 2);
-    let mut rest = words.as_slice();
-    for (i, there) in there.iter().enumerate() {
-        assert_eq!(*there, !word(i).is_empty(), "row {i}");
-        if *there {
-            let (length, after) = rest.split_at(4);
-            let length = u32::from_le_bytes(length.try_into().expect("four")) as usize;
-            assert_eq!(&after[..length], word(i).as_bytes(), "row {i}");
-            rest = &after[length..];
-        }
-    }
-    assert!(there.len() == rows && rest.is_empty());
+/// Arrow in C++, by Python.
+#[test]
+#[ignore = "needs Python's pyarrow"]
+fn another_reader_finds_the_same_rows() {
+    let script = r#"
+import math, sys
+from pyarrow import parquet
+file = parquet.ParquetFile(sys.argv[1])
+rows = file.read()
+assert file.num_row_groups == 2
+assert rows.schema.metadata[b"command"] == b'a "b, c'
+number, driving, regime = (rows.column(name).to_pylist() for name in ("number", "driving", "regime"))
+assert number == list(range(int(sys.argv[2])))
+for i, (x, word) in enumerate(zip(driving, regime)):
+    assert word == ("periodic", None, 'ψ, "a"')[i % 3], i
+    expected = None if i % 7 == 3 else math.sin(i * 0.1) * 1e-300
+    assert (x is None) == (expected is None), i
+    assert x is None or abs(x - expected) <= 4e-16 * abs(expected), i
+"#;
+    let mut python = Command::new("python3");
+    let python = python.args(["-c", script]).arg(converted("other"));
+    let done = python.arg(ROWS.to_string()).output().expect("Python");
+    assert!(
+        done.status.success(),
+        "{}",
+        String::from_utf8_lossy(&done.stderr)
+    );
 }
 
 #[test]
