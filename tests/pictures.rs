@@ -4,9 +4,12 @@
 mod drawn;
 
 use drawn::{BLUE, GRID, INK, PAPER, Shape, alone, numbers, seen, unit};
+use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Rect;
+use resvg::usvg::{Options, Tree};
 use twinslip::output::plot::{
-    Axis, Block, Drawing, Key, Mark, Note, Panel, Series, Side, Stroke, Symbol,
+    Axis, Block, Cells, Drawing, Key, Mark, Note, Panel, Series, Shade, Side, Stroke, Swatch,
+    Symbol,
 };
 
 /// Curves, points and words of all kinds, within the frame, beyond it and on its edge.
@@ -348,4 +351,182 @@ fn nothing_to_draw_is_refused() {
     assert!(Drawing::blocks(Vec::new()).svg().is_err());
     // A fixed range can be drawn without points.
     assert!(alone(unit("")).svg().is_ok());
+}
+
+const SHADES: [[u8; 3]; 3] = [[10, 20, 30], [200, 40, 40], [250, 240, 200]];
+
+/// A map of n by n cells from 0 to 1, filled by the number of the shade, none for other numbers.
+fn map(n: usize, fill: impl Fn(usize, usize) -> Vec<usize>) -> Cells {
+    let shade = |number: usize| SHADES.get(number).copied().map(Shade::new);
+    let fills = (0..n * n).map(|k| fill(k % n, k / n).into_iter().filter_map(shade).collect());
+    Cells {
+        x_edges: numbers(0.0, 1.0, n + 1),
+        y_edges: numbers(0.0, 1.0, n + 1),
+        fills: fills.collect(),
+        swatches: Vec::new(),
+    }
+}
+
+/// The pixels of a panel's picture, and its frame in them.
+fn pixels(panel: &Panel, zoom: f32) -> (Pixmap, Rect) {
+    let drawing = alone(panel.clone());
+    let frame = seen(&drawing).frames()[0];
+    let tree = Tree::from_str(&drawing.svg().expect("SVG"), &Options::default()).expect("SVG");
+    let size = |x: f32| (zoom * x).ceil() as u32;
+    let mut pixels = Pixmap::new(size(tree.size().width()), size(tree.size().height())).unwrap();
+    resvg::render(
+        &tree,
+        Transform::from_scale(zoom, zoom),
+        &mut pixels.as_mut(),
+    );
+    let frame = frame.transform(Transform::from_scale(zoom, zoom)).unwrap();
+    (pixels, frame)
+}
+
+/// How many pixels within the frame, but for its line, have each of the colours of the maps, and how many none of them.
+fn counts(pixels: &Pixmap, frame: Rect) -> ([usize; 3], usize) {
+    let (mut of, mut others) = ([0; 3], 0);
+    for y in frame.top() as u32 + 3..frame.bottom() as u32 - 3 {
+        for x in frame.left() as u32 + 3..frame.right() as u32 - 3 {
+            let pixel = pixels.pixel(x, y).unwrap().demultiply();
+            let colour = [pixel.red(), pixel.green(), pixel.blue()];
+            match SHADES.iter().position(|shade| *shade == colour) {
+                Some(shade) => of[shade] += 1,
+                None => others += 1,
+            }
+        }
+    }
+    (of, others)
+}
+
+/// Sides of cells that fall between pixels let nothing through, at any size.
+#[test]
+fn maps_have_no_seams() {
+    // 37 cells fit no whole number of pixels.
+    let mut panel = unit("");
+    panel.cells = Some(map(37, |i, j| vec![(i * i + 3 * j) / 7 % 3]));
+    for zoom in [0.73, 1.0, 2.0] {
+        let (pixels, frame) = pixels(&panel, zoom);
+        let (of, others) = counts(&pixels, frame);
+        assert_eq!(others, 0, "of {of:?} at {zoom}");
+    }
+}
+
+/// Each shade covers its share, alone and in stripes, though runs and rows are merged.
+#[test]
+fn merged_cells_cover_the_same_area() {
+    let n = 24;
+    let number = |i: usize, j: usize| ((i / 3) * (j / 5) + i / 7) % 4;
+    let mut panel = unit("");
+    panel.cells = Some(map(n, |i, j| vec![number(i, j)]));
+    let (whole, frame) = pixels(&panel, 4.0);
+    let (of, _) = counts(&whole, frame);
+    let all = f64::from(frame.width() * frame.height());
+    for (shade, count) in of.into_iter().enumerate() {
+        let cells = (0..n * n).filter(|k| number(k % n, k / n) == shade).count();
+        let (share, expected) = (count as f64 / all, cells as f64 / (n * n) as f64);
+        assert!(
+            (share - expected).abs() < 0.01,
+            "{shade}: {share} for {expected}"
+        );
+    }
+    // Far fewer rectangles than cells.
+    let svg = alone(panel.clone()).svg().unwrap();
+    let rectangles = svg.matches("z").count();
+    assert!(rectangles < n * n / 3, "{rectangles}");
+    panel.cells = Some(map(n, |_, _| vec![0, 1, 2]));
+    let (striped, frame) = pixels(&panel, 4.0);
+    for count in counts(&striped, frame).0 {
+        let share = count as f64 / all;
+        // A part of the pixels is at the sides of stripes.
+        assert!((0.25..0.34).contains(&share), "{share}");
+    }
+}
+
+#[test]
+fn maps_end_at_the_frame_and_follow_logarithmic_axes() {
+    let mut panel = Panel::new(
+        "",
+        Axis::linear("x").within(0.5, 2.0),
+        Axis::log("y").within(0.01, 1.0),
+    );
+    // Rows from 0 to 0.1 and from there to 1: halves of two decades.
+    let edges = vec![0.0, 0.1, 1.0];
+    panel.cells = Some(Cells {
+        x_edges: vec![-3.0, 9.0],
+        y_edges: edges,
+        fills: vec![vec![Shade::new(SHADES[0])], vec![Shade::new(SHADES[1])]],
+        swatches: Vec::new(),
+    });
+    let shown = seen(&alone(panel.clone()));
+    let frame = shown.frames()[0];
+    let place = |shade: [u8; 3]| {
+        let mut shapes = shown.shapes.iter();
+        shapes
+            .find(|shape| shape.fill == Some(shade))
+            .expect("filled")
+            .place
+    };
+    let (low, high) = (place(SHADES[0]), place(SHADES[1]));
+    for rect in [low, high] {
+        assert!(
+            (rect.left() - frame.left()).abs() < 0.06
+                && (rect.right() - frame.right()).abs() < 0.06
+        );
+        assert!((rect.height() - 0.5 * frame.height()).abs() < 0.11);
+    }
+    assert!(low.top() == high.bottom() && (low.bottom() - frame.bottom()).abs() < 0.06);
+    // Without fixed ends the axes end where the map does.
+    panel.x.range = None;
+    panel.y = Axis::linear("y");
+    let shown = seen(&alone(panel));
+    assert!(shown.says("1.0") && !shown.says("1.2"), "{:?}", shown.words);
+}
+
+#[test]
+fn curves_and_names_lie_on_maps() {
+    let mut panel = unit("");
+    panel.cells = Some(Cells {
+        swatches: vec![Swatch {
+            shades: vec![Shade::new(SHADES[1])],
+            label: "red".to_owned(),
+        }],
+        ..map(3, |_, _| vec![1])
+    });
+    panel
+        .series
+        .push(Series::new("", vec![0.0, 1.0], vec![0.2, 0.9]).colour(0));
+    panel.marks.push(Mark::new(0.5, 0.3, "name"));
+    let seen = seen(&alone(panel));
+    assert!(seen.says("red"));
+    let at = |is: &dyn Fn(&drawn::Shape) -> bool| seen.shapes.iter().rposition(is).expect("drawn");
+    let frame = seen.frames()[0];
+    let ground =
+        at(&|shape| shape.fill == Some(SHADES[1]) && shape.place.top() >= frame.top() - 0.1);
+    let casing = at(&|shape| shape.stroke == Some(PAPER) && shape.place.width() > 100.0);
+    let curve = at(&|shape| shape.stroke == Some(BLUE));
+    let backing = at(&|shape| shape.fill == Some(PAPER) && shape.place.width() < 100.0);
+    assert!(ground < casing && casing < curve && curve < backing);
+    let key = seen
+        .shapes
+        .iter()
+        .find(|shape| shape.fill == Some(SHADES[1]))
+        .unwrap()
+        .place;
+    assert!(key.bottom() < frame.top() && (key.width() - key.height()).abs() < 0.11);
+}
+
+#[test]
+fn large_maps_are_small_files() {
+    let mut panel = unit("");
+    // All cells differ from their neighbours; and rings, some of them striped.
+    panel.cells = Some(map(200, |i, j| vec![(i * 7 + j * 13 + i * j) % 3]));
+    let worst = alone(panel.clone()).svg().unwrap().len();
+    let ring = |i: usize, j: usize| (i as f64 - 99.5).hypot(j as f64 - 99.5) as usize / 9;
+    panel.cells = Some(map(200, |i, j| match ring(i, j) % 5 {
+        3 => vec![0, 1],
+        ring => vec![ring % 3],
+    }));
+    let usual = alone(panel).svg().unwrap().len();
+    assert!(worst < 1_000_000 && usual < 300_000, "{worst}, {usual}");
 }

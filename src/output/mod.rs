@@ -3,6 +3,8 @@
 mod csv;
 mod json;
 pub mod page;
+#[cfg(feature = "parquet")]
+pub mod parquet;
 mod place;
 pub mod plot;
 mod table;

@@ -138,6 +138,39 @@ pub fn write_whole_by(
     written
 }
 
+/// Lets `fill` write a file of any size, which appears complete or not at all.
+///
+/// # Errors
+/// Those of `fill`, and [`Error::File`] if the file can't be created or finished.
+#[cfg(feature = "parquet")]
+pub fn write_through(
+    path: &Path,
+    fill: impl FnOnce(&mut io::BufWriter<File>) -> Result<()>,
+) -> Result<()> {
+    let temporary = if special(path) {
+        path.to_owned()
+    } else {
+        beside(path)
+    };
+    let finished = || {
+        let file = File::create(&temporary).map_err(|error| wrong(path, error))?;
+        let mut to = io::BufWriter::new(file);
+        fill(&mut to)?;
+        to.flush().map_err(|error| wrong(path, error))
+    };
+    let renamed = finished().and_then(|()| {
+        if temporary == path {
+            return Ok(());
+        }
+        fs::rename(&temporary, path).map_err(|error| wrong(path, error))
+    });
+    if renamed.is_err() && temporary != path {
+        // What is left of it is of no use.
+        let _ = fs::remove_file(&temporary);
+    }
+    renamed
+}
+
 /// A device or a pipe, such as /dev/null, must not be replaced by a file.
 fn special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|data| !data.is_file() && !data.is_dir())

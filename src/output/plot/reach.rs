@@ -74,7 +74,7 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
             before = finite.then_some(point);
         }
     }
-    for map in &panel.cells {
+    if let Some(map) = &panel.cells {
         let corners = |edges: &[f64]| edges.first().copied().zip(edges.last().copied());
         if let (Some(x), Some(y)) = (corners(&map.x_edges), corners(&map.y_edges)) {
             take(at(x.0, y.0));

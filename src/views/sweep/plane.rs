@@ -46,7 +46,7 @@ pub fn regime_map(
             cell.push((Kind::of(outcome), exponents.shade(outcome)));
         }
     }
-    let fills: Vec<_> = found.iter_mut().map(|cell| told(cell)).collect();
+    let fills: Vec<_> = found.iter_mut().map(told).collect();
     let mut title = format!("regimes at {columns} × {} points", stiffness.values.len());
     if starts > 1 {
         title += &format!(", {starts} starts each");

