@@ -15,7 +15,7 @@ use crate::section::{
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
 /// The step at which Newton's method ends; the error then is its square.
-const CONVERGED: f64 = 1e-6;
+const CONVERGED: f64 = 1e-5;
 /// The tolerance with which an orbit is gone round once, for its period and its stress.
 const TOLERANCE: f64 = 1e-11;
 /// Returns after which a run that has not settled is judged: each time twice as many.

@@ -23,7 +23,7 @@ const SWING: f64 = 1e-7;
 /// Returns that have come this close to each other after q, and come closer, make q a candidate; those closer than the second at
 /// once.
 const NEAR: f64 = 1e-3;
-const ARRIVED: f64 = 1e-6;
+const ARRIVED: f64 = 1e-5;
 /// What distances must shrink to from a window of returns to the next.
 const SHRUNK: f64 = 0.7;
 /// Interfaces of a run that is held in symmetry are no farther apart, in ln psi; it is let go by the second, and so often.
@@ -35,7 +35,7 @@ const STRESS_FROM: usize = 512;
 /// The least returns in a window.
 const WINDOW: usize = 3;
 /// Where so many more rounds would bring a candidate to [`ARRIVED`], they are waited for: Newton's method takes as long.
-const WORTH_WAITING: f64 = 12.0;
+const WORTH_WAITING: f64 = 30.0;
 
 /// A run of a sweep.
 pub(super) struct Run {
@@ -158,7 +158,7 @@ impl Run {
     /// Moves the section to where a run swings that does not cross it, as just after a Hopf point of the asymmetric steady state;
     /// once.
     pub fn surface_moves_between(&mut self, lowest: f64, highest: f64) -> bool {
-        if self.moved || !(highest - lowest > SWING) {
+        if self.moved || highest - lowest <= SWING {
             return false;
         }
         self.moved = true;
@@ -227,7 +227,7 @@ impl Run {
             let early = largest(n - 2 * window..n - window);
             if late > NEAR || late > SHRUNK * early {
                 // Arrived where rounding moves it about.
-                return late < 1e-2 * ARRIVED;
+                return late < 1e-3 * ARRIVED;
             }
             let wait = (late / ARRIVED).ln() / (early / late).ln() * window as f64;
             wait <= 0.0 || wait > WORTH_WAITING * q as f64

@@ -1,0 +1,340 @@
+//! Maps of regimes: against the bifurcations of `tests/data/`, against orbits and multipliers found otherwise, and against themselves.
+#![allow(missing_docs)]
+
+use std::ops::ControlFlow;
+use std::sync::atomic::AtomicBool;
+use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::Choice;
+use twinslip::model::Loading;
+use twinslip::orbit::{Accuracy, Begin, Query, Slab, find};
+use twinslip::section::Regime;
+use twinslip::sweep::{Grid, Range, Row, Settings, Sweeper, Units, run};
+
+fn law() -> AnyLaw {
+    AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
+}
+
+fn settings(driving: &str, stiffness: &str, starts: usize) -> Settings {
+    Settings {
+        law: law(),
+        grid: Grid::Plane {
+            driving: Range::parse("driving", driving).unwrap(),
+            stiffness: Range::parse("stiffness", stiffness).unwrap(),
+        },
+        starts,
+        seed: 7,
+        follow: false,
+        rtol: 1e-9,
+        lyapunov: false,
+        max_returns: 2000,
+        max_steps: 10_000_000,
+    }
+}
+
+fn rows(settings: &Settings) -> Vec<Row> {
+    in_chunks(settings, usize::MAX)
+}
+
+fn in_chunks(settings: &Settings, size: usize) -> Vec<Row> {
+    let mut sweeper = Sweeper::new(settings).unwrap();
+    let (mut rows, mut next) = (Vec::new(), 0);
+    while next < settings.units() {
+        let end = next.saturating_add(size).min(settings.units());
+        sweeper.rows(next..end, &mut rows);
+        next = end;
+    }
+    rows
+}
+
+fn over(settings: &Settings, units: Units, threads: usize) -> Vec<Row> {
+    let mut all = Vec::new();
+    let stop = AtomicBool::new(false);
+    let seen = &mut |rows: &[Row]| {
+        all.extend_from_slice(rows);
+        ControlFlow::Continue(())
+    };
+    run(settings, units, Some(threads), &stop, seen).unwrap();
+    all
+}
+
+fn is_small_orbit(row: &Row) -> bool {
+    row.regime == Regime::Periodic && row.returns_per_period == Some(1)
+}
+
+/// Of `tests/data/`: the values of V_H at K = 0.14.
+const PITCHFORK: f64 = 0.049_863_166_268_876_87;
+const HOPF: f64 = 0.063_039_679_884_633_17;
+const TORUS: f64 = 0.076_739_869_727_358_17;
+const TORUS_AGAIN: f64 = 0.100_026_498_087_912_47;
+
+#[test]
+fn along_k_014_the_regimes_change_where_the_bifurcations_say() {
+    let settings = settings("0.045:0.115:36", "0.14:0.14:1", 1);
+    for row in rows(&settings) {
+        let v = row.driving;
+        let found = (row.regime, row.symmetry);
+        if v < PITCHFORK {
+            assert_eq!(found, (Regime::Steady, Some(Symmetry::Symmetric)), "{v}");
+        } else if v < HOPF {
+            assert_eq!(found, (Regime::Steady, Some(Symmetry::Asymmetric)), "{v}");
+        } else if v < TORUS - 0.0015 || v > TORUS_AGAIN + 0.0005 {
+            // Closer to the first, large motions coexist.
+            assert!(is_small_orbit(&row), "{v}: {row:?}");
+            assert_eq!(row.symmetry, Some(Symmetry::Asymmetric), "{v}");
+        } else if v > TORUS && v < TORUS_AGAIN - 0.0005 {
+            assert!(!is_small_orbit(&row), "{v}: {row:?}");
+            assert_ne!(row.regime, Regime::Steady, "{v}");
+        }
+    }
+}
+
+/// Stability by multiple shooting and Floquet multipliers, of which the sweep knows nothing.
+#[test]
+fn along_k_02_the_torus_is_where_the_orbit_is_unstable() {
+    let settings = settings("0.098:0.118:11", "0.2:0.2:1", 1);
+    let mut changes = Vec::new();
+    let mut before = None;
+    for row in rows(&settings) {
+        let slab = Slab {
+            law: law(),
+            interfaces: 2,
+            loading: Loading::new(row.driving, row.stiffness).unwrap(),
+        };
+        let query = Query {
+            symmetry: Symmetry::Asymmetric,
+            begin: Begin::Hopf,
+        };
+        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor))
+            .unwrap()
+            .orbit;
+        let stable = orbit.verdict() == Verdict::Stable;
+        assert_eq!(is_small_orbit(&row), stable, "{row:?}");
+        if stable {
+            let period = row.period.unwrap();
+            assert!((period / orbit.period.value - 1.0).abs() < 1e-8, "{row:?}");
+            let (low, high) = row.stress_range.unwrap();
+            assert!((low - orbit.stress_min.value).abs() < 1e-6, "{row:?}");
+            assert!((high - orbit.stress_max.value).abs() < 1e-6, "{row:?}");
+        }
+        if before.is_some_and(|before| before != stable) {
+            changes.push(row.driving);
+        }
+        before = Some(stable);
+    }
+    assert_eq!(changes.len(), 2, "a torus between two torus bifurcations");
+}
+
+#[test]
+fn a_large_motion_coexists_with_the_small_orbit_below_the_torus_bifurcation() {
+    let settings = settings("0.0755:0.0758:16", "0.14:0.14:1", 2);
+    let rows = rows(&settings);
+    let large = |row: &Row| row.stress_range.is_some_and(|(low, _)| low < 8.0);
+    let both = |pair: &[Row]| {
+        pair.iter().any(|row| is_small_orbit(row) && !large(row)) && pair.iter().any(large)
+    };
+    assert!(rows.chunks(2).any(both), "{rows:?}");
+}
+
+#[test]
+fn symmetric_and_asymmetric_orbits_coexist_at_k_01() {
+    let rows = rows(&settings("0.2:0.3:3", "0.1:0.1:1", 2));
+    for pair in rows.chunks(2) {
+        assert_eq!(pair[0].symmetry, Some(Symmetry::Asymmetric));
+        assert_eq!(pair[1].symmetry, Some(Symmetry::Symmetric));
+    }
+    // tests/data/orbits.json: the symmetric orbit at V_H = 0.2.
+    let symmetric = &rows[1];
+    assert!((symmetric.period.unwrap() / 285.050_555_092_935_55 - 1.0).abs() < 1e-9);
+    let mu = (symmetric.lyapunov_max.unwrap().value * symmetric.period.unwrap()).exp();
+    assert!((mu - 0.032_948_715_082_417_63).abs() < 1e-5, "{mu}");
+}
+
+#[test]
+fn a_basin_has_both_attractors() {
+    let states = Range::parse("state-1", "0.01:1:6log").unwrap();
+    let settings = Settings {
+        grid: Grid::Basin {
+            loading: Loading::new(0.2, 0.1).unwrap(),
+            state_1: states,
+            state_2: states,
+        },
+        ..settings("1:2:2", "1:2:2", 1)
+    };
+    let rows = rows(&settings);
+    for row in &rows {
+        let [_, first, second] = row.start;
+        // What starts with equal interfaces stays so; the symmetric orbit attracts little else.
+        let symmetry = if first == second {
+            Symmetry::Symmetric
+        } else {
+            Symmetry::Asymmetric
+        };
+        assert_eq!(row.symmetry, Some(symmetry), "{row:?}");
+    }
+    assert_eq!(rows.len(), 36);
+}
+
+#[test]
+fn rows_depend_on_their_numbers_alone() {
+    let plane = settings("0.05:0.13:6", "0.1:0.2:3", 3);
+    let all = rows(&plane);
+    assert_eq!(all.len(), plane.points());
+    assert!(all.iter().enumerate().all(|(k, row)| row.number == k));
+    assert_eq!(in_chunks(&plane, 1), all);
+    assert_eq!(in_chunks(&plane, 7), all);
+    for threads in [1, 2, 3] {
+        assert_eq!(over(&plane, Units::from(0), threads), all);
+    }
+    assert_eq!(over(&plane, Units::from(20), 2), all[20..]);
+    for shard in 1..=3 {
+        let of_shard: Vec<Row> = all.iter().skip(shard - 1).step_by(3).cloned().collect();
+        assert_eq!(over(&plane, Units::shard(shard, 3, 0), 2), of_shard);
+        assert_eq!(over(&plane, Units::shard(shard, 3, 4), 2), of_shard[4..]);
+    }
+}
+
+#[test]
+fn lines_that_follow_depend_on_themselves_alone() {
+    let plane = Settings {
+        follow: true,
+        ..settings("0.045:0.09:10", "0.1:0.2:4", 2)
+    };
+    assert_eq!(plane.units(), 4);
+    let all = rows(&plane);
+    assert!(all.iter().enumerate().all(|(k, row)| row.number == k));
+    assert_eq!(in_chunks(&plane, 1), all);
+    assert_eq!(over(&plane, Units::from(0), 2), all);
+    assert_eq!(over(&plane, Units::from(1), 2), all[20..]);
+}
+
+#[test]
+fn lanes_find_what_single_runs_find() {
+    let plane = settings("0.05:0.2:7", "0.08:0.25:5", 1);
+    let mut alone = Vec::new();
+    let mut sweeper = Sweeper::one_by_one(&plane).unwrap();
+    sweeper.rows(0..plane.units(), &mut alone);
+    for (row, alone) in rows(&plane).iter().zip(&alone) {
+        if matches!(row.regime, Regime::Steady | Regime::Periodic) {
+            assert_eq!((row.regime, row.symmetry), (alone.regime, alone.symmetry));
+            if row.returns_per_period == alone.returns_per_period {
+                let near = |x: f64, y: f64| (x - y).abs() < 1e-7 * x.abs();
+                assert!(
+                    row.period
+                        .iter()
+                        .zip(&alone.period)
+                        .all(|(x, y)| near(*x, *y))
+                );
+            }
+        }
+    }
+}
+
+#[test]
+fn seeds_reproduce() {
+    let plane = settings("0.06:0.1:3", "0.14:0.14:1", 5);
+    let other = Settings {
+        seed: 8,
+        ..plane.clone()
+    };
+    let starts = |settings: &Settings| -> Vec<[f64; 3]> {
+        rows(settings).iter().map(|row| row.start).collect()
+    };
+    let (first, again, other) = (starts(&plane), starts(&plane), starts(&other));
+    assert_eq!(first, again);
+    for (k, (a, b)) in first.iter().zip(&other).enumerate() {
+        // The first three starts are no matter of chance.
+        assert_eq!(a == b, k % 5 < 3, "{k}");
+    }
+}
+
+#[test]
+fn a_point_that_fails_is_a_row() {
+    let plane = Settings {
+        max_steps: 100,
+        ..settings("0.1:0.2:3", "0.14:0.14:1", 1)
+    };
+    let rows = rows(&plane);
+    assert_eq!(rows.len(), 3);
+    for row in &rows {
+        assert_eq!(row.regime, Regime::Undecided);
+        let note = row.note.as_ref().expect("a reason");
+        assert!(note.contains("--max-steps"), "{note}");
+    }
+}
+
+#[test]
+fn ranges_refuse_nonsense() {
+    for text in [
+        "",
+        "1",
+        "1:2",
+        "1:2:3:4",
+        "a:2:3",
+        "1:b:3",
+        "1:2:c",
+        "1:2:3lg",
+        "1:2:-3",
+        "1:2:0",
+        "2:1:3",
+        "0:1:3",
+        "-1:1:3",
+        "1:inf:3",
+        "nan:1:3",
+        "1:2:1",
+        "1:1:2",
+        "1:2:99999999999",
+    ] {
+        let error = Range::parse("driving", text).unwrap_err();
+        assert!(error.is_input(), "{text}");
+        assert!(error.to_string().contains("driving"), "{text}: {error}");
+    }
+    let range = Range::parse("driving", "0.1:0.3:7").unwrap();
+    assert_eq!((range.value(0), range.value(6)), (0.1, 0.3));
+    assert_eq!(Range::parse("driving", &range.text()).unwrap(), range);
+    let log = Range::parse("driving", " 1e-3 : 10 : 5log").unwrap();
+    assert!((log.value(2) - 0.1).abs() < 1e-16);
+    assert_eq!(Range::parse("driving", &log.text()).unwrap(), log);
+}
+
+#[test]
+fn settings_refuse_nonsense() {
+    let good = settings("0.1:0.2:2", "0.1:0.2:2", 1);
+    assert!(good.checked().is_ok());
+    let states = Range::parse("state-1", "0.1:1:2").unwrap();
+    let basin = Grid::Basin {
+        loading: Loading::new(0.2, 0.1).unwrap(),
+        state_1: states,
+        state_2: states,
+    };
+    for bad in [
+        Settings {
+            starts: 0,
+            ..good.clone()
+        },
+        Settings {
+            max_returns: 10,
+            ..good.clone()
+        },
+        Settings {
+            max_steps: 0,
+            ..good.clone()
+        },
+        Settings {
+            rtol: 0.0,
+            ..good.clone()
+        },
+        Settings {
+            grid: basin,
+            follow: true,
+            ..good.clone()
+        },
+        Settings {
+            grid: basin,
+            starts: 2,
+            ..good.clone()
+        },
+    ] {
+        assert!(bad.checked().unwrap_err().is_input(), "{bad:?}");
+    }
+}
