@@ -47,6 +47,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "integrate",
             "model",
             "field",
+            "series",
             "friction",
             "number",
         ],

@@ -78,11 +78,11 @@ fn along_k_014_the_regimes_change_where_the_bifurcations_say() {
             assert_eq!(found, (Regime::Steady, Some(Symmetry::Symmetric)), "{v}");
         } else if v < HOPF {
             assert_eq!(found, (Regime::Steady, Some(Symmetry::Asymmetric)), "{v}");
-        } else if v < TORUS - 0.0015 || v > TORUS_AGAIN + 0.0005 {
+        } else if !(TORUS - 0.0015..=TORUS_AGAIN + 0.0005).contains(&v) {
             // Closer to the first, large motions coexist.
             assert!(is_small_orbit(&row), "{v}: {row:?}");
             assert_eq!(row.symmetry, Some(Symmetry::Asymmetric), "{v}");
-        } else if v > TORUS && v < TORUS_AGAIN - 0.0005 {
+        } else if (TORUS..TORUS_AGAIN - 0.0005).contains(&v) {
             assert!(!is_small_orbit(&row), "{v}: {row:?}");
             assert_ne!(row.regime, Regime::Steady, "{v}");
         }
