@@ -2,6 +2,8 @@
 #![allow(missing_docs)]
 
 mod drawn;
+#[path = "drawn/sweeps.rs"]
+mod sweeps;
 
 use drawn::{BLUE, GRID, INK, PAPER, Shape, alone, numbers, seen, unit};
 use resvg::tiny_skia::{Pixmap, Transform};

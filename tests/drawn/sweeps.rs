@@ -1,9 +1,7 @@
 //! Pictures of sweeps say what was found: colours, legends, stripes, numbers of attractors.
 #![allow(missing_docs)]
 
-mod drawn;
-
-use drawn::{Seen, seen};
+use crate::drawn::{self, Seen, seen};
 use resvg::usvg::Rect;
 use twinslip::bifurcation::LocusRow;
 use twinslip::equilibrium::Symmetry;
