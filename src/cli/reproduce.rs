@@ -27,6 +27,9 @@ pub struct ReproduceOptions {
     /// Only some of it, comma-separated: fig01 to fig17, table1, scorecard
     #[arg(long, value_name = "LIST")]
     only: Option<String>,
+    /// Compute again what an earlier run has left complete
+    #[arg(long)]
+    force: bool,
     /// How.
     #[command(flatten)]
     making: Making,
@@ -52,9 +55,6 @@ pub struct Making {
     /// Pictures as PNG too
     #[arg(long)]
     png: bool,
-    /// Compute again what an earlier run has left complete
-    #[arg(long)]
-    force: bool,
     /// Threads [default: one a processor]; results do not depend on them
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
@@ -63,12 +63,28 @@ pub struct Making {
     quiet: bool,
 }
 
+/// What a directory is to those who read it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kept {
+    /// A reproduction: manifest, report, and nothing made twice but by `force`.
+    Whole { force: bool },
+    /// A place for files.
+    Files,
+}
+
 pub fn run(options: &ReproduceOptions) -> Result<Ending> {
     let products = match &options.only {
         Some(names) => Product::listed(names)?,
         None => PRODUCTS.to_vec(),
     };
-    make(&options.out, products, &options.making, true)
+    make(
+        &options.out,
+        products,
+        &options.making,
+        Kept::Whole {
+            force: options.force,
+        },
+    )
 }
 
 pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
@@ -77,14 +93,14 @@ pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
         return Err(Error::parameter("figure", number, "from 1 to 17"));
     }
     let product = Product::named(&format!("fig{number:02}"))?;
-    make(&options.out, vec![product], &options.making, false)
+    make(&options.out, vec![product], &options.making, Kept::Files)
 }
 
 fn make(
     out: &std::path::Path,
     products: Vec<&'static Product>,
     making: &Making,
-    report: bool,
+    kept: Kept,
 ) -> Result<Ending> {
     if making.threads == Some(0) {
         return Err(Error::parameter("threads", 0, "at least 1"));
@@ -93,9 +109,9 @@ fn make(
     let order = Order {
         out: out.to_owned(),
         products,
-        force: making.force,
+        force: matches!(kept, Kept::Whole { force: true }),
         png: making.png,
-        report,
+        report: kept != Kept::Files,
         threads: making.threads,
         program: program(&machine),
         machine,

@@ -36,7 +36,8 @@ pub struct Order {
     pub force: bool,
     /// Whether pictures are made as pixels too.
     pub png: bool,
-    /// Whether the report is written, which tells of all that lies in the directory.
+    /// Whether the directory is kept as a whole: with a manifest, by which what stands is not made again, and with the report.
+    /// Otherwise there are just the products.
     pub report: bool,
     /// Threads; as many as there are processors without.
     pub threads: Option<usize>,
@@ -78,7 +79,11 @@ pub fn reproduce(
     let failed = |error: std::io::Error| file_error("create", &order.out, error);
     std::fs::create_dir_all(&order.out).map_err(failed)?;
     Place::File(order.out.join(record::FILE)).check()?;
-    let mut before = Record::read(&order.out);
+    let mut before = if order.report {
+        Record::read(&order.out)
+    } else {
+        Record::default()
+    };
     before.machine = order.machine.clone();
     let keys: Vec<String> = order
         .products
@@ -267,6 +272,9 @@ impl Workshop<'_> {
         };
         let mut record = self.record.lock().expect("no thread panicked");
         record.products.insert(wanted.product.id.to_owned(), entry);
+        if !self.order.report {
+            return Ok(());
+        }
         write(&self.order.out.join(record::FILE), &record.bytes())
     }
 }
