@@ -461,3 +461,30 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     // Reasons may have commas.
     assert!(table.len() > 2 && table.iter().all(|row| row.len() >= table[0].len()));
 }
+
+#[cfg(not(feature = "parquet"))]
+#[test]
+fn parquet_is_refused_by_a_build_without() {
+    let path = folder("sweep-no-parquet").join("map.parquet");
+    let arguments = format!("{GRID} -q -o {}", path.display());
+    refused(&arguments, "build with --features parquet");
+    refused(&format!("{GRID} --format parquet"), "needs a file");
+}
+
+/// The file is there when all rows are, and nothing else; what was interrupted is gone on with.
+#[cfg(feature = "parquet")]
+#[test]
+fn parquet_is_made_of_the_rows_of_all_runs() {
+    let place = folder("sweep-parquet");
+    let path = place.join("map.parquet");
+    let csv = whole(&place, "");
+    let torn = &csv[..csv.len() - 100];
+    fs::write(place.join("map.parquet.csv"), torn).expect("written");
+    let ended = sweep(&format!("--resume {}", path.display()));
+    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    let resumed = fs::read(&path).expect("a file");
+    assert!(resumed.starts_with(b"PAR1") && resumed.ends_with(b"PAR1"));
+    assert_eq!(sweep(&format!("-o {}", path.display())).code, 0);
+    assert_eq!(fs::read(&path).expect("a file"), resumed);
+    assert!(!place.join("map.parquet.csv").exists());
+}

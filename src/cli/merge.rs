@@ -67,7 +67,7 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     }
     let mut fill = |to: &mut dyn Write| interleave(plan, &beginning, &mut sources, to);
     let merged = match place.path() {
-        Some(path) => write_whole_by(path, fill),
+        Some(path) => write_whole_by(path, |error| error, |to| fill(to)),
         None => {
             let mut to = io::BufWriter::new(io::stdout().lock());
             fill(&mut to).and_then(|()| to.flush())

@@ -5,7 +5,7 @@
 //! [`from_csv`] makes a Parquet file of it, which appears complete or not at all. Columns have Parquet's plain encoding and no
 //! compression, which all readers know.
 
-use super::place::write_through;
+use super::write_whole_by;
 use crate::error::{Error, Result};
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType, Int64Type};
@@ -230,7 +230,8 @@ pub fn from_csv(csv: &Path, out: &Path, counts: &[&str], words: &[&str]) -> Resu
         .iter()
         .map(|name| (name.to_owned(), kind(name)))
         .collect();
-    write_through(out, |to| {
+    let system = |error: std::io::Error| failed("write", out, error.to_string());
+    write_whole_by(out, system, |to| {
         let mut rows = ParquetRows::new(to, &remarks, &columns)?;
         let mut group = empty(&columns);
         for (i, record) in reader.records().enumerate() {

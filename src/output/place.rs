@@ -110,65 +110,34 @@ impl Place {
 /// # Errors
 /// The system's.
 pub fn write_whole(path: &Path, bytes: &[u8]) -> io::Result<()> {
-    write_whole_by(path, |file| file.write_all(bytes))
+    write_whole_by(path, |error| error, |file| file.write_all(bytes))
 }
 
-/// The same for what is not in memory all at once; `fill` writes it.
+/// The same for what is not in memory all at once; `fill` writes it, and `system` says what an error of the system is to it.
 ///
 /// # Errors
 /// The system's, and those of `fill`.
-pub fn write_whole_by(
+pub fn write_whole_by<E>(
     path: &Path,
-    fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> io::Result<()> {
+    system: impl Fn(io::Error) -> E,
+    fill: impl FnOnce(&mut io::BufWriter<File>) -> std::result::Result<(), E>,
+) -> std::result::Result<(), E> {
     let into = |path: &Path| {
-        let mut file = io::BufWriter::new(File::create(path)?);
+        let mut file = io::BufWriter::new(File::create(path).map_err(&system)?);
         fill(&mut file)?;
-        file.flush()
+        file.flush().map_err(&system)
     };
     if special(path) {
         return into(path);
     }
     let temporary = beside(path);
-    let written = into(&temporary).and_then(|()| fs::rename(&temporary, path));
+    let written = into(&temporary);
+    let written = written.and_then(|()| fs::rename(&temporary, path).map_err(&system));
     if written.is_err() {
         // What is left of it is of no use; that it may not exist at all is no second error.
         let _ = fs::remove_file(&temporary);
     }
     written
-}
-
-/// Lets `fill` write a file of any size, which appears complete or not at all.
-///
-/// # Errors
-/// Those of `fill`, and [`Error::File`] if the file can't be created or finished.
-#[cfg(feature = "parquet")]
-pub fn write_through(
-    path: &Path,
-    fill: impl FnOnce(&mut io::BufWriter<File>) -> Result<()>,
-) -> Result<()> {
-    let temporary = if special(path) {
-        path.to_owned()
-    } else {
-        beside(path)
-    };
-    let finished = || {
-        let file = File::create(&temporary).map_err(|error| wrong(path, error))?;
-        let mut to = io::BufWriter::new(file);
-        fill(&mut to)?;
-        to.flush().map_err(|error| wrong(path, error))
-    };
-    let renamed = finished().and_then(|()| {
-        if temporary == path {
-            return Ok(());
-        }
-        fs::rename(&temporary, path).map_err(|error| wrong(path, error))
-    });
-    if renamed.is_err() && temporary != path {
-        // What is left of it is of no use.
-        let _ = fs::remove_file(&temporary);
-    }
-    renamed
 }
 
 /// A device or a pipe, such as /dev/null, must not be replaced by a file.

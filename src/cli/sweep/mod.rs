@@ -2,6 +2,7 @@
 
 pub(super) mod file;
 mod out;
+mod parquet;
 mod picture;
 #[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
 mod ranks;
@@ -33,8 +34,16 @@ pub fn run(options: &SweepOptions, words: &[String]) -> Result<Ending> {
     ended
 }
 
-/// Computes, by the other ranks if there are any, and writes.
+/// Computes and writes, into CSV first where Parquet is asked for.
 fn lead(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> Result<Ending> {
+    match parquet::asked(options)? {
+        None => rows(options, words, ranks),
+        Some((target, by_csv)) => parquet::finish(&target, rows(&by_csv, words, ranks)?),
+    }
+}
+
+/// Computes, by the other ranks if there are any, and writes.
+fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> Result<Ending> {
     let plan = SweepPlan::new(options)?;
     let (resume, plot) = (options.resume.as_deref(), options.plot.as_deref());
     let report = Report::resuming(&options.output, words, (resume, plot))?;
