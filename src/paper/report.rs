@@ -62,7 +62,7 @@ fn lead(page: &Page) -> Vec<String> {
         "Two parallel frictional interfaces in an elastic slab, sheared at a constant velocity, obey a rate-and-state friction law. Putelat, Willis and Dawes (2008) found what they do: they slide alike or one for both, in stick-slip cycles, on tori, in resonances and in complicated ways. This report computes their figures and their table again, from the equations, and holds every number and every claim that a computation can decide against the text.".to_owned(),
     ];
     if !page.scores.is_empty() {
-        lead.push("Each computed value comes with a bound on its error, and where there is an unlike second method, with the value by that one. An entry agrees if the computed value, rounded to the digits that are printed, is the printed one; nothing else counts as agreement.".to_owned());
+        lead.push("Each computed value comes with a bound on its error, and where there is an unlike second method, with the value by that one. A number agrees if the computed one, rounded to the digits that are printed, is the printed one; a bound if it is right and tight; a claim if it holds.".to_owned());
     }
     lead
 }
