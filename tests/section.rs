@@ -4,6 +4,8 @@
 #[path = "common/mod.rs"]
 mod shared;
 
+mod command;
+
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
 use twinslip::Error;
@@ -485,4 +487,18 @@ fn nearly_periodic_is_not_periodic() {
         (0, 400),
     );
     assert_eq!(case.periodic(&spiral).returns, 1);
+}
+
+/// A run that leaves an equilibrium just beyond its Hopf point, so slowly that its exponent is positive all the while.
+#[test]
+fn a_slow_passage_is_not_chaos() {
+    let ended = command::twinslip(
+        "section --driving 0.08615384615384616 --stiffness 0.23517241379310346 --start near-symmetric:0.01 --surface stress=11.4455 --skip 20 --returns 600 --lyapunov --format json -q",
+    );
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    let made: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+    let largest = command::number(&made, "/result/lyapunov/0/value");
+    let bound = command::number(&made, "/result/lyapunov/0/uncertainty");
+    assert!(largest > bound, "{largest} +- {bound}");
+    assert_eq!(made["result"]["regime"], "undecided");
 }

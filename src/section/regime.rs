@@ -20,6 +20,10 @@ const PER_ACCURACY: f64 = 100.0;
 /// Points that repeat to this part of their spread repeat for good.
 const REPEATED: f64 = 1e-7;
 
+/// Chaos is told where disturbances have had time to grow by the exponential of this: what grew by less may be a passage from
+/// one regular motion to another.
+const GROWN: f64 = 10.0;
+
 /// What a flow does in the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Regime {
@@ -81,7 +85,7 @@ impl<const N: usize> Verdict<N> {
 
 /// The regime of a recorded run. Periodic is one whose returns close in on an attracting periodic point; a torus has
 /// quasi-periodic returns and, where the exponents are given, two that vanish within their intervals; chaos has a largest
-/// exponent that is positive beyond its interval. Without exponents chaos is not told.
+/// exponent that is positive beyond its interval, for long enough to make much of a disturbance. Without exponents chaos is not told.
 ///
 /// # Errors
 /// Those of [`periodicity`].
@@ -121,18 +125,24 @@ pub(crate) fn aperiodic<const N: usize>(
     accuracy: f64,
     exponents: Option<Exponents<'_>>,
 ) -> Verdict<N> {
-    let mut verdict = wandering(&points(surface, returns), exponents);
+    let duration = returns[returns.len() - 1].time - returns[0].time;
+    let mut verdict = wandering(&points(surface, returns), duration, exponents);
     if let Some(curve) = &mut verdict.curve {
         curve.rotation.uncertainty += PER_ACCURACY * accuracy;
     }
     verdict
 }
 
-/// The regime of returns that are not periodic.
-fn wandering<const N: usize>(points: &[[f64; 2]], exponents: Option<Exponents<'_>>) -> Verdict<N> {
+/// The regime of returns that are not periodic, recorded for so long.
+fn wandering<const N: usize>(
+    points: &[[f64; 2]],
+    duration: f64,
+    exponents: Option<Exponents<'_>>,
+) -> Verdict<N> {
     let disorder = regularity(points);
     let holds_zero = |x: &Uncertain| x.value.abs() <= x.uncertainty;
-    let positive = |x: &Uncertain| x.value > x.uncertainty;
+    // A run that slowly leaves an equilibrium or an orbit has a positive exponent too, but little comes of it.
+    let positive = |x: &Uncertain| (x.value - x.uncertainty) * duration > GROWN;
     if disorder < REGULAR {
         if repeats(points) {
             return Verdict::undecided(
