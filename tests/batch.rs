@@ -180,7 +180,7 @@ fn observers_see_and_stop_single_runs() {
             "{:e}",
             (end - step.y1).amax()
         );
-        let series = step.series.expect("a Taylor method has them");
+        let series = step.series().expect("a Taylor method has them");
         let slips = series.slips(step.t1 - step.t0);
         let Loading { driving, stiffness } = runs[run].loading;
         // dtau = K (V_H dt - the slips)

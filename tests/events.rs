@@ -286,7 +286,7 @@ fn slips_meet_the_reference() -> twinslip::Result<()> {
             (0.0, 500.0),
             &start,
             Some(&mut |step| {
-                let series = step.series.expect("a series");
+                let series = step.series().expect("a series");
                 let within = series.slips(series.length);
                 slips = [0, 1].map(|i| slips[i] + within[i]);
                 Ok(Control::Continue)

@@ -278,7 +278,7 @@ fn period(mu: f64, wait: f64, tolerance: f64) -> f64 {
     let (mut zeros, mut passages) = (Zeros::default(), Vec::new());
     let mut times = Vec::new();
     let mut observer = |step: &Step<'_, 2>| {
-        let series = step.series.expect("series");
+        let series = step.series().expect("series");
         passages.clear();
         series.crossings(
             &section,

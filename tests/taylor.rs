@@ -241,7 +241,7 @@ fn auto_is_one_run() {
     let mut see = |step: &Step<'_, 3>| {
         assert_eq!((step.t0, *step.y0), (last, y));
         (last, y) = (step.t1, *step.y1);
-        kinds[usize::from(step.series.is_some())] += 1;
+        kinds[usize::from(step.series().is_some())] += 1;
         Ok(Control::Continue)
     };
     let end = auto(1e-8)

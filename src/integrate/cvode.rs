@@ -121,7 +121,8 @@ impl<const N: usize> CvodeIntegrator<N> {
                 t1,
                 y1: &y1,
                 dense: &dense,
-                series: None,
+                reach: f64::INFINITY,
+                expansion: None,
             })?;
             if let Some(error) = objection.take() {
                 return Err(error);
@@ -206,7 +207,8 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
                 t1: t.1,
                 y1: &y1,
                 dense: &dense,
-                series: None,
+                reach: f64::INFINITY,
+                expansion: None,
             })?;
         }
         Ok(y1)

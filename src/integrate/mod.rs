@@ -25,6 +25,7 @@ use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::series::Expansion;
 pub(crate) use singularity::step_underflow;
+use std::ops::Deref;
 
 /// One accepted step, as an observer sees it.
 pub struct Step<'a, const N: usize> {
@@ -38,8 +39,18 @@ pub struct Step<'a, const N: usize> {
     pub y1: &'a State<N>,
     /// The continuous solution on `t0..=t1`; evaluated only when called.
     pub dense: &'a dyn Fn(f64) -> State<N>,
+    /// A bound on how far the first component strays from its value at `t0`, of methods to which it costs nothing; else
+    /// infinity.
+    pub reach: f64,
+    /// The series at `t0`, of methods that step by one; made only when asked for.
+    pub(crate) expansion: Option<&'a dyn Deref<Target = &'a Expansion<N>>>,
+}
+
+impl<'a, const N: usize> Step<'a, N> {
     /// The series at `t0`, of methods that step by one.
-    pub series: Option<&'a Expansion<N>>,
+    pub fn series(&self) -> Option<&'a Expansion<N>> {
+        self.expansion.map(|made| **made)
+    }
 }
 
 /// Whether to go on after a step.

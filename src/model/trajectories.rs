@@ -68,8 +68,10 @@ pub(crate) trait Convoy: Send {
     fn advance(&mut self, accuracy: &Accuracy, limits: &[f64; MAX_LANES]) -> [f64; MAX_LANES];
     /// The state reached in this lane.
     fn state(&self, lane: usize) -> [f64; 3];
-    /// The series at the beginning of the last step, of every lane.
-    fn expansions(&self, order: usize, into: &mut [Expansion<3>]);
+    /// Bounds on how far the stress strays within the last steps.
+    fn reaches(&self) -> &[f64; MAX_LANES];
+    /// The series at the beginning of the last step in this lane.
+    fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>);
 }
 
 /// As many lanes as this processor has, compiled for this law; `None` where it has none.
@@ -131,6 +133,7 @@ struct Lanes<S, E, L> {
     starts: [[f64; MAX_LANES]; 3],
     driving: [f64; MAX_LANES],
     stiffness: [f64; MAX_LANES],
+    reaches: [f64; MAX_LANES],
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -148,6 +151,7 @@ impl<S, E: Wide, L: Law> Lanes<S, E, L> {
             starts: [[1.0; MAX_LANES]; 3],
             driving: [0.0; MAX_LANES],
             stiffness: [0.0; MAX_LANES],
+            reaches: [f64::INFINITY; MAX_LANES],
         };
         (0..E::LANES).for_each(|lane| lanes.seat(lane, (0.0, 0.0), [1.0; 3]));
         lanes
@@ -189,7 +193,9 @@ impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
             lanes.new = [1.0; MAX_LANES];
         }
         let limit = any.filled(self.limits);
-        lanes.stepper.advance(self.accuracy, limit).spilled()
+        let steps = lanes.stepper.advance(self.accuracy, limit);
+        lanes.reaches = lanes.stepper.reach(0, self.accuracy.order, steps).spilled();
+        steps.spilled()
     }
 }
 
@@ -228,29 +234,24 @@ macro_rules! convoys {
                 [tau, p.ln(), q.ln()]
             }
 
-            fn expansions(&self, order: usize, into: &mut [Expansion<3>]) {
-                let units = self.stepper.unit().lanes();
-                for (lane, into) in into.iter_mut().enumerate().take($element::LANES) {
-                    into.order = order;
-                    into.unit = units[lane];
-                    into.chart = logarithms;
-                }
-                // Each coefficient is taken out of its vector once, for all lanes.
-                for i in 0..3 {
-                    for (k, all) in self.stepper.series(i)[..=order].iter().enumerate() {
-                        for (into, x) in into.iter_mut().zip(all.spilled()) {
-                            into.variables[i][k] = x;
-                        }
+            fn reaches(&self) -> &[f64; MAX_LANES] {
+                &self.reaches
+            }
+
+            fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>) {
+                into.order = order;
+                into.unit = self.stepper.unit().lanes()[lane];
+                into.chart = logarithms;
+                for (i, variable) in into.variables.iter_mut().enumerate() {
+                    let series = &self.stepper.series(i)[..=order];
+                    for (x, all) in variable.iter_mut().zip(series) {
+                        *x = all.lanes()[lane];
                     }
                 }
-                for i in 0..2 {
-                    let Some(rates) = self.stepper.watched_series(i) else {
-                        continue;
-                    };
-                    for (k, all) in rates.iter().enumerate().take(order) {
-                        for (into, x) in into.iter_mut().zip(all.spilled()) {
-                            into.slip_rates[i][k] = x;
-                        }
+                for (i, rate) in into.slip_rates.iter_mut().enumerate() {
+                    let series = self.stepper.watched_series(i).unwrap_or_default();
+                    for (x, all) in rate.iter_mut().zip(series).take(order) {
+                        *x = all.lanes()[lane];
                     }
                 }
             }

@@ -55,7 +55,7 @@ pub(super) fn extremes<const N: usize>(
             duration,
             Some(&mut |step| {
                 all.see(step.y1);
-                let Some(series) = step.series else {
+                let Some(series) = step.series() else {
                     return Ok(Control::Continue);
                 };
                 found.clear();

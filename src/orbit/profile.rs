@@ -100,7 +100,7 @@ impl Seen {
                 duration,
                 Some(&mut |step| {
                     self.see(step.y1);
-                    let Some(series) = step.series else {
+                    let Some(series) = step.series() else {
                         return Ok(Control::Continue);
                     };
                     turns.clear();

@@ -44,7 +44,7 @@ pub(super) fn passages<const N: usize>(
         duration,
         Some(&mut |step| {
             range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
-            if let Some(series) = step.series {
+            if let Some(series) = step.series() {
                 here.clear();
                 series.crossings(&section, Some(Crossing::Downwards), &mut zeros, &mut here);
                 for passage in &here {

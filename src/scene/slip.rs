@@ -27,7 +27,7 @@ pub(super) fn slips<const N: usize>(
     before: &Slips,
     t: f64,
 ) -> Slips {
-    let within = match step.series {
+    let within = match step.series() {
         // The ends of steps are known better than to the rounding of t.
         Some(series) if t == step.t1 => series.slips(series.length),
         Some(series) => series.slips(series.since_begin(t)),

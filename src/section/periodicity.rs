@@ -72,45 +72,15 @@ pub fn periodicity<const N: usize>(
         // No need to ask where they neither are near nor come nearer; only the search takes time.
         let closing = near < arrived || near < SHRUNK.sqrt() * before.fold(0.0, f64::max);
         if near < NEAR && closing {
-            let found = Search {
-                field,
-                surface,
-                taylor: &mut taylor,
-                returns,
-                arrived,
-                converged: CONVERGED,
-                q,
-            }
-            .point()
-            .filter(Periodic::attracts);
+            let found = Search::new(field, surface, &mut taylor, returns, (record.accuracy, q))
+                .point()
+                .filter(Periodic::attracts);
             if found.is_some() {
                 return Ok(found);
             }
         }
     }
     Ok(None)
-}
-
-/// The q-periodic point near the last of these returns, attracting or not, which they have come closer to or arrived at; to within
-/// about the square of `converged`, and the integrator's tolerance.
-pub(crate) fn periodic_point<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    taylor: &mut Taylor,
-    returns: &[Return<N>],
-    (accuracy, converged): (f64, f64),
-    q: usize,
-) -> Option<Periodic<N>> {
-    Search {
-        field,
-        surface,
-        taylor,
-        returns,
-        arrived: ARRIVED.max(PER_ACCURACY * accuracy),
-        converged,
-        q,
-    }
-    .point()
 }
 
 impl<const N: usize> Periodic<N> {
@@ -120,22 +90,49 @@ impl<const N: usize> Periodic<N> {
     }
 }
 
-struct Search<'a, const N: usize> {
+/// The search for a q-periodic point, attracting or not, that returns have come closer to or arrived at.
+pub(crate) struct Search<'a, const N: usize> {
     field: &'a dyn VectorField<N>,
     surface: &'a Surface<N>,
     taylor: &'a mut Taylor,
     returns: &'a [Return<N>],
-    arrived: f64,
-    /// Newton's method ends at this step.
-    converged: f64,
     q: usize,
+    arrived: f64,
+    /// Newton's method begins here, goes no farther than `near`, and ends at a step of `converged`: the error is then about
+    /// its square, and the integrator's tolerance.
+    pub from: State<N>,
+    pub near: f64,
+    pub converged: f64,
+    /// What distances must have shrunk to.
+    pub shrunk: f64,
 }
 
-impl<const N: usize> Search<'_, N> {
-    fn point(&mut self) -> Option<Periodic<N>> {
-        let last = self.returns.len() - 1;
-        let from = self.returns[last].state;
-        let mut point = self.surface.nearest(&from);
+impl<'a, const N: usize> Search<'a, N> {
+    /// Near the last of these returns, which are good to `accuracy` times a thousand; and q.
+    pub fn new(
+        field: &'a dyn VectorField<N>,
+        surface: &'a Surface<N>,
+        taylor: &'a mut Taylor,
+        returns: &'a [Return<N>],
+        (accuracy, q): (f64, usize),
+    ) -> Self {
+        Search {
+            field,
+            surface,
+            taylor,
+            returns,
+            q,
+            arrived: ARRIVED.max(PER_ACCURACY * accuracy),
+            from: returns[returns.len() - 1].state,
+            near: NEAR,
+            converged: CONVERGED,
+            shrunk: SHRUNK,
+        }
+    }
+
+    /// The point, if there is one.
+    pub fn point(&mut self) -> Option<Periodic<N>> {
+        let mut point = self.surface.nearest(&self.from);
         let mut size = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let along = self.iterate(&point)?;
@@ -158,7 +155,7 @@ impl<const N: usize> Search<'_, N> {
             point = self
                 .surface
                 .nearest(&(point + State::from_fn(|i, _| step[i])));
-            if (point - from).amax() > NEAR {
+            if (point - self.from).amax() > self.near {
                 return None;
             }
             // Rounding ends the convergence too, where the map magnifies it.
@@ -192,7 +189,7 @@ impl<const N: usize> Search<'_, N> {
         let over =
             |range: std::ops::Range<usize>| range.filter(phase).map(distance).fold(0.0, f64::max);
         let (early, late) = (over(0..n / 2), over(n - n.div_ceil(4).max(self.q)..n));
-        if late > self.arrived && late > SHRUNK * early {
+        if late > self.arrived && late > self.shrunk * early {
             return None;
         }
         // The time of return is flat at the point to the order of the step, within the error of the integration.

@@ -180,7 +180,7 @@ fn wandering<const N: usize>(
 }
 
 /// Coordinates of the returns within the section.
-fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]) -> Vec<[f64; 2]> {
+pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]) -> Vec<[f64; 2]> {
     let origin = returns[0].state;
     let inside = surface.directions(&origin);
     let along = |point: &Return<N>, j: usize| -> f64 {

@@ -204,7 +204,10 @@ impl<const N: usize> Recorder<N> {
         let Watched { field, surface, .. } = *watched;
         self.steps += 1;
         self.found.clear();
-        match step.series {
+        let sign = surface.height(step.y0).signum();
+        let passes = sign != self.zeros.sign || surface.within(step.y0, step.reach);
+        match step.series() {
+            _ if !passes => (),
             Some(series) => {
                 let direction = Some(surface.direction);
                 let section = surface.section();

@@ -23,10 +23,14 @@ pub enum Chart {
 impl Chart {
     /// The variables at a state.
     pub fn variables<const N: usize>(self, y: &State<N>) -> State<N> {
-        State::from_fn(|i, _| match self {
+        State::from_fn(|i, _| self.variable(y, i))
+    }
+
+    fn variable<const N: usize>(self, y: &State<N>, i: usize) -> f64 {
+        match self {
             Chart::LogStates if i > 0 => y[i].exp(),
             _ => y[i],
-        })
+        }
     }
 
     /// The derivative of each variable in its component of the state.
@@ -71,7 +75,21 @@ impl<const N: usize> Surface<N> {
 
     /// normal . x - offset at a state.
     pub fn height(&self, y: &State<N>) -> f64 {
-        State::from(self.normal).dot(&self.chart.variables(y)) - self.offset
+        // Of a plane of constant stress, without the exponentials.
+        let terms = (0..N).filter(|&i| self.normal[i] != 0.0);
+        terms
+            .map(|i| self.normal[i] * self.chart.variable(y, i))
+            .sum::<f64>()
+            - self.offset
+    }
+
+    /// Whether a step that begins at y and in which the first component strays no farther than `reach` may pass the plane.
+    pub(crate) fn within(&self, y: &State<N>, reach: f64) -> bool {
+        /// For the rounding of the bound.
+        const MARGIN: f64 = 1.000_001;
+        // Of the other components nothing is known.
+        self.normal[1..].iter().any(|x| *x != 0.0)
+            || self.height(y).abs() <= MARGIN * reach * self.normal[0].abs()
     }
 
     /// Its derivative in the state.
@@ -182,7 +200,7 @@ pub fn return_map<const N: usize>(
         Some(&mut |step| {
             let height = surface.height(step.y1);
             (lowest, highest) = (lowest.min(height), highest.max(height));
-            let series = step.series.ok_or(Error::NotAnalytic)?;
+            let series = step.series().ok_or(Error::NotAnalytic)?;
             series.crossings(&section, Some(surface.direction), &mut zeros, &mut found);
             if let Some(passage) = found.first_mut() {
                 passage.time = (series.begin + passage.time).hi();

@@ -110,7 +110,7 @@ impl<const N: usize> Expansion<N> {
     /// let (mut zeros, mut passages) = (Zeros::default(), Vec::new());
     /// let mut taylor = Taylor::new(Tolerances::equal(1e-12)?, MAX_STEPS)?;
     /// taylor.flow(&field, (0.0, 20.0), &start, Some(&mut |step| {
-    ///     if let Some(series) = step.series {
+    ///     if let Some(series) = step.series() {
     ///         series.crossings(&section, Some(Crossing::Upwards), &mut zeros, &mut passages);
     ///     }
     ///     Ok(Control::Continue)

@@ -121,6 +121,19 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
         self.advance_by(accuracy, h, limit)
     }
 
+    /// A bound on how far the i-th variable strays from where the series begins, within this time.
+    #[inline(always)]
+    pub fn reach(&self, i: usize, order: usize, time: E) -> E {
+        let h = (time / self.unit).abs();
+        let mut sum = self.coefficient(i, order).abs();
+        let mut j = order - 1;
+        while j > 0 {
+            sum = sum.mul_add(h, self.coefficient(i, j).abs());
+            j -= 1;
+        }
+        sum * h
+    }
+
     /// Makes the series at the state reached.
     #[inline(always)]
     pub fn expand(&mut self, accuracy: &Accuracy) {
@@ -248,27 +261,32 @@ impl<E: Element, F: Formula<E, C>, const C: usize, const ROOM: usize> Stepper<E,
     ///
     /// Small terms bound the rest of the series only where they fall. Those of an exponential of 30 h are small and grow up to
     /// the thirtieth if its factor is small enough.
-    #[cold]
+    #[inline(always)]
     fn while_terms_fall(&self, order: usize, units: &[E; C], log: E) -> E {
         /// Coefficients below two to this say nothing.
         const NONE: f64 = -900.0;
         let zero = log.like(0.0);
-        // By pairs: the terms of an even or odd function vanish in turn.
-        let pair = |j: usize| {
-            let mut largest = zero;
-            for (c, unit) in units.iter().enumerate() {
-                for j in [j - 1, j] {
-                    largest = Element::max(largest, (self.coefficient(c, j) / *unit).abs());
-                }
-            }
-            largest.largest_over_interfaces().rough_log2()
-        };
-        let (first, second, third) = (pair(order - 4), pair(order - 2), pair(order));
+        let first = self.pair(order - 4, units);
+        let (second, third) = (self.pair(order - 2, units), self.pair(order, units));
         let two = log + log;
         let grown = third - second + two;
         let grow = Element::min(grown, second - first + two);
         let grow = (first - zero.like(NONE)).if_positive(grow, zero);
         grow.if_positive(log - grown * zero.like(0.5), log)
+    }
+
+    /// The logarithm of the largest coefficient of order j or j - 1. By pairs: the terms of an even or odd function vanish in turn.
+    #[inline(always)]
+    fn pair(&self, j: usize, units: &[E; C]) -> E {
+        let mut largest = units[0].like(0.0);
+        let mut c = 0;
+        while c < C {
+            for j in [j - 1, j] {
+                largest = Element::max(largest, (self.coefficient(c, j) / units[c]).abs());
+            }
+            c += 1;
+        }
+        largest.largest_over_interfaces().rough_log2()
     }
 
     /// The step h, cut just behind the zero of the variable in whose zeros the formula has a kink: a series does not reach

@@ -1,15 +1,15 @@
 //! What a run has settled on, from its returns.
 
 use super::watch::{Run, see, turn};
-use super::{Row, Settings};
+use super::{Row, Settings, creep};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use crate::number::Uncertain;
 use crate::section::{
-    Ended, Periodic, Regime, Spectrum, Watching, aperiodic, at_equilibrium, periodic_point, record,
-    spectrum,
+    Ended, Periodic, Regime, Return, Search, Spectrum, Surface, Watching, aperiodic,
+    at_equilibrium, divergence, points, record, spectrum,
 };
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
@@ -20,6 +20,8 @@ const CONVERGED: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-11;
 /// Returns after which a run that has not settled is judged: each time twice as many.
 pub(super) const FIRST_STAGE: usize = 64;
+/// Returns without which no run is seen to creep.
+const FEWEST_TO_CREEP: usize = 256;
 /// Returns without which neither torus nor chaos is told: those before are let pass.
 const FEWEST_TO_WANDER: usize = 512;
 /// Returns before exponents are asked for. For them there are more each time.
@@ -96,6 +98,9 @@ impl Judge {
         if n < run.next_stage {
             return None;
         }
+        if let Some(told) = self.creeping(run) {
+            return Some(told);
+        }
         let told = self.wandering(run);
         let last = n >= self.settings.max_returns;
         run.next_stage = (2 * n).min(self.settings.max_returns);
@@ -109,15 +114,10 @@ impl Judge {
 
     /// The periodic orbit that the run closes in on.
     fn periodic(&mut self, run: &mut Run, q: usize) -> Option<Told> {
-        let accuracy = (self.settings.rtol, CONVERGED);
-        let found = periodic_point(
-            &*run.field,
-            &run.surface,
-            &mut self.coarse,
-            run.returns(),
-            accuracy,
-            q,
-        )?;
+        let at = (&*run.field, &run.surface, run.returns());
+        let mut search = Search::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
+        search.converged = CONVERGED;
+        let found = search.point()?;
         if found.attracts() {
             return self.orbit(run, &found);
         }
@@ -128,12 +128,26 @@ impl Judge {
         None
     }
 
+    /// What the run creeps to.
+    fn creeping(&mut self, run: &Run) -> Option<Told> {
+        let (field, returns) = (&*run.field, run.returns());
+        if returns.len() < FEWEST_TO_CREEP {
+            return None;
+        }
+        if let Some(equilibrium) = creep::to_rest(field, returns) {
+            return Some(steady(run, equilibrium, true));
+        }
+        let accuracy = (self.settings.rtol, CONVERGED);
+        let found = creep::to_orbit(field, &run.surface, &mut self.coarse, returns, accuracy)?;
+        self.orbit(run, &found)
+    }
+
     fn orbit(&mut self, run: &Run, found: &Periodic<3>) -> Option<Told> {
         let mut stress = (found.point[0], found.point[0]);
         let mut unlike = 0.0_f64;
         let mut observer = |step: &Step<'_, 3>| {
             see(&mut stress, step.y1[0]);
-            if let Some(turn) = step.series.and_then(turn) {
+            if let Some(turn) = step.series().and_then(turn) {
                 see(&mut stress, turn);
             }
             unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
@@ -168,6 +182,11 @@ impl Judge {
         if half.len() < crate::section::FEWEST_RETURNS / 2 {
             return Err("too few returns since it was let go from an unstable orbit");
         }
+        if half.iter().all(|at| alike(&at.state)) {
+            return Err(
+                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise --max-returns",
+            );
+        }
         let seen = aperiodic(&run.surface, half, self.settings.rtol, None);
         if seen.regime == Regime::Torus && !self.settings.lyapunov {
             let mut told = begun(run, Regime::Torus);
@@ -176,6 +195,9 @@ impl Judge {
         }
         if seen.regime != Regime::Torus && n < FEWEST_TO_ASK && !last {
             return Err("too early");
+        }
+        if !may_be_chaotic(&run.surface, half) {
+            return Err("the returns have not settled, and show no chaos; raise --max-returns");
         }
         self.with_exponents(run)
     }
@@ -218,6 +240,15 @@ impl Judge {
     }
 }
 
+/// Whether neighbours part so fast, perhaps, that exponents would tell chaos: they cost more than the run itself.
+fn may_be_chaotic(surface: &Surface<3>, returns: &[Return<3>]) -> bool {
+    /// Slower chaos than this, per return, is not told from as many returns as are looked at.
+    const SLOWEST: f64 = 0.01;
+    /// Standard deviations.
+    const SURE: f64 = 4.0;
+    divergence(&points(surface, returns)).is_none_or(|(mean, error)| mean + SURE * error > SLOWEST)
+}
+
 /// The largest exponent but that along the flow.
 fn across(found: &Spectrum<3>) -> Option<Uncertain> {
     let mut all = found.exponents.iter();
@@ -231,6 +262,10 @@ fn multiplier_exponent(found: &Periodic<3>) -> Option<Uncertain> {
     let value = found.multiplier.ln() / found.period.value;
     let error = ERROR / found.multiplier / found.period.value;
     (value.is_finite() && found.multiplier > ERROR).then(|| Uncertain::new(value, error))
+}
+
+fn alike(y: &State<3>) -> bool {
+    (y[1] - y[2]).abs() < ALIKE
 }
 
 fn symmetry(unlike: f64) -> Symmetry {

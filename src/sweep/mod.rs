@@ -8,6 +8,7 @@
 //! periodic point of the return map that attracts; or through enough returns to tell a torus or chaos.
 
 mod capture;
+mod creep;
 mod judge;
 mod range;
 mod run;

@@ -198,7 +198,13 @@ impl Run {
             return;
         }
         see(&mut self.stress, step.y1[0]);
-        if let Some(turn) = step.series.and_then(turn) {
+        let (low, high) = self.stress;
+        if (low..=high).contains(&(step.y0[0] - step.reach))
+            && (low..=high).contains(&(step.y0[0] + step.reach))
+        {
+            return;
+        }
+        if let Some(turn) = step.series().and_then(turn) {
             see(&mut self.stress, turn);
         }
     }
@@ -226,8 +232,8 @@ impl Run {
             let late = largest(n - window..n);
             let early = largest(n - 2 * window..n - window);
             if late > NEAR || late > SHRUNK * early {
-                // Arrived where rounding moves it about.
-                return late < 1e-3 * ARRIVED;
+                // Arrived, where the error of the run moves it about.
+                return late < ARRIVED;
             }
             let wait = (late / ARRIVED).ln() / (early / late).ln() * window as f64;
             wait <= 0.0 || wait > WORTH_WAITING * q as f64

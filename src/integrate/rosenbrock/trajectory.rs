@@ -89,7 +89,8 @@ impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
             t1,
             y1: &self.next,
             dense: &dense,
-            series: None,
+            reach: f64::INFINITY,
+            expansion: None,
         })
     }
 }

@@ -7,7 +7,9 @@ use crate::field::State;
 use crate::friction::AnyLaw;
 use crate::integrate::Integrator;
 use crate::model::{Convoy, Loading, MAX_LANES, convoy, two_interfaces};
+use crate::number::DoubleDouble;
 use crate::series::Expansion;
+use std::cell::LazyCell;
 
 /// A run of two interfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -60,6 +62,7 @@ pub struct Batch {
 struct Seat {
     run: usize,
     clock: Clock,
+    remaining: DoubleDouble,
     steps: usize,
     /// The state at the beginning of the next step; kept only for an observer.
     y: State<3>,
@@ -113,31 +116,28 @@ impl Batch {
         let mut next = 0;
         let mut seats: [Option<Seat>; MAX_LANES] = [const { None }; MAX_LANES];
         let mut limits = [1.0; MAX_LANES];
-        // On the heap, and once: they are large.
-        let mut expansions = vec![Expansion::new(); convoy.lanes()];
+        let mut expansion = Expansion::new();
         let accuracy = self.taylor.accuracy;
         for (lane, seat) in seats.iter_mut().enumerate().take(convoy.lanes()) {
             *seat = self.seated(&mut *convoy, lane, runs, &mut next, &mut ends);
         }
         while seats.iter().any(Option::is_some) {
             for (limit, seat) in limits.iter_mut().zip(&seats) {
-                let remaining = seat.as_ref().and_then(|seat| seat.clock.remaining());
-                *limit = remaining.map_or(1.0, |remaining| remaining.hi());
+                *limit = seat.as_ref().map_or(1.0, |seat| seat.remaining.hi());
             }
             let steps = convoy.advance(&accuracy, &limits);
-            if observer.is_some() {
-                convoy.expansions(accuracy.order, &mut expansions);
-            }
             for (lane, seat) in seats.iter_mut().enumerate() {
                 let Some(here) = seat else { continue };
                 let (begin, before) = (here.clock.now, here.clock.now.hi());
                 let mut fate = self.ticked(here, &*convoy, lane, steps[lane], runs);
                 if let (Some(observer), Fate::On | Fate::Done) = (&mut observer, &fate) {
-                    let expansion = &mut expansions[lane];
-                    (expansion.begin, expansion.length) = (begin, steps[lane]);
                     let end = State::from(convoy.state(lane));
-                    let dense =
-                        |time: f64| State::from(expansion.state(expansion.since_begin(time)));
+                    let made = LazyCell::new(|| {
+                        convoy.expansion(lane, accuracy.order, &mut expansion);
+                        (expansion.begin, expansion.length) = (begin, steps[lane]);
+                        &expansion
+                    });
+                    let dense = |time: f64| State::from(made.state(made.since_begin(time)));
                     let control = observer(
                         here.run,
                         &Step {
@@ -146,7 +146,8 @@ impl Batch {
                             t1: here.clock.now.hi(),
                             y1: &end,
                             dense: &dense,
-                            series: Some(expansion),
+                            reach: convoy.reaches()[lane],
+                            expansion: Some(&made),
                         },
                     );
                     here.y = end;
@@ -189,11 +190,16 @@ impl Batch {
                     what: "the right-hand side",
                     t: t.0,
                 });
-            } else if t.0 != t.1 {
+            } else {
+                let clock = Clock::new(t);
+                let Some(remaining) = clock.remaining() else {
+                    continue;
+                };
                 convoy.start(lane, &loading, &start.data.0[0]);
                 return Some(Seat {
                     run,
-                    clock: Clock::new(t),
+                    clock,
+                    remaining,
                     steps: 0,
                     y: start,
                 });
@@ -212,11 +218,8 @@ impl Batch {
         h: f64,
         runs: &[BatchRun],
     ) -> Fate {
-        let Some(remaining) = seat.clock.remaining() else {
-            return Fate::Done;
-        };
         let before = seat.clock.now.hi();
-        if !seat.clock.tick(h.into(), remaining) {
+        if !seat.clock.tick(h.into(), seat.remaining) {
             let h = if h.is_finite() { h } else { 0.0 };
             let here = State::from(convoy.state(lane));
             let field = two_interfaces(self.law, runs[seat.run].loading);
@@ -226,7 +229,10 @@ impl Batch {
         self.work.steps += 1;
         self.work.rhs += self.taylor.accuracy.order;
         match seat.clock.remaining() {
-            Some(_) => Fate::On,
+            Some(remaining) => {
+                seat.remaining = remaining;
+                Fate::On
+            }
             None => Fate::Done,
         }
     }

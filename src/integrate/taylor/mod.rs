@@ -18,6 +18,7 @@ use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Cubic, Derivatives, Expansion, REFERENCE_ORDER, Solution, Transport,
 };
+use std::cell::LazyCell;
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -261,17 +262,21 @@ impl Taylor {
             // One evaluation of the law for each coefficient.
             self.work.rhs += self.accuracy.order;
             if let Some(observer) = &mut observer {
-                solution.expansion(self.accuracy.order, &mut expansion);
-                (expansion.begin, expansion.length) = (begin, h.hi());
+                let made = LazyCell::new(|| {
+                    solution.expansion(self.accuracy.order, &mut expansion);
+                    (expansion.begin, expansion.length) = (begin, h.hi());
+                    &expansion
+                });
                 let end = State::from(solution.state());
-                let dense = |time: f64| State::from(expansion.state(expansion.since_begin(time)));
+                let dense = |time: f64| State::from(made.state(made.since_begin(time)));
                 let control = observer(&Step {
                     t0: before,
                     y0: &y,
                     t1: clock.now.hi(),
                     y1: &end,
                     dense: &dense,
-                    series: Some(&expansion),
+                    reach: f64::INFINITY,
+                    expansion: Some(&made),
                 })?;
                 y = end;
                 if control == Control::Stop {

@@ -135,7 +135,7 @@ impl<'a, const N: usize> Detector<'a, N> {
 
     /// Looks at one step, from the slips at its beginning.
     pub fn see(&mut self, step: &Step<'_, N>, before: &Slips) -> Result<()> {
-        match step.series {
+        match step.series() {
             Some(series) => {
                 self.see_series(series, before);
                 Ok(())

@@ -1,0 +1,99 @@
+//! Runs that creep: close to a bifurcation they come nearer to what attracts them so slowly that they never arrive.
+//!
+//! They need not. A run that has come near an attractor, and comes nearer as fast as its eigenvalues or multipliers say, goes on
+//! doing so: in the linear neighbourhood nothing else acts, and short of it what slows the approach, an unstable orbit or
+//! torus around, shows as an approach that is slower than it should be.
+
+use crate::field::{State, VectorField};
+use crate::integrate::Taylor;
+use crate::section::{
+    FEWEST_RETURNS, LONGEST_PERIOD, Periodic, Return, Search, Surface, growth, newton_step,
+};
+
+/// The distance, in every component, that Newton's method may go to an orbit, and to an equilibrium.
+const NEAR: f64 = 0.05;
+const NEAR_REST: f64 = 0.3;
+/// Newton's method ends at this step.
+const CONVERGED: f64 = 1e-9;
+const ITERATIONS: usize = 12;
+/// Distances shrink, in the logarithm, by these parts of what is said.
+const AS_SAID: std::ops::Range<f64> = 0.6..1.6;
+/// What shrinks by less shows nothing.
+const LEAST: f64 = 0.01;
+
+/// The stable equilibrium that these returns creep to.
+pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Option<State<3>> {
+    let last = returns.last()?;
+    let mut at = last.state;
+    for _ in 0..ITERATIONS {
+        let step = newton_step(field, &at)?;
+        at -= step;
+        if (at - last.state).amax() > NEAR_REST {
+            return None;
+        }
+        if step.amax() < CONVERGED {
+            let (shrunk, time) = approach(returns, &at, 1)?;
+            let said = -growth(field, &at) * time;
+            return as_said(shrunk, said).then_some(at);
+        }
+    }
+    None
+}
+
+/// The attracting periodic point that these returns creep to.
+pub(super) fn to_orbit(
+    field: &dyn VectorField<3>,
+    surface: &Surface<3>,
+    taylor: &mut Taylor,
+    returns: &[Return<3>],
+    (accuracy, converged): (f64, f64),
+) -> Option<Periodic<3>> {
+    let n = returns.len();
+    if n < FEWEST_RETURNS {
+        return None;
+    }
+    let last = returns[n - 1].state;
+    // Around a focus the returns go round; what they turn about is close to their mean.
+    let late = &returns[n - n / 4..];
+    let mean = late.iter().map(|at| at.state).sum::<State<3>>() / late.len() as f64;
+    let apart = |q: usize| {
+        let of = |i: usize| (returns[i].state - returns[i - q].state).amax();
+        (n - n / 8..n).map(of).fold(0.0, f64::max)
+    };
+    let closest = (1..=LONGEST_PERIOD.min(n / 8)).min_by(|&q, &r| apart(q).total_cmp(&apart(r)))?;
+    [(mean, 1), (last, 1), (last, closest)]
+        .into_iter()
+        .find_map(|(from, q)| {
+            let mut search = Search::new(field, surface, taylor, returns, (accuracy, q));
+            (search.from, search.near, search.converged) = (from, NEAR, converged);
+            search.shrunk = 1.0;
+            let found = search.point()?;
+            let (shrunk, _) = approach(returns, &found.point, found.returns)?;
+            let rounds = (n / 4) as f64 / found.returns as f64;
+            let said = -found.multiplier.ln() * rounds;
+            (found.attracts() && as_said(shrunk, said)).then_some(found)
+        })
+}
+
+/// By how much, in the logarithm, the distance of every q-th return has shrunk from the third quarter of them to the last, and
+/// the time between.
+fn approach(returns: &[Return<3>], to: &State<3>, q: usize) -> Option<(f64, f64)> {
+    let n = returns.len();
+    let largest = |range: std::ops::Range<usize>| {
+        let phase = range.filter(|i| (n - 1 - i).is_multiple_of(q));
+        phase
+            .map(|i| (returns[i].state - to).amax())
+            .fold(0.0, f64::max)
+    };
+    let quarter = n / 4;
+    let (before, now) = (
+        largest(n - 2 * quarter..n - quarter),
+        largest(n - quarter..n),
+    );
+    let time = returns[n - 1].time - returns.get(n - 1 - quarter)?.time;
+    (now > 0.0).then(|| ((before / now).ln(), time))
+}
+
+fn as_said(shrunk: f64, said: f64) -> bool {
+    shrunk > LEAST && AS_SAID.contains(&(shrunk / said))
+}
