@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use crate::friction::{Law, steady_stress};
 use crate::integrate::{Control, Integrator, Taylor};
-use crate::number::polynomial::Crossing;
+use crate::number::{DoubleDouble, polynomial::Crossing};
 use crate::series::{Section, Zeros};
 use nalgebra::DMatrix;
 
@@ -154,7 +154,13 @@ pub struct Landing<const N: usize> {
     pub derivative: Jacobian<N>,
 }
 
+/// Steps of a piece of the way over which a derivative is taken at once.
+const STEPS_OF_PIECE: usize = 6;
+
 /// The return map from a point of the section: the next crossing in the surface's direction, after at most `patience`.
+///
+/// Its derivative is the product of those from section to section along the way. Over the whole way at once it would be lost:
+/// along the flow perturbations grow as its speed does, which in stick-slip is by ten orders, and back.
 ///
 /// # Errors
 /// [`Error::NoReturn`], and those of [`Taylor::derivatives`].
@@ -193,7 +199,9 @@ pub fn return_map<const N: usize>(
     zeros.sign = surface.sign_behind();
     let mut found = Vec::new();
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    let end = taylor.flow(
+    let (mut steps, mut now) = (0, DoubleDouble::ZERO);
+    let mut points = vec![(now, *from)];
+    taylor.flow(
         field,
         (0.0, patience),
         from,
@@ -202,15 +210,18 @@ pub fn return_map<const N: usize>(
             (lowest, highest) = (lowest.min(height), highest.max(height));
             let series = step.series().ok_or(Error::NotAnalytic)?;
             series.crossings(&section, Some(surface.direction), &mut zeros, &mut found);
-            if let Some(passage) = found.first_mut() {
-                passage.time = (series.begin + passage.time).hi();
+            if let Some(passage) = found.first() {
+                now = series.begin + passage.time;
                 return Ok(Control::Stop);
+            }
+            steps += 1;
+            if steps % STEPS_OF_PIECE == 0 {
+                points.push((series.begin + series.length, *step.y1));
             }
             Ok(Control::Continue)
         }),
     )?;
     let Some(passage) = found.first() else {
-        debug_assert!(end.iter().all(|x| x.is_finite()));
         return Err(Error::NoReturn {
             since: 0.0,
             t: patience,
@@ -219,14 +230,22 @@ pub fn return_map<const N: usize>(
             highest: surface.offset + highest,
         });
     };
-    let (_, tangent) = taylor.derivatives(field, (0.0, passage.time), from, false)?;
     let state = State::from(passage.state);
-    let (f, gradient) = (field.f(&state), surface.gradient(&state));
-    let tangent = Jacobian::from(tangent.start);
-    // A perturbation arrives earlier or later: what it moves across the surface is taken back along the flow.
-    let derivative = tangent - f * (gradient.transpose() * tangent) / gradient.dot(&f);
+    let mut derivative = Jacobian::<N>::identity();
+    for (k, (begin, y)) in points.iter().enumerate() {
+        let next = points.get(k + 1);
+        let (end, to) = next.copied().unwrap_or((now, state));
+        let span = (0.0, (end - *begin).hi());
+        let (_, tangent) = taylor.derivatives(field, span, y, false)?;
+        let f = field.f(&to);
+        // Between, the section that the flow crosses at a right angle.
+        let gradient = next.map_or_else(|| surface.gradient(&to), |_| f);
+        derivative = Jacobian::from(tangent.start) * derivative;
+        // A perturbation arrives earlier or later: what it moves across the section is taken back along the flow.
+        derivative -= f * (gradient.transpose() * derivative) / gradient.dot(&f);
+    }
     Ok(Landing {
-        time: passage.time,
+        time: now.hi(),
         state,
         derivative,
     })

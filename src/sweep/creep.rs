@@ -40,7 +40,7 @@ pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Opti
     None
 }
 
-/// The attracting periodic point that these returns creep to.
+/// The periodic point that these returns creep to.
 pub(super) fn to_orbit(
     field: &dyn VectorField<3>,
     surface: &Surface<3>,
@@ -71,7 +71,7 @@ pub(super) fn to_orbit(
             let (shrunk, _) = approach(returns, &found.point, found.returns)?;
             let rounds = (n / 4) as f64 / found.returns as f64;
             let said = -found.multiplier.ln() * rounds;
-            (found.attracts() && as_said(shrunk, said)).then_some(found)
+            as_said(shrunk, said).then_some(found)
         })
 }
 

@@ -29,6 +29,8 @@ const FEWEST_TO_ASK: usize = 1024;
 const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 /// A candidate that is none is not looked at again before this part more returns.
 const LATER: f64 = 1.3;
+/// The relative error of multipliers, in tolerances.
+const MULTIPLIER_PER_RTOL: f64 = 1e4;
 /// A run this close to an unstable orbit is held on it.
 const ON_ORBIT: f64 = 1e-5;
 
@@ -118,7 +120,7 @@ impl Judge {
         let mut search = Search::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
         search.converged = CONVERGED;
         let found = search.point()?;
-        if found.attracts() {
+        if self.attracts(&found) {
             return self.orbit(run, &found);
         }
         let y = run.returns().last()?.state;
@@ -139,7 +141,15 @@ impl Judge {
         }
         let accuracy = (self.settings.rtol, CONVERGED);
         let found = creep::to_orbit(field, &run.surface, &mut self.coarse, returns, accuracy)?;
+        if !self.attracts(&found) {
+            return None;
+        }
         self.orbit(run, &found)
+    }
+
+    /// Whether the point attracts, beyond the error of its multiplier.
+    fn attracts(&self, found: &Periodic<3>) -> bool {
+        found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * self.settings.rtol
     }
 
     fn orbit(&mut self, run: &Run, found: &Periodic<3>) -> Option<Told> {
@@ -167,7 +177,7 @@ impl Judge {
         told.row.returns_per_period = Some(found.returns);
         told.row.period = Some(period);
         told.row.stress_range = Some(stress);
-        told.row.lyapunov_max = multiplier_exponent(found);
+        told.row.lyapunov_max = multiplier_exponent(found, self.settings.rtol);
         Some(told)
     }
 
@@ -255,13 +265,12 @@ fn across(found: &Spectrum<3>) -> Option<Uncertain> {
     all.find(|x| x.value != found.along_flow).copied()
 }
 
-/// ln |mu| / T; its error is that of the tangents.
-fn multiplier_exponent(found: &Periodic<3>) -> Option<Uncertain> {
-    /// Of a multiplier, where it is large enough to be told from rounding.
-    const ERROR: f64 = 1e-6;
+/// ln |mu| / T; where mu is large enough to be told from rounding.
+fn multiplier_exponent(found: &Periodic<3>, rtol: f64) -> Option<Uncertain> {
+    const LEAST: f64 = 1e-6;
     let value = found.multiplier.ln() / found.period.value;
-    let error = ERROR / found.multiplier / found.period.value;
-    (value.is_finite() && found.multiplier > ERROR).then(|| Uncertain::new(value, error))
+    let error = MULTIPLIER_PER_RTOL * rtol / found.period.value;
+    (value.is_finite() && found.multiplier > LEAST).then(|| Uncertain::new(value, error))
 }
 
 fn alike(y: &State<3>) -> bool {
