@@ -63,31 +63,6 @@ pub fn regularity(points: &[[f64; 2]]) -> f64 {
     worst
 }
 
-/// How much, in the mean of the logarithm, neighbouring points have moved apart one return later, with the standard deviation
-/// of that mean: some way below what a chaotic run shows, the sum says that there is no chaos, without any tangents. `None` if
-/// there are too few neighbours to tell.
-pub(crate) fn divergence(points: &[[f64; 2]]) -> Option<(f64, f64)> {
-    /// Neighbours closer than this part of the spread differ by the error of the run.
-    const NOISE: f64 = 1e-6;
-    let n = points.len();
-    let apart = |i: usize, j: usize| {
-        let [x, y] = [0, 1].map(|k| points[i][k] - points[j][k]);
-        x.hypot(y)
-    };
-    let spread = (1..n).map(|i| apart(i, 0)).fold(0.0, f64::max);
-    let grown = |i: usize| {
-        let others = (0..n - 1).filter(|&j| j != i && apart(i, j) > NOISE * spread);
-        let near = others.min_by(|&j, &k| apart(i, j).total_cmp(&apart(i, k)))?;
-        let after = apart(i + 1, near + 1);
-        (after > 0.0).then(|| (after / apart(i, near)).ln())
-    };
-    let all: Vec<f64> = (0..n.saturating_sub(1)).filter_map(grown).collect();
-    let m = all.len() as f64;
-    let mean = all.iter().sum::<f64>() / m;
-    let squares: f64 = all.iter().map(|x| (x - mean) * (x - mean)).sum();
-    (2 * all.len() > n && n > FEWEST_POINTS).then(|| (mean, (squares / (m * (m - 1.0))).sqrt()))
-}
-
 /// The invariant curve on which the points of a planar map lie, if their angles about the centre have a cyclic order that the
 /// map keeps; `None` if not, as for chaos, for curves that bend too much, and for too few points.
 pub fn invariant_curve(points: &[[f64; 2]]) -> Option<Curve> {

@@ -24,7 +24,7 @@ const STUDENT: f64 = 2.861;
 /// Returns needed: some for each block.
 pub const FEWEST_FOR_EXPONENTS: usize = 3 * BLOCKS;
 /// Part of the run over which the perturbations turn into their directions before anything is counted.
-const ALIGNMENT: f64 = 0.1;
+pub(crate) const ALIGNMENT: f64 = 0.1;
 /// Halves whose means are this many of their intervals apart are drifting.
 const DRIFT: f64 = 1.5;
 /// The error of exponents relative to the largest: that of the tangents, and that of the points of the run, in tolerances.
@@ -70,11 +70,11 @@ impl<const N: usize> Spectrum<N> {
 
 /// What a part of the run does to the perturbations.
 #[derive(Debug, Clone, Copy)]
-struct Leg<const N: usize> {
-    time: f64,
+pub(crate) struct Leg<const N: usize> {
+    pub time: f64,
     /// Logarithms of the growth of the orthogonal perturbations, along the flow first.
-    growth: [f64; N],
-    log_determinant: f64,
+    pub growth: [f64; N],
+    pub log_determinant: f64,
 }
 
 /// The exponents along the returns of a run that was recorded with waypoints.
@@ -210,7 +210,8 @@ fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[
     Ok(lengths)
 }
 
-fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
+/// The exponents, with what these growths err by in terms of the largest of them, and what |f| gained, in the logarithm.
+pub(crate) fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
     let time: f64 = legs.iter().map(|leg| leg.time).sum();
     let growth = |leg: &Leg<N>| leg.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
     let size = legs.iter().map(growth).sum::<f64>() / time;

@@ -9,13 +9,13 @@ mod rest;
 mod returns;
 mod surface;
 
-pub(crate) use curve::divergence;
 pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
+pub(crate) use lyapunov::{ALIGNMENT, Leg, summary};
 pub use lyapunov::{Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, spectrum};
 pub(crate) use periodicity::Search;
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
-pub(crate) use regime::{aperiodic, points};
+pub(crate) use regime::{IRREGULAR, REGULAR, aperiodic, points};
 pub(crate) use rest::{equilibrium_near, growth, newton_step};
 pub(crate) use returns::{AT_START, Recorder, Watched};
 pub use returns::{Ended, Record, Return, Watching, record, usual_patience};

@@ -12,9 +12,9 @@ use crate::number::Uncertain;
 /// Returns without which neither torus nor chaos is told.
 pub const FEWEST_RETURNS: usize = 200;
 /// Averages over halves that agree to this, relative to their spread, are those of a quasi-periodic run.
-const REGULAR: f64 = 1e-5;
+pub(crate) const REGULAR: f64 = 1e-5;
 /// Averages that differ by more than this are not.
-const IRREGULAR: f64 = 1e-3;
+pub(crate) const IRREGULAR: f64 = 1e-3;
 /// The error of the run moves a rotation number by so many tolerances.
 const PER_ACCURACY: f64 = 100.0;
 /// Points that repeat to this part of their spread repeat for good.

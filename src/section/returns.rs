@@ -201,22 +201,12 @@ impl<const N: usize> Recorder<N> {
         step: &Step<'_, N>,
         see: See<'_, N>,
     ) -> Result<Control> {
-        let Watched { field, surface, .. } = *watched;
+        let surface = watched.surface;
         self.steps += 1;
         self.found.clear();
         let sign = surface.height(step.y0).signum();
-        let passes = sign != self.zeros.sign || surface.within(step.y0, step.reach);
-        match step.series() {
-            _ if !passes => (),
-            Some(series) => {
-                let direction = Some(surface.direction);
-                let section = surface.section();
-                series.crossings(&section, direction, &mut self.zeros, &mut self.found);
-                for passage in &mut self.found {
-                    passage.time = (series.begin + passage.time).hi();
-                }
-            }
-            None => crossings(field, surface, step, &mut self.zeros, &mut self.found)?,
+        if sign != self.zeros.sign || surface.within(step.y0, step.reach) {
+            self.cross(watched, step)?;
         }
         for k in 0..self.found.len() {
             let Passage { time, state, .. } = self.found[k];
@@ -239,6 +229,21 @@ impl<const N: usize> Recorder<N> {
         } else {
             Control::Continue
         })
+    }
+
+    /// Finds where a step crosses the surface.
+    fn cross(&mut self, watched: &Watched<'_, N>, step: &Step<'_, N>) -> Result<()> {
+        let Watched { field, surface, .. } = *watched;
+        let Some(series) = step.series() else {
+            return crossings(field, surface, step, &mut self.zeros, &mut self.found);
+        };
+        let direction = Some(surface.direction);
+        let section = surface.section();
+        series.crossings(&section, direction, &mut self.zeros, &mut self.found);
+        for passage in &mut self.found {
+            passage.time = (series.begin + passage.time).hi();
+        }
+        Ok(())
     }
 
     fn arrive(&mut self, watched: &Watched<'_, N>, here: Return<N>, see: See<'_, N>) {

@@ -83,6 +83,7 @@ pub trait Element:
     /// Whether every lane is positive and finite.
     fn all_positive(self) -> bool;
     /// Whether no lane is negative.
+    #[inline(always)]
     fn none_negative(self) -> bool {
         (self.if_negative(self.like(-1.0), self.like(1.0))).all_positive()
     }

@@ -56,13 +56,17 @@ pub(super) fn to_orbit(
     // Around a focus the returns go round; what they turn about is close to their mean.
     let late = &returns[n - n / 4..];
     let mean = late.iter().map(|at| at.state).sum::<State<3>>() / late.len() as f64;
-    let apart = |q: usize| {
+    let apart = |q: usize, range: std::ops::Range<usize>| {
         let of = |i: usize| (returns[i].state - returns[i - q].state).amax();
-        (n - n / 8..n).map(of).fold(0.0, f64::max)
+        range.map(of).fold(0.0, f64::max)
     };
-    let closest = (1..=LONGEST_PERIOD.min(n / 8)).min_by(|&q, &r| apart(q).total_cmp(&apart(r)))?;
+    let quarter = n / 4;
+    let now = |q: usize| apart(q, n - quarter..n);
+    let shrinks = |q: usize| now(q) < apart(q, n - 2 * quarter..n - quarter);
+    let closest = (1..=LONGEST_PERIOD.min(quarter)).min_by(|&q, &r| now(q).total_cmp(&now(r)))?;
     [(mean, 1), (last, 1), (last, closest)]
         .into_iter()
+        .filter(|&(_, q)| shrinks(q))
         .find_map(|(from, q)| {
             let mut search = Search::new(field, surface, taylor, returns, (accuracy, q));
             (search.from, search.near, search.converged) = (from, NEAR, converged);

@@ -1,5 +1,6 @@
 //! What a run has settled on, from its returns.
 
+use super::flows::Flows;
 use super::watch::{Run, see, turn};
 use super::{Row, Settings, creep};
 use crate::equilibrium::Symmetry;
@@ -7,10 +8,7 @@ use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use crate::number::Uncertain;
-use crate::section::{
-    Ended, Periodic, Regime, Return, Search, Spectrum, Surface, Watching, aperiodic,
-    at_equilibrium, divergence, points, record, spectrum,
-};
+use crate::section::{Ended, Periodic, Regime, Search, at_equilibrium};
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
@@ -22,11 +20,6 @@ const TOLERANCE: f64 = 1e-11;
 pub(super) const FIRST_STAGE: usize = 64;
 /// Returns without which no run is seen to creep.
 const FEWEST_TO_CREEP: usize = 256;
-/// Returns without which neither torus nor chaos is told: those before are let pass.
-const FEWEST_TO_WANDER: usize = 512;
-/// Returns before exponents are asked for. For them there are more each time.
-const FEWEST_TO_ASK: usize = 1024;
-const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 /// A candidate that is none is not looked at again before this part more returns.
 const LATER: f64 = 1.3;
 /// The relative error of multipliers, in tolerances.
@@ -36,9 +29,9 @@ const ON_ORBIT: f64 = 1e-5;
 
 /// Judges runs; its integrators are used over and over.
 pub(super) struct Judge {
-    settings: Settings,
+    pub(super) settings: Settings,
     fine: Taylor,
-    coarse: Taylor,
+    pub(super) coarse: Taylor,
 }
 
 /// What is known of a run's end, and where the next one may start from it.
@@ -58,7 +51,7 @@ impl Judge {
     }
 
     /// What the run has settled on, or `None` if it shall go on.
-    pub fn judge(&mut self, run: &mut Run) -> Option<Told> {
+    pub fn judge(&mut self, run: &mut Run, flows: &mut Flows) -> Option<Told> {
         match run.recorder.ended.take() {
             Some(Ended::Steady {
                 equilibrium,
@@ -103,7 +96,7 @@ impl Judge {
         if let Some(told) = self.creeping(run) {
             return Some(told);
         }
-        let told = self.wandering(run);
+        let told = self.wandering(run, flows);
         let last = n >= self.settings.max_returns;
         run.next_stage = (2 * n).min(self.settings.max_returns);
         run.stress = (f64::INFINITY, f64::NEG_INFINITY);
@@ -180,89 +173,6 @@ impl Judge {
         told.row.lyapunov_max = multiplier_exponent(found, self.settings.rtol);
         Some(told)
     }
-
-    /// A torus or chaos, or why nothing can be said.
-    fn wandering(&mut self, run: &mut Run) -> std::result::Result<Told, &'static str> {
-        let n = run.returns().len();
-        let last = run.recorder.returns.len() >= self.settings.max_returns;
-        if n < FEWEST_TO_WANDER && !last {
-            return Err("too early");
-        }
-        let half = &run.returns()[n / 2..];
-        if half.len() < crate::section::FEWEST_RETURNS / 2 {
-            return Err("too few returns since it was let go from an unstable orbit");
-        }
-        if half.iter().all(|at| alike(&at.state)) {
-            return Err(
-                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise --max-returns",
-            );
-        }
-        let seen = aperiodic(&run.surface, half, self.settings.rtol, None);
-        if seen.regime == Regime::Torus && !self.settings.lyapunov {
-            let mut told = begun(run, Regime::Torus);
-            told.row.stress_range = Some(run.stress);
-            return Ok(told);
-        }
-        if seen.regime != Regime::Torus && n < FEWEST_TO_ASK && !last {
-            return Err("too early");
-        }
-        if !may_be_chaotic(&run.surface, half) {
-            return Err("the returns have not settled, and show no chaos; raise --max-returns");
-        }
-        self.with_exponents(run)
-    }
-
-    /// Records anew from where the run is, now with its tangents.
-    fn with_exponents(&mut self, run: &mut Run) -> std::result::Result<Told, &'static str> {
-        // A quarter of what there were: a longer run has shown that it needs more.
-        let returns = run.recorder.returns.len() / 4;
-        let watching = Watching {
-            skip: 0,
-            returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
-            waypoints: true,
-            ..run.watching
-        };
-        let mut stress = run.stress;
-        let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
-        let start = run.recorder.returns.last().map_or(run.state, |at| at.state);
-        let (field, surface) = (&*run.field, &run.surface);
-        let recorded = record(&mut self.coarse, field, &start, surface, &watching, see_all);
-        for point in &recorded.waypoints {
-            see(&mut stress, point.state[0]);
-        }
-        if let Ended::Steady { equilibrium, .. } = recorded.ended {
-            return Ok(steady(run, equilibrium, true));
-        }
-        let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
-        let known = Some(found.known());
-        let made = aperiodic(surface, &recorded.returns, self.settings.rtol, known);
-        match made.regime {
-            Regime::Torus | Regime::Chaotic => {
-                let mut told = begun(run, made.regime);
-                told.row.returns += recorded.returns.len();
-                told.attractor = recorded.returns.last().map(|at| at.state);
-                told.row.stress_range = Some(stress);
-                told.row.lyapunov_max = across(&found);
-                Ok(told)
-            }
-            _ => Err(made.why.unwrap_or("its returns do not tell")),
-        }
-    }
-}
-
-/// Whether neighbours part so fast, perhaps, that exponents would tell chaos: they cost more than the run itself.
-fn may_be_chaotic(surface: &Surface<3>, returns: &[Return<3>]) -> bool {
-    /// Slower chaos than this, per return, is not told from as many returns as are looked at.
-    const SLOWEST: f64 = 0.01;
-    /// Standard deviations.
-    const SURE: f64 = 4.0;
-    divergence(&points(surface, returns)).is_none_or(|(mean, error)| mean + SURE * error > SLOWEST)
-}
-
-/// The largest exponent but that along the flow.
-fn across(found: &Spectrum<3>) -> Option<Uncertain> {
-    let mut all = found.exponents.iter();
-    all.find(|x| x.value != found.along_flow).copied()
 }
 
 /// ln |mu| / T; where mu is large enough to be told from rounding.
@@ -273,7 +183,7 @@ fn multiplier_exponent(found: &Periodic<3>, rtol: f64) -> Option<Uncertain> {
     (value.is_finite() && found.multiplier > LEAST).then(|| Uncertain::new(value, error))
 }
 
-fn alike(y: &State<3>) -> bool {
+pub(super) fn alike(y: &State<3>) -> bool {
     (y[1] - y[2]).abs() < ALIKE
 }
 
@@ -286,7 +196,7 @@ fn symmetry(unlike: f64) -> Symmetry {
 }
 
 /// A row of which the regime is known.
-fn begun(run: &Run, regime: Regime) -> Told {
+pub(super) fn begun(run: &Run, regime: Regime) -> Told {
     let point = &run.point;
     Told {
         row: Row {
@@ -310,7 +220,7 @@ fn begun(run: &Run, regime: Regime) -> Told {
     }
 }
 
-fn steady(run: &Run, equilibrium: State<3>, stable: bool) -> Told {
+pub(super) fn steady(run: &Run, equilibrium: State<3>, stable: bool) -> Told {
     let mut told = begun(run, Regime::Steady);
     told.attractor = Some(equilibrium);
     told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));

@@ -9,11 +9,14 @@
 
 mod capture;
 mod creep;
+mod flows;
 mod judge;
 mod range;
 mod run;
 mod start;
+mod stretch;
 mod sweeper;
+mod wander;
 mod watch;
 
 pub use range::Range;

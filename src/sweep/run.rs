@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, mpsc};
 
 /// Points of a chunk: so many that lanes are seldom empty, so few that they are shared out evenly and flushed often.
-const CHUNK: usize = 128;
+const CHUNK: usize = 512;
 /// Chunks that may be done before one that they must wait for, for each thread.
 const AHEAD: usize = 8;
 

@@ -1,12 +1,13 @@
 //! What runs settle on at points of a grid: runs in lanes, judged one by one.
 
+use super::flows::Flows;
 use super::judge::{FIRST_STAGE, Judge, Told, undecided};
 use super::start::{Point, point};
 use super::watch::Run;
 use super::{Row, Settings};
 use crate::error::Result;
 use crate::field::State;
-use crate::integrate::{Batch, BatchRun, Integrator, Step, Taylor, Tolerances};
+use crate::integrate::{BatchRun, Step};
 use crate::section::{Regime, Watching};
 
 /// The difference of the log states with which a run follows a symmetric steady state: from equal ones it would come to rest
@@ -49,22 +50,14 @@ pub struct Sweeper {
     judge: Judge,
 }
 
-/// How runs are advanced.
-enum Flows {
-    Lanes(Batch),
-    OneByOne(Taylor),
-}
-
 impl Sweeper {
     /// # Errors
     /// Those of [`Settings::checked`].
     pub fn new(settings: &Settings) -> Result<Self> {
         settings.checked()?;
-        let tolerances = Tolerances::equal(settings.rtol)?;
-        let batch = Batch::new(settings.law, tolerances, settings.max_steps)?;
         Ok(Sweeper {
             settings: settings.clone(),
-            flows: Flows::Lanes(batch),
+            flows: Flows::lanes(settings.law, settings.rtol, settings.max_steps)?,
             judge: Judge::new(settings)?,
         })
     }
@@ -74,10 +67,8 @@ impl Sweeper {
     /// # Errors
     /// Those of [`Sweeper::new`].
     pub fn one_by_one(settings: &Settings) -> Result<Self> {
-        let tolerances = Tolerances::equal(settings.rtol)?;
-        let taylor = Taylor::new(tolerances, settings.max_steps)?;
         Ok(Sweeper {
-            flows: Flows::OneByOne(taylor),
+            flows: Flows::one_by_one(settings.law, settings.rtol, settings.max_steps)?,
             ..Self::new(settings)?
         })
     }
@@ -156,7 +147,7 @@ impl Sweeper {
             for (&i, failed) in active.iter().zip(failed) {
                 told[i] = match failed {
                     Some(why) => Some(undecided(&runs[i], why)),
-                    None => self.judge.judge(&mut runs[i]),
+                    None => self.judge.judge(&mut runs[i], &mut self.flows),
                 };
             }
         }
@@ -169,33 +160,15 @@ impl Sweeper {
             Some(_) => (run.time, run.time),
             None => (run.time, run.end()),
         };
-        match &mut self.flows {
-            Flows::Lanes(batch) => {
-                let ways: Vec<BatchRun> = active
-                    .iter()
-                    .map(|&i| BatchRun {
-                        loading: runs[i].point.loading,
-                        start: runs[i].state,
-                        t: span(&runs[i]),
-                    })
-                    .collect();
-                let mut observer = |k: usize, step: &Step<'_, 3>| runs[active[k]].step(step);
-                let ends = batch.flow(&ways, Some(&mut observer));
-                let failed = ends.into_iter().map(Result::err);
-                failed.map(|e| e.map(|e| e.to_string())).collect()
-            }
-            Flows::OneByOne(taylor) => {
-                let mut one = |&i: &usize| {
-                    let run = &mut runs[i];
-                    let (t, start) = (span(run), run.state);
-                    // The same formula, apart from what the run keeps of its steps.
-                    let field = crate::model::two_interfaces(self.settings.law, run.point.loading);
-                    let mut observer = |step: &Step<'_, 3>| run.step(step);
-                    let end = taylor.flow(&*field, t, &start, Some(&mut observer));
-                    end.err().map(|error| error.to_string())
-                };
-                active.iter().map(&mut one).collect()
-            }
-        }
+        let way = |&i: &usize| BatchRun {
+            loading: runs[i].point.loading,
+            start: runs[i].state,
+            t: span(&runs[i]),
+        };
+        let ways: Vec<BatchRun> = active.iter().map(way).collect();
+        let mut observer = |k: usize, step: &Step<'_, 3>| runs[active[k]].step(step);
+        let ends = self.flows.flow(&ways, &mut observer);
+        let failed = ends.into_iter().map(Result::err);
+        failed.map(|e| e.map(|e| e.to_string())).collect()
     }
 }

@@ -16,7 +16,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
 /// Points handed out at once: so many that lanes are seldom empty.
-const CHUNK: usize = 128;
+const CHUNK: usize = 512;
 /// Chunks for each rank, where there are not enough for full ones.
 const SHARES: usize = 4;
 /// Chunks that may be done before one that they must wait for, for each rank.

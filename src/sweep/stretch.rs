@@ -1,0 +1,122 @@
+//! How fast neighbouring runs part: Lyapunov exponents from the returns of runs that start beside those of a run.
+//!
+//! The derivative of the return map P at a return x is taken by central differences, (P(x + d) - P(x - d)) / 2d, over runs of
+//! one return each: they fill all lanes, and take a fraction of the time of tangents. What the differences err by follows
+//! from how much P bends within them.
+
+use super::flows::Flows;
+use super::watch::Run;
+use crate::field::State;
+use crate::integrate::{BatchRun, Control, Step};
+use crate::section::{ALIGNMENT, Leg, Return, Spectrum, Surface, summary};
+use crate::series::Zeros;
+use nalgebra::{Matrix2, Vector2};
+
+/// Part of the tolerance's cube root that starts are displaced by, in ln psi: rounding and bending then matter alike.
+const DISPLACED: f64 = 0.1;
+/// A displaced run that comes back later than the run itself by this part has missed a return.
+const LATE: f64 = 0.5;
+/// Displaced by how much of d, and which way: (psi_1, psi_2).
+const BESIDE: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]];
+
+/// The exponents along these consecutive returns of a run, from the first to the last; `None` where a run beside it takes
+/// another way.
+pub(super) fn stretching(
+    run: &Run,
+    returns: &[Return<3>],
+    flows: &mut Flows,
+    rtol: f64,
+) -> Option<Spectrum<3>> {
+    let displaced = DISPLACED * rtol.cbrt();
+    let beside = beside(run, returns, flows, displaced)?;
+    let mut frame = Matrix2::new(0.8, -0.6, 0.6, 0.8);
+    let mut bends = 0.0;
+    let mut legs = Vec::with_capacity(returns.len());
+    for (pair, ends) in returns.windows(2).zip(beside.chunks(BESIDE.len())) {
+        let [first, second] = [(0, 1), (2, 3)].map(|(i, j)| ends[i] - ends[j]);
+        let [bent, also] =
+            [(0, 1), (2, 3)].map(|(i, j)| ends[i] + ends[j] - 2.0 * inside(&pair[1].state));
+        let derivative = Matrix2::from_columns(&[first, second]) / (2.0 * displaced);
+        // A third derivative weighs by the square of what a second one does.
+        let size = first.norm().max(second.norm());
+        bends += (2.0 * bent.norm().max(also.norm()) / size).powi(2);
+        let (q, r) = (derivative * frame).qr().unpack();
+        frame = q;
+        let speed = |at: &Return<3>| run.field.f(&at.state).norm().ln();
+        let growth = [r[(0, 0)].abs().ln(), r[(1, 1)].abs().ln()];
+        legs.push(Leg {
+            time: pair[1].time - pair[0].time,
+            growth: [speed(&pair[1]) - speed(&pair[0]), growth[0], growth[1]],
+            log_determinant: growth[0] + growth[1],
+        });
+    }
+    if !legs.iter().flat_map(|leg| leg.growth).all(f64::is_finite) {
+        return None;
+    }
+    let aligned = (ALIGNMENT * legs.len() as f64) as usize;
+    let mut spectrum = summary(&legs[aligned..], 0.0, 0.0);
+    let error = bends / legs.iter().map(|leg| leg.time).sum::<f64>();
+    for exponent in &mut spectrum.exponents {
+        exponent.uncertainty += error;
+    }
+    Some(spectrum)
+}
+
+/// Where runs that start beside each return but the last come back, in (ln psi_1, ln psi_2).
+fn beside(
+    run: &Run,
+    returns: &[Return<3>],
+    flows: &mut Flows,
+    displaced: f64,
+) -> Option<Vec<Vector2<f64>>> {
+    let mut ways = Vec::with_capacity(BESIDE.len() * returns.len());
+    for pair in returns.windows(2) {
+        let longest = (1.0 + LATE) * (pair[1].time - pair[0].time);
+        for [first, second] in BESIDE {
+            let mut start = pair[0].state;
+            start[1] += first * displaced;
+            start[2] += second * displaced;
+            ways.push(BatchRun {
+                loading: run.point.loading,
+                start: run.surface.nearest(&start),
+                t: (0.0, longest),
+            });
+        }
+    }
+    let mut signs: Vec<Zeros> = vec![Zeros::default(); ways.len()];
+    for zeros in &mut signs {
+        zeros.sign = run.surface.sign_behind();
+    }
+    let mut ends: Vec<Option<Vector2<f64>>> = vec![None; ways.len()];
+    let mut found = Vec::new();
+    let mut observer = |k: usize, step: &Step<'_, 3>| {
+        if run.surface.height(step.y0).signum() == signs[k].sign
+            && !run.surface.within(step.y0, step.reach)
+        {
+            return Ok(Control::Continue);
+        }
+        let series = step.series().ok_or(crate::error::Error::NotAnalytic)?;
+        found.clear();
+        let Surface { direction, .. } = run.surface;
+        series.crossings(
+            &run.surface.section(),
+            Some(direction),
+            &mut signs[k],
+            &mut found,
+        );
+        Ok(match found.first() {
+            Some(passage) => {
+                ends[k] = Some(inside(&State::from(passage.state)));
+                Control::Stop
+            }
+            None => Control::Continue,
+        })
+    };
+    let flown = flows.flow(&ways, &mut observer);
+    flown.iter().all(Result::is_ok).then_some(())?;
+    ends.into_iter().collect()
+}
+
+fn inside(y: &State<3>) -> Vector2<f64> {
+    Vector2::new(y[1], y[2])
+}

@@ -1,0 +1,134 @@
+//! Runs that close in on nothing: tori, chaos, or neither yet.
+
+use super::flows::Flows;
+use super::judge::{Judge, Told, alike, begun, steady};
+use super::stretch::stretching;
+use super::watch::{Run, see};
+use crate::integrate::Control;
+use crate::number::Uncertain;
+use crate::section::{
+    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Spectrum,
+    Watching, aperiodic, points, record, regularity, spectrum,
+};
+
+/// Returns without which neither torus nor chaos is told: those before are let pass.
+const FEWEST_TO_WANDER: usize = 512;
+/// Returns before exponents are asked for.
+const FEWEST_TO_ASK: usize = 1024;
+/// Over how many returns exponents are taken: if these don't tell, twice as many.
+const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
+
+impl Judge {
+    /// A torus or chaos, or why nothing can be said.
+    pub(super) fn wandering(
+        &mut self,
+        run: &mut Run,
+        flows: &mut Flows,
+    ) -> std::result::Result<Told, &'static str> {
+        let n = run.returns().len();
+        let last = run.recorder.returns.len() >= self.settings.max_returns;
+        if n < FEWEST_TO_WANDER && !last {
+            return Err("too early");
+        }
+        let half = &run.returns()[n / 2..];
+        if half.len() < FEWEST_RETURNS / 2 {
+            return Err("too few returns since it was let go from an unstable orbit");
+        }
+        if half.iter().all(|at| alike(&at.state)) {
+            return Err(
+                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise --max-returns",
+            );
+        }
+        let seen = aperiodic(&run.surface, half, self.settings.rtol, None);
+        if seen.regime == Regime::Torus {
+            if self.settings.lyapunov {
+                return self.with_tangents(run);
+            }
+            return Ok(told(run, Regime::Torus, run.stress));
+        }
+        if n < FEWEST_TO_ASK && !last {
+            return Err("too early");
+        }
+        let disorder = regularity(&points(&run.surface, half));
+        if disorder > IRREGULAR {
+            return self.chaos(run, flows);
+        }
+        if disorder < REGULAR {
+            return self.with_tangents(run);
+        }
+        Err("the returns are neither regular nor irregular yet; raise --max-returns")
+    }
+
+    /// Chaos, by the exponents along the last returns: of ever more, until they tell.
+    fn chaos(&self, run: &Run, flows: &mut Flows) -> std::result::Result<Told, &'static str> {
+        let all = run.returns();
+        let settled = all.len() / 2;
+        let mut count = *FOR_EXPONENTS.start();
+        loop {
+            count = count.min(settled).min(*FOR_EXPONENTS.end());
+            if count < FEWEST_FOR_EXPONENTS {
+                return Err("too few returns for exponents; raise --max-returns");
+            }
+            let late: &[Return<3>] = &all[all.len() - count..];
+            let found = stretching(run, late, flows, self.settings.rtol)
+                .ok_or("runs beside it take another way")?;
+            let made = aperiodic(&run.surface, late, self.settings.rtol, Some(found.known()));
+            if made.regime == Regime::Chaotic {
+                let mut told = told(run, Regime::Chaotic, run.stress);
+                told.row.lyapunov_max = across(&found);
+                return Ok(told);
+            }
+            if count == settled || count == *FOR_EXPONENTS.end() {
+                return Err(made.why.unwrap_or("its returns do not tell"));
+            }
+            count *= 2;
+        }
+    }
+
+    /// Records anew from where the run is, now with its tangents, which tell an exponent that vanishes.
+    fn with_tangents(&mut self, run: &mut Run) -> std::result::Result<Told, &'static str> {
+        let returns = run.recorder.returns.len() / 4;
+        let watching = Watching {
+            skip: 0,
+            returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
+            waypoints: true,
+            ..run.watching
+        };
+        let mut stress = run.stress;
+        let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
+        let start = run.recorder.returns.last().map_or(run.state, |at| at.state);
+        let (field, surface) = (&*run.field, &run.surface);
+        let recorded = record(&mut self.coarse, field, &start, surface, &watching, see_all);
+        for point in &recorded.waypoints {
+            see(&mut stress, point.state[0]);
+        }
+        if let Ended::Steady { equilibrium, .. } = recorded.ended {
+            return Ok(steady(run, equilibrium, true));
+        }
+        let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
+        let known = Some(found.known());
+        let made = aperiodic(surface, &recorded.returns, self.settings.rtol, known);
+        match made.regime {
+            Regime::Torus | Regime::Chaotic => {
+                let mut told = told(run, made.regime, stress);
+                told.row.returns += recorded.returns.len();
+                told.attractor = recorded.returns.last().map(|at| at.state);
+                told.row.lyapunov_max = across(&found);
+                Ok(told)
+            }
+            _ => Err(made.why.unwrap_or("its returns do not tell")),
+        }
+    }
+}
+
+fn told(run: &Run, regime: Regime, stress: (f64, f64)) -> Told {
+    let mut told = begun(run, regime);
+    told.row.stress_range = Some(stress);
+    told
+}
+
+/// The largest exponent but that along the flow.
+fn across(found: &Spectrum<3>) -> Option<Uncertain> {
+    let mut all = found.exponents.iter();
+    all.find(|x| x.value != found.along_flow).copied()
+}
