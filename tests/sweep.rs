@@ -1,6 +1,8 @@
 //! Maps of regimes: against the bifurcations of `tests/data/`, against orbits and multipliers found otherwise, and against themselves.
 #![allow(missing_docs)]
 
+mod command;
+
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use twinslip::equilibrium::{Symmetry, Verdict};
@@ -125,6 +127,81 @@ fn along_k_02_the_torus_is_where_the_orbit_is_unstable() {
     assert_eq!(changes.len(), 2, "a torus between two torus bifurcations");
 }
 
+fn at(driving: f64, stiffness: f64, start: usize) -> Row {
+    let settings = Settings {
+        rtol: 1e-8,
+        ..settings(
+            &format!("{driving}:{driving}:1"),
+            &format!("{stiffness}:{stiffness}:1"),
+            2,
+        )
+    };
+    rows(&settings).swap_remove(start)
+}
+
+/// Runs that leave an unstable steady state or come to a cycle so slowly that their returns drift all the while.
+#[test]
+fn slow_runs_are_neither_tori_nor_chaos() {
+    for (driving, stiffness, start) in [
+        (0.104_615_384_615_384_61, 0.104_827_586_206_896_56, 1),
+        (0.109_230_769_230_769_21, 0.109_655_172_413_793_1, 1),
+        (0.115_384_615_384_615_39, 0.114_482_758_620_689_66, 1),
+        (0.086_153_846_153_846_15, 0.235_172_413_793_103_44, 0),
+        (0.086_153_846_153_846_15, 0.235_172_413_793_103_44, 1),
+    ] {
+        let row = at(driving, stiffness, start);
+        assert!(
+            !matches!(row.regime, Regime::Torus | Regime::Chaotic),
+            "{row:?}"
+        );
+    }
+}
+
+/// Along a cycle of stick-slip tangents grow by nine orders and shrink again: what the multipliers of the return map keep of that
+/// is compared with those of multiple shooting, which the sweep knows nothing of.
+#[test]
+fn exponents_are_those_of_the_multipliers() {
+    for (driving, stiffness) in [(0.158_974, 0.051_724), (0.167_179, 0.059_655), (0.16, 0.07)] {
+        let row = at(driving, stiffness, 0);
+        let slab = Slab {
+            law: law(),
+            interfaces: 2,
+            loading: Loading::new(driving, stiffness).unwrap(),
+        };
+        let query = Query {
+            symmetry: Symmetry::Asymmetric,
+            begin: Begin::Hopf,
+        };
+        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor))
+            .unwrap()
+            .orbit;
+        let largest = orbit.floquet.multipliers[0].ln_abs.value;
+        let expected = largest / orbit.period.value;
+        let found = row.lyapunov_max.expect("an exponent");
+        let off = (found.value - expected).abs();
+        assert!(off < found.uncertainty, "{found:?}: {expected}");
+        assert!(found.uncertainty < 1e-3 * expected.abs(), "{found:?}");
+    }
+}
+
+/// What runs beside a chaotic one tell is what its tangents tell, from five times as many returns.
+#[test]
+fn chaos_has_the_exponent_of_the_tangents() {
+    let row = at(0.094, 0.14, 0);
+    assert_eq!(row.regime, Regime::Chaotic, "{row:?}");
+    let found = row.lyapunov_max.unwrap();
+    let tangents = command::object(
+        "section --driving 0.094 --stiffness 0.14 --start near-symmetric:0.01 --skip 1000 --returns 5000 --lyapunov",
+    );
+    let value = command::number(&tangents, "/result/lyapunov/0/value");
+    let uncertainty = command::number(&tangents, "/result/lyapunov/0/uncertainty");
+    let off = (found.value - value).abs();
+    assert!(
+        off < found.uncertainty + uncertainty,
+        "{found:?}: {value} +- {uncertainty}"
+    );
+}
+
 #[test]
 fn a_large_motion_coexists_with_the_small_orbit_below_the_torus_bifurcation() {
     let settings = settings("0.0755:0.0758:16", "0.14:0.14:1", 2);
@@ -150,29 +227,51 @@ fn symmetric_and_asymmetric_orbits_coexist_at_k_01() {
     assert!((mu - 0.032_948_715_082_417_63).abs() < 1e-5, "{mu}");
 }
 
+/// From states in the midst of a slip the interfaces find together; from larger ones they don't, but for equal ones.
 #[test]
 fn a_basin_has_both_attractors() {
-    let states = Range::parse("state-1", "0.01:1:6log").unwrap();
+    const SIDE: usize = 9;
+    let states = Range::parse("state-1", "1e-6:1:9log").unwrap();
+    let loading = Loading::new(2.0, 0.1).unwrap();
     let settings = Settings {
         grid: Grid::Basin {
-            loading: Loading::new(0.2, 0.1).unwrap(),
+            loading,
             state_1: states,
             state_2: states,
         },
         ..settings("1:2:2", "1:2:2", 1)
     };
     let rows = rows(&settings);
-    for row in &rows {
-        let [_, first, second] = row.start;
-        // What starts with equal interfaces stays so; the symmetric orbit attracts little else.
-        let symmetry = if first == second {
-            Symmetry::Symmetric
-        } else {
-            Symmetry::Asymmetric
+    let slab = Slab {
+        law: law(),
+        interfaces: 2,
+        loading,
+    };
+    for symmetry in [Symmetry::Symmetric, Symmetry::Asymmetric] {
+        let all: Vec<&Row> = rows
+            .iter()
+            .filter(|row| row.symmetry == Some(symmetry))
+            .collect();
+        let unequal = all.iter().filter(|row| row.start[1] != row.start[2]);
+        assert!(unequal.count() >= 6, "{symmetry:?}");
+        let query = Query {
+            symmetry,
+            begin: Begin::Hopf,
         };
-        assert_eq!(row.symmetry, Some(symmetry), "{row:?}");
+        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor));
+        let period = orbit.unwrap().orbit.period.value;
+        for row in all {
+            assert_eq!(row.regime, Regime::Periodic);
+            let off = row.period.unwrap() / period - 1.0;
+            assert!(off.abs() < 1e-8, "{row:?}: {period}");
+        }
     }
-    assert_eq!(rows.len(), 36);
+    for i in 0..SIDE {
+        for j in 0..i {
+            let mirrored = [rows[i * SIDE + j].symmetry, rows[j * SIDE + i].symmetry];
+            assert_eq!(mirrored[0], mirrored[1], "{i} {j}");
+        }
+    }
 }
 
 #[test]

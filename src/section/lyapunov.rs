@@ -15,9 +15,8 @@ use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
 use crate::number::Uncertain;
 use nalgebra::DMatrix;
 
-/// The tolerance of the tangents, and that in terms of the run's: what the run errs by is more.
+/// The tolerance of the tangents.
 const TOLERANCE: f64 = 1e-13;
-const PART_OF_ACCURACY: f64 = 0.1;
 /// Blocks whose means the interval is made of, and Student's factor for 99 % with one degree of freedom less.
 const BLOCKS: usize = 20;
 const STUDENT: f64 = 2.861;
@@ -125,8 +124,7 @@ pub fn at_equilibrium<const N: usize>(
 
 /// From each return to the next.
 fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Result<Vec<Leg<N>>> {
-    let tolerance = TOLERANCE.max(PART_OF_ACCURACY * record.accuracy);
-    let mut taylor = Taylor::new(Tolerances::equal(tolerance)?, MAX_STEPS)?;
+    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let start = record.returns[0];
     let mut frame = beginning(&field.f(&start.state));
     orthonormalise(&mut frame, start.time)?;
