@@ -16,6 +16,17 @@ const DIVISIONS: [f64; 3] = [0.5, 0.4375, 0.5625];
 /// By how much the ends of a bracket must exceed the error, so that no neighbour of it is [`Verdict::Noise`].
 const FIRM: f64 = 8.0;
 
+/// Part of A beyond which signs are trusted in any polynomial up to the highest degree, ends of brackets included.
+const CERTAIN: f64 = 1e-12;
+
+/// Whether the slope has the sign of c_1 on all of [0, 1].
+fn keeps_rising_or_falling(terms: &Coefficients) -> bool {
+    let others = terms.iter().enumerate().skip(2);
+    let others: f64 = others.map(|(k, c)| k as f64 * c.abs()).sum();
+    // the margin is for the rounding of the sum
+    terms[1].abs() > 1.000001 * others
+}
+
 /// Appends the roots of a polynomial with c_0 != 0 between 0 and `length`; `turned` where what rises along the way falls as
 /// the argument grows.
 pub(super) fn search(coefficients: &[f64], length: f64, turned: bool, found: &mut Vec<Root>) {
@@ -37,6 +48,14 @@ pub(super) fn search(coefficients: &[f64], length: f64, turned: bool, found: &mu
         cluster: None,
         found,
     };
+    // Most polynomials of steps only rise or only fall: then the signs at the ends tell all, where they are beyond doubt.
+    let certain = CERTAIN * largest;
+    if keeps_rising_or_falling(&terms) && terms[0].abs() > certain && end.abs() > certain {
+        if end.signum() != search.sign {
+            search.cross((0.0, 1.0), true, 0.0, end.signum());
+        }
+        return;
+    }
     let (before_end, after_end) = search.signs_around_end(end);
     let mut control = bernstein(&terms, degree);
     control[degree] = if end == 0.0 {
