@@ -48,8 +48,8 @@ pub struct SweepOptions {
         help_heading = "Grid"
     )]
     pub state_2: Option<String>,
-    /// Starts at each point, a row for each: the first beside the symmetric steady state, the second far from it, the others
-    /// drawn by the seed
+    /// Starts at each point, a row for each: the first beside the symmetric steady state, the second with equal interfaces, the
+    /// third far from it, the others drawn by the seed
     #[arg(long, value_name = "S", default_value_t = 1, help_heading = "Grid")]
     pub starts: usize,
     /// Seed of the starts: the same seed, the same rows
