@@ -15,7 +15,7 @@ use crate::section::{
 use crate::series::Expansion;
 
 /// Steps between two looks whether an equilibrium has caught the run.
-const BETWEEN_LOOKS: usize = 24;
+const BETWEEN_LOOKS: usize = 48;
 /// Part of the usual patience: some 20 periods of stick-slip.
 const PATIENCE: f64 = 0.1;
 /// A run that swings by less is at rest.

@@ -357,7 +357,7 @@ impl Clock {
 
     /// The time to the end; `None` there.
     fn remaining(&self) -> Option<DoubleDouble> {
-        let remaining = DoubleDouble::from(self.end) - self.now;
+        let remaining = -(self.now - self.end);
         (remaining.hi() != 0.0).then_some(remaining)
     }
 
@@ -367,7 +367,12 @@ impl Clock {
             self.now = DoubleDouble::from(self.end);
             return true;
         }
-        let next = self.now + h;
+        // Runs in doubles take many a step: the short sum is as exact.
+        let next = if h.lo() == 0.0 {
+            self.now + h.hi()
+        } else {
+            self.now + h
+        };
         // Nor is a step that is no number any progress.
         if !next.is_finite() || next.hi() == self.now.hi() {
             return false;
