@@ -21,6 +21,7 @@ mod stream;
 mod sweep;
 
 use crate::error::Error;
+use crate::integrate::allowed_vectors;
 use crate::scene;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
@@ -98,13 +99,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
                 .map(|word| word.to_string_lossy().into_owned()),
         )
         .collect();
-    let ended = match &line.command {
+    let ended = allowed_vectors().and_then(|_| match &line.command {
         Command::Compute(command) => compute(command, &words),
         Command::Run(options) => run::run(options, &words),
         Command::Merge(options) => merge::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Figure(options) => reproduce::run_figure(options),
-    };
+    });
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Stuck) => ExitCode::from(FAILED),

@@ -81,7 +81,7 @@ macro_rules! each {
 impl<L: Law> Track<L> {
     pub fn new(law: L, loading: &Loading) -> Self {
         #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = V3::try_new() {
+        if let Some(simd) = crate::series::avx2() {
             let zero = Pair::new(simd, [0.0; 2]);
             return Track::Pair(simd, stepper(law, loading, zero));
         }

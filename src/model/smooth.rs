@@ -7,10 +7,7 @@ use crate::series::{
     Transport, Variational,
 };
 #[cfg(target_arch = "x86_64")]
-use {
-    crate::series::{Both, Four},
-    pulp::x86::V3,
-};
+use crate::series::{Both, Four};
 
 /// Equations at given parameters.
 ///
@@ -131,7 +128,7 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
     // With or without the derivatives in the parameters: they fill lanes that there are.
     fn tangent(&self, _: bool) -> Box<dyn Tangent<N> + '_> {
         #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = V3::try_new() {
+        if let Some(simd) = crate::series::avx2() {
             let gradient = Both([Four::new(simd, [0.0; 4]); 2]);
             return Box::new(Variational::<_, _, _, N, ROOM>::new(
                 self.equations,

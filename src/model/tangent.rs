@@ -110,7 +110,7 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     parameters: bool,
 ) -> Box<dyn Tangent<N> + 'a> {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = V3::try_new() {
+    if let Some(simd) = crate::series::avx2() {
         let pair = Pair::new(simd, [0.0; 2]);
         let four = Four::new(simd, [0.0; 4]);
         return if parameters {

@@ -78,11 +78,11 @@ pub(crate) trait Convoy: Send {
 pub(crate) fn convoy(law: AnyLaw) -> Option<Box<dyn Convoy>> {
     #[cfg(target_arch = "x86_64")]
     {
-        if let Some(simd) = pulp::x86::V4::try_new() {
+        if let Some(simd) = crate::series::avx512() {
             let zero = Eight::new(simd, [0.0; 8]);
             return Some(with_law!(law, law => Box::new(Lanes::new(simd, law.core(), zero))));
         }
-        if let Some(simd) = pulp::x86::V3::try_new() {
+        if let Some(simd) = crate::series::avx2() {
             let zero = Four::new(simd, [0.0; 4]);
             return Some(with_law!(law, law => Box::new(Lanes::new(simd, law.core(), zero))));
         }

@@ -31,6 +31,7 @@ mod stepper;
 mod tape;
 mod transport;
 mod variational;
+mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
@@ -50,6 +51,9 @@ pub use stepper::Stepper;
 pub use tape::Order;
 pub use transport::{Cubics, Transport};
 pub use variational::Variational;
+pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors};
+#[cfg(target_arch = "x86_64")]
+pub(crate) use vectors::{avx2, avx512};
 
 /// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
 pub const MAX_ORDER: usize = 18;
