@@ -113,6 +113,50 @@ fn bytes_depend_on_neither_threads_nor_words() {
     );
 }
 
+/// Whatever the instructions, the regimes are the same, and the numbers to what they claim.
+#[test]
+fn vector_instructions_change_no_verdict() {
+    let with = |vectors: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            .args(GRID.split_whitespace())
+            .args(["-q", "--format", "csv"])
+            .env("TWINSLIP_VECTORS", vectors)
+            .output()
+            .expect("the program starts");
+        let words = |bytes: Vec<u8>| String::from_utf8(bytes).expect("UTF-8");
+        (
+            output.status.code(),
+            words(output.stdout),
+            words(output.stderr),
+        )
+    };
+    let (code, out, _) = with("avx512");
+    assert_eq!(code, Some(0));
+    let all = csv(&out);
+    for vectors in ["avx2", "none"] {
+        let (code, out, _) = with(vectors);
+        assert_eq!(code, Some(0), "{vectors}");
+        for (row, other) in all[1..].iter().zip(&csv(&out)[1..]) {
+            assert_eq!(row[..4], other[..4], "{vectors}");
+            let number = |cell: &str| cell.parse::<f64>().ok();
+            for (x, y) in row[4..7].iter().zip(&other[4..7]) {
+                let (x, y) = (number(x), number(y));
+                let apart = x.zip(y).map_or(0.0, |(x, y)| (x - y).abs() / x.abs());
+                assert!(
+                    x.is_some() == y.is_some() && apart < 1e-7,
+                    "{vectors}: {row:?} {other:?}"
+                );
+            }
+        }
+    }
+    let (code, out, err) = with("sse");
+    assert_eq!((code, out.as_str()), (Some(2), ""));
+    assert_eq!(
+        err,
+        "error: TWINSLIP_VECTORS is sse, but must be avx512, avx2 or none\n"
+    );
+}
+
 /// Cut off at any byte, a file is gone on with and ends as if it had never been interrupted.
 #[test]
 fn a_torn_file_is_gone_on_with() {
