@@ -51,7 +51,11 @@ impl Judge {
         }
         let disorder = regularity(&points(&run.surface, half));
         if disorder > IRREGULAR {
-            return self.chaos(run, flows);
+            return match self.chaos(run, flows) {
+                Some(told) => told,
+                None if last => self.with_tangents(run),
+                None => Err("runs beside it take another way"),
+            };
         }
         if disorder < REGULAR {
             return self.with_tangents(run);
@@ -59,27 +63,31 @@ impl Judge {
         Err("the returns are neither regular nor irregular yet; raise --max-returns")
     }
 
-    /// Chaos, by the exponents along the last returns: of ever more, until they tell.
-    fn chaos(&self, run: &Run, flows: &mut Flows) -> std::result::Result<Told, &'static str> {
+    /// Chaos, by the exponents along the last returns: of ever more, until they tell. `None` where no runs beside it can be
+    /// compared with it.
+    fn chaos(
+        &self,
+        run: &Run,
+        flows: &mut Flows,
+    ) -> Option<std::result::Result<Told, &'static str>> {
         let all = run.returns();
         let settled = all.len() / 2;
         let mut count = *FOR_EXPONENTS.start();
         loop {
             count = count.min(settled).min(*FOR_EXPONENTS.end());
             if count < FEWEST_FOR_EXPONENTS {
-                return Err("too few returns for exponents; raise --max-returns");
+                return Some(Err("too few returns for exponents; raise --max-returns"));
             }
             let late: &[Return<3>] = &all[all.len() - count..];
-            let found = stretching(run, late, flows, self.settings.rtol)
-                .ok_or("runs beside it take another way")?;
+            let found = stretching(run, late, flows, self.settings.rtol)?;
             let made = aperiodic(&run.surface, late, self.settings.rtol, Some(found.known()));
             if made.regime == Regime::Chaotic {
                 let mut told = told(run, Regime::Chaotic, run.stress);
                 told.row.lyapunov_max = across(&found);
-                return Ok(told);
+                return Some(Ok(told));
             }
             if count == settled || count == *FOR_EXPONENTS.end() {
-                return Err(made.why.unwrap_or("its returns do not tell"));
+                return Some(Err(made.why.unwrap_or("its returns do not tell")));
             }
             count *= 2;
         }
