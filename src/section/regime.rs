@@ -2,7 +2,7 @@
 
 use super::curve::{Curve, invariant_curve, regularity};
 use super::lyapunov::Exponents;
-use super::periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+use super::periodicity::{Periodic, periodicity};
 use super::returns::{Ended, Record, Return};
 use super::surface::Surface;
 use crate::error::Result;
@@ -17,12 +17,18 @@ pub(crate) const REGULAR: f64 = 1e-5;
 pub(crate) const IRREGULAR: f64 = 1e-3;
 /// The error of the run moves a rotation number by so many tolerances.
 const PER_ACCURACY: f64 = 100.0;
-/// Points that repeat to this part of their spread repeat for good.
+/// Points that repeat to this part of their spread, or to so many tolerances, are those of an orbit that closes, or that would but
+/// for the error of the run; where that grows along the orbit, part of the points shows it.
 const REPEATED: f64 = 1e-7;
+const REPEATED_PER_ACCURACY: f64 = 1e3;
+const PART_THAT_REPEATS: f64 = 0.25;
 
 /// Chaos is told where disturbances have had time to grow by the exponential of this: what grew by less may be a passage from
 /// one regular motion to another.
 const GROWN: f64 = 10.0;
+
+/// A torus that is seen by its exponents alone has disturbances that grow or shrink by less, in the logarithm, over the record.
+const STAYED: f64 = 0.1;
 
 /// What a flow does in the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -126,17 +132,18 @@ pub(crate) fn aperiodic<const N: usize>(
     exponents: Option<Exponents<'_>>,
 ) -> Verdict<N> {
     let duration = returns[returns.len() - 1].time - returns[0].time;
-    let mut verdict = wandering(&points(surface, returns), duration, exponents);
+    let points = points(surface, returns);
+    let mut verdict = wandering(&points, (duration, accuracy), exponents);
     if let Some(curve) = &mut verdict.curve {
         curve.rotation.uncertainty += PER_ACCURACY * accuracy;
     }
     verdict
 }
 
-/// The regime of returns that are not periodic, recorded for so long.
+/// The regime of returns that are not periodic, recorded for so long and so accurately.
 fn wandering<const N: usize>(
     points: &[[f64; 2]],
-    duration: f64,
+    (duration, accuracy): (f64, f64),
     exponents: Option<Exponents<'_>>,
 ) -> Verdict<N> {
     let disorder = regularity(points);
@@ -144,15 +151,21 @@ fn wandering<const N: usize>(
     // A run that slowly leaves an equilibrium or an orbit has a positive exponent too, but little comes of it.
     let positive = |x: &Uncertain| (x.value - x.uncertainty) * duration > GROWN;
     if disorder < REGULAR {
-        if repeats(points) {
+        if repeats(points, accuracy) {
             return Verdict::undecided(
-                "the returns repeat after more than 64; a long period cannot be told from a torus",
+                "the returns repeat; a long period, or one that drowns in the error of the run, cannot be told from a torus: lower --rtol",
             );
         }
         let curve = invariant_curve(points);
         let two_vanish =
             exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(holds_zero));
+        // Without a curve to be seen an exponent that may vanish is not enough: it must be known to.
+        let known = |x: &Uncertain| (x.value.abs() + x.uncertainty) * duration < STAYED;
+        let surely = exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(known));
         return match (two_vanish, curve) {
+            (Some(true), None) if surely == Some(false) => Verdict::undecided(
+                "the returns look quasi-periodic on no simple curve, and exponents that may vanish are not known well enough; record more",
+            ),
             (Some(false), _) => Verdict::undecided(
                 "the returns look quasi-periodic but no second exponent vanishes; record more",
             ),
@@ -194,13 +207,17 @@ pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]
         .collect()
 }
 
-/// Whether all points repeat after some number of returns beyond [`LONGEST_PERIOD`].
-fn repeats(points: &[[f64; 2]]) -> bool {
+/// Whether many points repeat after some number of returns.
+fn repeats(points: &[[f64; 2]], accuracy: f64) -> bool {
     let n = points.len();
     let apart = |i: usize, j: usize| {
         let [x, y] = [0, 1].map(|k| points[i][k] - points[j][k]);
         x.abs().max(y.abs())
     };
     let spread = (1..n).map(|i| apart(i, 0)).fold(0.0, f64::max);
-    (LONGEST_PERIOD + 1..=n / 2).any(|q| (q..n).all(|i| apart(i, i - q) < REPEATED * spread))
+    let same = (REPEATED * spread).max(REPEATED_PER_ACCURACY * accuracy);
+    (1..=n / 2).any(|q| {
+        let repeating = (q..n).filter(|&i| apart(i, i - q) < same).count();
+        repeating as f64 >= PART_THAT_REPEATS * (n - q) as f64
+    })
 }

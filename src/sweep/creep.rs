@@ -46,7 +46,7 @@ pub(super) fn to_orbit(
     surface: &Surface<3>,
     taylor: &mut Taylor,
     returns: &[Return<3>],
-    (accuracy, converged): (f64, f64),
+    accuracy: f64,
 ) -> Option<Periodic<3>> {
     let n = returns.len();
     if n < FEWEST_RETURNS {
@@ -69,7 +69,7 @@ pub(super) fn to_orbit(
         .filter(|&(_, q)| shrinks(q))
         .find_map(|(from, q)| {
             let mut search = Search::new(field, surface, taylor, returns, (accuracy, q));
-            (search.from, search.near, search.converged) = (from, NEAR, converged);
+            (search.from, search.near, search.converged) = (from, NEAR, CONVERGED);
             search.shrunk = 1.0;
             let found = search.point()?;
             let (shrunk, _) = approach(returns, &found.point, found.returns)?;

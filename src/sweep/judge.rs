@@ -132,8 +132,9 @@ impl Judge {
         if let Some(equilibrium) = creep::to_rest(field, returns) {
             return Some(steady(run, equilibrium, true));
         }
-        let accuracy = (self.settings.rtol, CONVERGED);
-        let found = creep::to_orbit(field, &run.surface, &mut self.coarse, returns, accuracy)?;
+        // Where little is between the map and the identity, the point is off by much more than the map.
+        let rtol = self.settings.rtol;
+        let found = creep::to_orbit(field, &run.surface, &mut self.fine, returns, rtol)?;
         if !self.attracts(&found) {
             return None;
         }
