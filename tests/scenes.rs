@@ -52,6 +52,7 @@ fn every_scene_runs_and_can_be_drawn() {
         let has = |field: &str| made["result"].get(field).is_some();
         let panel = match (has("regime"), has("special") || has("regimes")) {
             (true, _) => "return map",
+            _ if name == "basin" => "ψ₁ at the start",
             (_, true) => "V_H [V*]",
             _ => "phase plane",
         };
