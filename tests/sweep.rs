@@ -9,7 +9,7 @@ use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Begin, Query, Slab, find};
+use twinslip::orbit::{Accuracy, Begin, Orbit, Query, Slab, find};
 use twinslip::section::Regime;
 use twinslip::sweep::{Grid, Range, Row, Settings, Sweeper, Units, run};
 
@@ -64,6 +64,21 @@ fn is_small_orbit(row: &Row) -> bool {
     row.regime == Regime::Periodic && row.returns_per_period == Some(1)
 }
 
+/// By multiple shooting.
+fn orbit(driving: f64, stiffness: f64, symmetry: Symmetry) -> Orbit {
+    let slab = Slab {
+        law: law(),
+        interfaces: 2,
+        loading: Loading::new(driving, stiffness).unwrap(),
+    };
+    let query = Query {
+        symmetry,
+        begin: Begin::Hopf,
+    };
+    let found = find(&slab, &query, &Accuracy::of(Choice::Taylor));
+    found.unwrap().orbit
+}
+
 /// Of `tests/data/`: the values of V_H at K = 0.14.
 const PITCHFORK: f64 = 0.049_863_166_268_876_87;
 const HOPF: f64 = 0.063_039_679_884_633_17;
@@ -98,18 +113,7 @@ fn along_k_02_the_torus_is_where_the_orbit_is_unstable() {
     let mut changes = Vec::new();
     let mut before = None;
     for row in rows(&settings) {
-        let slab = Slab {
-            law: law(),
-            interfaces: 2,
-            loading: Loading::new(row.driving, row.stiffness).unwrap(),
-        };
-        let query = Query {
-            symmetry: Symmetry::Asymmetric,
-            begin: Begin::Hopf,
-        };
-        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor))
-            .unwrap()
-            .orbit;
+        let orbit = orbit(row.driving, row.stiffness, Symmetry::Asymmetric);
         let stable = orbit.verdict() == Verdict::Stable;
         assert_eq!(is_small_orbit(&row), stable, "{row:?}");
         if stable {
@@ -163,18 +167,7 @@ fn slow_runs_are_neither_tori_nor_chaos() {
 fn exponents_are_those_of_the_multipliers() {
     for (driving, stiffness) in [(0.158_974, 0.051_724), (0.167_179, 0.059_655), (0.16, 0.07)] {
         let row = at(driving, stiffness, 0);
-        let slab = Slab {
-            law: law(),
-            interfaces: 2,
-            loading: Loading::new(driving, stiffness).unwrap(),
-        };
-        let query = Query {
-            symmetry: Symmetry::Asymmetric,
-            begin: Begin::Hopf,
-        };
-        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor))
-            .unwrap()
-            .orbit;
+        let orbit = orbit(driving, stiffness, Symmetry::Asymmetric);
         let largest = orbit.floquet.multipliers[0].ln_abs.value;
         let expected = largest / orbit.period.value;
         let found = row.lyapunov_max.expect("an exponent");
@@ -242,11 +235,6 @@ fn a_basin_has_both_attractors() {
         ..settings("1:2:2", "1:2:2", 1)
     };
     let rows = rows(&settings);
-    let slab = Slab {
-        law: law(),
-        interfaces: 2,
-        loading,
-    };
     for symmetry in [Symmetry::Symmetric, Symmetry::Asymmetric] {
         let all: Vec<&Row> = rows
             .iter()
@@ -254,12 +242,7 @@ fn a_basin_has_both_attractors() {
             .collect();
         let unequal = all.iter().filter(|row| row.start[1] != row.start[2]);
         assert!(unequal.count() >= 6, "{symmetry:?}");
-        let query = Query {
-            symmetry,
-            begin: Begin::Hopf,
-        };
-        let orbit = find(&slab, &query, &Accuracy::of(Choice::Taylor));
-        let period = orbit.unwrap().orbit.period.value;
+        let period = orbit(2.0, 0.1, symmetry).period.value;
         for row in all {
             assert_eq!(row.regime, Regime::Periodic);
             let off = row.period.unwrap() / period - 1.0;
