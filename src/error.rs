@@ -141,6 +141,14 @@ pub enum Error {
         /// K reached.
         stiffness: f64,
     },
+    /// A branch or curve has more points than are allowed.
+    #[error(
+        "stopped after {limit} points, as many as allowed; raise --max-points, or --step-limit for longer steps"
+    )]
+    TooManyPoints {
+        /// The bound.
+        limit: usize,
+    },
     /// Whoever asked for it wants it no more.
     #[error("interrupted; what was finished is kept")]
     Interrupted,

@@ -145,7 +145,12 @@ fn equilibria() {
         uncertain(&one["stress"]);
         for field in ["state", "log_state", "slip_rate"] {
             assert_eq!(one[field].as_array().map(Vec::len), Some(2), "{field}");
+            let bounds = &one[format!("{field}_uncertainty")];
+            let bounds = bounds.as_array().expect("a list");
+            assert!(bounds.len() == 2 && bounds.iter().all(|x| x.as_f64() > Some(0.0)));
         }
+        let bounds = one["eigenvalue_uncertainty"].as_array().expect("a list");
+        assert!(bounds.len() == 3 && bounds.iter().all(|x| x.as_f64() > Some(0.0)));
         let eigenvalues = one["eigenvalues"].as_array().expect("a list");
         assert_eq!(eigenvalues.len(), 3);
         assert!(
@@ -501,6 +506,19 @@ fn csv_holds_the_same_numbers_as_json() {
     }
     let uncertain = csv(&twinslip("equilibria --driving 1000 --format csv").out);
     assert_eq!(uncertain[0][1..3], ["stress", "stress_uncertainty"]);
+    let stable = csv(&twinslip("equilibria --driving 1000 --stiffness 1 --format csv").out);
+    for name in [
+        "log_state_uncertainty_2",
+        "slip_rate_uncertainty_1",
+        "eigenvalue_uncertainty_3",
+    ] {
+        let column = stable[0].iter().position(|x| x == name).expect("a column");
+        assert!(
+            stable[1..]
+                .iter()
+                .all(|row| row[column].parse::<f64>().is_ok())
+        );
+    }
 }
 
 #[test]

@@ -143,10 +143,17 @@ fn columns(interfaces: usize, table: bool) -> Vec<(String, Quantity)> {
         if !(table && quantity == Quantity::LogState) {
             columns.extend((1..=interfaces).map(|i| (format!("{name}_{i}"), quantity)));
         }
+        if !table {
+            let uncertainty = |i| (format!("{name}_uncertainty_{i}"), quantity);
+            columns.extend((1..=interfaces).map(uncertainty));
+        }
     }
     for i in 1..=shown_eigenvalues(interfaces, table) {
         columns.push((format!("eigenvalue_{i}_re"), Quantity::Growth));
         columns.push((format!("eigenvalue_{i}_im"), Quantity::Growth));
+        if !table {
+            columns.push((format!("eigenvalue_uncertainty_{i}"), Quantity::Growth));
+        }
     }
     columns.push(("verdict".to_owned(), Quantity::Number));
     if !table {
@@ -171,21 +178,27 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
     if !table {
         cells.push(stress.uncertainty.into());
     }
-    let mut extend = |quantity, values: &[f64]| {
-        cells.extend(
-            values
-                .iter()
-                .map(|&x| Cell::Number(units.outward(quantity, x))),
-        );
+    let mut extend = |quantity, values: Vec<f64>, uncertainties: Vec<f64>| {
+        let shown = if table { Vec::new() } else { uncertainties };
+        let all = values.into_iter().chain(shown);
+        cells.extend(all.map(|x| Cell::Number(units.outward(quantity, x))));
     };
-    extend(Quantity::State, &equilibrium.state());
+    let [state, log_state, slip_rate] = uncertainties(equilibrium);
+    extend(Quantity::State, equilibrium.state(), state);
     if !table {
-        extend(Quantity::LogState, &equilibrium.log_state);
+        let values = equilibrium.log_state.clone();
+        extend(Quantity::LogState, values, log_state);
     }
-    extend(Quantity::SlipRate, &equilibrium.slip_rate);
+    extend(Quantity::SlipRate, equilibrium.slip_rate.clone(), slip_rate);
     for i in 0..shown_eigenvalues(system.interfaces, table) {
-        let eigenvalue = found.stability.as_ref().map(|s| s.eigenvalues[i]);
-        for part in [eigenvalue.map(|z| z.re), eigenvalue.map(|z| z.im)] {
+        let known = found.stability.as_ref();
+        let eigenvalue = known.and_then(|s| s.eigenvalues.get(i));
+        let uncertainty = known.and_then(|s| s.uncertainty.get(i).copied());
+        let mut parts = vec![eigenvalue.map(|z| z.re), eigenvalue.map(|z| z.im)];
+        if !table {
+            parts.push(uncertainty);
+        }
+        for part in parts {
             cells.push(part.map(|x| units.outward(Quantity::Growth, x)).into());
         }
     }
@@ -197,6 +210,15 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
     cells
 }
 
+/// Of the states, of their logarithms and of the slip rates.
+fn uncertainties(equilibrium: &Equilibrium) -> [Vec<f64>; 3] {
+    [
+        equilibrium.state_uncertainty(),
+        equilibrium.log_state_uncertainty(),
+        equilibrium.slip_rate_uncertainty(),
+    ]
+}
+
 fn object(found: &Found, system: &System) -> Value {
     let units = &system.units;
     let equilibrium = &found.equilibrium;
@@ -204,18 +226,32 @@ fn object(found: &Found, system: &System) -> Value {
         values.iter().map(|&x| units.outward(quantity, x)).collect()
     };
     let pair = |z: &Complex<f64>| [z.re, z.im].map(|x| units.outward(Quantity::Growth, x));
-    let eigenvalues = found.stability.as_ref().map(|stability| {
-        let list: Vec<[f64; 2]> = stability.eigenvalues.iter().map(pair).collect();
-        list
-    });
+    // as many as there are, null where one is beyond the range of doubles
+    let count = shown_eigenvalues(system.interfaces, false);
+    let [eigenvalues, eigenvalue_uncertainty] = match &found.stability {
+        None => [Value::Null, Value::Null],
+        Some(stability) => {
+            let known = |i| stability.eigenvalues.get(i).map(pair);
+            let radius = |i| stability.uncertainty.get(i).copied();
+            let radius = |i| radius(i).map(|x| units.outward(Quantity::Growth, x));
+            [
+                json!((0..count).map(known).collect::<Vec<_>>()),
+                json!((0..count).map(radius).collect::<Vec<_>>()),
+            ]
+        }
+    };
+    let [state, log_state, slip_rate] = uncertainties(equilibrium);
     json!({
         "symmetry": symmetry(equilibrium.symmetry),
         "stress": report::uncertain(units, Quantity::Stress, equilibrium.stress),
         "state": out(Quantity::State, &equilibrium.state()),
+        "state_uncertainty": out(Quantity::State, &state),
         "log_state": out(Quantity::LogState, &equilibrium.log_state),
+        "log_state_uncertainty": out(Quantity::LogState, &log_state),
         "slip_rate": out(Quantity::SlipRate, &equilibrium.slip_rate),
-        "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
+        "slip_rate_uncertainty": out(Quantity::SlipRate, &slip_rate),
         "eigenvalues": eigenvalues,
+        "eigenvalue_uncertainty": eigenvalue_uncertainty,
         "verdict": found.stability.as_ref().map(|s| s.verdict.name()),
         "residual": found.residual,
     })

@@ -168,11 +168,13 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
 /// The landmarks in words.
 fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -> Vec<String> {
     let pair = |x: &Value| {
-        format!(
-            "{} +- {:e}",
-            x["value"],
-            x["uncertainty"].as_f64().unwrap_or(f64::NAN)
-        )
+        let value = x["value"].as_f64().map(|value| format!("{value:e}"));
+        let uncertainty = x["uncertainty"].as_f64().map(|u| format!(" +- {u:e}"));
+        match (value, uncertainty) {
+            (Some(_), Some(uncertainty)) => format!("{}{uncertainty}", x["value"]),
+            (Some(value), None) => format!("{value}, no digit of which is certain"),
+            (None, _) => "unknown".to_owned(),
+        }
     };
     let mut lines: Vec<String> = extrema
         .iter()

@@ -10,8 +10,12 @@ pub struct Uncertain {
 }
 
 impl Uncertain {
-    /// A value and the bound on its error.
+    /// A value and the bound on its error; a bound that came out as no number is none.
     pub fn new(value: f64, uncertainty: f64) -> Self {
-        Uncertain { value, uncertainty }
+        let known = uncertainty >= 0.0 && !value.is_nan();
+        Uncertain {
+            value,
+            uncertainty: if known { uncertainty } else { f64::INFINITY },
+        }
     }
 }

@@ -4,7 +4,7 @@ use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits};
+use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits, within};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
@@ -156,6 +156,7 @@ impl BranchPlan {
             tolerance: following.tolerance,
             skip: Vec::new(),
             doublings: options.doublings,
+            max_points: following.max_points,
         };
         Ok(BranchPlan {
             of,
@@ -196,10 +197,10 @@ impl BranchPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        match self.of {
+        within(request.max_points, seen, |seen| match self.of {
             Of::Equilibria => equilibria::branch(&request, seen),
             Of::Orbits => orbits::branch(&request, seen),
-        }
+        })
     }
 }
 

@@ -1,6 +1,7 @@
 //! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
 
 use super::options::{ModelOptions, OutputOptions, number};
+use crate::bifurcation::MAX_POINTS;
 use std::path::PathBuf;
 
 #[cfg(feature = "sundials")]
@@ -15,6 +16,9 @@ pub struct ContinuationOptions {
     /// Factor on the limits of continuation steps: below 1 there are more points, above 1 fewer
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = number, allow_negative_numbers = true)]
     pub step_limit: f64,
+    /// How many points there may be, of all branches or curves together; beyond is a failure, and the points are kept
+    #[arg(long, value_name = "N", default_value_t = MAX_POINTS)]
+    pub max_points: usize,
     /// Relative accuracy of special points, and of all points of a curve
     #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
     pub tolerance: f64,

@@ -19,6 +19,8 @@ pub struct Following {
     pub step: f64,
     /// Accuracy of special points.
     pub tolerance: f64,
+    /// How many points there may be.
+    pub max_points: usize,
     /// The second method.
     pub second: Option<Choice>,
 }
@@ -43,6 +45,10 @@ impl Following {
         Ok(Following {
             step: positive("step-limit", options.step_limit)?,
             tolerance,
+            max_points: match options.max_points {
+                0 => return Err(Error::parameter("max-points", 0, "at least 1")),
+                points => points,
+            },
             second: second.map(Choice::named).transpose()?,
         })
     }
@@ -134,10 +140,11 @@ pub(super) fn explain(following: &Following, at: &[f64]) -> String {
     };
     format!(
         "  step limits       times {}
+  points            at most {}
   special points    to {:e}, relatively
   landings          {landings}
   crosscheck        {second}
   rows              written as they come, and kept for the picture and the object",
-        following.step, following.tolerance
+        following.step, following.max_points, following.tolerance
     )
 }

@@ -4,7 +4,7 @@ use super::continuation::LocusOptions;
 use super::following::{self, Following, landings, numbers, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{LocusKind, LocusRequest, Seen, equilibria, orbits};
+use crate::bifurcation::{LocusKind, LocusRequest, Seen, equilibria, orbits, within};
 use crate::error::{Error, Result};
 use crate::model::Loading;
 use crate::orbit::Slab;
@@ -181,6 +181,7 @@ impl LocusPlan {
             tolerance: following.tolerance,
             criticality: options.criticality,
             skip: Vec::new(),
+            max_points: following.max_points,
         };
         Ok(LocusPlan {
             numerics: numerics(curve.name, options, &request, &following, &system.units),
@@ -231,11 +232,13 @@ impl LocusPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        if self.curve.orbits {
-            orbits::locus(&request, seen)
-        } else {
-            equilibria::locus(&request, seen)
-        }
+        within(request.max_points, seen, |seen| {
+            if self.curve.orbits {
+                orbits::locus(&request, seen)
+            } else {
+                equilibria::locus(&request, seen)
+            }
+        })
     }
 }
 

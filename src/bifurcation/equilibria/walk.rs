@@ -182,8 +182,9 @@ impl Walk<'_, '_> {
     }
 
     fn fold(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+        // a fold is where dV_H/dz certainly changes its sign
         let Some(fold) = fold(&self.request.slab.law, place.rates) else {
-            return self.plain(place, Label::Lp, "not refined");
+            return Ok(ControlFlow::Continue(()));
         };
         let at = Place {
             driving: fold.driving.value,
@@ -227,8 +228,7 @@ impl Walk<'_, '_> {
                 because: Some(error),
                 ..
             } => format!("no step is short enough: {error}"),
-            Stop::StepTooSmall { .. } => "no step is short enough".into(),
-            _ => "as many points as allowed".into(),
+            _ => "no step is short enough".into(),
         });
         self.teller.special(special)
     }
