@@ -167,7 +167,7 @@ impl Error {
     pub fn parameter(name: impl Into<String>, value: impl ToString, must: &'static str) -> Self {
         Error::Parameter {
             name: name.into(),
-            value: shortest(value.to_string()),
+            value: shortest(echoed(value.to_string())),
             must,
         }
     }
@@ -179,6 +179,18 @@ impl Error {
             Error::Parameter { .. } | Error::Input(_) | Error::File { .. }
         )
     }
+}
+
+/// What was given, as messages show it: of what is long the begin.
+fn echoed(given: String) -> String {
+    /// Letters that are shown.
+    const SHOWN: usize = 80;
+    let length = given.chars().count();
+    if length <= SHOWN {
+        return given;
+    }
+    let begin: String = given.chars().take(SHOWN).collect();
+    format!("{begin}... ({length} letters)")
 }
 
 /// A number with many zeros is easier to read with an exponent.

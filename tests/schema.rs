@@ -348,10 +348,12 @@ fn specials(made: &Value) {
     assert!(!list.is_empty());
     for one in list {
         assert_eq!(
-            fields(one)[..8],
+            fields(one)[..10],
             [
                 "label",
                 "name",
+                "branch",
+                "symmetry",
                 "driving",
                 "stiffness",
                 "period",
@@ -369,7 +371,7 @@ fn specials(made: &Value) {
     }
 }
 
-const BRANCH: [&str; 15] = [
+const BRANCH: [&str; 16] = [
     "driving",
     "stiffness",
     "stress",
@@ -385,6 +387,7 @@ const BRANCH: [&str; 15] = [
     "verdict",
     "label",
     "branch",
+    "symmetry",
 ];
 
 #[test]
@@ -401,7 +404,8 @@ fn branch() {
     assert!(rows.iter().all(|row| row["period"].is_null()));
     assert!(rows.iter().all(|row| row["branch"].is_u64()));
     let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
-    assert_eq!(table[0], BRANCH);
+    assert_eq!(table[0][..16], BRANCH);
+    assert_eq!(table[0][16..], ["row_check"]);
     assert_eq!(table.len() - 1, rows.len());
     for (line, row) in table[1..].iter().zip(rows) {
         assert_eq!(line[0].parse::<f64>().unwrap(), number(row, "/driving"));
@@ -435,7 +439,8 @@ fn locus() {
             "angle_over_pi",
             "criticality",
             "label",
-            "curve"
+            "curve",
+            "symmetry"
         ]
     );
     for row in rows {
@@ -454,7 +459,9 @@ fn locus() {
             "angle_over_pi",
             "criticality",
             "label",
-            "curve"
+            "curve",
+            "symmetry",
+            "row_check"
         ]
     );
     assert_eq!(table.len() - 1, rows.len());

@@ -186,6 +186,10 @@ impl Criticality {
 pub struct Special {
     /// What it is.
     pub label: Label,
+    /// The number of the branch or curve that it is on.
+    pub branch: usize,
+    /// The symmetry of the states or orbits of that branch.
+    pub symmetry: Option<Symmetry>,
     /// V_H.
     pub driving: Uncertain,
     /// K.
@@ -207,6 +211,8 @@ impl Special {
     pub fn new(label: Label, driving: Uncertain, stiffness: Uncertain) -> Self {
         Special {
             label,
+            branch: 0,
+            symmetry: None,
             driving,
             stiffness,
             period: None,
@@ -233,6 +239,8 @@ impl Special {
 pub struct BranchRow {
     /// The number of the branch, from 0: one run may follow several.
     pub branch: usize,
+    /// The symmetry of its states or orbits.
+    pub symmetry: Symmetry,
     /// V_H.
     pub driving: f64,
     /// K.
@@ -260,6 +268,8 @@ pub struct BranchRow {
 pub struct LocusRow {
     /// The number of the curve, from 0: a locus may consist of several.
     pub curve: usize,
+    /// The symmetry of the states or orbits that bifurcate.
+    pub symmetry: Symmetry,
     /// V_H.
     pub driving: Uncertain,
     /// K.
@@ -286,6 +296,18 @@ pub enum Event {
 }
 
 impl Event {
+    /// A special point with the branch or curve that it is on; what else there is as it is.
+    fn on(self, branch: usize, symmetry: Symmetry) -> Self {
+        match self {
+            Event::Special(special) => Event::Special(Special {
+                branch,
+                symmetry: Some(symmetry),
+                ..special
+            }),
+            row => row,
+        }
+    }
+
     /// A special point with a word where it is less accurate than was asked for; what else there is as it is.
     fn against(self, tolerance: f64) -> Self {
         match self {

@@ -1,7 +1,7 @@
 //! `twinslip equilibria`.
 
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::equilibrium::{
     Equilibrium, Solver, Stability, SteadyStates, Symmetry, Verdict, stability, steady_states,
 };
@@ -78,19 +78,21 @@ fn solver(name: Option<&str>) -> Result<(&'static str, Solver)> {
 }
 
 fn explain(system: &System, solver: &str) {
-    eprintln!("plan of this command");
-    eprintln!("  symmetric         closed formula at V_H over the number of interfaces");
+    say("plan of this command");
+    say("  symmetric         closed formula at V_H over the number of interfaces");
     if system.interfaces == 2 {
-        eprintln!("  asymmetric        {solver}, from a certain bracket around each solution");
+        say(format_args!(
+            "  asymmetric        {solver}, from a certain bracket around each solution"
+        ));
     } else {
-        eprintln!("  asymmetric        off: one interface has none");
+        say("  asymmetric        off: one interface has none");
     }
     if system.stiffness.is_some() {
-        eprintln!(
-            "  stability         on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials"
+        say(
+            "  stability         on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials",
         );
     } else {
-        eprintln!("  stability         off: it depends on the stiffness, which is not given");
+        say("  stability         off: it depends on the stiffness, which is not given");
     }
 }
 
@@ -114,15 +116,14 @@ fn write(
     let remarks = report.remarks(system, &numerics);
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     let units = unit_names(&system.units, columns.iter().map(|(_, quantity)| *quantity));
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &names, &units)
+        .begin(remarks, &names, &units)
         .and_then(|mut writer| {
             found
                 .iter()
                 .try_for_each(|one| writer.row(&cells(one, system, table)))
         });
-    written(all, &report.place)
+    report.ended(written(all, &report.place))
 }
 
 /// The columns of CSV; a table has room for what is looked at first.

@@ -3,7 +3,7 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::Out;
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::Result;
 use crate::output::{Cell, Format, Place, Rows, object, plot};
 use crate::scene::{
@@ -43,7 +43,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         } else {
             Keeping::Streamed
         };
-        eprint!("{}", explain(&plan, keeping));
+        say(explain(&plan, keeping).trim_end());
     }
     let columns = plan.columns.iter().map(|c| (c.name(), c.quantity()));
     let pictured = Column::pictured(plan.system.interfaces);
@@ -72,11 +72,11 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         plot::write(path, &picture(&plan, &drawn))?;
     }
     report.say(summary(&outcome, plan.events.is_some(), seconds));
-    match outcome.failure {
+    report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None => Ok(ending),
-    }
+    })
 }
 
 fn numerics(plan: &Plan) -> Value {

@@ -1,7 +1,7 @@
 //! `twinslip law`.
 
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::friction::{
     Extremum, ExtremumKind, Law, critical_stiffness, critical_stiffness_maximum, positive,
@@ -42,11 +42,11 @@ pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
 }
 
 fn report_plan(grid: &[f64]) {
-    eprintln!(
+    say(format_args!(
         "plan of this command\n  {} closed formulas at {} slip rates; extrema enclosed by interval arithmetic; no integration",
         COLUMNS.len() - 1,
         grid.len()
-    );
+    ));
 }
 
 /// Slip rates equally spaced in ln V, dimensionless.
@@ -149,9 +149,8 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
     let found = landmark_lines(&extrema, &maximum, transition);
     remarks.extend(found.iter().cloned());
     let units = unit_names(&system.units, COLUMNS.iter().map(|(_, quantity)| *quantity));
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &rows.columns, &units)
+        .begin(remarks, &rows.columns, &units)
         .and_then(|mut writer| {
             let mut cells = Vec::new();
             rows.iter().try_for_each(|row| {
@@ -160,7 +159,7 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
                 writer.row(&cells)
             })
         });
-    let ending = written(all, &report.place)?;
+    let ending = report.ended(written(all, &report.place))?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)
 }

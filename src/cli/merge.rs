@@ -1,9 +1,9 @@
 //! `twinslip merge`: the files of all parts of a sweep become the file that one run would have written.
 
 use super::sweep::file;
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Place, write_whole_by};
+use crate::output::{Place, Status, write_whole_by};
 use crate::scene::{Shard, SweepPlan};
 use crate::views;
 use std::collections::BTreeMap;
@@ -46,7 +46,8 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
         return Err(Error::Input("there are no files to merge".into()));
     };
     let columns = views::sweep_columns();
-    let beginning = file::beginning(plan, None, &columns);
+    let status = Status::Complete(Some(plan.settings.points()));
+    let beginning = file::beginning(plan, None, &columns, place.path().map(|_| status));
     let mut sources = Vec::new();
     for (plan, path) in &parts {
         let standing = file::read(path, plan, &columns, &mut |_, _| {})?;
@@ -62,8 +63,7 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
                 ),
             ));
         }
-        let beginning = file::beginning(plan, plan.shard, &columns).len() as u64;
-        sources.push(rows(path, beginning).map_err(|error| file::unreadable(path, error))?);
+        sources.push(rows(path, standing.rows).map_err(|error| file::unreadable(path, error))?);
     }
     let mut fill = |to: &mut dyn Write| interleave(plan, &beginning, &mut sources, to);
     let merged = match place.path() {
@@ -75,7 +75,11 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     };
     let ending = written(merged, &place)?;
     if !options.quiet {
-        eprintln!("{} rows of {} parts", plan.settings.points(), parts.len());
+        say(format_args!(
+            "{} rows of {} parts",
+            plan.settings.points(),
+            parts.len()
+        ));
     }
     Ok(ending)
 }

@@ -25,6 +25,7 @@ use crate::integrate::allowed_vectors;
 use crate::scene;
 use clap::{Parser, Subcommand};
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
 
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
@@ -71,6 +72,8 @@ pub(crate) enum Ending {
     Interrupted,
 }
 
+/// Messages on wrong usage that are longer lose what is in the midst of them.
+const LONGEST: usize = 1200;
 /// Exit status of a failed computation.
 const FAILED: u8 = 1;
 /// Exit status of wrong usage or input.
@@ -83,11 +86,19 @@ const INTERRUPTED: u8 = 130;
 /// Parses the arguments, runs, and says how it ended.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
+    interrupt::listen();
+    // A file that grows larger than is allowed is then an error of writing, and not the end of the process.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
     let line = match Line::try_parse_from(&arguments) {
         Ok(line) => line,
         Err(error) => {
             // Help and version are no errors; a closed standard output is nobody's.
-            let _ = error.print();
+            if error.use_stderr() && error.to_string().len() > LONGEST {
+                say(shortened(error.to_string()));
+            } else {
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT));
         }
     };
@@ -110,9 +121,12 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Stuck) => ExitCode::from(FAILED),
         Ok(Ending::Undecided) => ExitCode::from(UNDECIDED),
-        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Ok(Ending::Interrupted) => {
+            say(interrupt::words());
+            ExitCode::from(INTERRUPTED)
+        }
         Err(error) => {
-            eprintln!("error: {error}");
+            say(format_args!("error: {}", shortened(error.to_string())));
             ExitCode::from(if error.is_input() {
                 WRONG_INPUT
             } else {
@@ -120,6 +134,24 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             })
         }
     }
+}
+
+/// A message on standard error. That nobody reads it, or that it can't be written, is no error.
+fn say(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// A message may hold what was given, which may be long: its begin and its end say enough.
+fn shortened(text: String) -> String {
+    /// Letters that are shown of each.
+    const SHOWN: usize = 400;
+    let length = text.chars().count();
+    if length <= 3 * SHOWN {
+        return text;
+    }
+    let begin: String = text.chars().take(SHOWN).collect();
+    let end: String = text.chars().skip(length - SHOWN).collect();
+    format!("{begin} [{} letters left out] {end}", length - 2 * SHOWN)
 }
 
 /// What a scene file or the command line asks for.

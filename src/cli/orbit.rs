@@ -2,7 +2,7 @@
 
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -92,15 +92,15 @@ impl Plan {
         } else {
             3
         };
-        eprintln!("plan of this command");
-        eprintln!(
+        say("plan of this command");
+        say(format_args!(
             "  dimension         {dimension}{}",
             match (dimension, interfaces) {
                 (2, 2) => ": both interfaces move alike; the multiplier across is a quadrature",
                 _ => "",
             }
-        );
-        eprintln!(
+        ));
+        say(format_args!(
             "  guess             {}",
             match self.query.begin {
                 Begin::At {
@@ -111,24 +111,24 @@ impl Plan {
                     "what runs settle on, else the branch from the nearest Hopf point",
                 Begin::Hopf => "the branch from the nearest Hopf point, past its folds",
             }
-        );
-        eprintln!(
+        ));
+        say(format_args!(
             "  method            {}, tangents on, multiple shooting; rtol {:e}",
             method_name(self.accuracy.method),
             self.accuracy.tolerances.rtol
-        );
-        eprintln!(
-            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser"
+        ));
+        say(
+            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser",
         );
         match &self.second {
-            Some(second) => eprintln!(
+            Some(second) => say(format_args!(
                 "  crosscheck        {}, from nodes cut to three digits; rtol {:e}",
                 second.method.name(),
                 second.tolerances.rtol
-            ),
-            None => eprintln!("  crosscheck        off: --crosscheck none"),
+            )),
+            None => say("  crosscheck        off: --crosscheck none"),
         }
-        eprintln!("  dense output      on, for the extremes alone");
+        say("  dense output      on, for the extremes alone");
     }
 }
 
@@ -245,15 +245,14 @@ fn write(
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     let units = unit_names(&system.units, columns.iter().map(|(_, quantity)| *quantity));
     let remarks = report.remarks(system, &numerics);
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &names, &units)
+        .begin(remarks, &names, &units)
         .and_then(|mut writer| {
             std::iter::once(orbit)
                 .chain(others)
                 .try_for_each(|one| writer.row(&cells(one, system, table)))
         });
-    written(all, &report.place)
+    report.ended(written(all, &report.place))
 }
 
 /// The columns of CSV; a table has room for what is looked at first.

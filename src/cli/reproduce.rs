@@ -1,8 +1,8 @@
 //! `twinslip reproduce` and `twinslip figure`: the whole paper again, or a part of it.
 
-use super::Ending;
 use super::interrupt;
 use super::report::sundials;
+use super::{Ending, say};
 use crate::error::{Error, Result};
 use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -118,6 +118,13 @@ fn make(
     };
     let begun = Instant::now();
     let bar = Bar::new(making.quiet);
+    interrupt::keeps(match kept {
+        Kept::Whole { .. } => format!(
+            "what was finished is in {} and is not made again by the same command",
+            out.display()
+        ),
+        Kept::Files => "the figure was not finished, and no file was written".into(),
+    });
     interrupt::watch();
     let done = reproduce(&order, interrupt::flag(), &|told| bar.tell(told));
     interrupt::unwatch();
@@ -176,19 +183,25 @@ fn program(machine: &BTreeMap<String, String>) -> String {
 
 fn summary(done: &Done, order: &Order, wall: Duration) {
     for (product, seconds) in &done.made {
-        eprintln!("{:<10} {seconds:7.2} s  {}", product.id, product.title);
+        say(format_args!(
+            "{:<10} {seconds:7.2} s  {}",
+            product.id, product.title
+        ));
     }
     if !done.stood.is_empty() {
         let ids: Vec<&str> = done.stood.iter().map(|product| product.id).collect();
-        eprintln!("up to date, not made again: {}", ids.join(", "));
+        say(format_args!(
+            "up to date, not made again: {}",
+            ids.join(", ")
+        ));
     }
     let report = if order.report { ", report.html" } else { "" };
-    eprintln!(
+    say(format_args!(
         "{} made in {:.1} s{report} in {}",
         done.made.len(),
         wall.as_secs_f64(),
         order.out.display()
-    );
+    ));
 }
 
 /// One clear error: what can't be written goes before what was interrupted for that.
@@ -202,7 +215,7 @@ fn ending(done: Done) -> Result<Ending> {
         if *error == Error::Interrupted {
             ending = Ending::Interrupted;
         } else {
-            eprintln!("error: {}: {error}", product.id);
+            say(format_args!("error: {}: {error}", product.id));
             if ending == Ending::Done {
                 ending = Ending::Stuck;
             }

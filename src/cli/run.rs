@@ -42,6 +42,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
     }
     let switches = [
         ("quiet", options.output.quiet),
+        ("force", options.output.force),
         ("explain", options.output.explain),
     ];
     for (flag, on) in switches {

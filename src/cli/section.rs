@@ -3,7 +3,7 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::Out;
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::output::{Cell, Format, Rows, plot};
@@ -25,7 +25,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
     let report = Report::new(&options.output, words, &others)?;
     if options.output.explain {
-        eprint!("{}", explain_section(&plan));
+        say(explain_section(&plan).trim_end());
     }
     let columns = SectionColumn::all(plan.system.interfaces);
     let columns = columns.iter().map(|c| (c.name(), c.quantity())).collect();
@@ -50,14 +50,14 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
         None => {}
     }
     report.say(summary(&plan, &outcome, seconds));
-    match outcome.failure {
+    report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
             Ok(Ending::Undecided)
         }
         None => Ok(ending),
-    }
+    })
 }
 
 fn numerics(plan: &SectionPlan) -> Value {

@@ -48,6 +48,22 @@ pub enum Symmetry {
     Asymmetric,
 }
 
+impl Symmetry {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Symmetry::Symmetric => "symmetric",
+            Symmetry::Asymmetric => "asymmetric",
+        }
+    }
+
+    /// The one of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        let both = [Symmetry::Symmetric, Symmetry::Asymmetric];
+        both.into_iter().find(|symmetry| symmetry.name() == name)
+    }
+}
+
 /// A steady state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {

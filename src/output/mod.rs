@@ -7,11 +7,13 @@ pub mod page;
 pub mod parquet;
 mod place;
 pub mod plot;
+mod rowfile;
 mod table;
 
-pub use csv::{CsvRows, EarlierRows, cells_of};
+pub use csv::{CsvRows, Head, ROW_CHECK, checked_cells, checked_line, damage, head, whole_line};
 pub use json::{Envelope, Rows, object, uncertain};
-pub use place::{Place, write_whole, write_whole_by};
+pub use place::{Place, remove_temporary, write_whole, write_whole_by};
+pub use rowfile::{OURS, Over, RowFile, Status};
 pub use table::{TableRows, number as seven_digits};
 
 use crate::error::{Error, Result};

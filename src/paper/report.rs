@@ -4,7 +4,7 @@ use super::pieces::scene_text;
 use super::product::{Make, PRODUCTS, Product};
 use super::record::{Entry, Record};
 use crate::error::Result;
-use crate::output::EarlierRows;
+use crate::output::Head;
 use crate::output::page::{Figure, FileRow, Page, Score, Table};
 use serde_json::Value;
 use std::path::Path;
@@ -135,9 +135,12 @@ fn figure(dir: &Path, product: &Product, entry: &Entry) -> Figure {
 
 fn table(dir: &Path, product: &Product) -> Table {
     let csv_file = format!("{}.csv", product.id);
-    let rows = EarlierRows::read(&text(dir, &csv_file));
+    let text = text(dir, &csv_file);
+    let mut rows = text.as_bytes();
+    let head = Head::read(&mut rows).unwrap_or_default();
     // The first column only names the part of the file.
-    let cells = |line: &String| {
+    let cells = |line: std::io::Result<String>| {
+        let line = line.unwrap_or_default();
         let cells = line.split(',').skip(1);
         cells.map(str::to_owned).collect::<Vec<String>>()
     };
@@ -145,13 +148,13 @@ fn table(dir: &Path, product: &Product) -> Table {
         id: product.id.into(),
         title: product.title.into(),
         caption: product.caption.into(),
-        columns: rows
+        columns: head
             .columns
             .iter()
             .skip(1)
             .map(|name| name.replace('_', " "))
             .collect(),
-        rows: rows.lines.iter().map(cells).collect(),
+        rows: std::io::BufRead::lines(rows).map(cells).collect(),
         csv_file,
     }
 }

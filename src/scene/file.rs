@@ -4,6 +4,8 @@
 
 use crate::error::{Error, Result};
 use clap::{Arg, ArgAction, Command};
+use std::fs::File;
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
@@ -11,6 +13,9 @@ use toml::de::{DeTable, DeValue};
 
 /// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
 const SIMILAR: f64 = 0.75;
+
+/// No scene is longer, in bytes.
+const LONGEST: u64 = 1 << 18;
 
 /// The key of the word after the command, as in `branch orbits`.
 const POSITIONAL: &str = "of";
@@ -34,11 +39,7 @@ impl SceneFile {
     /// # Errors
     /// [`Error::File`] if it can't be read; [`Error::Input`] with file, line and key for what is wrong in it.
     pub fn read(path: &Path, program: &Command) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|error| Error::File {
-            action: "read",
-            path: path.to_owned(),
-            reason: error.to_string(),
-        })?;
+        let text = read_bounded(path, LONGEST)?;
         Self::parse(&path.display().to_string(), &text, program)
     }
 
@@ -225,6 +226,25 @@ fn scalar(value: &DeValue<'_>) -> Option<String> {
         DeValue::String(text) => Some(text.to_string()),
         _ => None,
     }
+}
+
+/// The text of a file that is not longer than so many bytes; of a longer one no more is read.
+///
+/// # Errors
+/// [`Error::File`] if it can't be read, is no text or is longer.
+fn read_bounded(path: &Path, most: u64) -> Result<String> {
+    let wrong = |reason: String| Error::File {
+        action: "read",
+        path: path.to_owned(),
+        reason,
+    };
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
+    read.map_err(|error| wrong(error.to_string()))?;
+    if bytes.len() as u64 > most {
+        return Err(wrong(format!("it is longer than {most} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|_| wrong("it is not UTF-8".into()))
 }
 
 /// Whether an option takes a number: its parser says what it makes.

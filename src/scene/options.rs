@@ -91,6 +91,9 @@ pub struct OutputOptions {
     /// Write data to FILE; - is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// Replace FILE even if it holds an unfinished run, or what this program has not written
+    #[arg(long)]
+    pub force: bool,
     /// No messages, no progress, no summary; errors are still told
     #[arg(short, long)]
     pub quiet: bool,

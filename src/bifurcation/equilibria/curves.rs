@@ -5,6 +5,7 @@
 //! and the symmetric state is no part of it.
 
 use crate::continuation::{Point, ZeroProblem};
+use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::friction::{AnyLaw, Law, steady_log_activation};
 use crate::number::{Difference, Jet, Real};
@@ -47,6 +48,14 @@ pub(super) enum Curve {
 }
 
 impl Curve {
+    /// The symmetry of its equilibria.
+    pub fn symmetry(self) -> Symmetry {
+        match self {
+            Curve::Symmetric { .. } => Symmetry::Symmetric,
+            Curve::Asymmetric => Symmetry::Asymmetric,
+        }
+    }
+
     /// Both slip rates at V_H, the slower one first.
     pub fn rates(self, point: &Point, driving: f64) -> [f64; 2] {
         match self {

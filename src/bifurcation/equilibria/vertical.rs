@@ -10,6 +10,7 @@ use super::special::Teller;
 use super::stationary::{Fold, fold, fold_test, pitchforks};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
 use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::number::Uncertain;
@@ -105,6 +106,10 @@ fn along(
     for (stiffness, label) in values(request, line) {
         teller.locus(LocusRow {
             curve,
+            symmetry: match request.kind {
+                LocusKind::Pitchfork => Symmetry::Symmetric,
+                _ => Symmetry::Asymmetric,
+            },
             driving: line.driving,
             stiffness,
             period: None,

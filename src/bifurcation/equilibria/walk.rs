@@ -114,6 +114,7 @@ impl Walk<'_, '_> {
         let pair = |all: &[f64]| [all[0], *all.last().unwrap_or(&all[0])];
         Ok(BranchRow {
             branch: self.number,
+            symmetry: self.curve.symmetry(),
             driving: place.driving,
             stiffness: place.stiffness,
             stress,
@@ -230,6 +231,7 @@ impl Walk<'_, '_> {
             } => format!("no step is short enough: {error}"),
             _ => "no step is short enough".into(),
         });
+        self.teller.on(self.number, self.curve.symmetry());
         self.teller.special(special)
     }
 

@@ -9,9 +9,8 @@ mod ranks;
 #[cfg(any(feature = "mpi", test))]
 mod wire;
 
-use super::continuation::interrupted;
 use super::report::Report;
-use super::{Ending, interrupt, written};
+use super::{Ending, interrupt, say, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{SweepOptions, SweepPlan};
@@ -48,7 +47,7 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     let (resume, plot) = (options.resume.as_deref(), options.plot.as_deref());
     let report = Report::resuming(&options.output, words, (resume, plot))?;
     if options.output.explain {
-        eprintln!("{}", plan.explain());
+        say(plan.explain());
     }
     let columns = views::sweep_columns();
     let mut out = Out::new(&plan, &report, &columns, plot.is_some());
@@ -76,13 +75,14 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
         return written(Err(error), &report.place);
     }
     failure?;
+    out.end(interrupt::asked())?;
     let ending = write(&plan, &report, &out)?;
     if let Some(path) = plot {
         picture::draw(&plan, &report, &out.rows, path)?;
     }
     report.say(out.summary(seconds));
     Ok(match ending {
-        _ if interrupt::asked() => interrupted(&report),
+        _ if interrupt::asked() => Ending::Interrupted,
         Ending::Done if out.nothing_decided() => Ending::Undecided,
         ending => ending,
     })

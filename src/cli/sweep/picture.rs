@@ -54,6 +54,9 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[Row], path: &Path) ->
 /// The points of a curve; a map without all of it is better than none.
 fn points(locus: &LocusPlan, report: &Report<'_>) -> Vec<LocusRow> {
     let mut points = Vec::new();
+    if interrupt::asked() {
+        return points;
+    }
     let followed = locus.follow(&[], &mut |event| {
         if let Event::Locus(row) = event {
             points.push(row);
