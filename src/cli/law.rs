@@ -7,6 +7,7 @@ use crate::friction::{
     Extremum, ExtremumKind, Law, critical_stiffness, critical_stiffness_maximum, positive,
     steady_stress,
 };
+use crate::number::Uncertain;
 use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
@@ -168,11 +169,8 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
 /// The landmarks in words.
 fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -> Vec<String> {
     let pair = |x: &Value| {
-        format!(
-            "{} +- {:e}",
-            x["value"],
-            x["uncertainty"].as_f64().unwrap_or(f64::NAN)
-        )
+        let number = |name: &str| x[name].as_f64().unwrap_or(f64::NAN);
+        Uncertain::new(number("value"), number("uncertainty"))
     };
     let mut lines: Vec<String> = extrema
         .iter()
