@@ -422,7 +422,10 @@ fn wrong_branches_are_refused() {
             "tolerance is 1, but must be at least 1e-15",
         ),
         ("--step-limit 0", "step-limit is 0, but must be positive"),
-        ("--crosscheck=euler", "there is no method \"euler\""),
+        (
+            "--crosscheck=euler",
+            "method is euler, but must be one of auto",
+        ),
         ("--plot x.pdf", "must end in .svg or .png"),
     ] {
         refused(&orbits(change), sentence);
@@ -433,13 +436,21 @@ fn wrong_branches_are_refused() {
 fn wrong_curves_are_refused() {
     for (arguments, sentence) in [
         ("locus", "one of pitchfork, saddle-node, hopf"),
-        ("locus fold", "there is no curve of \"fold\""),
+        (
+            "locus fold",
+            "bifurcation is fold, but must be one of pitchfork",
+        ),
         (
             "locus hopf --stiffness 0.14",
             "--stiffness varies along a curve",
         ),
         ("locus hopf --driving 1", "use --driving-range"),
-        ("locus hopf --driving-range 1", "must be two numbers, A,B"),
+        ("locus hopf --driving-range 1", "must be A:B, two numbers"),
+        (
+            "locus hopf --driving-range 1:2:3",
+            "must be A:B, two numbers",
+        ),
+        ("locus hopf --driving-range 1:", "\"\" is not a number"),
         ("locus hopf --driving-range 1,1", "begins and ends at 1"),
         ("locus hopf --driving-range 1,nan", "must be positive"),
         ("locus hopf --stiffness-range 0,1", "stiffness-range is 0"),

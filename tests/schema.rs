@@ -252,7 +252,7 @@ fn an_orbit_that_is_none_fails_and_bad_input_is_refused() {
         (
             "orbit --driving 1 --stiffness 0.14 --crosscheck taylor",
             2,
-            "the method itself",
+            "the method of the orbit itself",
         ),
         (
             "orbit --driving 1 --stiffness 0.14 --period-guess 3",

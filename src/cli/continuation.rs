@@ -4,6 +4,7 @@ use super::progress::Progress;
 use super::report::{Report, unit_names};
 use super::resume::{Expected, Kept, beside, row_key, special_key};
 use super::rows::Row;
+use super::words::{several, time};
 use super::{Ending, interrupt, say, special, written};
 use crate::bifurcation::{Criticality, Event, Label, Seen, Special, orbits};
 use crate::error::{Error, Result};
@@ -359,19 +360,16 @@ impl<'a, R: Row> Out<'a, R> {
         let mut numbers: Vec<usize> = self.rows.iter().map(R::number).collect();
         numbers.sort_unstable();
         numbers.dedup();
-        let count = |n: usize, one: &str, more: &str| match n {
-            1 => format!("1 {one}"),
-            n => format!("{n} {more}"),
-        };
         let mut text = format!(
-            "{} on {}, {}, {seconds:.3} s",
-            count(self.rows.len(), "point", "points"),
-            count(numbers.len(), R::WHOLE, R::WHOLES),
-            count(self.special.len(), "special point", "special points")
+            "{} on {}, {}, {}",
+            several(self.rows.len(), "point", "points"),
+            several(numbers.len(), R::WHOLE, R::WHOLES),
+            several(self.special.len(), "special point", "special points"),
+            time(seconds)
         );
         if self.task.resume.is_some() {
             let kept = self.rows.len() - self.new;
-            text += &format!("; {} kept", count(kept, "point", "points"));
+            text += &format!("; {} kept", several(kept, "point", "points"));
         }
         text
     }

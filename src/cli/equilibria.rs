@@ -73,7 +73,7 @@ fn solver(name: Option<&str>) -> Result<(&'static str, Solver)> {
             "solver kinsol needs SUNDIALS, which this build is without; choose newton".into(),
         )),
         "newton" => Ok(("newton", Solver::Newton)),
-        other => Err(Error::parameter("solver", other, "kinsol or newton")),
+        other => Err(Error::unknown("solver", other, &["kinsol", "newton"])),
     }
 }
 

@@ -3,6 +3,7 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::Out;
+use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::Result;
 use crate::output::{Cell, Format, Place, Rows, object, plot};
@@ -218,13 +219,16 @@ fn event_object(event: &Event, system: &System) -> Map<String, Value> {
 fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
-        "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {seconds:.3} s",
-        work.steps, work.rejected, work.rhs, work.jacobians
+        "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {}",
+        count(work.steps),
+        count(work.rejected),
+        count(work.rhs),
+        count(work.jacobians),
+        time(seconds)
     );
     if events {
-        let count = outcome.events.len();
-        let plural = if count == 1 { "" } else { "s" };
-        text.push_str(&format!(", {count} event{plural}"));
+        let events = several(outcome.events.len(), "event", "events");
+        text.push_str(&format!(", {events}"));
     }
     if let Some(estimate) = outcome.error_estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));

@@ -7,6 +7,7 @@ use crate::friction::{
     Extremum, ExtremumKind, Law, critical_stiffness, critical_stiffness_maximum, positive,
     steady_stress,
 };
+use crate::number::Uncertain;
 use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
@@ -167,11 +168,10 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
 /// The landmarks in words.
 fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -> Vec<String> {
     let pair = |x: &Value| {
-        let value = x["value"].as_f64().map(|value| format!("{value:e}"));
-        let uncertainty = x["uncertainty"].as_f64().map(|u| format!(" +- {u:e}"));
-        match (value, uncertainty) {
-            (Some(_), Some(uncertainty)) => format!("{}{uncertainty}", x["value"]),
-            (Some(value), None) => format!("{value}, no digit of which is certain"),
+        let number = |name: &str| x[name].as_f64();
+        match (number("value"), number("uncertainty")) {
+            (Some(value), Some(uncertainty)) => Uncertain::new(value, uncertainty).to_string(),
+            (Some(value), None) => format!("{value:e}, no digit of which is certain"),
             (None, _) => "unknown".to_owned(),
         }
     };

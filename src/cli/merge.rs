@@ -3,7 +3,7 @@
 use super::sweep::file;
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Place, Status, write_whole_by};
+use crate::output::{Format, Place, Status, write_whole_by};
 use crate::scene::{Shard, SweepPlan};
 use crate::views;
 use std::collections::BTreeMap;
@@ -33,6 +33,12 @@ pub struct MergeOptions {
 
 pub fn run(options: &MergeOptions) -> Result<Ending> {
     let place = Place::new(Some(&options.output));
+    if Format::choose(None, place.path(), false)? != Format::Csv {
+        return Err(Error::Input(format!(
+            "--output {}: merge writes CSV; choose a name that ends in .csv",
+            options.output.display()
+        )));
+    }
     place.check()?;
     if let Some(file) = options
         .files

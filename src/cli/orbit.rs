@@ -2,6 +2,7 @@
 
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
+use super::words::several;
 use super::{Ending, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
@@ -33,10 +34,10 @@ impl Plan {
             "symmetric" => Symmetry::Symmetric,
             "asymmetric" => Symmetry::Asymmetric,
             other => {
-                return Err(Error::parameter(
+                return Err(Error::unknown(
                     "symmetry",
                     other,
-                    "symmetric or asymmetric",
+                    &["symmetric", "asymmetric"],
                 ));
             }
         };
@@ -154,7 +155,7 @@ fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
     let method = Choice::named(name)?;
     if method_name(method) == method_name(first) {
         return Err(Error::Input(format!(
-            "--crosscheck {name} is the method itself; choose an unlike one, or none"
+            "--crosscheck {name} is the method of the orbit itself; choose another, or none"
         )));
     }
     Ok(Some(Accuracy {
@@ -191,13 +192,11 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
     let unit = system.units.name(Quantity::Time);
     let period = system.units.outward_uncertain(Quantity::Time, orbit.period);
     let mut text = format!(
-        "period {} ± {:.1e} {unit}, {}; {} nodes, {} iterations, {} steps",
-        period.value,
-        period.uncertainty,
+        "period ({period}) {unit}, {}; {}, {}, {}",
         orbit.verdict().name(),
-        orbit.nodes.len(),
-        orbit.iterations,
-        orbit.work.steps
+        several(orbit.nodes.len(), "node", "nodes"),
+        several(orbit.iterations, "iteration", "iterations"),
+        several(orbit.work.steps, "step", "steps")
     );
     if let Some(Crosscheck {
         orbit: second,
@@ -207,7 +206,7 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
     {
         let relative = period_difference / orbit.period.value;
         text += &format!(
-            "; {} finds a period {relative:.1e} off, relatively",
+            "; the period by {} differs by {relative:.1e} of it",
             second.method
         );
     }

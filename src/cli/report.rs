@@ -45,6 +45,12 @@ impl<'a> Report<'a> {
     ) -> Result<Self> {
         let place = Place::new(options.output.as_deref());
         let terminal = std::io::stdout().is_terminal();
+        if let Some(path) = others.iter().find(|path| place.path() == Some(path)) {
+            return Err(Error::Input(format!(
+                "{} cannot be both data and picture",
+                path.display()
+            )));
+        }
         let format = Format::choose(options.format.as_deref(), place.path(), terminal)?;
         let rows = place.path().filter(|_| format != Format::Json);
         let file = match rows {
@@ -56,12 +62,6 @@ impl<'a> Report<'a> {
         }
         for path in others {
             Place::File(path.to_path_buf()).check()?;
-            if place.path() == Some(path) {
-                return Err(Error::Input(format!(
-                    "{} cannot be both data and picture",
-                    path.display()
-                )));
-            }
         }
         Ok(Report {
             format,
@@ -99,8 +99,11 @@ impl<'a> Report<'a> {
         if output.is_some_and(|output| output != resumed) {
             return refused(" writes into that file; leave out --output");
         }
+        // What can be gone on with is CSV, whatever its name.
+        let csv = || (resumed.extension() != Some("json".as_ref())).then(|| "csv".to_owned());
         let output = OutputOptions {
             output: Some(resumed.to_owned()),
+            format: options.format.clone().or_else(csv),
             ..options.clone()
         };
         let report = Report::over(&output, words, &others, Over::All)?;
@@ -182,9 +185,31 @@ impl<'a> Report<'a> {
         units: &[String],
     ) -> std::io::Result<Box<dyn RowWriter>> {
         Ok(match self.format {
-            Format::Table => Box::new(TableRows::new(to, columns, units)?),
+            Format::Table => self.table(to, columns, units)?,
             Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
         })
+    }
+
+    /// Opens a table no wider than the terminal, and says which columns that has no room for.
+    fn table(
+        &self,
+        to: Box<dyn std::io::Write>,
+        columns: &[String],
+        units: &[String],
+    ) -> std::io::Result<Box<dyn RowWriter>> {
+        let width = match self.place {
+            Place::Standard => terminal_size::terminal_size_of(std::io::stdout()),
+            Place::File(_) => None,
+        };
+        let width = width.map_or(usize::MAX, |(width, _)| usize::from(width.0));
+        let table = TableRows::within(width, to, columns, units)?;
+        if !table.hidden().is_empty() {
+            self.say(format!(
+                "no room for {}: widen the terminal, or ask for --format csv or json",
+                table.hidden().join(", ")
+            ));
+        }
+        Ok(Box::new(table))
     }
 
     /// The object of a command as one line.

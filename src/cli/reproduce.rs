@@ -2,8 +2,10 @@
 
 use super::interrupt;
 use super::report::sundials;
+use super::words::{count, time};
 use super::{Ending, say};
 use crate::error::{Error, Result};
+use crate::integrate::used_vectors;
 use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
@@ -38,9 +40,9 @@ pub struct ReproduceOptions {
 /// `figure`: one figure as CSV and SVG.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct FigureOptions {
-    /// Its number in the paper, 1 to 17
+    /// Its number in the paper, 1 to 17; fig7 and fig07 mean the same
     #[arg(value_name = "N")]
-    number: u8,
+    number: String,
     /// Where the files go
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
@@ -55,7 +57,7 @@ pub struct Making {
     /// Pictures as PNG too
     #[arg(long)]
     png: bool,
-    /// Threads [default: one a processor]; results do not depend on them
+    /// Threads [default: one per processor]; results do not depend on them
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     /// Say nothing but errors
@@ -88,11 +90,7 @@ pub fn run(options: &ReproduceOptions) -> Result<Ending> {
 }
 
 pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
-    let number = options.number;
-    if !(1..=17).contains(&number) {
-        return Err(Error::parameter("figure", number, "from 1 to 17"));
-    }
-    let product = Product::named(&format!("fig{number:02}"))?;
+    let product = Product::named(&options.number)?;
     make(&options.out, vec![product], &options.making, Kept::Files)
 }
 
@@ -148,27 +146,12 @@ fn machine() -> BTreeMap<String, String> {
         ("architecture", std::env::consts::ARCH.to_owned()),
         ("system", std::env::consts::OS.to_owned()),
         ("processors", cores.to_string()),
-        ("vectors", vectors().to_owned()),
+        ("vectors", used_vectors().name().to_owned()),
     ];
     facts
         .into_iter()
         .map(|(name, value)| (name.to_owned(), value))
         .collect()
-}
-
-/// The widest vectors that the processor computes with: fused multiplications change last digits.
-fn vectors() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if std::arch::is_x86_feature_detected!("avx512f") {
-            return "AVX-512";
-        }
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-        {
-            return "AVX2 with FMA";
-        }
-    }
-    "none"
 }
 
 /// What decides about the numbers: all of that but the number of processors, and the program itself, to the byte.
@@ -197,9 +180,9 @@ fn summary(done: &Done, order: &Order, wall: Duration) {
     }
     let report = if order.report { ", report.html" } else { "" };
     say(format_args!(
-        "{} made in {:.1} s{report} in {}",
-        done.made.len(),
-        wall.as_secs_f64(),
+        "{} made in {}{report}, in the directory {}",
+        count(done.made.len()),
+        time(wall.as_secs_f64()),
         order.out.display()
     ));
 }

@@ -246,13 +246,7 @@ impl AnyLaw {
             "regularised-ageing" => AnyLaw::RegularisedAgeing(parameters.regularised_ageing()),
             "dieterich-ruina" => AnyLaw::DieterichRuina(parameters.dieterich_ruina()),
             "slip" => AnyLaw::Slip(parameters.slip()),
-            _ => {
-                return Err(Error::parameter(
-                    "law",
-                    name,
-                    "one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip",
-                ));
-            }
+            _ => return Err(Error::unknown("law", name, &AnyLaw::NAMES)),
         })
     }
 

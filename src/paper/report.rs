@@ -1,11 +1,11 @@
 //! The report: one page of all that lies complete in the directory, made of the files themselves.
 
-use super::pieces::scene_text;
 use super::product::{Make, PRODUCTS, Product};
 use super::record::{Entry, Record};
 use crate::error::Result;
 use crate::output::Head;
 use crate::output::page::{Figure, FileRow, Page, Score, Table};
+use crate::scene::shipped;
 use serde_json::Value;
 use std::path::Path;
 
@@ -115,7 +115,7 @@ fn manifest(record: &Record) -> Vec<(String, String)> {
 
 fn figure(dir: &Path, product: &Product, entry: &Entry) -> Figure {
     let scenes = product.scenes.iter().map(|scene| {
-        let text = scene_text(scene).unwrap_or_default();
+        let text = shipped(scene).unwrap_or_default();
         (format!("{scene}.toml"), text.to_owned())
     });
     let svg_file = format!("{}.svg", product.id);

@@ -12,6 +12,9 @@ pub(super) const DRIVING: (f64, f64) = (1e-3, 1e6);
 /// K from, to.
 pub(super) const STIFFNESS: (f64, f64) = (1e-3, 1.0);
 
+/// What `--symmetry` takes.
+pub(super) const SYMMETRIES: [&str; 3] = ["symmetric", "asymmetric", "both"];
+
 /// How to follow, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Following {
@@ -63,11 +66,7 @@ pub(super) fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>
             "symmetry is asymmetric, but a single interface has nothing to differ from".into(),
         )),
         "asymmetric" => Ok(Some(Symmetry::Asymmetric)),
-        other => Err(Error::parameter(
-            "symmetry",
-            other,
-            "symmetric, asymmetric or both",
-        )),
+        other => Err(Error::unknown("symmetry", other, &SYMMETRIES)),
     }
 }
 
@@ -84,13 +83,18 @@ pub(super) fn range(name: &str, (from, to): (f64, f64)) -> Result<(f64, f64)> {
 /// Positive numbers, comma-separated, in the user's units.
 pub(super) fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
     text.split(',')
-        .map(|word| match word.trim().parse::<f64>() {
-            Ok(x) => positive(name, x),
-            Err(_) => Err(Error::Input(format!(
-                "--{name} {text}: {word:?} is not a number; it must be positive numbers with commas between"
-            ))),
-        })
+        .map(|word| number(name, text, word))
         .collect()
+}
+
+/// One of the positive numbers in the text of an option.
+pub(super) fn number(name: &str, text: &str, word: &str) -> Result<f64> {
+    match word.trim().parse::<f64>() {
+        Ok(x) => positive(name, x),
+        Err(_) => Err(Error::Input(format!(
+            "--{name} {text}: {word:?} is not a number"
+        ))),
+    }
 }
 
 /// The values of an option to land on, dimensionless, which must lie in the range.

@@ -3,6 +3,7 @@
 use super::super::interrupt;
 use super::super::progress::Progress;
 use super::super::report::{Report, unit_names};
+use super::super::words::{count, several, time};
 use super::file;
 use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
@@ -175,16 +176,22 @@ impl<'a> Out<'a> {
         let regimes: Vec<String> = self
             .regimes()
             .filter(|(_, count)| *count > 0)
-            .map(|(name, count)| format!("{count} {name}"))
+            .map(|(name, number)| format!("{} {name}", count(number)))
             .collect();
         let earlier = self.counts.iter().sum::<usize>() - self.new;
         let earlier = match earlier {
             0 => String::new(),
-            n => format!(" after {n} of an earlier run"),
+            n => format!(" after {} of an earlier run", count(n)),
         };
         format!(
-            "{} points{earlier} in {seconds:.3} s, {rate:.1} a second: {}",
-            self.new,
+            "{}{earlier} in {}, {} a second: {}",
+            several(self.new, "point", "points"),
+            time(seconds),
+            if rate < 10.0 {
+                format!("{rate:.1}")
+            } else {
+                count(rate as usize)
+            },
             regimes.join(", ")
         )
     }
