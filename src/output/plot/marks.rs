@@ -17,7 +17,8 @@ const TIED: f64 = 12.0;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
-/// Writes the notes that lie in the frame, and gives their middles and sizes.
+/// Writes the notes that lie in the frame, each where it covers neither a curve nor another one, as near to its place as that
+/// allows, and gives their middles and sizes.
 ///
 /// # Errors
 /// Those of the canvas.
@@ -25,8 +26,13 @@ pub fn notes(
     canvas: &Canvas<'_>,
     panel: &Panel,
     frame: &Frame,
+    curves: &[Pixel],
 ) -> Result<Vec<(Pixel, (f64, f64))>> {
-    let mut written = Vec::new();
+    let marks = panel.marks.iter();
+    let points: Vec<Pixel> = marks
+        .filter_map(|mark| frame.place(mark.x, mark.y))
+        .collect();
+    let mut written: Vec<(Pixel, (f64, f64))> = Vec::new();
     for note in &panel.notes {
         let Some(at) = frame.place(note.x, note.y) else {
             continue;
@@ -38,6 +44,7 @@ pub fn notes(
         let half = (0.5 * size.0, 0.5 * size.1);
         // Near a side, words move inwards.
         let at = frame.inside().without(half).nearest(at);
+        let at = names::beside(at, size, (curves, &points, &written), frame.inside());
         backed(canvas, frame, at, size)?;
         let ink = note.colour.map_or(INK, colour);
         canvas.words(&note.text, at, Align::Middle, TEXT, ink)?;
@@ -77,13 +84,8 @@ pub fn marks(
     for ((mark, named), centre) in shown.iter().zip(&centres) {
         tie(canvas, named, *centre, mark_colour(mark))?;
     }
-    for (mark, named) in &shown {
-        let look = Look {
-            symbol: mark.symbol,
-            filled: mark.filled,
-            colour: mark_colour(mark),
-        };
-        symbols::draw(canvas, look, named.at, frame.inside())?;
+    for (mark, named) in shown.iter().filter(|(mark, _)| !mark.behind) {
+        symbols::draw(canvas, look(mark), named.at, frame.inside())?;
     }
     for ((mark, named), centre) in shown.iter().zip(&centres) {
         if !mark.label.is_empty() {
@@ -95,6 +97,26 @@ pub fn marks(
         }
     }
     Ok(())
+}
+
+/// Draws the points that the curves go over.
+///
+/// # Errors
+/// Those of the canvas.
+pub fn behind(canvas: &Canvas<'_>, panel: &Panel, frame: &Frame) -> Result<()> {
+    let mut marks = panel.marks.iter().filter(|mark| mark.behind);
+    marks.try_for_each(|mark| match frame.place(mark.x, mark.y) {
+        Some(at) => symbols::draw(canvas, look(mark), at, frame.inside()),
+        None => Ok(()),
+    })
+}
+
+fn look(mark: &Mark) -> Look {
+    Look {
+        symbol: mark.symbol,
+        filled: mark.filled,
+        colour: mark_colour(mark),
+    }
 }
 
 fn mark_colour(mark: &Mark) -> Colour {

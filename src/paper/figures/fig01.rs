@@ -66,7 +66,7 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     }
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![vec![friction], vec![stiffness]])),
+        drawing: Some(Drawing::columns(vec![vec![friction, stiffness]])),
         method: "closed formulas (4), (6), (7) and (16), derivatives exact".into(),
     })
 }
