@@ -707,6 +707,11 @@ fn names_of_near_points_stand_apart() {
         .extend(points.map(|(x, y, name)| Mark::new(x, y, name)));
     let shown = seen(&alone(panel));
     shown.assert_legible();
+    assert!(
+        shown.says("PD, TR"),
+        "two points that look like one: {:?}",
+        shown.words
+    );
     let frame = shown.frames()[0];
     for (text, place) in shown
         .words

@@ -14,6 +14,8 @@ const AIR: f64 = 4.0;
 const BACKING: f64 = 2.0;
 /// A name that begins farther than this from its point is tied to it.
 const TIED: f64 = 12.0;
+/// Points nearer than this look like one: they share a name.
+const ONE: f64 = 3.0;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
@@ -79,21 +81,22 @@ pub fn marks(
     words: &[(Pixel, (f64, f64))],
 ) -> Result<()> {
     let shown = shown(panel, frame)?;
-    let named: Vec<names::Named> = shown.iter().map(|(_, named)| *named).collect();
+    let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
     let centres = names::placed(&named, curves, words, frame.inside());
-    for ((mark, named), centre) in shown.iter().zip(&centres) {
-        tie(canvas, named, *centre, mark_colour(mark))?;
+    for (one, centre) in shown.iter().zip(&centres) {
+        tie(canvas, &one.named, *centre, mark_colour(one.mark))?;
     }
-    for (mark, named) in shown.iter().filter(|(mark, _)| !mark.behind) {
-        symbols::draw(canvas, look(mark), named.at, frame.inside())?;
+    for one in shown.iter().filter(|one| !one.mark.behind) {
+        symbols::draw(canvas, look(one.mark), one.named.at, frame.inside())?;
     }
-    for ((mark, named), centre) in shown.iter().zip(&centres) {
-        if !mark.label.is_empty() {
+    for (one, centre) in shown.iter().zip(&centres) {
+        let Shown { mark, name, named } = one;
+        if !name.is_empty() {
             // Dark red is hard to read on a map.
             if panel.cells.is_some() {
                 backed(canvas, frame, *centre, named.size)?;
             }
-            canvas.words(&mark.label, *centre, Align::Middle, TEXT, mark_colour(mark))?;
+            canvas.words(name, *centre, Align::Middle, TEXT, mark_colour(mark))?;
         }
     }
     Ok(())
@@ -123,20 +126,44 @@ fn mark_colour(mark: &Mark) -> Colour {
     mark.colour.map_or(MARK, colour)
 }
 
+/// A point within the frame.
+struct Shown<'a> {
+    mark: &'a Mark,
+    /// Its name, with those of other points that look like the same one.
+    name: String,
+    named: names::Named,
+}
+
 /// The points within the frame, with the sizes of their names.
-fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<(&'a Mark, names::Named)>> {
-    let mut shown = Vec::new();
+fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<Shown<'a>>> {
+    let mut shown: Vec<Shown<'a>> = Vec::new();
     for mark in &panel.marks {
         let Some(at) = frame.place(mark.x, mark.y) else {
             continue;
         };
-        let size = if mark.label.is_empty() {
-            (0.0, 0.0)
-        } else {
-            (text::width(&mark.label, TEXT)? + AIR, TEXT + AIR)
+        let near = |one: &&mut Shown<'_>| {
+            let (x, y) = one.named.at;
+            let named = !one.name.is_empty() && !mark.label.is_empty();
+            named && (x - at.0).hypot(y - at.1) < ONE
         };
-        let side = mark.side;
-        shown.push((mark, names::Named { at, size, side }));
+        let name = match shown.iter_mut().find(near) {
+            Some(one) => {
+                if one.name.split(", ").all(|name| name != mark.label) {
+                    one.name = format!("{}, {}", one.name, mark.label);
+                }
+                String::new()
+            }
+            None => mark.label.clone(),
+        };
+        let (size, side) = ((0.0, 0.0), mark.side);
+        shown.push(Shown {
+            mark,
+            name,
+            named: names::Named { at, size, side },
+        });
+    }
+    for one in shown.iter_mut().filter(|one| !one.name.is_empty()) {
+        one.named.size = (text::width(&one.name, TEXT)? + AIR, TEXT + AIR);
     }
     Ok(shown)
 }

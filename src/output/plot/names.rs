@@ -240,11 +240,14 @@ pub fn beside(
         let far = STEP * ring as f64;
         around.map(move |(dx, dy)| (at.0 + far * dx, at.1 + far * dy))
     };
+    let near = |&(x, y): &Pixel| {
+        let mut seen = curves.iter();
+        seen.any(|&(a, b)| (a - x).abs() < NEAR && (b - y).abs() < NEAR)
+    };
+    // What is named on a curve may stand on either side of it.
     let crossed = |from: Pixel, to: Pixel| {
-        along(&[from, to], NEAR).into_iter().any(|(x, y)| {
-            let mut seen = curves.iter();
-            seen.any(|&(a, b)| (a - x).abs() < NEAR && (b - y).abs() < NEAR)
-        })
+        let way = along(&[from, to], NEAR);
+        way.iter().skip_while(|&at| near(at)).any(near)
     };
     let places = std::iter::once(at).chain((1..=RINGS).flat_map(ring));
     let priced = places.map(|centre| {
