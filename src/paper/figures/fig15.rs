@@ -119,7 +119,7 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         Note::new(0.5, 0.55, "1: orbit"),
         Note::new(-0.45, 0.55, "2: torus"),
         Note::new(-0.6, -0.25, "3: torus"),
-        Note::new(-0.69, -0.75, "4"),
+        Note::new(-0.64, -0.72, "4"),
         Note::new(0.2, -0.4, "6: doubled orbit"),
         Note::new(ALONG_1.1 + 0.05, L_1, "l₁"),
         Note::new(ALONG_2.1 + 0.05, L_2, "l₂"),
