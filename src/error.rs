@@ -141,6 +141,16 @@ pub enum Error {
         /// K reached.
         stiffness: f64,
     },
+    /// A formula that holds in few dimensions only was asked of a larger system.
+    #[error("{what} is known for systems of {known} variables only, and this one has {dimension}")]
+    Dimension {
+        /// The formula.
+        what: &'static str,
+        /// Where it holds: `2 or 3`.
+        known: &'static str,
+        /// The number of variables.
+        dimension: usize,
+    },
     /// Whoever asked for it wants it no more.
     #[error("interrupted; what was finished is kept")]
     Interrupted,
@@ -168,7 +178,10 @@ impl Error {
     pub fn is_input(&self) -> bool {
         matches!(
             self,
-            Error::Parameter { .. } | Error::Input(_) | Error::File { .. }
+            Error::Parameter { .. }
+                | Error::Input(_)
+                | Error::File { .. }
+                | Error::Dimension { .. }
         )
     }
 }

@@ -2,7 +2,7 @@
 
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, progress, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -118,7 +118,7 @@ impl Plan {
             self.accuracy.tolerances.rtol
         );
         eprintln!(
-            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser"
+            "  uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser"
         );
         match &self.second {
             Some(second) => eprintln!(
@@ -169,12 +169,17 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     if options.output.explain {
         plan.explain();
     }
-    let Found { orbit, others } = find(&plan.slab, &plan.query, &plan.accuracy)?;
+    let searched = || find(&plan.slab, &plan.query, &plan.accuracy);
+    let Found { orbit, others } =
+        progress::during(report.quiet, "looking for the orbit", searched)?;
     let mut trouble = None;
     let checked = plan.second.as_ref().and_then(|second| {
-        crosscheck(&plan.slab, &orbit, second)
-            .map_err(|error| trouble = Some((second.method.name(), error)))
-            .ok()
+        let words = format!("once more, by {}", second.method.name());
+        progress::during(report.quiet, &words, || {
+            crosscheck(&plan.slab, &orbit, second)
+        })
+        .map_err(|error| trouble = Some((second.method.name(), error)))
+        .ok()
     });
     if let Some((name, error)) = &trouble {
         report.say(format!("the crosscheck by {name} failed: {error}"));

@@ -85,6 +85,7 @@ impl<R: Row> Kept<R> {
                 period: row.period().map(unknown),
                 criticality: None,
                 coefficient: None,
+                coefficient_uncertainty: None,
                 note: Some("of the earlier run".into()),
                 orbit: None,
             })

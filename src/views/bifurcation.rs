@@ -93,5 +93,8 @@ pub fn special_columns() -> Vec<Column<Special>> {
         }),
         Column::new("coefficient", Number, |one| one.coefficient.into()),
         Column::new("note", Number, |one| Entry::Word(one.note.clone())),
+        Column::new("coefficient_uncertainty", Number, |one| {
+            one.coefficient_uncertainty.into()
+        }),
     ]
 }
