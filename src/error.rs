@@ -150,6 +150,16 @@ pub enum Error {
         /// The bound.
         limit: usize,
     },
+    /// A formula that holds in few dimensions only was asked of a larger system.
+    #[error("{what} is known for systems of {known} variables only, and this one has {dimension}")]
+    Dimension {
+        /// The formula.
+        what: &'static str,
+        /// Where it holds: `2 or 3`.
+        known: &'static str,
+        /// The number of variables.
+        dimension: usize,
+    },
     /// The user stopped it (Ctrl-C), or the caller's callback did.
     #[error("interrupted; what was finished is kept")]
     Interrupted,
@@ -193,7 +203,10 @@ impl Error {
     pub fn is_input(&self) -> bool {
         matches!(
             self,
-            Error::Parameter { .. } | Error::Input(_) | Error::File { .. }
+            Error::Parameter { .. }
+                | Error::Input(_)
+                | Error::File { .. }
+                | Error::Dimension { .. }
         )
     }
 }

@@ -640,3 +640,18 @@ fn help_shows_an_example_that_runs() {
         }
     }
 }
+
+/// No orbit is looked for without end: the message names the bound.
+#[test]
+fn a_search_for_an_orbit_ends() {
+    let ended = twinslip("orbit --driving 10 --stiffness 1e-6 --crosscheck none");
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(
+        ended.err.contains("steps, as many as a search may take"),
+        "{}",
+        ended.err
+    );
+    // One step in an arc leads nowhere, at once.
+    let ended = twinslip("orbit --driving 1.831e-38 --stiffness 0.56 --max-steps 1");
+    assert_eq!(ended.code, 1, "{}", ended.err);
+}

@@ -3,7 +3,7 @@
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
 use super::words::several;
-use super::{Ending, say, written};
+use super::{Ending, progress, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -119,7 +119,7 @@ impl Plan {
             self.accuracy.tolerances.rtol
         ));
         say(
-            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser",
+            "  uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser",
         );
         match &self.second {
             Some(second) => say(format_args!(
@@ -170,12 +170,17 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     if options.output.explain {
         plan.explain();
     }
-    let Found { orbit, others } = find(&plan.slab, &plan.query, &plan.accuracy)?;
+    let searched = || find(&plan.slab, &plan.query, &plan.accuracy);
+    let Found { orbit, others } =
+        progress::during(report.quiet, "looking for the orbit", searched)?;
     let mut trouble = None;
     let checked = plan.second.as_ref().and_then(|second| {
-        crosscheck(&plan.slab, &orbit, second)
-            .map_err(|error| trouble = Some((second.method.name(), error)))
-            .ok()
+        let words = format!("once more, by {}", second.method.name());
+        progress::during(report.quiet, &words, || {
+            crosscheck(&plan.slab, &orbit, second)
+        })
+        .map_err(|error| trouble = Some((second.method.name(), error)))
+        .ok()
     });
     if let Some((name, error)) = &trouble {
         report.say(format!("the crosscheck by {name} failed: {error}"));

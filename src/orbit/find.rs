@@ -52,6 +52,8 @@ pub struct Found {
 const ROUGH: f64 = 1e-10;
 /// Tolerance with which cycles are told from ones traversed twice.
 const FINE: f64 = 1e-15;
+/// Steps of a search, at most: some seconds of work.
+pub(super) const SEARCH: usize = 2_000_000;
 /// Periods that differ by less, relatively, are of one orbit.
 const SAME_PERIOD: f64 = 1e-7;
 
@@ -121,7 +123,7 @@ fn search<const N: usize>(
 where
     OverLoadings: Family<N>,
 {
-    let mut tracer = Tracer::taylor(ROUGH)?;
+    let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
     let mut guesses = Guesses {
         space,
         wanted: query.symmetry,
@@ -141,10 +143,16 @@ where
         Begin::Hopf => {}
     }
     let at = matches!(query.begin, Begin::At { .. });
-    if guesses.closed.is_empty() && !at {
+    if guesses.closed.is_empty() && !at && tracer.used_up().is_none() {
         for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
             guesses.take(polygon);
         }
+    }
+    if guesses.closed.is_empty() && tracer.used_up().is_some() {
+        return Err(no_orbit(
+            format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
+            "give a --start on the orbit and its --period-guess, or other --driving and --stiffness",
+        ));
     }
     if guesses.closed.is_empty() {
         return Err(guesses.otherwise.unwrap_or_else(|| {
