@@ -97,10 +97,7 @@ impl<'a> Report<'a> {
         columns: &[String],
         units: &[String],
     ) -> std::io::Result<Box<dyn RowWriter>> {
-        Ok(match self.format {
-            Format::Table => Box::new(TableRows::new(to, columns, units)?),
-            Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
-        })
+        rows(self.format, to, remarks, columns, units)
     }
 
     /// Writes the CSV file of an earlier run anew, with the rows that stay in it, and goes on after them.
@@ -136,12 +133,26 @@ impl<'a> Report<'a> {
             numerics,
             result,
             work,
-            error: error.map(Error::to_string),
+            error: error.map(|error| system.units.told(error.clone()).to_string()),
         };
         let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
         bytes.push(b'\n');
         bytes
     }
+}
+
+/// Opens a table, or CSV with its remarks.
+pub fn rows(
+    format: Format,
+    to: Box<dyn std::io::Write>,
+    remarks: &[String],
+    columns: &[String],
+    units: &[String],
+) -> std::io::Result<Box<dyn RowWriter>> {
+    Ok(match format {
+        Format::Table => Box::new(TableRows::new(to, columns, units)?),
+        Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
+    })
 }
 
 /// The `# ` lines of CSV made by a command: program, command, parameters, units.
