@@ -7,13 +7,13 @@ use super::{Ending, progress, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
-use crate::integrate::{Choice, Tolerances};
+use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{
     Accuracy, Begin, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
 };
 use crate::output::{self, Cell, Format};
-use crate::scene::{OrbitOptions, Quantity, System, start};
+use crate::scene::{OrbitOptions, Quantity, System, start, tolerances};
 use serde_json::{Value, json};
 
 /// What is to be done, checked.
@@ -69,9 +69,9 @@ impl Plan {
         }
         accuracy.max_steps = options.max_steps;
         if let Some(rtol) = options.rtol {
-            accuracy.tolerances = Tolerances::new(rtol, options.atol.unwrap_or(rtol))?;
+            accuracy.tolerances = tolerances(rtol, options.atol)?;
         } else if let Some(atol) = options.atol {
-            accuracy.tolerances = Tolerances::new(accuracy.tolerances.rtol, atol)?;
+            accuracy.tolerances = tolerances(accuracy.tolerances.rtol, Some(atol))?;
         }
         Ok(Plan {
             slab: Slab {

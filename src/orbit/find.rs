@@ -8,7 +8,7 @@ use super::shooting::close;
 use super::slab::Slab;
 use super::solve::{Accuracy, Orbit, orbit, traversals};
 use super::space::{Plane, Space, Whole};
-use super::{branch, no_orbit};
+use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::{State, VectorField};
@@ -207,11 +207,9 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     /// Keeps a closed polygon if it has the symmetry and is new.
     fn take(&mut self, polygon: Polygon<N>) -> bool {
         if self.space.symmetry(&polygon) != self.wanted {
-            self.otherwise = Some(no_orbit(
-                format!(
-                    "the search ended on the symmetric orbit, of period {}",
-                    polygon.period()
-                ),
+            self.otherwise = Some(other_orbit(
+                "the search ended on the symmetric orbit".into(),
+                polygon.period(),
                 "give a --start near an asymmetric one, or ask for --symmetry symmetric",
             ));
             return false;

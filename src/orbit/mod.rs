@@ -48,5 +48,18 @@ use crate::error::Error;
 
 /// What was found instead of an orbit, and what to try.
 fn no_orbit(what: String, hint: &'static str) -> Error {
-    Error::NoOrbit { what, hint }
+    Error::NoOrbit {
+        what,
+        period: None,
+        hint,
+    }
+}
+
+/// Another orbit that was found instead, of this period, and what to try.
+fn other_orbit(what: String, period: f64, hint: &'static str) -> Error {
+    Error::NoOrbit {
+        what,
+        period: Some(period),
+        hint,
+    }
 }

@@ -3,7 +3,7 @@
 use super::arc::Tracer;
 use super::extremes::{Extremes, extremes};
 use super::floquet::Floquet;
-use super::no_orbit;
+use super::other_orbit;
 use super::polygon::Polygon;
 use super::shooting::{Closed, close, relative};
 use super::slab::Slab;
@@ -122,10 +122,9 @@ pub(super) fn solve<const N: usize>(
     let first = close(&mut tracers.here, field, guess)?;
     if let Some(times) = traversals(&mut tracers.here, field, &first.polygon)? {
         let period = first.polygon.period();
-        return Err(no_orbit(
-            format!(
-                "the cycle found, of period {period}, is a shorter one traversed {times} times"
-            ),
+        return Err(other_orbit(
+            format!("the cycle found is a shorter one traversed {times} times"),
+            period,
             "give a shorter --period-guess, or a --start farther from that orbit",
         ));
     }
