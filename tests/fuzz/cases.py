@@ -286,7 +286,7 @@ def options_of(make, name):
         # Bounded sizes: what a point may cost is said.
         options += [("max-returns", m.number_of(200, 300, whole=True, edges=False)), ("max-steps", m.number_of(100, 30_000, whole=True, edges=False))]
         if m.chance(0.3):
-            options.append(("threads", r.choice(["1", "2", "3", "0", "-1", "64", "2000", "1000000", "x"]) if m.chance(0.3) else "2"))
+            options.append(("threads", r.choice(["1", "2", "3", "0", "-1", "64", "2000", "1000000", "x"]) if m.chance(m.wild / 2) else "2"))
         if m.chance(0.2):
             options.append(("starts", m.number_of(1, 3, whole=True, edges=False)))
         if m.chance(0.15):
@@ -352,7 +352,10 @@ def as_words(m, words, options):
     if options and m.chance(m.wild / 3):
         options.append(r.choice(options))
     if options and m.chance(m.wild / 3):
-        options.remove(r.choice(options))
+        # But not what bounds the work: all of the paper, or as many steps as it takes, would be asked for.
+        bounds = ("only", "max-steps", "max-returns", "returns", "skip")
+        gone = r.choice(options)
+        options = [one for one in options if one[0] in bounds or one != gone]
     r.shuffle(options)
     short = {"output": "-o", "quiet": "-q"}
     typed = []
@@ -465,7 +468,7 @@ def case_of(seed, number):
         name = r.choice(COMMANDS)
         text = scene(m, name)
         case.command = "run"
-        file = r.choice(["scene.toml"] * 12 + READS + ["/dev/zero", "/proc/self/mem", "huge.toml", "."]) if m.wild else "scene.toml"
+        file = r.choice([*READS, "/dev/zero", "/proc/self/mem", "huge.toml", "."]) if m.chance(m.wild / 3) else "scene.toml"
         m.setting |= file in READS
         case.before = "printf %s " + shlex.quote(text) + " > scene.toml"
         if file == "huge.toml":

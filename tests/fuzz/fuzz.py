@@ -19,6 +19,7 @@ import tempfile
 import threading
 import time
 from collections import Counter
+from dataclasses import replace
 
 sys.dont_write_bytecode = True
 
@@ -28,7 +29,7 @@ from judge import judge  # noqa: E402
 #: Whoever doesn't end by then, hangs: processor time is counted apart, so that a busy machine is no fault.
 WALL = 120
 #: What no case may take, so that the machine survives: virtual memory in KiB, a file in KiB.
-FENCE = "ulimit -v 12000000; ulimit -f 2000000; ulimit -c 0; "
+FENCE = "ulimit -v 3000000; ulimit -f 2000000; ulimit -c 0; "
 
 
 class Ran:
@@ -49,7 +50,7 @@ class Ran:
 
     def run(self, processor):
         out, err = os.path.join(self.folder, "out"), os.path.join(self.folder, "err")
-        limits = FENCE + f"ulimit -t {2 * processor}; "
+        limits = FENCE + f"ulimit -t {processor + 2}; "
         script = (limits + self.line).encode("utf-8", "surrogateescape")
         with open(out, "wb") as stdout, open(err, "wb") as stderr:
             child = subprocess.Popen(
@@ -89,6 +90,7 @@ def main():
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--processor", type=float, default=10, help="most processor time of a case in seconds")
     parser.add_argument("--memory", type=float, default=500, help="most memory of a case in MB")
+    parser.add_argument("--calm", action="store_true", help="leave standard streams, signals and variables as they are")
     parser.add_argument("--messages", action="store_true", help="print what was refused, and how often")
     parser.add_argument("--dry", action="store_true", help="only print the cases")
     options = parser.parse_args()
@@ -99,6 +101,8 @@ def main():
     first = options.first if options.only is None else options.only
     numbers = range(first, first + (options.count if options.only is None else 1))
     cases = [case_of(options.seed, number) for number in numbers]
+    if options.calm:
+        cases = [replace(case, prefix="", after="", told=True) for case in cases]
     if options.dry:
         for case in cases:
             show(f"{case.number}: {case.line('twinslip')}")

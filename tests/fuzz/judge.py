@@ -53,7 +53,8 @@ def talk(ran, err, fault):
     if len(ran.err) > 20_000:
         fault("long messages", f"{len(ran.err)} bytes on standard error")
     errors = [line for line in err.splitlines() if line.startswith("error: ")]
-    if ran.status == 2 and ran.case.words:
+    # Without words there is help.
+    if ran.status == 2 and ran.case.words not in ([], ["--"]):
         if not errors:
             fault("no 'error: '", err[:200])
         elif len(errors) > 1:
