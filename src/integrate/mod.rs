@@ -24,7 +24,7 @@ pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::series::Expansion;
-pub use crate::series::{VECTORS, Vectors, allowed_vectors};
+pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::step_underflow;
 use std::ops::Deref;
 

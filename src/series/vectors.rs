@@ -37,6 +37,31 @@ pub fn allowed() -> Result<Vectors> {
     ALLOWED.get_or_init(asked).clone()
 }
 
+impl Vectors {
+    /// As the variable has it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Vectors::None => "none",
+            Vectors::Avx2 => "avx2",
+            Vectors::Avx512 => "avx512",
+        }
+    }
+}
+
+/// What is used: the widest that the processor has and the user allows.
+pub fn used() -> Vectors {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512().is_some() {
+            return Vectors::Avx512;
+        }
+        if avx2().is_some() {
+            return Vectors::Avx2;
+        }
+    }
+    Vectors::None
+}
+
 #[cfg(target_arch = "x86_64")]
 fn allows(vectors: Vectors) -> bool {
     allowed().unwrap_or(Vectors::Avx512) >= vectors

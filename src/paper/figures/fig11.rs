@@ -11,7 +11,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig11",
     title: "An asymmetric start ends on the symmetric orbit, K = 0.01, V_H = 0.2",
-    caption: "Where the slab is soft enough, the interfaces synchronise. A start with unequal states is attracted by the symmetric orbit; the dashes of both interfaces soon coincide, and w₁ − w₂ goes to zero in the phase space. The orbit is a relaxation oscillation whose slow part follows the steady-state law (dotted).",
+    caption: "Where the slab is soft enough, the interfaces synchronise. A start with unequal states is attracted by the symmetric orbit; the curves of both interfaces soon coincide, and w₁ − w₂ goes to zero in the phase space. The orbit is a relaxation oscillation whose slow part follows the steady-state law (dotted).",
     alt: "Stress, states and slip rates in time, the phase plane with the steady-state law, and three projections of the phase space, in which the asymmetry decays.",
     scenes: &["fig11"],
     make: Make::Figure(make),
