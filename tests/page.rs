@@ -88,7 +88,7 @@ fn each_figure_is_listed_drawn_and_linked() {
         "{nav}"
     );
     assert!(html.contains("<p>The first paragraph, of two lines.</p><p>The second paragraph.</p>"));
-    assert!(html.contains("Took\u{a0}3.2 s."));
+    assert!(html.contains("Took\u{a0}3.2 s of processor time."));
 }
 
 #[test]
@@ -212,6 +212,77 @@ fn what_differs_is_read_first() {
 }
 
 #[test]
+fn what_differs_more_is_read_before_what_differs_less() {
+    let sized = |id: &str, difference| Score {
+        difference,
+        ..pages::score(id, "differs")
+    };
+    let html = with_scores(vec![
+        sized("small", Some(1.6e-4)),
+        sized("large", Some(-0.0438)),
+        sized("claim", None),
+        sized("middle", Some(0.003)),
+    ]);
+    let places = ["claim", "large", "middle", "small"]
+        .map(|id| place(&html, &format!("<tbody id=\"score-{id}\"")));
+    assert!(places.is_sorted(), "{places:?}");
+    for words in ["-4.4 %", "0.30 %", "0.016 %", "Off by</th>"] {
+        assert!(html.contains(words), "{words}");
+    }
+    assert!(!with_scores(vec![sized("claim", None)]).contains("Off by</th>"));
+}
+
+#[test]
+fn figures_come_first_and_each_leads_to_its_neighbours() {
+    let html = pages::plain().html();
+    let parts = [
+        "id=\"figures\"",
+        "id=\"tables\"",
+        "id=\"scorecard\"",
+        "id=\"provenance\"",
+    ];
+    assert!(parts.map(|part| place(&html, part)).is_sorted());
+    let nav = &html[place(&html, "<nav")..place(&html, "</nav>")];
+    let links = [
+        "#figures",
+        "#fig07",
+        "#tables",
+        "#scorecard",
+        "#verdict-differs",
+        "#provenance",
+    ];
+    assert!(
+        links
+            .map(|to| place(nav, &format!("href=\"{to}\"")))
+            .is_sorted()
+    );
+    let section = |id: &str| {
+        let start = place(&html, &format!("<section class=\"figure\" id=\"{id}\""));
+        &html[start..start + html[start..].find("</section>").expect("its end")]
+    };
+    assert!(section("fig07").contains("<a href=\"#fig10a\">Figure\u{a0}10a →</a>"));
+    assert!(!section("fig07").contains("←"));
+    assert!(section("fig10a").contains("<a href=\"#fig07\">← Figure\u{a0}7</a>"));
+    assert!(!section("fig10a").contains("→"));
+    assert!(section("fig07").contains("href=\"#contents\""));
+}
+
+#[test]
+fn pictures_are_enlarged_without_a_script() {
+    let html = pages::plain().html();
+    for id in ["fig07", "fig10a"] {
+        let zoom = format!("id=\"{id}-zoom\"");
+        let at = place(&html, &zoom);
+        assert!(html[..at].ends_with("<input class=\"zoom\" type=\"checkbox\" "));
+        // The picture right after its box, as the style has it.
+        let label = format!("<label class=\"picture\" for=\"{id}-zoom\"");
+        let between = &html[at..at + place(&html[at..], &label)];
+        assert_eq!(between.matches('>').count(), 1, "{between}");
+    }
+    assert!(html.contains(".zoom:checked + .picture img"));
+}
+
+#[test]
 fn verdicts_without_entries_and_columns_without_values_are_left_out() {
     let mut score = pages::score("a", "agrees");
     assert!(with_scores(vec![score.clone()]).contains("Second method</th>"));
@@ -278,7 +349,7 @@ fn times_are_said_in_their_unit() {
         (3725.0, "62 min 5 s"),
     ] {
         assert!(
-            said(seconds).contains(&format!("Took\u{a0}{words}.")),
+            said(seconds).contains(&format!("Took\u{a0}{words} of processor time.")),
             "{seconds}"
         );
     }

@@ -173,6 +173,91 @@ fn figures_may_be_called_as_people_do() {
 }
 
 #[test]
+fn pieces_tell_what_they_do_and_how_far_they_are() {
+    use std::sync::Mutex;
+    use std::sync::atomic::AtomicBool;
+    use twinslip::paper::{Order, Product, Reached, Told, reproduce};
+    let order = Order {
+        out: folder("reproduce-told"),
+        products: Product::listed("fig03,fig05").expect("products"),
+        force: false,
+        png: false,
+        report: false,
+        threads: Some(2),
+        machine: BTreeMap::new(),
+        program: String::new(),
+    };
+    let told = Mutex::new(Vec::new());
+    let hear = |what: Told<'_>| {
+        let words = match what {
+            Told::Begun { products, pieces } => format!("begun {products} {pieces}"),
+            Told::Piece(going) => {
+                let so_far = match going.reached {
+                    Reached::Whole => "whole".to_owned(),
+                    other => format!("{other:?}"),
+                };
+                format!("{} {} {so_far}", going.scene, going.what)
+            }
+            Told::Making(product) => format!("making {}", product.id),
+            Told::Made(product, _) => format!("made {}", product.id),
+        };
+        told.lock().expect("no panic").push(words);
+    };
+    let done = reproduce(&order, &AtomicBool::new(false), &hear).expect("done");
+    assert_eq!(done.made.len(), 2);
+    let told = told.into_inner().expect("no panic");
+    assert_eq!(told[0], "begun 2 3");
+    let at = |words: &str| {
+        let found = told.iter().position(|one| one == words);
+        found.unwrap_or_else(|| panic!("no {words} in {told:?}"))
+    };
+    // Each point of a branch is told, then its end, then what is made of it.
+    let order = [
+        "fig05 branches of equilibria Points(0)",
+        "fig05 branches of equilibria Points(1)",
+        "fig05 branches of equilibria Points(20)",
+        "fig05 branches of equilibria whole",
+        "making fig05",
+        "made fig05",
+    ];
+    assert!(order.map(at).is_sorted(), "{told:?}");
+    for scene in ["fig03a", "fig03b"] {
+        let begun = at(&format!("{scene} a run in time Percent(0)"));
+        let ended = at(&format!("{scene} a run in time whole"));
+        let within = told[begun..ended].iter();
+        let steps = within.filter(|one| one.starts_with(&format!("{scene} a run in time Percent")));
+        assert!((3..=101).contains(&steps.count()), "{told:?}");
+        assert!(ended < at("making fig03"));
+    }
+}
+
+/// Last digits depend on the vector instructions: what was made with others is not vouched for, and the manifest says which.
+#[test]
+fn vectors_are_in_the_manifest_and_decide_what_stands() {
+    let out = folder("reproduce-vectors");
+    let made = |vectors: &str| {
+        let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            .args(["reproduce", "--only", "fig05", "--out"])
+            .arg(&out)
+            .env("TWINSLIP_VECTORS", vectors)
+            .output()
+            .expect("it runs");
+        let err = String::from_utf8(ended.stderr).expect("UTF-8");
+        assert!(ended.status.success(), "{err}");
+        err
+    };
+    assert!(made("none").contains("1 made"));
+    assert_eq!(manifest(&out)["machine"]["vectors"], "none");
+    assert!(made("none").contains("0 made"));
+    let all = twinslip::integrate::used_vectors().name();
+    let again = made("avx512");
+    assert_eq!(again.contains("1 made"), all != "none", "{again}");
+    assert_eq!(manifest(&out)["machine"]["vectors"], all);
+    let report = fs::read_to_string(out.join("report.html")).expect("a report");
+    assert!(report.contains("TWINSLIP_VECTORS"));
+}
+
+#[test]
 fn wrong_orders_are_refused_in_one_sentence() {
     let out = folder("reproduce-wrong");
     let file = out.join("file");

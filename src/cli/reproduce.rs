@@ -6,11 +6,12 @@ use super::words::{count, time};
 use super::{Ending, say};
 use crate::error::{Error, Result};
 use crate::integrate::used_vectors;
-use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
+use crate::paper::{Done, Going, Order, PRODUCTS, Product, Reached, Told, hash, reproduce};
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
 use std::path::PathBuf;
+use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 pub const EXAMPLE: &str = "Example, everything into paper/, and then only what Fig. 12 and Table 1 need into another directory:
@@ -178,9 +179,13 @@ fn summary(done: &Done, order: &Order, wall: Duration) {
             ids.join(", ")
         ));
     }
+    let of_processor = match done.made.len() {
+        0 => "",
+        _ => "; the times above are of the processor, and count a piece for each that shows it",
+    };
     let report = if order.report { ", report.html" } else { "" };
     say(format_args!(
-        "{} made in {}{report}, in the directory {}",
+        "{} made in {}{report}, in the directory {}{of_processor}",
         count(done.made.len()),
         time(wall.as_secs_f64()),
         order.out.display()
@@ -207,32 +212,76 @@ fn ending(done: Done) -> Result<Ending> {
     Ok(ending)
 }
 
-/// How many products are made, on a terminal.
-struct Bar(ProgressBar);
+/// What is being made, on a terminal.
+struct Bar {
+    bar: ProgressBar,
+    /// What goes on now, by its name.
+    going: Mutex<BTreeMap<String, String>>,
+}
 
 impl Bar {
     fn new(quiet: bool) -> Self {
-        if quiet || !std::io::stderr().is_terminal() {
-            return Bar(ProgressBar::hidden());
+        let bar = if quiet || !std::io::stderr().is_terminal() {
+            ProgressBar::hidden()
+        } else {
+            let style =
+                ProgressStyle::with_template("{bar:20} {pos} of {len}  {elapsed}  {wide_msg}")
+                    .expect("the template is valid");
+            let bar = ProgressBar::new(0).with_style(style);
+            bar.enable_steady_tick(Duration::from_millis(200));
+            bar
+        };
+        Bar {
+            bar,
+            going: Mutex::default(),
         }
-        let style = ProgressStyle::with_template("{bar:30} {pos} of {len}  {msg}  {elapsed}")
-            .expect("the template is valid");
-        let bar = ProgressBar::new(0).with_style(style);
-        bar.enable_steady_tick(Duration::from_millis(200));
-        Bar(bar)
     }
 
     fn tell(&self, told: Told<'_>) {
+        if self.bar.is_hidden() {
+            return;
+        }
         match told {
-            Told::Begun(number) => self.0.set_length(number as u64),
-            Told::Made(product, _) => {
-                self.0.inc(1);
-                self.0.set_message(product.id);
+            Told::Begun { products, pieces } => self.bar.set_length((products + pieces) as u64),
+            Told::Piece(Going {
+                scene,
+                what,
+                reached,
+            }) => {
+                let so_far = match reached {
+                    Reached::Percent(percent) => format!("{percent} %"),
+                    Reached::Points(1) => "1 point".into(),
+                    Reached::Points(points) => format!("{points} points"),
+                    Reached::Whole => return self.ended(scene),
+                };
+                self.goes(scene, format!("{scene}: {what}, {so_far}"));
             }
+            Told::Making(product) => {
+                self.goes(product.id, format!("{}: {}", product.id, product.title));
+            }
+            Told::Made(product, _) => self.ended(product.id),
         }
     }
 
+    fn goes(&self, name: &str, words: String) {
+        let mut going = self.going.lock().expect("no thread panicked");
+        going.insert(name.to_owned(), words);
+        self.show(&going);
+    }
+
+    fn ended(&self, name: &str) {
+        self.bar.inc(1);
+        let mut going = self.going.lock().expect("no thread panicked");
+        going.remove(name);
+        self.show(&going);
+    }
+
+    fn show(&self, going: &BTreeMap<String, String>) {
+        let words: Vec<&str> = going.values().map(String::as_str).collect();
+        self.bar.set_message(words.join("; "));
+    }
+
     fn finish(&self) {
-        self.0.finish_and_clear();
+        self.bar.finish_and_clear();
     }
 }

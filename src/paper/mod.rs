@@ -3,6 +3,7 @@
 //! A [`Product`] is made of [`Pieces`], what the scene files compute; a piece that several products show is computed once. What
 //! lies complete in the directory from an earlier run, made of the same scenes by the same program, is not made again.
 
+mod clock;
 mod figures;
 mod pieces;
 mod product;
@@ -12,7 +13,7 @@ mod run;
 pub mod scorecard;
 mod sheet;
 
-pub use pieces::{Branches, Curves, Map, Pieces, Run};
+pub use pieces::{Branches, Curves, Going, Map, Pieces, Reached, Run};
 pub use product::{Made, Make, PRODUCTS, Product};
 pub use record::{Entry, Record, Written, hash};
 pub use run::{Done, Order, Told, reproduce};

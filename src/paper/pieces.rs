@@ -1,19 +1,20 @@
 //! What scenes compute: runs, return maps, branches and curves, each once however many figures show it.
 
+use super::clock::timed;
 use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Special};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Parameters};
 use crate::integrate::Control;
 use crate::output::Rows;
 use crate::scene::{
-    BranchPlan, Column, Command, LocusPlan, Outcome, Plan, Sampling, SceneFile, SectionColumn,
+    BranchPlan, Column, Command, LocusPlan, Of, Outcome, Plan, Sampling, SceneFile, SectionColumn,
     SectionOutcome, SectionPlan, Sink, run, run_section, shipped, shipped_names,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A run in time, with its points as they are drawn.
 #[derive(Debug)]
@@ -67,25 +68,57 @@ enum Piece {
     Curves(Arc<Curves>),
 }
 
-/// A piece, or why there is none, and how long that took.
+/// How far a piece has come.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Reached {
+    /// Such a part of its run, in percent.
+    Percent(u32),
+    /// So many points of its branches or curves.
+    Points(usize),
+    /// All of it.
+    Whole,
+}
+
+/// A piece on its way.
+#[derive(Debug, Clone, Copy)]
+pub struct Going<'a> {
+    /// Its scene.
+    pub scene: &'a str,
+    /// What it computes, in words.
+    pub what: &'a str,
+    /// How far it has come.
+    pub reached: Reached,
+}
+
+/// A piece, or why there is none, and the processor time that it took.
 type Computed = (Result<Piece>, Duration);
 
+/// Whom pieces tell how far they have come.
+type Hears<'a> = &'a (dyn Fn(Going<'_>) + Sync);
+
 /// All pieces, computed when they are first asked for; safe to ask from several threads.
-#[derive(Debug)]
 pub struct Pieces<'a> {
     cells: BTreeMap<&'static str, OnceLock<Computed>>,
     stop: &'a AtomicBool,
+    hears: Hears<'a>,
 }
 
 impl<'a> Pieces<'a> {
     /// None yet. Once `stop` is set, what is being computed ends with [`Error::Interrupted`].
     pub fn new(stop: &'a AtomicBool) -> Self {
+        fn nobody(_: Going<'_>) {}
+        Pieces::heard(stop, &nobody)
+    }
+
+    /// The same, and tells how each piece goes on.
+    pub fn heard(stop: &'a AtomicBool, hears: Hears<'a>) -> Self {
         let cells = shipped_names()
             .into_iter()
             .map(|name| (name, OnceLock::new()));
         Pieces {
             cells: cells.collect(),
             stop,
+            hears,
         }
     }
 
@@ -138,7 +171,7 @@ impl<'a> Pieces<'a> {
         }
     }
 
-    /// How long the piece of a scene took; `None` if nobody asked for it.
+    /// The processor time that the piece of a scene took; `None` if nobody asked for it.
     pub fn took(&self, scene: &str) -> Option<Duration> {
         let computed = self.cells.get(scene)?.get()?;
         Some(computed.1)
@@ -155,10 +188,7 @@ impl<'a> Pieces<'a> {
     fn piece(&self, scene: &str) -> Result<Piece> {
         let found = self.cells.get_key_value(scene);
         let (name, cell) = found.ok_or_else(|| not(scene, "shipped"))?;
-        let (piece, _) = cell.get_or_init(|| {
-            let begun = Instant::now();
-            (self.made(name), begun.elapsed())
-        });
+        let (piece, _) = cell.get_or_init(|| timed(|| self.made(name)));
         piece.clone()
     }
 
@@ -167,15 +197,23 @@ impl<'a> Pieces<'a> {
         let text = shipped(name).ok_or_else(|| not(name, "shipped"))?;
         let file = SceneFile::parse(&format!("{name}.toml"), text, &Command::program())?;
         match Command::of_scene(&file, &[], &[])? {
-            Command::Integrate(options) => self.run_of(Plan::new(&options)?),
-            Command::Section(options) => self.map_of(SectionPlan::new(&options)?),
-            Command::Branch(options) => self.branches_of(BranchPlan::new(&options)?),
-            Command::Locus(options) => self.curves_of(LocusPlan::new(&options)?),
+            Command::Integrate(options) => self.run_of(name, Plan::new(&options)?),
+            Command::Section(options) => self.map_of(name, SectionPlan::new(&options)?),
+            Command::Branch(options) => self.branches_of(name, BranchPlan::new(&options)?),
+            Command::Locus(options) => self.curves_of(name, LocusPlan::new(&options)?),
             _ => Err(not(name, "a run, a map, a branch or a curve")),
         }
     }
 
-    fn run_of(&self, plan: Plan) -> Result<Piece> {
+    fn voice<'b>(&'b self, scene: &'b str, what: &'b str) -> Voice<'b> {
+        Voice {
+            hears: self.hears,
+            scene,
+            what,
+        }
+    }
+
+    fn run_of(&self, name: &str, plan: Plan) -> Result<Piece> {
         // Rows are the points that a picture takes, and nothing else is needed of the run.
         let plan = Plan {
             sampling: Sampling::FinalOnly,
@@ -183,10 +221,12 @@ impl<'a> Pieces<'a> {
             ..plan
         };
         let columns = Column::pictured(plan.system.interfaces);
-        let mut kept = self.keep(columns.iter().map(Column::name).collect(), true);
+        let voice = self.voice(name, "a run in time");
+        let mut kept = self.keep(columns.iter().map(Column::name).collect(), true, &voice);
         let outcome = run(&plan, &mut kept)?;
         self.ended(&outcome.failure)?;
         let rows = kept.rows;
+        voice.says(Reached::Whole);
         Ok(Piece::Run(Arc::new(Run {
             plan,
             rows,
@@ -194,12 +234,15 @@ impl<'a> Pieces<'a> {
         })))
     }
 
-    fn map_of(&self, plan: SectionPlan) -> Result<Piece> {
+    fn map_of(&self, name: &str, plan: SectionPlan) -> Result<Piece> {
         let columns = SectionColumn::all(plan.system.interfaces);
-        let mut kept = self.keep(columns.iter().map(SectionColumn::name).collect(), false);
+        let voice = self.voice(name, "a return map");
+        let columns = columns.iter().map(SectionColumn::name).collect();
+        let mut kept = self.keep(columns, false, &voice);
         let outcome = run_section(&plan, &mut kept)?;
         self.ended(&outcome.failure)?;
         let rows = kept.rows;
+        voice.says(Reached::Whole);
         Ok(Piece::Map(Arc::new(Map {
             plan,
             rows,
@@ -207,11 +250,22 @@ impl<'a> Pieces<'a> {
         })))
     }
 
-    fn branches_of(&self, plan: BranchPlan) -> Result<Piece> {
+    fn branches_of(&self, name: &str, plan: BranchPlan) -> Result<Piece> {
         let (mut rows, mut special) = (Vec::new(), Vec::new());
+        let voice = self.voice(
+            name,
+            match plan.of {
+                Of::Equilibria => "branches of equilibria",
+                Of::Orbits => "branches of orbits",
+            },
+        );
+        voice.says(Reached::Points(0));
         plan.follow(&[], &mut |event| {
             match event {
-                Event::Branch(row) => rows.push(row),
+                Event::Branch(row) => {
+                    rows.push(row);
+                    voice.says(Reached::Points(rows.len()));
+                }
                 Event::Special(point) => special.push(point),
                 Event::Locus(_) => {}
             }
@@ -219,6 +273,7 @@ impl<'a> Pieces<'a> {
         })?;
         self.going_on()?;
         whole(&special)?;
+        voice.says(Reached::Whole);
         Ok(Piece::Branches(Arc::new(Branches {
             plan,
             rows,
@@ -226,11 +281,16 @@ impl<'a> Pieces<'a> {
         })))
     }
 
-    fn curves_of(&self, plan: LocusPlan) -> Result<Piece> {
+    fn curves_of(&self, name: &str, plan: LocusPlan) -> Result<Piece> {
         let (mut rows, mut special) = (Vec::new(), Vec::new());
+        let voice = self.voice(name, plan.curve.title);
+        voice.says(Reached::Points(0));
         plan.follow(&[], &mut |event| {
             match event {
-                Event::Locus(row) => rows.push(row),
+                Event::Locus(row) => {
+                    rows.push(row);
+                    voice.says(Reached::Points(rows.len()));
+                }
                 Event::Special(point) => special.push(point),
                 Event::Branch(_) => {}
             }
@@ -238,6 +298,7 @@ impl<'a> Pieces<'a> {
         })?;
         self.going_on()?;
         whole(&special)?;
+        voice.says(Reached::Whole);
         Ok(Piece::Curves(Arc::new(Curves {
             plan,
             rows,
@@ -245,11 +306,14 @@ impl<'a> Pieces<'a> {
         })))
     }
 
-    fn keep(&self, columns: Vec<String>, pictured: bool) -> Kept<'_> {
+    fn keep<'b>(&'b self, columns: Vec<String>, pictured: bool, voice: &'b Voice<'b>) -> Kept<'b> {
+        voice.says(Reached::Percent(0));
         Kept {
             rows: Rows::new(columns),
             pictured,
             stop: self.stop,
+            voice,
+            percent: 0,
         }
     }
 
@@ -289,12 +353,32 @@ fn not(scene: &str, what: &str) -> Error {
     Error::Input(format!("the scene {scene} is not {what}"))
 }
 
+/// One piece's part of the talk.
+struct Voice<'a> {
+    hears: Hears<'a>,
+    scene: &'a str,
+    what: &'a str,
+}
+
+impl Voice<'_> {
+    fn says(&self, reached: Reached) {
+        (self.hears)(Going {
+            scene: self.scene,
+            what: self.what,
+            reached,
+        });
+    }
+}
+
 /// Keeps what a run yields.
 struct Kept<'a> {
     rows: Rows,
     /// Points of the picture are kept and not rows.
     pictured: bool,
     stop: &'a AtomicBool,
+    voice: &'a Voice<'a>,
+    /// What was told last.
+    percent: u32,
 }
 
 impl Sink for Kept<'_> {
@@ -309,7 +393,12 @@ impl Sink for Kept<'_> {
         self.rows.numbers.extend_from_slice(point);
     }
 
-    fn reached(&mut self, _fraction: f64) -> Control {
+    fn reached(&mut self, fraction: f64) -> Control {
+        let percent = (100.0 * fraction) as u32;
+        if percent > self.percent {
+            self.percent = percent;
+            self.voice.says(Reached::Percent(percent));
+        }
         if self.stop.load(Ordering::Relaxed) {
             Control::Stop
         } else {

@@ -14,7 +14,7 @@ pub const FILE: &str = "manifest.json";
 /// All that was made, by product.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// Seconds that the last run took which made something.
+    /// Seconds by the clock that the last run took which made something.
     pub seconds: Option<f64>,
     /// What made it.
     pub machine: BTreeMap<String, String>,
@@ -29,7 +29,7 @@ pub struct Entry {
     pub key: String,
     /// How it was computed.
     pub method: String,
-    /// Seconds that it took, its pieces included.
+    /// Seconds of processor time that it took, its pieces included, also those that other products show too.
     pub seconds: f64,
     /// Its files.
     pub files: Vec<Written>,

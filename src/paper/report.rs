@@ -4,7 +4,7 @@ use super::product::{Make, PRODUCTS, Product};
 use super::record::{Entry, Record};
 use crate::error::Result;
 use crate::output::Head;
-use crate::output::page::{Figure, FileRow, Page, Score, Table};
+use crate::output::page::{Figure, FileRow, Page, Score, Table, percent};
 use crate::scene::shipped;
 use serde_json::Value;
 use std::path::Path;
@@ -62,7 +62,7 @@ fn lead(page: &Page) -> Vec<String> {
         "Two parallel frictional interfaces in an elastic slab, sheared at a constant velocity, obey a rate-and-state friction law. Putelat, Willis and Dawes (2008) found what they do: they slide alike or one for both, in stick-slip cycles, on tori, in resonances and in complicated ways. This report computes their figures and their table again, from the equations, and holds every number and every claim that a computation can decide against the text.".to_owned(),
     ];
     if !page.scores.is_empty() {
-        lead.push("Each computed value comes with a bound on its error, and where there is an unlike second method, with the value by that one. A number agrees if the computed one, rounded to the digits that are printed, is the printed one; a bound if it is right and tight; a claim if it holds.".to_owned());
+        lead.push("Each computed value comes with a bound on its error, and where there is an unlike second method, with the value by that one. A number agrees if the computed one, rounded to the digits that are printed, is the printed one; a bound if it is right and tight; a claim if it holds. What differs is sorted by how much: a claim that fails first, then numbers from the largest difference to the smallest.".to_owned());
     }
     lead
 }
@@ -82,6 +82,17 @@ fn facts(page: &Page, record: &Record) -> Vec<(String, String)> {
             format!("{} of {all}", count("agrees")),
         ));
         facts.push(("differ from the text".into(), count("differs").to_string()));
+        let off = page.scores.iter().filter(|one| one.verdict == "differs");
+        let off = off.filter_map(|one| one.difference).map(f64::abs);
+        let (least, most) = off.fold((f64::INFINITY, 0.0_f64), |(least, most), x| {
+            (least.min(x), most.max(x))
+        });
+        if least <= most {
+            facts.push((
+                "by which numbers that differ are off".into(),
+                format!("{} to {}", percent(least), percent(most)),
+            ));
+        }
         facts.push(("misprints".into(), count("misprint").to_string()));
     }
     if !page.figures.is_empty() {
@@ -89,7 +100,7 @@ fn facts(page: &Page, record: &Record) -> Vec<(String, String)> {
     }
     if let Some(seconds) = record.seconds {
         facts.push((
-            "seconds for what was made last".into(),
+            "seconds by the clock for what was made last".into(),
             format!("{seconds:.1}"),
         ));
     }
@@ -185,6 +196,10 @@ fn score(entry: &Value) -> Score {
         printed: word("printed"),
         computed: with_unit(answer(&entry["computed"])),
         second,
+        // That of what agrees is rounding.
+        difference: entry["relative_difference"]
+            .as_f64()
+            .filter(|_| entry["verdict"] != "agrees"),
         verdict: word("verdict"),
         note: word("note"),
     }

@@ -1,7 +1,8 @@
 //! One run of the whole: what stands is left, pieces are computed on all cores, and every product is written when its pieces are
 //! there.
 
-use super::pieces::Pieces;
+use super::clock::timed;
+use super::pieces::{Going, Pieces};
 use super::product::{Made, Make, Product};
 use super::record::{self, Entry, Record, Written};
 use super::{report, scorecard};
@@ -11,7 +12,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 /// Pieces that take long, the longest first: they are begun before the others, so that no core waits for one of them at the
 /// end.
@@ -50,16 +51,25 @@ pub struct Order {
 /// What happens on the way.
 #[derive(Debug, Clone, Copy)]
 pub enum Told<'a> {
-    /// So many products will be made; the others stand.
-    Begun(usize),
-    /// One was made, in so many seconds.
+    /// What will be made; the others stand.
+    Begun {
+        /// So many products.
+        products: usize,
+        /// Of so many pieces.
+        pieces: usize,
+    },
+    /// A piece goes on.
+    Piece(Going<'a>),
+    /// All pieces of a product are there, and it is made of them.
+    Making(&'a Product),
+    /// A product was made, in so many seconds of processor time.
     Made(&'a Product, f64),
 }
 
 /// What became of an order.
 #[derive(Debug, Default)]
 pub struct Done {
-    /// What was made, with the seconds it took.
+    /// What was made, with the seconds of processor time that it took, all its pieces included.
     pub made: Vec<(&'static Product, f64)>,
     /// What stood.
     pub stood: Vec<&'static Product>,
@@ -101,12 +111,17 @@ pub fn reproduce(
             wanted.push(Wanted::new(product, key));
         }
     }
-    told(Told::Begun(wanted.len()));
+    let scenes = scenes(&wanted);
+    told(Told::Begun {
+        products: wanted.len(),
+        pieces: scenes.len(),
+    });
+    let hears = |going: Going<'_>| told(Told::Piece(going));
     let workshop = Workshop {
         order,
         stop,
         told,
-        pieces: Pieces::new(stop),
+        pieces: Pieces::heard(stop, &hears),
         record: Mutex::new(before),
         done: Mutex::new(done),
     };
@@ -115,7 +130,7 @@ pub fn reproduce(
         .build()
         .map_err(|error| Error::Input(format!("there are no threads to compute on: {error}")))?;
     let begun = Instant::now();
-    pool.install(|| workshop.work(&wanted));
+    pool.install(|| workshop.work(&wanted, &scenes));
     let mut done = workshop.done.into_inner().expect("no thread panicked");
     let place = |product: &Product| order.products.iter().position(|one| one.id == product.id);
     done.made.sort_by_key(|(product, _)| place(product));
@@ -152,6 +167,23 @@ impl Wanted {
 struct Contents {
     files: Vec<(String, Vec<u8>)>,
     method: String,
+    /// The processor time that it took besides its pieces.
+    time: Duration,
+}
+
+/// The scenes of what is wanted, each once, in the order in which they are computed.
+fn scenes(wanted: &[Wanted]) -> Vec<&'static str> {
+    let needed = || wanted.iter().flat_map(|one| one.product.scenes);
+    let long = LONG
+        .iter()
+        .filter(|&scene| needed().any(|other| other == scene));
+    let mut scenes: Vec<&str> = Vec::new();
+    for &scene in long.chain(needed()) {
+        if !scenes.contains(&scene) {
+            scenes.push(scene);
+        }
+    }
+    scenes
 }
 
 struct Workshop<'a> {
@@ -165,19 +197,9 @@ struct Workshop<'a> {
 
 impl Workshop<'_> {
     /// Computes pieces, and makes each product as soon as its last one is there.
-    fn work(&self, wanted: &[Wanted]) {
-        let mut scenes: Vec<&str> = Vec::new();
-        let needed = || wanted.iter().flat_map(|one| one.product.scenes);
-        let long = LONG
-            .iter()
-            .filter(|&scene| needed().any(|other| other == scene));
-        for &scene in long.chain(needed()) {
-            if !scenes.contains(&scene) {
-                scenes.push(scene);
-            }
-        }
+    fn work(&self, wanted: &[Wanted], scenes: &[&'static str]) {
         rayon::scope_fifo(|scope| {
-            for scene in scenes {
+            for &scene in scenes {
                 scope.spawn_fifo(move |_| {
                     // Why it failed is told by the products that need it.
                     let _ = self.pieces.compute(scene);
@@ -199,16 +221,16 @@ impl Workshop<'_> {
 
     fn make(&self, wanted: &Wanted) {
         let product = wanted.product;
-        let begun = Instant::now();
+        (self.told)(Told::Making(product));
         let made = self.contents(product).and_then(|contents| {
             self.pieces.going_on()?;
             let pieces = product
                 .scenes
                 .iter()
                 .filter_map(|scene| self.pieces.took(scene));
-            let seconds = begun.elapsed() + pieces.sum();
-            self.keep(wanted, contents, seconds.as_secs_f64())?;
-            Ok(seconds.as_secs_f64())
+            let seconds = (contents.time + pieces.sum()).as_secs_f64();
+            self.keep(wanted, contents, seconds)?;
+            Ok(seconds)
         });
         if let Err(Error::File { .. }) = made {
             // What can't be written need not be computed.
@@ -227,34 +249,46 @@ impl Workshop<'_> {
     /// The files of a product, not yet written.
     fn contents(&self, product: &Product) -> Result<Contents> {
         let names = product.files(self.order.png).into_iter();
-        let (contents, method) = match product.make {
+        let (contents, method, time) = match product.make {
             Make::Figure(make) | Make::Table(make) => {
-                let Made {
-                    sheet,
-                    drawing,
-                    method,
-                } = make(&self.pieces)?;
-                let mut contents = vec![sheet.csv(&remarks(product, &method))?];
-                if let Some(drawing) = drawing {
-                    contents.push(drawing.svg()?.into_bytes());
-                    if self.order.png {
-                        contents.push(drawing.png()?);
-                    }
-                }
-                (contents, method)
+                let (made, time) = timed(|| self.drawn(product, make));
+                let (contents, method) = made?;
+                (contents, method, time)
             }
             Make::Scorecard => {
-                let entries = scorecard::entries(&self.pieces)?;
+                let (entries, time) = scorecard::timed_entries(&self.pieces)?;
                 let json = scorecard::json(&entries);
                 let mut bytes = serde_json::to_vec_pretty(&json).expect("words and numbers");
                 bytes.push(b'\n');
-                (vec![bytes], scorecard::METHOD.to_owned())
+                (vec![bytes], scorecard::METHOD.to_owned(), time)
             }
         };
         Ok(Contents {
             files: names.zip(contents).collect(),
             method,
+            time,
         })
+    }
+
+    /// The bytes of the files of a figure or a table, and how it was computed.
+    fn drawn(
+        &self,
+        product: &Product,
+        make: fn(&Pieces<'_>) -> Result<Made>,
+    ) -> Result<(Vec<Vec<u8>>, String)> {
+        let Made {
+            sheet,
+            drawing,
+            method,
+        } = make(&self.pieces)?;
+        let mut contents = vec![sheet.csv(&remarks(product, &method))?];
+        if let Some(drawing) = drawing {
+            contents.push(drawing.svg()?.into_bytes());
+            if self.order.png {
+                contents.push(drawing.png()?);
+            }
+        }
+        Ok((contents, method))
     }
 
     /// Writes the files, each complete or not at all, and then the manifest that vouches for them.

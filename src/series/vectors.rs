@@ -22,13 +22,28 @@ pub enum Vectors {
     Avx512,
 }
 
+/// What the user allows. Asked once: it holds for the process.
+///
+/// # Errors
+/// [`Error::Parameter`] for what is none of these; all is allowed then.
+pub fn allowed() -> Result<Vectors> {
+    static ALLOWED: OnceLock<Result<Vectors>> = OnceLock::new();
+    let asked = || match std::env::var(VARIABLE).as_deref() {
+        Err(_) | Ok("avx512") => Ok(Vectors::Avx512),
+        Ok("avx2") => Ok(Vectors::Avx2),
+        Ok("none") => Ok(Vectors::None),
+        Ok(other) => Err(Error::unknown(VARIABLE, other, &["avx512", "avx2", "none"])),
+    };
+    ALLOWED.get_or_init(asked).clone()
+}
+
 impl Vectors {
-    /// As one reads it: `AVX-512`, `AVX2 with FMA` or `none`.
+    /// As the variable has it: `avx512`, `avx2` or `none`.
     pub fn name(self) -> &'static str {
         match self {
             Vectors::None => "none",
-            Vectors::Avx2 => "AVX2 with FMA",
-            Vectors::Avx512 => "AVX-512",
+            Vectors::Avx2 => "avx2",
+            Vectors::Avx512 => "avx512",
         }
     }
 }
@@ -45,21 +60,6 @@ pub fn used() -> Vectors {
         }
     }
     Vectors::None
-}
-
-/// What the user allows. Asked once: it holds for the process.
-///
-/// # Errors
-/// [`Error::Parameter`] for what is none of these; all is allowed then.
-pub fn allowed() -> Result<Vectors> {
-    static ALLOWED: OnceLock<Result<Vectors>> = OnceLock::new();
-    let asked = || match std::env::var(VARIABLE).as_deref() {
-        Err(_) | Ok("avx512") => Ok(Vectors::Avx512),
-        Ok("avx2") => Ok(Vectors::Avx2),
-        Ok("none") => Ok(Vectors::None),
-        Ok(other) => Err(Error::unknown(VARIABLE, other, &["avx512", "avx2", "none"])),
-    };
-    ALLOWED.get_or_init(asked).clone()
 }
 
 #[cfg(target_arch = "x86_64")]

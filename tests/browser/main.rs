@@ -72,10 +72,19 @@ fn examine(
     };
     let mut wrong = complaints(&events, &address);
     wrong.extend(list("wrong"));
-    (
-        wrong,
-        list("files").into_iter().map(PathBuf::from).collect(),
-    )
+    let files = list("files").into_iter().map(PathBuf::from).collect();
+    // Enlarged pictures scroll in their frames: the page fits as before.
+    browser.evaluate("document.querySelectorAll('.zoom').forEach((box) => box.click())");
+    let measured = browser.evaluate(&format!("{MEASURE}({width})"));
+    let enlarged = measured["wrong"].as_array().expect("a list");
+    wrong.extend(enlarged.iter().map(|item| format!("enlarged: {item}")));
+    let small = browser.evaluate(
+        "[...document.querySelectorAll('.zoom:checked + .picture img')].filter((image) => image.width < 1000).length",
+    );
+    if small != 0 {
+        wrong.push(format!("{small} pictures are not enlarged"));
+    }
+    (wrong, files)
 }
 
 fn folder(name: &str) -> PathBuf {

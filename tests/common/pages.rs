@@ -19,6 +19,7 @@ pub fn score(id: &str, verdict: &str) -> Score {
         printed: "0.0842".into(),
         computed: "0.0884208239 ± 2e-10".into(),
         second: "0.08842082 (collocation)".into(),
+        difference: (verdict != "agrees").then_some(-0.0478),
         verdict: verdict.into(),
         note: "Two independent methods agree.".into(),
     }
@@ -82,6 +83,7 @@ pub fn hostile() -> Page {
         printed: number.clone(),
         computed: number.clone(),
         second: format!("{number} ({long})"),
+        difference: [None, Some(f64::NAN), Some(1e300)][id % 3],
         verdict: verdict.into(),
         note: text.repeat(5),
     };

@@ -1,13 +1,13 @@
 //! A figure with its caption and what it was computed by, and a table of numbers.
 
-use super::words::{address, anchor, duration, label, link, paragraphs, prose};
+use super::words::{anchor, duration, label, link, paragraphs, prose};
 use super::{Figure, Table};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use maud::{Markup, html};
 
-/// The section of one figure.
-pub fn figure(figure: &Figure) -> Markup {
+/// The section of one figure, with the ways to the one before and the one after.
+pub fn figure(figure: &Figure, beside: [Option<&Figure>; 2]) -> Markup {
     let place = anchor(&figure.id);
     html! {
         section.figure id=(place) aria-labelledby={ (place) "-title" } {
@@ -21,7 +21,7 @@ pub fn figure(figure: &Figure) -> Markup {
                     div { dt { "Computed" } dd { (prose(&figure.method)) (time(figure.seconds)) } }
                 }
                 @if !figure.csv_file.is_empty() { div { dt { "Numbers" } dd { (link(&figure.csv_file)) } } }
-                @if !figure.svg_file.is_empty() { div { dt { "Picture" } dd { (link(&figure.svg_file)) } } }
+                @if !figure.svg_file.is_empty() { div { dt { "Picture" } dd { (link(&figure.svg_file)) "; a click on it here enlarges it" } } }
             }
             @for (name, text) in &figure.scenes {
                 details.scene {
@@ -29,6 +29,18 @@ pub fn figure(figure: &Figure) -> Markup {
                     pre { code { (text) } }
                 }
             }
+            (ways(beside))
+        }
+    }
+}
+
+/// To the figure before, to the contents, to the figure after.
+fn ways([before, after]: [Option<&Figure>; 2]) -> Markup {
+    html! {
+        p.ways {
+            @if let Some(other) = before { a href={ "#" (anchor(&other.id)) } { "← " (label(&other.id)) } " " }
+            a href="#contents" { "Contents" }
+            @if let Some(other) = after { " " a href={ "#" (anchor(&other.id)) } { (label(&other.id)) " →" } }
         }
     }
 }
@@ -45,18 +57,19 @@ fn heading(id: &str, title: &str) -> Markup {
 
 fn time(seconds: Option<f64>) -> Markup {
     let seconds = seconds.filter(|s| s.is_finite() && *s >= 0.0);
-    html! { @if let Some(s) = seconds { " " span.time { "Took\u{a0}" (duration(s)) "." } } }
+    html! { @if let Some(s) = seconds { " " span.time { "Took\u{a0}" (duration(s)) " of processor time." } } }
 }
 
-/// The picture, and on it the link to its file, where it can be enlarged.
+/// The picture, which fits the page; a click, or a tap, or the space bar enlarges it in a frame that scrolls, and the next one
+/// takes that back. No script: a box that is checked, and the style.
 fn picture(figure: &Figure) -> Markup {
     let source = format!("data:image/svg+xml;base64,{}", STANDARD.encode(&figure.svg));
     let (width, height) = size(&figure.svg);
     let image = html! { img src=(source) alt=(figure.alt) width=[width] height=[height]; };
+    let zoom = format!("{}-zoom", anchor(&figure.id));
     html! {
-        @if figure.svg_file.is_empty() { (image) } @else {
-            a.picture href=(address(&figure.svg_file)) title="The picture in full size" { (image) }
-        }
+        input.zoom type="checkbox" id=(zoom) aria-label={ "Enlarge " (label(&figure.id)) };
+        label.picture for=(zoom) title="Enlarge, and back" { (image) }
     }
 }
 

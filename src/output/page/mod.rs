@@ -1,4 +1,4 @@
-//! A report as one HTML file: a summary, a scorecard, figures with captions, tables, and how it all came about.
+//! A report as one HTML file: a summary, figures with captions, tables, a scorecard, and how it all came about.
 //!
 //! The file holds its pictures and its style, asks for nothing else and has no script, so it reads the same from a disk,
 //! by mail and in ten years; a policy in its head forbids browsers to load anything. What it links to (CSV, SVG, scenes)
@@ -10,6 +10,7 @@ mod scorecard;
 mod words;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
+pub use words::percent;
 use words::{anchor, label, prose};
 
 const STYLE: &str = include_str!("style.css");
@@ -53,6 +54,8 @@ pub struct Score {
     pub computed: String,
     /// The value by another method, and that method's name; may be empty.
     pub second: String,
+    /// By which part the printed value differs from the computed one; of numbers that don't agree.
+    pub difference: Option<f64>,
     /// `agrees`, `differs` or `misprint`.
     pub verdict: String,
     /// What there is to say; may be empty.
@@ -178,9 +181,9 @@ impl Page {
         };
         html! {
             nav #contents aria-label="Contents" {
-                @if !self.scores.is_empty() { p { a href="#scorecard" { "Scorecard" } } }
                 @if !self.figures.is_empty() { p { a href="#figures" { "Figures" } } (places(figures.collect())) }
                 @if !self.tables.is_empty() { p { a href="#tables" { "Tables" } } (places(tables.collect())) }
+                @if !self.scores.is_empty() { p { a href="#scorecard" { "Scorecard" } } (scorecard::places(&self.scores)) }
                 @if self.has_provenance() { p { a href="#provenance" { "How to repeat it" } } }
             }
         }
@@ -189,11 +192,13 @@ impl Page {
     fn main(&self) -> Markup {
         html! {
             main {
-                @if !self.scores.is_empty() { (scorecard::section(&self.scores)) }
                 @if !self.figures.is_empty() {
                     section #figures aria-labelledby="figures-title" {
                         h2 #figures-title { "Figures" }
-                        @for figure in &self.figures { (figure::figure(figure)) }
+                        @for (i, figure) in self.figures.iter().enumerate() {
+                            @let beside = |j: Option<usize>| j.and_then(|j| self.figures.get(j));
+                            (figure::figure(figure, [beside(i.checked_sub(1)), beside(Some(i + 1))]))
+                        }
                     }
                 }
                 @if !self.tables.is_empty() {
@@ -202,6 +207,7 @@ impl Page {
                         @for table in &self.tables { (figure::table(table)) }
                     }
                 }
+                @if !self.scores.is_empty() { (scorecard::section(&self.scores)) }
                 @if self.has_provenance() { (provenance::section(&self.manifest, &self.files)) }
             }
         }

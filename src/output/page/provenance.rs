@@ -11,7 +11,11 @@ pub fn section(manifest: &[(String, String)], files: &[FileRow]) -> Markup {
             h2 #provenance-title { "How to repeat it" }
             p {
                 "The manifest names what made this report, the hashes identify the files beside it: "
-                "run the same version again and compare."
+                "run the same version again and compare. The last digits depend on the vector instructions, "
+                "which the manifest names: on a processor that has more of them, hold it to the same by the "
+                "environment variable " code { "TWINSLIP_VECTORS" } " (" code { "avx512" } ", " code { "avx2" }
+                " or " code { "none" } "), and compare on the same system and with the same C library, whose "
+                "functions the start of some runs takes."
             }
             @if !manifest.is_empty() {
                 details {

@@ -1,7 +1,7 @@
 //! The scorecard: what differs first, then misprints, then what agrees.
 
 use super::Score;
-use super::words::{anchor, prose};
+use super::words::{anchor, percent, prose};
 use maud::{Markup, html};
 
 /// Entries of one verdict.
@@ -22,9 +22,13 @@ impl<'a> Group<'a> {
         verdicts.push("agrees");
         verdicts
             .into_iter()
-            .map(|verdict| Group {
-                verdict,
-                scores: scores.iter().filter(|s| s.verdict == verdict).collect(),
+            .map(|verdict| {
+                let mut scores: Vec<&Score> =
+                    scores.iter().filter(|s| s.verdict == verdict).collect();
+                // What can't be said in numbers differs altogether; what agrees keeps its order.
+                let size = |s: &Score| s.difference.map_or(f64::INFINITY, f64::abs);
+                scores.sort_by(|a, b| size(b).total_cmp(&size(a)));
+                Group { verdict, scores }
             })
             .filter(|group| !group.scores.is_empty())
             .collect()
@@ -46,7 +50,9 @@ impl<'a> Group<'a> {
 
     fn meaning(&self) -> &'static str {
         match self.verdict {
-            "differs" => "The computed value is not the printed one.",
+            "differs" => {
+                "The computed value is not the printed one. Claims that fail come first, then numbers by how far they are off."
+            }
             "misprint" => "The printed value is taken for a slip in print; the note says why.",
             "agrees" => "The computed value is the printed one, as far as its digits go.",
             _ => "",
@@ -78,6 +84,17 @@ impl<'a> Group<'a> {
     }
 }
 
+/// The ways to the groups, for the contents.
+pub fn places(scores: &[Score]) -> Markup {
+    html! {
+        ol {
+            @for group in &Group::all(scores) {
+                li { a href={ "#" (group.place()) } { (group.heading()) } }
+            }
+        }
+    }
+}
+
 /// The section of all entries.
 pub fn section(scores: &[Score]) -> Markup {
     let groups = Group::all(scores);
@@ -99,7 +116,8 @@ pub fn section(scores: &[Score]) -> Markup {
 
 fn table(group: &Group) -> Markup {
     let second = group.scores.iter().any(|score| !score.second.is_empty());
-    let columns = if second { 6 } else { 5 };
+    let difference = group.scores.iter().any(|score| score.difference.is_some());
+    let columns = 5 + usize::from(second) + usize::from(difference);
     html! {
         section.verdict id=(group.place()) aria-labelledby={ (group.place()) "-title" } {
             h3 id={ (group.place()) "-title" } { (group.heading()) }
@@ -112,11 +130,12 @@ fn table(group: &Group) -> Markup {
                             th scope="col" { "Where" }
                             th scope="col" { "Printed" }
                             th scope="col" { "Computed" }
+                            @if difference { th scope="col" { "Off by" } }
                             @if second { th scope="col" { "Second method" } }
                             th scope="col" { "Verdict" }
                         }
                     }
-                    @for score in &group.scores { (row(group, score, second, columns)) }
+                    @for score in &group.scores { (row(group, score, (difference, second), columns)) }
                 }
             }
         }
@@ -124,7 +143,7 @@ fn table(group: &Group) -> Markup {
 }
 
 /// An entry, and its note below it in full width.
-fn row(group: &Group, score: &Score, second: bool, columns: usize) -> Markup {
+fn row(group: &Group, score: &Score, (difference, second): (bool, bool), columns: usize) -> Markup {
     html! {
         tbody id={ "score-" (anchor(&score.id)) } {
             tr {
@@ -132,6 +151,7 @@ fn row(group: &Group, score: &Score, second: bool, columns: usize) -> Markup {
                 td data-label="Where" { (prose(&score.place)) }
                 td.value data-label="Printed" { (prose(&score.printed)) }
                 td.value data-label="Computed" { (prose(&score.computed)) }
+                @if difference { td.value data-label="Off by" { (score.difference.map(percent).unwrap_or_default()) } }
                 @if second { td.value data-label="Second method" { (prose(&score.second)) } }
                 td data-label="Verdict" { (group.badge()) }
             }

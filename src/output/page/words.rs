@@ -149,6 +149,23 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// A part of one in percent, with two digits: what differs by 4.4 % and by 0.022 % is not the same.
+pub fn percent(part: f64) -> String {
+    let percent = 100.0 * part;
+    if !percent.is_finite() {
+        return String::new();
+    }
+    if percent == 0.0 {
+        return "0 %".into();
+    }
+    let behind = 1 - percent.abs().log10().floor() as i32;
+    match usize::try_from(behind) {
+        Ok(behind) if behind <= 6 => format!("{percent:.behind$} %"),
+        Ok(_) => format!("{percent:.1e} %"),
+        Err(_) => format!("{percent:.0} %"),
+    }
+}
+
 /// A whole number in groups of three digits.
 pub fn grouped(number: u64) -> String {
     let digits = number.to_string();

@@ -13,10 +13,10 @@ use crate::views::{branch_lines, named_strokes};
 pub const FIGURE: Product = Product {
     id: "fig07",
     title: "Bifurcation diagram at K = 0.14",
-    caption: "(a) Stress of the equilibria, thin, and greatest and least stress of the periodic orbits, broad; stable solid, unstable dashed. Symmetric ones are blue, asymmetric ones vermillion. The asymmetric orbits come from the Hopf points of the asymmetric equilibrium, lose stability at a torus bifurcation (TR) at V_H = 0.07674, and are stable again, but for a narrow gap, from a period doubling and a second torus point about 0.1 on. The symmetric orbits are unstable against asymmetry for all V_H at this stiffness, and hardly differ from the others in stress.
+    caption: "(a) Stress of the equilibria, thin, and greatest and least stress of the periodic orbits, broad; stable solid, unstable dashed. Symmetric ones are blue, asymmetric ones vermillion. The asymmetric orbits come from the Hopf points of the asymmetric equilibrium, lose stability at a torus bifurcation (TR) at V_H = 0.07674 and are unstable from there to a second one at V_H = 0.100026, throughout; two period doublings (PD) between, at 0.08842 and 0.09980, only change how many multipliers are outside the unit circle, two or one. From 0.100026 on they are stable again. The symmetric orbits are unstable against asymmetry for all V_H at this stiffness, and hardly differ from the others in stress.
 
 (b) Periods: they fall as 1/V_H and are nearly the same for both kinds.",
-    alt: "Two panels against driving velocity: the extremes of stress over periodic orbits with the equilibria, and the periods. The asymmetric branch is stable but for an interval near 0.08 between torus and period-doubling points; the symmetric branch is unstable.",
+    alt: "Two panels against driving velocity: the extremes of stress over periodic orbits with the equilibria, and the periods. The asymmetric branch is stable but for the interval from 0.0767 to 0.1000 between two torus points, with two period-doubling points in it; the symmetric branch is unstable.",
     scenes: &["fig07", "fig07-equilibria"],
     make: Make::Figure(make),
 };

@@ -96,10 +96,12 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
             word(end < 1e-9),
         )
         .beside(MULTIPLIERS, Answer::Word(word(stable)))
-        .noted(format!(
-            "|ln psi_1 - ln psi_2| falls from {:.3} to {end:.0e}",
-            (begin[0] - begin[1]).abs()
-        )),
+        .noted(match (begin[0] - begin[1]).abs() {
+            begin if end == 0.0 => format!(
+                "|ln psi_1 - ln psi_2| is {begin:.3} at the start; at the end both states are the same double"
+            ),
+            begin => format!("|ln psi_1 - ln psi_2| falls from {begin:.3} to {end:.0e}"),
+        }),
     ])
 }
 

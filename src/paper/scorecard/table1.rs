@@ -1,7 +1,8 @@
 //! Table 1: the strong resonances along the curve of torus bifurcations.
 
+use super::rule::forms;
 use super::second::{BY_SECOND, again};
-use super::{Answer, Entry, missing};
+use super::{Answer, Entry, difference, missing};
 use crate::bifurcation::{Label, Special};
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -9,11 +10,12 @@ use crate::output::Cell;
 use crate::paper::product::Made;
 use crate::paper::{Pieces, Sheet};
 
-/// A column of the printed table: the resonance, and of each of its numbers the entry's name, what it is, and as printed.
+/// A column of the printed table: the resonance, and of V_H and K the entry's name, what it is, and as printed. V_H is printed
+/// twice, by itself and as its logarithm, and is one fact.
 struct Printed {
     label: Label,
     name: &'static str,
-    numbers: [[&'static str; 3]; 3],
+    numbers: [[&'static str; 3]; 2],
 }
 
 const TABLE: [Printed; 5] = [
@@ -22,11 +24,10 @@ const TABLE: [Printed; 5] = [
         name: "1:4",
         numbers: [
             [
-                "1:4-first-log10-V_H",
-                "log10 V_H/V* of the resonance 1:4",
-                "-1.2582",
+                "1:4-first-V_H",
+                "V_H of the resonance 1:4",
+                "0.0552 (log10: -1.2582)",
             ],
-            ["1:4-first-V_H", "V_H of the resonance 1:4", "0.0552"],
             ["1:4-first-K", "K of the resonance 1:4", "0.0387"],
         ],
     },
@@ -35,11 +36,10 @@ const TABLE: [Printed; 5] = [
         name: "1:4",
         numbers: [
             [
-                "1:4-second-log10-V_H",
-                "log10 V_H/V* of the resonance 1:4",
-                "-1.0859",
+                "1:4-second-V_H",
+                "V_H of the resonance 1:4",
+                "0.0821 (log10: -1.0859)",
             ],
-            ["1:4-second-V_H", "V_H of the resonance 1:4", "0.0821"],
             ["1:4-second-K", "K of the resonance 1:4", "0.1566"],
         ],
     },
@@ -48,11 +48,10 @@ const TABLE: [Printed; 5] = [
         name: "1:4",
         numbers: [
             [
-                "1:4-third-log10-V_H",
-                "log10 V_H/V* of the resonance 1:4",
-                "-0.9447",
+                "1:4-third-V_H",
+                "V_H of the resonance 1:4",
+                "0.1136 (log10: -0.9447)",
             ],
-            ["1:4-third-V_H", "V_H of the resonance 1:4", "0.1136"],
             ["1:4-third-K", "K of the resonance 1:4", "0.1956"],
         ],
     },
@@ -61,11 +60,10 @@ const TABLE: [Printed; 5] = [
         name: "1:3",
         numbers: [
             [
-                "1:3-log10-V_H",
-                "log10 V_H/V* of the resonance 1:3",
-                "-0.9761",
+                "1:3-V_H",
+                "V_H of the resonance 1:3",
+                "0.1057 (log10: -0.9761)",
             ],
-            ["1:3-V_H", "V_H of the resonance 1:3", "0.1057"],
             ["1:3-K", "K of the resonance 1:3", "0.1617"],
         ],
     },
@@ -74,17 +72,15 @@ const TABLE: [Printed; 5] = [
         name: "1:2",
         numbers: [
             [
-                "1:2-log10-V_H",
-                "log10 V_H/V* of the resonance 1:2",
-                "-1.0027",
+                "1:2-V_H",
+                "V_H of the resonance 1:2",
+                "0.0994 (log10: -1.0027)",
             ],
-            ["1:2-V_H", "V_H of the resonance 1:2", "0.0994"],
             ["1:2-K", "K of the resonance 1:2", "0.1376"],
         ],
     },
 ];
-const QUANTITIES: [&str; 3] = ["log10(V_H/V*)", "V_H/V*", "K"];
-const UNITS: [&str; 3] = ["", "V*", "a sigma/L"];
+const UNITS: [&str; 2] = ["V*", "a sigma/L"];
 
 /// The resonances in the order of the table.
 pub(super) fn resonances(pieces: &Pieces<'_>) -> Result<Vec<Special>> {
@@ -107,43 +103,29 @@ pub(super) fn resonances(pieces: &Pieces<'_>) -> Result<Vec<Special>> {
     Ok(all)
 }
 
-/// log10 V_H, V_H and K.
-fn three([driving, stiffness]: [Uncertain; 2]) -> [Uncertain; 3] {
-    let logarithm = driving.value.log10();
-    let relative = driving.uncertainty / driving.value;
-    let off = relative / std::f64::consts::LN_10 + f64::EPSILON * logarithm.abs();
-    [Uncertain::new(logarithm, off), driving, stiffness]
-}
-
-/// The fifteen numbers.
+/// The ten facts.
 pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let mut all = Vec::new();
     for (special, column) in resonances(pieces)?.iter().zip(&TABLE) {
-        let first = three([special.driving, special.stiffness]);
-        let second = three(again(pieces, special)?);
+        let first = [special.driving, special.stiffness];
+        let second = again(pieces, special)?;
         for (i, [id, quantity, printed]) in column.numbers.into_iter().enumerate() {
-            let place = match (column.label, i) {
-                (Label::R2, 1 | 2) => "Table 1; Fig. 14, caption",
+            let place = match column.label {
+                Label::R2 => "Table 1; Fig. 14, caption",
                 _ => "Table 1",
             };
             let entry = Entry::number((id, place), quantity, UNITS[i], printed, first[i]);
-            let entry = entry.beside(BY_SECOND, Answer::Number(second[i]));
-            let (what, off) = (["V_H", "V_H", "K"][i], 100.0 * off(printed, first[i].value));
-            all.push(entry.noted(format!("the printed {what} is off by {off:.2} %")));
+            all.push(entry.beside(BY_SECOND, Answer::Number(second[i])));
         }
     }
     Ok(all)
 }
 
-/// By which part a printed V_H or K differs from the computed one; of a logarithm, the V_H that it is the logarithm of.
-fn off(printed: &str, computed: f64) -> f64 {
-    printed.parse::<f64>().map_or(f64::NAN, |x| {
-        if x < 0.0 {
-            (std::f64::consts::LN_10 * (x - computed)).exp_m1()
-        } else {
-            x / computed - 1.0
-        }
-    })
+/// log10 of a number.
+fn logarithm(x: Uncertain) -> Uncertain {
+    let logarithm = x.value.log10();
+    let part = x.uncertainty / x.value / std::f64::consts::LN_10;
+    Uncertain::new(logarithm, part + f64::EPSILON * logarithm.abs())
 }
 
 /// The table with the values computed.
@@ -153,17 +135,31 @@ fn off(printed: &str, computed: f64) -> f64 {
 pub fn table1(pieces: &Pieces<'_>) -> Result<Made> {
     let mut rows = Vec::new();
     for (special, column) in resonances(pieces)?.iter().zip(&TABLE) {
-        let first = three([special.driving, special.stiffness]);
-        let second = three(again(pieces, special)?);
-        for (i, [_, _, printed]) in column.numbers.into_iter().enumerate() {
+        let again = again(pieces, special)?;
+        let [[_, _, both], [_, _, stiffness]] = column.numbers;
+        let (driving, in_logarithm) = forms(both);
+        let logarithms = in_logarithm.map(|printed| {
+            let part = difference(both, &Answer::Number(special.driving));
+            let [first, second] = [special.driving, again[0]].map(logarithm);
+            ("log10(V_H/V*)", printed, part, first, second)
+        });
+        let numbers = [
+            ("V_H/V*", driving, special.driving, again[0]),
+            ("K", stiffness, special.stiffness, again[1]),
+        ]
+        .map(|(quantity, printed, first, second)| {
+            let part = difference(printed, &Answer::Number(first));
+            (quantity, printed, part, first, second)
+        });
+        for (quantity, printed, part, first, second) in logarithms.into_iter().chain(numbers) {
             rows.push(vec![
                 Cell::from(column.name),
-                Cell::from(QUANTITIES[i]),
+                Cell::from(quantity),
                 Cell::from(printed),
-                Cell::from(first[i].value),
-                Cell::from(first[i].uncertainty),
-                Cell::from(second[i].value),
-                Cell::from(off(printed, first[i].value)),
+                Cell::from(first.value),
+                Cell::from(first.uncertainty),
+                Cell::from(second.value),
+                part.map_or(Cell::Missing, Cell::from),
             ]);
         }
     }
