@@ -5,6 +5,7 @@ use super::interrupt;
 use super::report::sundials;
 use crate::error::{Error, Result};
 use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
+use crate::sweep::threads_checked;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -102,9 +103,7 @@ fn make(
     making: &Making,
     kept: Kept,
 ) -> Result<Ending> {
-    if making.threads == Some(0) {
-        return Err(Error::parameter("threads", 0, "at least 1"));
-    }
+    threads_checked(making.threads)?;
     let machine = machine();
     let order = Order {
         out: out.to_owned(),

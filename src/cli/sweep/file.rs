@@ -16,6 +16,8 @@ use std::path::Path;
 const SHARD: &str = "shard: ";
 /// No line of remarks or rows is longer.
 const LONGEST_LINE: u64 = 1 << 16;
+/// No sweep has more remarks.
+const MOST_REMARKS: usize = 100;
 
 /// The remarks of a sweep; its part, if it is one, is told in the last.
 pub fn remarks(plan: &SweepPlan, shard: Option<Shard>) -> Vec<String> {
@@ -192,12 +194,20 @@ pub fn row(plan: &SweepPlan, columns: &[Column<Row>], number: usize, line: &str)
     views::sweep_row(number, &cell, &plan.system.units)
 }
 
+/// The regime that the line of a row tells.
+pub fn regime(line: &str) -> &str {
+    line.split(',').nth(2).unwrap_or_default()
+}
+
 /// The remarks of a sweep's file, without `# `.
 pub fn remarks_of(path: &Path) -> Result<Vec<String>> {
     let mut file = BufReader::new(File::open(path).map_err(|error| unreadable(path, error))?);
     let mut remarks = Vec::new();
     while let Some(line) = whole_line(path, &mut file)? {
         match line.strip_prefix("# ") {
+            Some(_) if remarks.len() == MOST_REMARKS => {
+                return Err(wrong(path, "it is not the CSV of a sweep"));
+            }
             Some(remark) => remarks.push(remark.to_owned()),
             None => break,
         }
