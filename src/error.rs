@@ -1,5 +1,6 @@
 //! What can go wrong, with the numbers that say where, how far off, and what to try.
 
+use std::borrow::Cow;
 use std::path::PathBuf;
 
 /// The crate's result.
@@ -17,7 +18,7 @@ pub enum Error {
         /// The value given.
         value: String,
         /// What is allowed.
-        must: &'static str,
+        must: Cow<'static, str>,
     },
     /// An input that can't be read as what it should be: a scene file, a start, a combination of options.
     #[error("{0}")]
@@ -141,7 +142,15 @@ pub enum Error {
         /// K reached.
         stiffness: f64,
     },
-    /// Whoever asked for it wants it no more.
+    /// A branch or curve has more points than are allowed.
+    #[error(
+        "stopped after {limit} points, as many as allowed; raise --max-points, or --step-limit for longer steps"
+    )]
+    TooManyPoints {
+        /// The bound.
+        limit: usize,
+    },
+    /// The user stopped it (Ctrl-C), or the caller's callback did.
     #[error("interrupted; what was finished is kept")]
     Interrupted,
     /// Something else was found where a periodic orbit was looked for.
@@ -156,12 +165,28 @@ pub enum Error {
 
 impl Error {
     /// A parameter outside its domain: `Error::parameter("K", -1.0, "positive and finite")`.
-    pub fn parameter(name: impl Into<String>, value: impl ToString, must: &'static str) -> Self {
+    pub fn parameter(
+        name: impl Into<String>,
+        value: impl ToString,
+        must: impl Into<Cow<'static, str>>,
+    ) -> Self {
         Error::Parameter {
             name: name.into(),
-            value: shortest(value.to_string()),
-            must,
+            value: shortest(echoed(value.to_string())),
+            must: must.into(),
         }
+    }
+
+    /// A name that is none of those that there are, with the one that may have been meant:
+    /// `Error::unknown("law", "spinodl", &AnyLaw::NAMES)`.
+    pub fn unknown(what: impl Into<String>, given: &str, known: &[&str]) -> Self {
+        let list = match known {
+            [one] => (*one).to_owned(),
+            [others @ .., last] if others.len() < 3 => format!("{} or {last}", others.join(", ")),
+            _ => format!("one of {}", known.join(", ")),
+        };
+        let hint = did_you_mean(given, known.iter().copied());
+        Error::parameter(what, given, list + &hint)
     }
 
     /// Whether the input is to blame (exit status 2) and not the computation (exit status 1).
@@ -173,8 +198,53 @@ impl Error {
     }
 }
 
-/// A number with many zeros is easier to read with an exponent.
+/// What was given, as messages show it: of what is long the begin.
+fn echoed(given: String) -> String {
+    /// Letters that are shown.
+    const SHOWN: usize = 80;
+    let length = given.chars().count();
+    if length <= SHOWN {
+        return given;
+    }
+    let begin: String = given.chars().take(SHOWN).collect();
+    format!("{begin}... ({length} letters)")
+}
+
+/// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
+const SIMILAR: f64 = 0.75;
+
+/// `; did you mean "x"?` for the known name most like the given one, or nothing if none is.
+pub fn did_you_mean<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
+    // Underscores are what most would write first: they count as hyphens.
+    let plain = |name: &str| name.replace('_', "-").to_lowercase();
+    let given = plain(given);
+    known
+        .map(|name| (strsim::jaro_winkler(&given, &plain(name)), name))
+        .filter(|&(similarity, _)| similarity >= SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(String::new(), |(_, name)| {
+            format!("; did you mean {name:?}?")
+        })
+}
+
+/// A count with its thousands apart: `63,183`.
+pub(crate) fn count(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number with many zeros is easier to read with an exponent, and nothing at all is easily overlooked.
 fn shortest(plain: String) -> String {
+    if plain.is_empty() {
+        return "\"\"".into();
+    }
     match plain.parse::<f64>() {
         Ok(x) if plain.len() > 8 => format!("{x:?}"),
         _ => plain,

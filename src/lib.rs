@@ -30,6 +30,9 @@
 //! Putelat, T., Willis, J. R. and Dawes, J. H. P. (2008). Sliding modes of two interacting frictional interfaces.
 //! Journal of the Mechanics and Physics of Solids.
 
+// Printing may fail, as nobody may read it: these macros would panic.
+#![warn(clippy::print_stderr, clippy::print_stdout)]
+
 // Bottom up: a room imports only from those above it here. The drawing in the README says from which.
 pub mod error;
 

@@ -294,7 +294,10 @@ fn an_interrupted_file_is_gone_on_with() {
 #[test]
 fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     let path = folder("branch-interrupt").join("hopf.csv");
-    let long = format!("locus hopf --step-limit 1e-3 -o {}", path.display());
+    let long = format!(
+        "locus hopf --step-limit 1e-3 --max-points 1000000 -o {}",
+        path.display()
+    );
     let child = Command::new(env!("CARGO_BIN_EXE_twinslip"))
         .args(long.split(' '))
         .stderr(Stdio::piped())
@@ -315,6 +318,49 @@ fn an_interrupt_keeps_whole_rows_and_says_how_to_go_on() {
     assert!(text.ends_with('\n') && text.starts_with("# twinslip"));
     let table = csv(&text);
     assert!(table.len() > 2 && table.iter().all(|row| row.len() == table[0].len()));
+}
+
+/// However short the steps: as many points as are allowed, then a failure that names the number, and the points are kept.
+#[test]
+fn points_are_bounded() {
+    for (arguments, limit) in [
+        ("locus pitchfork --step-limit 1e-9", 50),
+        ("locus pitchfork --step-limit 1e-300", 7),
+        ("locus hopf --step-limit 1e-9", 40),
+        ("branch equilibria --stiffness 0.14 --step-limit 1e-12", 30),
+        (
+            "branch equilibria --driving 10 --along stiffness --step-limit 1e-9",
+            30,
+        ),
+        (
+            "branch orbits --stiffness 0.14 --from 10 --to 20 --step-limit 1e-3",
+            5,
+        ),
+    ] {
+        let ended = twinslip(&format!("{arguments} --max-points {limit} --format csv"));
+        assert_eq!(ended.code, 1, "{arguments}: {}", ended.err);
+        let named = format!("stopped after {limit} points");
+        assert!(ended.err.contains(&named), "{arguments}: {}", ended.err);
+        assert_eq!(csv(&ended.out).len(), limit + 1, "{arguments}");
+    }
+    let wide = twinslip("locus pitchfork --stiffness-range 1e-300,1e300 --format csv");
+    assert_eq!(wide.code, 0, "{}", wide.err);
+    let rows = csv(&wide.out);
+    let stiffness = rows[0]
+        .iter()
+        .position(|name| name == "stiffness")
+        .expect("a column");
+    let values: Vec<f64> = rows[1..]
+        .iter()
+        .map(|row| row[stiffness].parse().expect("a number"))
+        .collect();
+    let line = values.len() / 2;
+    assert_eq!((values[0], values[line - 1]), (1e-300, 1e300));
+    assert!(values[..line].windows(2).all(|pair| pair[0] < pair[1]));
+    refused(
+        "locus pitchfork --max-points 0",
+        "max-points is 0, but must be at least 1",
+    );
 }
 
 /// Exit code 2, nothing on standard output, and one sentence.
@@ -376,7 +422,10 @@ fn wrong_branches_are_refused() {
             "tolerance is 1, but must be at least 1e-15",
         ),
         ("--step-limit 0", "step-limit is 0, but must be positive"),
-        ("--crosscheck=euler", "there is no method \"euler\""),
+        (
+            "--crosscheck=euler",
+            "method is euler, but must be one of auto",
+        ),
         ("--plot x.pdf", "must end in .svg or .png"),
     ] {
         refused(&orbits(change), sentence);
@@ -387,13 +436,21 @@ fn wrong_branches_are_refused() {
 fn wrong_curves_are_refused() {
     for (arguments, sentence) in [
         ("locus", "one of pitchfork, saddle-node, hopf"),
-        ("locus fold", "there is no curve of \"fold\""),
+        (
+            "locus fold",
+            "bifurcation is fold, but must be one of pitchfork",
+        ),
         (
             "locus hopf --stiffness 0.14",
             "--stiffness varies along a curve",
         ),
         ("locus hopf --driving 1", "use --driving-range"),
-        ("locus hopf --driving-range 1", "must be two numbers, A,B"),
+        ("locus hopf --driving-range 1", "must be A:B, two numbers"),
+        (
+            "locus hopf --driving-range 1:2:3",
+            "must be A:B, two numbers",
+        ),
+        ("locus hopf --driving-range 1:", "\"\" is not a number"),
         ("locus hopf --driving-range 1,1", "begins and ends at 1"),
         ("locus hopf --driving-range 1,nan", "must be positive"),
         ("locus hopf --stiffness-range 0,1", "stiffness-range is 0"),

@@ -6,6 +6,7 @@ mod command;
 use command::{contents, csv, folder, object, run, twinslip};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
+use twinslip::output::{Cell, RowWriter, TableRows};
 
 const RUN: &str = "integrate --driving 0.12 --stiffness 0.14 --until 10";
 
@@ -78,7 +79,7 @@ fn parameters_outside_their_domain_are_refused() {
     );
     refused(
         &model("--format xml"),
-        "format is xml, but must be one of table, csv, json",
+        "format is xml, but must be table, csv or json",
     );
     refused(
         &model("--events --event-threshold 0.5"),
@@ -218,7 +219,7 @@ fn conflicts_and_gaps_are_refused() {
     refused(&format!("{RUN} --plot run.pdf"), "must end in .svg or .png");
     refused(
         &format!("{RUN} --method euler"),
-        "choose one of auto, taylor, rodas5p",
+        "method is euler, but must be one of auto, taylor, rodas5p",
     );
 }
 
@@ -297,6 +298,283 @@ fn files_get_the_format_of_their_extension() {
 }
 
 #[test]
+fn endings_of_other_formats_are_refused() {
+    let place = folder("endings");
+    let path = |name: &str| place.join(name).display().to_string();
+    for (name, hint) in [
+        ("run.xlsx", "data is written as .csv or .json, not as .xlsx"),
+        ("run.svg", "pictures are drawn by --plot"),
+        ("run.parquet", "Parquet is written by sweep alone"),
+    ] {
+        refused(&format!("{RUN} -o {}", path(name)), hint);
+    }
+    assert_eq!(contents(&place), Vec::<String>::new());
+    // What is said outright holds for any name.
+    let named = twinslip(&format!("{RUN} -q --format csv -o {}", path("run.xlsx")));
+    assert_eq!(named.code, 0, "{}", named.err);
+    let large = twinslip(&format!("{RUN} -q -o {}", path("run.JSON")));
+    assert_eq!(large.code, 0, "{}", large.err);
+    let text = std::fs::read_to_string(place.join("run.JSON")).expect("written");
+    assert!(text.starts_with('{'), "{text}");
+}
+
+/// One sentence for any name that a user types: which there are, and the one that may have been meant.
+#[test]
+fn wrong_names_are_answered_by_the_nearest() {
+    let point = "--driving 0.1 --stiffness 0.2";
+    for (arguments, sentence) in [
+        (
+            format!("{RUN} --law dietrich-ruina"),
+            "law is dietrich-ruina, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip; did you mean \"dieterich-ruina\"?",
+        ),
+        (
+            format!("{RUN} --law regularised_ageing"),
+            "did you mean \"regularised-ageing\"?",
+        ),
+        (format!("{RUN} --method tailor"), "did you mean \"taylor\"?"),
+        (format!("{RUN} --format jsn"), "did you mean \"json\"?"),
+        (
+            format!("equilibria {point} --solver newtn"),
+            "solver is newtn, but must be kinsol or newton; did you mean \"newton\"?",
+        ),
+        (
+            format!("orbit {point} --symmetry asymetric"),
+            "symmetry is asymetric, but must be symmetric or asymmetric; did you mean \"asymmetric\"?",
+        ),
+        (
+            format!("orbit {point} --crosscheck cvode_bdff"),
+            "must be one of auto",
+        ),
+        (
+            "branch orbits --stiffness 0.14 --symmetry symetric".into(),
+            "did you mean \"symmetric\"?",
+        ),
+        (
+            "branch orbits --stiffness 0.14 --along stifness".into(),
+            "did you mean \"stiffness\"?",
+        ),
+        ("branch orbts".into(), "did you mean \"orbits\"?"),
+        ("locus tors".into(), "did you mean \"torus\"?"),
+        (
+            "locus period_doubling --stiffness 3".into(),
+            "did you mean \"period-doubling\"?",
+        ),
+        (
+            "sweep --driving 1:2:2 --stiffness 1:2:2 --curves torus,hpf --plot map.svg".into(),
+            "did you mean \"hopf\"?",
+        ),
+        (
+            format!("{RUN} --columns strss"),
+            "columns is strss, but must be one of time, stress",
+        ),
+        ("run fig9".into(), "did you mean \"fig09\"?"),
+    ] {
+        refused(&arguments, sentence);
+    }
+    // What is like nothing gets no hint.
+    let far = twinslip(&format!("{RUN} --law zzz"));
+    assert!(!far.err.contains("did you mean"), "{}", far.err);
+    for (arguments, sentence) in [
+        ("branch", "say what to follow: twinslip branch equilibria"),
+        ("locus", "say which bifurcation to follow"),
+    ] {
+        refused(arguments, sentence);
+    }
+}
+
+/// A:B or A,B, and A:B:N or A,B,N: the same rows.
+#[test]
+fn ranges_have_one_syntax_and_the_old_one_stays() {
+    let rows = |arguments: &str| {
+        let ended = twinslip(&format!("{arguments} --format csv -q"));
+        assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
+        csv(&ended.out)
+    };
+    for (new, old) in [
+        (
+            "locus hopf --driving-range 0.01:1000 --stiffness-range 0.1:0.2",
+            "locus hopf --driving-range 0.01,1000 --stiffness-range 0.1,0.2",
+        ),
+        (
+            "sweep --driving 100:200:2 --stiffness 0.5:2:3log",
+            "sweep --driving 100,200,2 --stiffness 0.5,2,3log",
+        ),
+    ] {
+        let rows = [rows(new), rows(old)];
+        assert!(rows[0].len() > 2, "{new}");
+        assert_eq!(rows[0], rows[1], "{new}");
+    }
+    refused(
+        "sweep --driving 1:2,3 --stiffness 1",
+        "--driving \"1:2,3\" must be A:B:N",
+    );
+}
+
+/// The first columns and the last one; which are missing can be asked.
+#[test]
+fn tables_keep_to_the_width_of_the_terminal() {
+    let names = [
+        "symmetry",
+        "stress",
+        "state_1",
+        "a_name_that_is_longer",
+        "verdict",
+    ];
+    let names = names.map(str::to_owned);
+    let units = ["", "a sigma", "", "L", ""].map(str::to_owned);
+    let cells: [Cell; 5] = [
+        "symmetric".into(),
+        9.945522.into(),
+        0.5.into(),
+        1e-30.into(),
+        "unstable".into(),
+    ];
+    let made = |width: usize| {
+        let mut text = Vec::new();
+        let mut table = TableRows::within(width, &mut text, &names, &units).expect("a table");
+        table.row(&cells).expect("a row");
+        let hidden = table.hidden().to_vec();
+        (String::from_utf8(text).expect("UTF-8"), hidden)
+    };
+    let (whole, hidden) = made(usize::MAX);
+    assert!(hidden.is_empty() && whole.lines().count() == 3, "{whole}");
+    for width in [20, 30, 46, 62, 84, 85, 86, 200] {
+        let (text, hidden) = made(width);
+        let widest = text.lines().map(str::len).max().expect("lines");
+        // Two columns there are always.
+        assert!(widest <= width.max(30), "{width}: {text}");
+        assert!(
+            text.contains("symmetry") && text.contains("unstable"),
+            "{text}"
+        );
+        for name in &names {
+            assert_ne!(
+                text.contains(name),
+                hidden.contains(name),
+                "{width}: {name}"
+            );
+        }
+        assert_eq!(hidden.is_empty(), width >= 85, "{width}: {hidden:?}");
+    }
+}
+
+#[test]
+fn counts_may_be_written_short_and_are_whole() {
+    let short = twinslip(&format!(
+        "{RUN} --max-steps 1e6 --points 2.0e1 --format csv -q"
+    ));
+    assert_eq!(short.code, 0, "{}", short.err);
+    assert_eq!(csv(&short.out).len(), 21);
+    for wrong in ["2.5", "-3", "x", "1e300", "nan"] {
+        refused(&format!("{RUN} --points={wrong}"), "must be a whole number");
+    }
+}
+
+#[test]
+fn messages_write_numbers_as_people_do() {
+    let ended = twinslip("integrate --driving 10 --stiffness 0.14 --until 60 -o -");
+    let (count, _) = ended.err.split_once(" steps").expect("steps");
+    let (thousands, rest) = count.split_once(',').expect("more than a thousand steps");
+    assert!(thousands.len() <= 3 && rest.len() == 3, "{}", ended.err);
+    let (_, time) = ended.err.split_once("Jacobians, ").expect("a time");
+    assert!(time.trim_end().ends_with('s'), "{}", ended.err);
+    // Two digits of an uncertainty, and one sign for it.
+    let law = twinslip("law --points 2 --format csv");
+    let remark = law
+        .out
+        .lines()
+        .find(|line| line.contains("minimum of stress"));
+    let remark = remark.expect("a remark");
+    assert!(
+        remark.contains("405.1126615400") && remark.contains(" ± ") && !remark.contains("+-"),
+        "{remark}"
+    );
+    for part in remark.split(" ± ").skip(1) {
+        let digits = part.split(['e', ',']).next().expect("digits");
+        assert_eq!(digits.len(), "5.8".len(), "{remark}");
+    }
+}
+
+#[test]
+fn version_says_what_the_program_computes_with() {
+    let long = run(&["--version"]);
+    assert_eq!(long.code, 0);
+    let version = env!("CARGO_PKG_VERSION");
+    assert!(
+        long.out.starts_with(&format!("twinslip {version}\n")),
+        "{}",
+        long.out
+    );
+    assert!(long.out.contains("\nSUNDIALS "), "{}", long.out);
+    assert_eq!(run(&["-V"]).out, format!("twinslip {version}\n"));
+    let held = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .arg("--version")
+        .env("TWINSLIP_VECTORS", "none")
+        .output()
+        .expect("the program starts");
+    let held = String::from_utf8_lossy(&held.stdout).into_owned();
+    assert!(held.contains("\nvector instructions none ("), "{held}");
+}
+
+const COMMANDS: [&str; 14] = [
+    "law",
+    "integrate",
+    "equilibria",
+    "orbit",
+    "section",
+    "branch",
+    "locus",
+    "sweep",
+    "run",
+    "merge",
+    "reproduce",
+    "figure",
+    "completions",
+    "man",
+];
+
+#[test]
+fn shells_complete_commands_options_and_names() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let ended = run(&["completions", shell]);
+        assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{shell}");
+        for word in COMMANDS {
+            assert!(ended.out.contains(word), "{shell}: {word}");
+        }
+        assert!(ended.out.contains("residual-strength"), "{shell}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let script = run(&["completions", shell]).out;
+        for name in [
+            "dieterich-ruina",
+            "cvode-bdf",
+            "orbit-pitchfork",
+            "asymmetric",
+        ] {
+            assert!(script.contains(name), "{shell}: {name}");
+        }
+    }
+    assert_eq!(run(&["completions", "tcsh"]).code, 2);
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let place = folder("man").join("new");
+    let ended = run(&["man", "--out", place.to_str().expect("UTF-8")]);
+    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    let read = |name: String| std::fs::read_to_string(place.join(name)).expect("a page");
+    assert!(read("twinslip.1".into()).contains("Exit status"));
+    for command in COMMANDS {
+        let page = read(format!("twinslip-{command}.1"));
+        assert!(page.starts_with(".ie") || page.contains(".TH"), "{command}");
+    }
+    assert!(read("twinslip-integrate.1".into()).contains("Relative local error tolerance"));
+    let file = folder("man-file").join("file");
+    std::fs::write(&file, "").expect("written");
+    refused(&format!("man --out {}", file.display()), "cannot write");
+}
+
+#[test]
 fn talk_goes_to_standard_error() {
     let ended = twinslip(RUN);
     assert_eq!(ended.err.lines().count(), 1, "{}", ended.err);
@@ -325,7 +603,15 @@ fn a_reader_who_leaves_is_no_error() {
 
 #[test]
 fn help_shows_an_example_that_runs() {
-    for command in ["law", "integrate", "equilibria", "branch", "locus", "run"] {
+    for command in [
+        "law",
+        "integrate",
+        "equilibria",
+        "branch",
+        "locus",
+        "run",
+        "man",
+    ] {
         let help = twinslip(&format!("{command} --help"));
         assert_eq!(help.code, 0);
         let (_, example) = help.out.split_once("Example").expect("an example");

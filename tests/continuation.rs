@@ -329,3 +329,116 @@ fn a_start_that_is_none_is_an_error() {
         .is_err()
     );
 }
+
+/// A curved branch u = (lambda^2 + 0.3 lambda, sin lambda), turned, with a pitchfork at 0.6; derivatives are forward differences.
+struct Rough;
+
+impl Rough {
+    const TURN: f64 = 0.4;
+
+    fn turned([x, y]: [f64; 2], sign: f64) -> [f64; 2] {
+        let (s, c) = (sign * Self::TURN).sin_cos();
+        [c * x - s * y, s * x + c * y]
+    }
+
+    fn at(lambda: f64) -> DVector<f64> {
+        let place = [lambda * lambda + 0.3 * lambda, lambda.sin()];
+        DVector::from_row_slice(&Self::turned(place, 1.0))
+    }
+
+    fn value(u: &DVector<f64>, lambda: f64) -> DVector<f64> {
+        let [x, y] = Self::turned([u[0], u[1]], -1.0);
+        let (x, y) = (x - lambda * lambda - 0.3 * lambda, y - lambda.sin());
+        let both = [x * (lambda - 0.6 - x * x), y * (0.5 * x - 1.0)];
+        DVector::from_row_slice(&Self::turned(both, 1.0))
+    }
+}
+
+impl ZeroProblem for Rough {
+    fn dimension(&self) -> usize {
+        2
+    }
+    fn residual(&self, u: &DVector<f64>, lambda: f64) -> Result<DVector<f64>> {
+        Ok(Self::value(u, lambda))
+    }
+    fn jacobian(&self, u: &DVector<f64>, lambda: f64) -> Result<DMatrix<f64>> {
+        let h = 1.5e-8;
+        let here = Self::value(u, lambda);
+        let mut all = DMatrix::zeros(2, 3);
+        for j in 0..3 {
+            let (mut v, mut l) = (u.clone(), lambda);
+            if j < 2 {
+                v[j] += h;
+            } else {
+                l += h;
+            }
+            all.set_column(j, &((Self::value(&v, l) - &here) / h));
+        }
+        Ok(all)
+    }
+}
+
+/// With derivatives of eight digits the equations are singular within 1e-7 of the branch point, where the test function has
+/// its zero: there the branch once ended, for most lengths of the steps.
+#[test]
+fn a_branch_point_is_passed_with_rough_derivatives() {
+    for longest in [0.2, 0.1, 0.05, 0.04, 0.03, 0.02] {
+        for from in [-1.0, 0.0, 0.1, 0.3] {
+            let settings = Settings::new((-2.0, 1.5), longest).unwrap();
+            let mut watch = look(|p| {
+                let extended = Rough.jacobian(&p.u, p.lambda).unwrap();
+                let mut square = extended.insert_row(2, 0.0);
+                square.row_mut(2).copy_from(&p.tangent.transpose());
+                vec![p.lambda_slope(), square.determinant()]
+            });
+            let begin = Start {
+                u: Rough::at(from),
+                lambda: from,
+                direction: DVector::from_row_slice(&[0.0, 0.0, 1.0]),
+                across: false,
+            };
+            let what = format!("steps up to {longest} from {from}");
+            let branch = follow(&Rough, &begin, &settings, &mut watch).unwrap();
+            assert_eq!(branch.stopped, Stop::RangeEnd, "{what}");
+            let zeros = branch.points.iter().filter(|(_, m)| *m == Mark::Zero(1));
+            let zeros: Vec<_> = zeros.map(|(p, _)| p.lambda).collect();
+            assert_eq!(zeros.len(), 1, "{what}");
+            assert!((zeros[0] - 0.6).abs() < 1e-6, "{what}: {}", zeros[0]);
+            let (end, _) = branch.points.last().unwrap();
+            let off = (&end.u - Rough::at(1.5)).amax();
+            assert!(off < 1e-9, "{what}: off its branch by {off:e}");
+        }
+    }
+}
+
+/// Newton's method alone runs away from these: it needs damping.
+#[test]
+fn a_rough_start_is_good_enough() {
+    type Function = fn(f64, f64) -> [f64; 3];
+    let steep: Function = |u, l| {
+        [
+            (u - l).atan(),
+            1.0 / (1.0 + (u - l).powi(2)),
+            -1.0 / (1.0 + (u - l).powi(2)),
+        ]
+    };
+    let exponential: Function = |u, l| [u.exp() - 2.0 - l, u.exp(), -1.0];
+    let defined: Function = |u, l| [u.ln() - l, 1.0 / u, -1.0];
+    let cases = [
+        (steep, 3.0, 0.0),
+        (steep, -40.0, 0.0),
+        (exponential, 30.0, 2.0_f64.ln()),
+        (exponential, -4.0, 2.0_f64.ln()),
+        (defined, 50.0, 1.0),
+    ];
+    let settings = Settings::new((-1.0, 1.0), 0.1).unwrap();
+    for (function, guess, zero) in cases {
+        let problem = Scalar(function);
+        let begin = start(guess, 0.0, [0.0, 1.0]);
+        let branch = follow(&problem, &begin, &settings, &mut look(|_| vec![]))
+            .unwrap_or_else(|e| panic!("from {guess}: {e}"));
+        let first = branch.points[0].0.u[0];
+        assert!((first - zero).abs() < 1e-13, "from {guess}: {first}");
+        assert_eq!(branch.stopped, Stop::RangeEnd);
+    }
+}

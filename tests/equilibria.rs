@@ -4,6 +4,7 @@
 mod common;
 
 use common::{assert_close, complex, data, number, relative};
+use nalgebra::Complex;
 use twinslip::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};
 use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
@@ -267,6 +268,198 @@ fn bounded_law_keeps_its_asymmetric_state() {
                 asymmetric(&law, driving, solver).len(),
                 1,
                 "V_H = {driving}"
+            );
+        }
+    }
+}
+
+/// A law with the parameters that a reference names.
+fn law_of(parameters: &serde_json::Value) -> AnyLaw {
+    let x = |name: &str| number(&parameters[name]);
+    let parameters = Parameters::new(
+        x("direct_effect"),
+        x("evolution_effect"),
+        x("reference_friction"),
+        x("healing_time"),
+        x("residual_strength"),
+    );
+    AnyLaw::Spinodal(parameters.expect("valid").spinodal())
+}
+
+/// A computed number, its bound, and the truth for the doubles and for the decimals.
+fn within((value, bound): (Complex<f64>, f64), truths: [Complex<f64>; 2], floor: f64, what: &str) {
+    for truth in truths {
+        // the reference itself is rounded to doubles here
+        let slack = f64::EPSILON * truth.norm();
+        let error = (value - truth).norm();
+        assert!(
+            error <= bound + slack,
+            "{what}: {value} +- {bound:e}, not {truth}"
+        );
+    }
+    let apart = (truths[0] - truths[1]).norm();
+    let least = apart.max(f64::EPSILON * truths[0].norm()).max(floor);
+    assert!(
+        bound <= 400.0 * least,
+        "{what}: {value} +- {bound:e} is loose, {apart:e} is the difference"
+    );
+}
+
+/// Beside folds and pitchforks, in stiff slabs and for extreme parameters: all states and no other, each number within its bound
+/// of the truth, whether the parameters are decimals or doubles, and verdicts that are right. Bounds are no wider than a few
+/// hundred times what this difference makes, but where it is nothing by accident.
+#[test]
+fn bounds_hold_and_are_sharp_beside_bifurcations_and_for_extreme_parameters() {
+    let reference = data("equilibria_bounds.json");
+    let mut undecided = 0;
+    for &solver in SOLVERS {
+        for point in reference["points"].as_array().expect("points") {
+            let law = law_of(&point["parameters"]);
+            let (driving, k) = (number(&point["V_H"]), number(&point["K"]));
+            let found = steady_states(&law, driving, 2, solver).expect("solved");
+            let what = format!("{solver:?}, V_H = {driving:e}, K = {k:e}, {law:?}");
+            let truths =
+                ["doubles", "decimals"].map(|kind| point[kind].as_array().expect("states"));
+            assert!(found.complete, "{what}");
+            assert_eq!(found.equilibria.len(), truths[0].len(), "{what}");
+            for state in &found.equilibria {
+                let off = |truth: &&serde_json::Value| {
+                    (number(&truth["slip_rate"][0]) - state.slip_rate[0]).abs()
+                };
+                let both = truths.map(|all| {
+                    all.iter()
+                        .min_by(|a, b| off(a).total_cmp(&off(b)))
+                        .expect("one")
+                });
+                let real = |x: f64| Complex::new(x, 0.0);
+                for i in 0..2 {
+                    let numbers = [
+                        (
+                            "slip_rate",
+                            state.slip_rate[i],
+                            state.slip_rate_uncertainty()[i],
+                            f64::MIN_POSITIVE,
+                        ),
+                        (
+                            "state",
+                            state.state()[i],
+                            state.state_uncertainty()[i],
+                            f64::MIN_POSITIVE,
+                        ),
+                        (
+                            "log_state",
+                            state.log_state[i],
+                            state.log_state_uncertainty()[i],
+                            f64::EPSILON,
+                        ),
+                    ];
+                    for (name, value, bound, floor) in numbers {
+                        let truths = both.map(|truth| real(number(&truth[name][i])));
+                        within(
+                            (real(value), bound),
+                            truths,
+                            floor,
+                            &format!("{what}: {name}"),
+                        );
+                    }
+                }
+                let stress = both.map(|truth| real(number(&truth["stress"])));
+                within(
+                    (real(state.stress.value), state.stress.uncertainty),
+                    stress,
+                    0.0,
+                    &format!("{what}: stress"),
+                );
+                assert!(state.residual(&law, driving) < 1e-10, "{what}");
+                let at = stability(&law, state, k).expect("valid");
+                let spectra = both.map(|truth| {
+                    let list = truth["eigenvalues"].as_array().expect("eigenvalues");
+                    list.iter()
+                        .map(|z| Complex::new(number(&z[0]), number(&z[1])))
+                        .collect::<Vec<_>>()
+                });
+                let growing = spectra[0].iter().any(|z| z.re > 0.0);
+                match at.verdict {
+                    Verdict::Undecided => undecided += 1,
+                    verdict => assert_eq!(verdict == Verdict::Unstable, growing, "{what}"),
+                }
+                // one beyond the range of doubles is left out
+                let finite = spectra[0].iter().filter(|z| z.re.is_finite()).count();
+                assert_eq!(at.eigenvalues.len(), finite, "{what}");
+                for (&z, &bound) in at.eigenvalues.iter().zip(&at.uncertainty) {
+                    let nearest = |all: &Vec<Complex<f64>>| {
+                        *all.iter()
+                            .min_by(|a, b| (*a - z).norm().total_cmp(&(*b - z).norm()))
+                            .expect("three")
+                    };
+                    let truths = spectra.each_ref().map(nearest);
+                    within((z, bound), truths, 0.0, &format!("{what}: eigenvalue"));
+                }
+            }
+        }
+    }
+    assert_eq!(undecided, 0);
+}
+
+/// At the largest stiffness too eigenvalues are numbers; the work is that of any other.
+#[test]
+fn stiffness_has_no_end() {
+    let found = steady_states(&spinodal(), 10.0, 2, Solver::Newton).expect("solved");
+    for exponent in [290, 300, 305, 306, 307, 308] {
+        let k = 10f64.powi(exponent);
+        for (state, verdict) in found
+            .equilibria
+            .iter()
+            .zip([Verdict::Unstable, Verdict::Stable])
+        {
+            let at = stability(&spinodal(), state, k).expect("valid");
+            assert_eq!(at.verdict, verdict);
+            assert_eq!(at.eigenvalues[0].re > 0.0, verdict == Verdict::Unstable);
+            // -10 K is beyond the doubles at 1e308
+            assert_eq!(at.eigenvalues.len(), if exponent < 308 { 3 } else { 2 });
+            assert!(
+                at.eigenvalues
+                    .iter()
+                    .all(|z| z.re.is_finite() && z.im == 0.0)
+            );
+            assert!(
+                at.uncertainty
+                    .iter()
+                    .zip(&at.eigenvalues)
+                    .all(|(u, z)| *u < 1e-12 * z.norm())
+            );
+        }
+    }
+}
+
+/// Slip rates below all doubles: the state is listed, and nothing of it is no number.
+#[test]
+fn an_interface_may_be_as_good_as_at_rest() {
+    for b in [5.0, 10.0, 40.0] {
+        let parameters = Parameters::new(0.0349, b, 0.369, 100.0, 1e-3).expect("valid");
+        let law = AnyLaw::Spinodal(parameters.spinodal());
+        for &solver in SOLVERS {
+            let found = steady_states(&law, 10.0, 2, solver).expect("solved");
+            assert!(found.complete && found.equilibria.len() == 2, "b = {b}");
+            let state = found
+                .equilibria
+                .iter()
+                .find(|e| e.symmetry == Symmetry::Asymmetric)
+                .expect("it is there");
+            assert_eq!(state.slip_rate, [0.0, 10.0]);
+            assert!(state.slip_rate_uncertainty()[0] <= 2.0 * f64::MIN_POSITIVE);
+            assert!(state.residual(&law, 10.0) < 1e-10);
+            let at = stability(&law, state, 0.14).expect("valid");
+            assert_ne!(
+                at.verdict,
+                Verdict::Unstable,
+                "the reference at b = 5 is stable"
+            );
+            assert!(!at.uncertainty.iter().any(|u| u.is_nan()));
+            assert!(
+                !at.eigenvalues
+                    .iter()
+                    .any(|z| z.re.is_nan() || z.im.is_nan())
             );
         }
     }

@@ -199,3 +199,69 @@ fn both_folds_of_a_cubic() {
     assert_eq!(wanted.len(), 3);
     assert!(wanted.iter().all(|point| point.parameter == -0.5));
 }
+
+/// (x', y') = S (y, -x - p y^3) S^-1, conservative at every p, in coordinates in which rounding shows: the two eigenvalues sum to
+/// zero throughout, and to rounding of either sign.
+struct Conservative {
+    p: f64,
+}
+
+impl Conservative {
+    const SHEAR: [f64; 4] = [0.31, 1.7, -0.9, 0.47];
+
+    fn back(y: &State<2>) -> State<2> {
+        let [a, b, c, d] = Self::SHEAR;
+        let determinant = a * d - b * c;
+        State::<2>::new(d * y[0] - b * y[1], a * y[1] - c * y[0]) / determinant
+    }
+
+    fn forth(y: &State<2>) -> State<2> {
+        let [a, b, c, d] = Self::SHEAR;
+        State::<2>::new(a * y[0] + b * y[1], c * y[0] + d * y[1])
+    }
+}
+
+impl VectorField<2> for Conservative {
+    fn f(&self, y: &State<2>) -> State<2> {
+        let u = Self::back(y);
+        Self::forth(&State::<2>::new(
+            u[1],
+            self.p - (1.0 + self.p * self.p) * u[0].sinh(),
+        ))
+    }
+    fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
+        let u = Self::back(y);
+        let by = -(1.0 + self.p * self.p) * u[0].cosh();
+        let column = |i: usize| {
+            let mut unit = State::<2>::zeros();
+            unit[i] = 1.0;
+            let v = Self::back(&unit);
+            Self::forth(&State::<2>::new(v[1], by * v[0]))
+        };
+        Jacobian::<2>::from_columns(&[column(0), column(1)])
+    }
+    fn second_derivative(&self, y: &State<2>, u: &State<2>, v: &State<2>) -> State<2> {
+        let (at, u, v) = (Self::back(y), Self::back(u), Self::back(v));
+        let by = -(1.0 + self.p * self.p) * at[0].sinh();
+        Self::forth(&State::<2>::new(0.0, by * u[0] * v[0]))
+    }
+}
+
+/// What is zero throughout has no certain sign, and no change of one.
+#[test]
+fn a_conservative_system_has_no_hopf_points() {
+    let family = Family {
+        fields: &|p: [f64; 2]| Box::new(Conservative { p: p[0] }),
+        parameters: [0.0, 0.0],
+        varied: 0,
+    };
+    for longest in [0.3, 0.05, 0.01] {
+        let settings = Settings::new((-2.0, 2.0), longest).unwrap();
+        let asinh = (-2.0_f64 / 5.0).asinh();
+        let begin = Conservative::forth(&State::<2>::new(asinh, 0.0));
+        let points = all(&family, &Onward::along(begin, -2.0, true), &settings);
+        // along the branch u = asinh(p / (1 + p^2)) has an extremum at p = 1, which is no fold in p
+        let special: Vec<_> = points.iter().filter_map(|point| point.label).collect();
+        assert_eq!(special, [Label::Ep, Label::Ep], "longest {longest}");
+    }
+}

@@ -300,3 +300,64 @@ fn sinh_laws_are_odd_in_the_stress() {
     }
     assert!(Real::asinh(-1e200_f64) < 0.0);
 }
+
+/// tau_ss(1e-3), the slip rate of the largest k_c and that k_c, for b = 10.
+const STEEP: [f64; 3] = [
+    1298.743_026_402_031,
+    0.187_783_936_135_283_42,
+    285.423_599_073_890_37,
+];
+
+/// Of laws whose strength or stress leaves the range of doubles nothing comes out as no number, and what has a double is right:
+/// values of mpmath at 60 digits.
+#[test]
+fn extreme_parameters_leave_no_nan() {
+    let law = |b: f64, r: f64, c: f64| {
+        AnyLaw::Spinodal(
+            Parameters::new(0.0349, b, 0.369, r, c)
+                .expect("valid")
+                .spinodal(),
+        )
+    };
+    for b in [0.0489, 0.5, 3.0, 10.0, 100.0, 1e6] {
+        for r in [1e-200, 1e-3, 100.0, 1e150] {
+            for c in [1e-300, 1e-20, 1e-3, 1e300] {
+                let law = law(b, r, c);
+                let what = format!("{law:?}");
+                let known = |x: f64| assert!(!x.is_nan(), "{what}");
+                for e in Extremum::all(&law) {
+                    for x in [e.slip_rate, e.stress] {
+                        known(x.value);
+                        known(x.uncertainty);
+                    }
+                }
+                let top =
+                    critical_stiffness_maximum(&law).unwrap_or_else(|e| panic!("{what}: {e}"));
+                for x in top.iter().flat_map(|top| [top.slip_rate, top.stiffness]) {
+                    known(x.value);
+                    known(x.uncertainty);
+                }
+                for v in [1e-300, 1e-3, 1.0, 1e6, 1e300] {
+                    known(steady_stress(&law, v));
+                    known(law.steady_state(v));
+                }
+            }
+        }
+    }
+    let steep = law(10.0, 100.0, 1e-3);
+    assert_close(steady_stress(&steep, 1e-3), STEEP[0], 1e-13, "b = 10");
+    let top = critical_stiffness_maximum(&steep)
+        .expect("found")
+        .expect("there is one");
+    let off = (top.stiffness.value - STEEP[2]).abs();
+    // b/a is no double
+    assert!(
+        off <= top.stiffness.uncertainty + 1e-15 * STEEP[2],
+        "{top:?}"
+    );
+    let off = (top.slip_rate.value - STEEP[1]).abs();
+    assert!(
+        off <= top.slip_rate.uncertainty + 1e-14 * STEEP[1],
+        "{top:?}"
+    );
+}

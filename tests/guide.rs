@@ -1,9 +1,10 @@
-//! Every command of the guide runs as it stands.
+//! Every command of the guide and of the README runs as it stands, and what documents point to is there.
 #![allow(missing_docs)]
 
 mod command;
 
-use command::folder;
+use command::{folder, twinslip};
+use std::path::Path;
 use std::process::Command;
 
 /// The commands in the blocks for the shell.
@@ -20,14 +21,10 @@ fn commands(text: &str) -> Vec<&str> {
     found
 }
 
-#[test]
-fn every_command_of_the_guide_runs() {
-    let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR"));
-    let place = folder("guide");
-    let text = std::fs::read_to_string(root.join("docs/guide.md")).expect("the guide");
-    let commands = commands(&text);
-    assert!(commands.len() >= 12, "{commands:?}");
-    for line in commands {
+/// Runs each in a folder of its own name; all must succeed and write what they name.
+fn run_all(lines: &[&str], place: &Path) {
+    let root = root();
+    for line in lines {
         let words: Vec<&str> = line.split_whitespace().collect();
         assert_eq!(words[0], "twinslip", "{line}");
         let scenes = root.join("scenes");
@@ -39,7 +36,7 @@ fn every_command_of_the_guide_runs() {
             });
         let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
             .args(words)
-            .current_dir(&place)
+            .current_dir(place)
             .output()
             .expect("the program starts");
         let err = String::from_utf8_lossy(&ended.stderr);
@@ -57,5 +54,70 @@ fn every_command_of_the_guide_runs() {
             );
         }
     }
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn text_of(name: &str) -> String {
+    std::fs::read_to_string(root().join(name)).expect(name)
+}
+
+#[test]
+fn every_command_of_the_guide_runs() {
+    let place = folder("guide");
+    let text = text_of("docs/guide.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 12, "{lines:?}");
+    run_all(&lines, &place);
     assert!(place.join("fig06.svg").exists());
+}
+
+#[test]
+fn the_first_result_of_the_readme_is_what_comes() {
+    let text = text_of("README.md");
+    let lines = commands(&text);
+    let ours = |line: &&str| line.starts_with("twinslip ");
+    let ours: Vec<&str> = lines.into_iter().filter(ours).collect();
+    assert!(!ours.is_empty());
+    run_all(&ours, &folder("readme"));
+    let mut tables = 0;
+    for block in text.split("```console\n").skip(1) {
+        let (block, _) = block.split_once("```").expect("an end");
+        let (command, shown) = block.split_once('\n').expect("what is shown");
+        let words = command.strip_prefix("$ twinslip ").expect("a command");
+        let ended = twinslip(&format!("{words} --format table -q"));
+        assert_eq!((ended.code, ended.out.as_str()), (0, shown), "{command}");
+        tables += 1;
+    }
+    assert!(tables > 0);
+}
+
+/// Relative links and pictures of all documents.
+#[test]
+fn what_documents_point_to_is_there() {
+    let mut checked = 0;
+    let mut names: Vec<String> = ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"]
+        .map(str::to_owned)
+        .to_vec();
+    for entry in std::fs::read_dir(root().join("docs")).expect("docs/") {
+        let name = entry.expect("an entry").file_name();
+        let name = name.to_string_lossy();
+        if name.ends_with(".md") {
+            names.push(format!("docs/{name}"));
+        }
+    }
+    for name in names {
+        let folder = root().join(&name);
+        let folder = folder.parent().expect("a folder");
+        for link in text_of(&name).split("](").skip(1) {
+            let (link, _) = link.split_once(')').expect("an end");
+            if !link.starts_with("http") {
+                assert!(folder.join(link).exists(), "{name}: {link}");
+                checked += 1;
+            }
+        }
+    }
+    assert!(checked > 15, "{checked}");
 }

@@ -2,7 +2,9 @@
 #![allow(missing_docs)]
 
 use proptest::prelude::*;
-use twinslip::number::{Difference, Interval, Jet, Real, bracketed_root, enclosing_radius};
+use twinslip::number::{
+    Difference, Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius,
+};
 
 /// A formula that uses every operation, for positive x.
 fn formula<T: Real>(x: T) -> T {
@@ -16,7 +18,39 @@ fn slope(x: f64) -> f64 {
     formula(Jet::<f64, 1>::variable(x, 0)).gradient[0]
 }
 
+#[test]
+fn an_uncertainty_has_two_digits_and_ends_the_value() {
+    for (value, uncertainty, text) in [
+        (472.0092645867038, 3.5e-9, "472.0092645867 ± 3.6e-9"),
+        (-0.002595547022, 4.9e-9, "-0.0025955470 ± 5.0e-9"),
+        (7.414e-8, 8.1e-8, "7.4e-8 ± 8.2e-8"),
+        (1234567.8, 20.0, "1.234568e6 ± 21"),
+        (5.0, 0.0, "5"),
+        (5.0, f64::INFINITY, "5"),
+        (0.0, 1e-300, "0 ± 1.0e-300"),
+        (1e-12, 3.0, "1e-12 ± 3.0"),
+        (0.1, 1e-17, "0.1 ± 1.0e-17"),
+        (123456.7, 2000.0, "123457 ± 2100"),
+        (0.25, 0.0031, "0.2500 ± 0.0031"),
+    ] {
+        let shown = Uncertain::new(value, uncertainty).to_string();
+        assert_eq!(shown, text);
+    }
+}
+
 proptest! {
+    /// What a reader sees still holds: rounding never takes the truth out of the interval.
+    #[test]
+    fn shown_intervals_contain_the_exact_ones(digits in -9.9..9.9_f64, power in -12..9_i32, ln_u in -30.0..3.0_f64) {
+        let (value, uncertainty) = (digits * 10f64.powi(power), ln_u.exp() * 10f64.powi(power));
+        let text = Uncertain::new(value, uncertainty).to_string();
+        let (shown, budget) = text.split_once(" ± ").expect("both");
+        let (shown, budget): (f64, f64) = (shown.parse().expect("a number"), budget.parse().expect("a number"));
+        let needed = uncertainty + (shown - value).abs();
+        prop_assert!(budget >= needed * (1.0 - 1e-14), "{} {} as {}", value, uncertainty, text);
+        prop_assert!(budget <= 1.2 * uncertainty + 4.0 * f64::EPSILON * value.abs(), "{} {} as {}", value, uncertainty, text);
+    }
+
     #[test]
     fn jets_match_differences(x in 0.1..5.0_f64) {
         prop_assume!((x - 1.0_f64).abs() > 1e-2); // |ln x| has a corner at 1

@@ -159,6 +159,20 @@ fn results_do_not_depend_on_threads_or_company() {
 }
 
 #[test]
+fn figures_may_be_called_as_people_do() {
+    let out = folder("figure-names");
+    let place = out.to_str().expect("UTF-8");
+    for name in ["14", "fig14", "Fig14", "Fig. 14"] {
+        let ended = run(&["figure", name, "--out", place, "-q"]);
+        assert_eq!(ended.code, 0, "{name}: {}", ended.err);
+        fs::remove_file(out.join("fig14.csv")).expect("made");
+        fs::remove_file(out.join("fig14.svg")).expect("made");
+    }
+    assert_eq!(run(&["figure", "fig9x", "--out", place]).code, 2);
+    assert!(contents(&out).is_empty());
+}
+
+#[test]
 fn wrong_orders_are_refused_in_one_sentence() {
     let out = folder("reproduce-wrong");
     let file = out.join("file");
@@ -167,11 +181,11 @@ fn wrong_orders_are_refused_in_one_sentence() {
     for (words, sentence) in [
         (
             vec!["reproduce", "--only", "fig18", "--out", path],
-            "there is no \"fig18\" to make",
+            "figure is fig18, but must be one of fig01",
         ),
         (
             vec!["reproduce", "--only", "", "--out", path],
-            "there is no \"\" to make",
+            "figure is \"\", but must be one of fig01",
         ),
         (
             vec!["reproduce", "--threads", "0", "--out", path],
@@ -180,7 +194,11 @@ fn wrong_orders_are_refused_in_one_sentence() {
         (vec!["reproduce", "--out", path], "cannot create"),
         (
             vec!["figure", "18"],
-            "figure is 18, but must be from 1 to 17",
+            "figure is 18, but must be one of fig01",
+        ),
+        (
+            vec!["reproduce", "--only", "scorcard", "--out", path],
+            "did you mean \"scorecard\"?",
         ),
     ] {
         let ended = run(&words);

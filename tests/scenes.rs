@@ -65,6 +65,60 @@ fn every_scene_runs_and_can_be_drawn() {
 }
 
 #[test]
+fn shipped_scenes_are_in_the_program() {
+    let listed = run(&["run", "--list"]);
+    assert_eq!((listed.code, listed.err.as_str()), (0, ""));
+    let scenes = shipped();
+    assert_eq!(listed.out.lines().count(), scenes.len());
+    for (scene, line) in scenes.iter().zip(listed.out.lines()) {
+        let name = scene.file_stem().unwrap().to_str().unwrap();
+        let (listed, about) = line.split_once(' ').expect("a name and what it shows");
+        assert_eq!(listed, name);
+        assert!(about.trim().len() > 10, "{line}");
+        let shown = run(&["run", name, "--show"]);
+        let text = std::fs::read_to_string(scene).expect("the scene");
+        assert_eq!((shown.code, shown.out), (0, text), "{name}");
+    }
+}
+
+#[test]
+fn a_shipped_scene_runs_anywhere_and_a_file_goes_first() {
+    let place = folder("anywhere");
+    let there = |arguments: &[&str]| {
+        let ended = std::process::Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            .args(arguments)
+            .current_dir(&place)
+            .output()
+            .expect("the program starts");
+        let err = String::from_utf8_lossy(&ended.stderr).into_owned();
+        (
+            ended.status.code(),
+            String::from_utf8_lossy(&ended.stdout).into_owned(),
+            err,
+        )
+    };
+    let rows = |text: &str| -> Vec<String> {
+        let rows = text.lines().filter(|line| !line.starts_with('#'));
+        rows.map(str::to_owned).collect()
+    };
+    let (code, out, err) = there(&["run", "fig08b", "-q"]);
+    assert_eq!(code, Some(0), "{err}");
+    assert!(rows(&out).len() > 100);
+    for name in ["fig08b.toml", "scenes/fig08b.toml"] {
+        let (_, again, _) = there(&["run", name, "-q"]);
+        assert_eq!(rows(&again), rows(&out), "{name}");
+    }
+    let own = "command = \"law\"\npoints = 3\n";
+    std::fs::write(place.join("fig08b"), own).expect("written");
+    let (code, law, _) = there(&["run", "fig08b", "-q"]);
+    assert_eq!((code, rows(&law).len()), (Some(0), 4));
+    let (code, _, err) = there(&["run", "fig08b", "--show"]);
+    assert_eq!(code, Some(2), "{err}");
+    let (code, _, err) = there(&["run"]);
+    assert_eq!(code, Some(2), "{err}");
+}
+
+#[test]
 fn a_scene_is_the_same_as_its_flags() {
     let place = folder("same");
     let path = place.join("one.toml");
@@ -181,7 +235,31 @@ fn what_is_wrong_in_a_scene_is_said_with_its_line() {
             5,
             "start must be a list",
         ),
-        (format!("{good}method = \"euler\""), 5, "choose one of auto"),
+        (
+            format!("{good}method = \"euler\""),
+            5,
+            "method is euler, but must be one of auto",
+        ),
+        (
+            format!("{good}law = spinodl"),
+            5,
+            "a text needs quotes in a scene: law = \"spinodl\"",
+        ),
+        (
+            format!("{good}start = near-symmetric:0.1 # close"),
+            5,
+            "a text needs quotes in a scene: start = \"near-symmetric:0.1\"",
+        ),
+        (
+            good.replace("\"integrate\"", "integrate"),
+            1,
+            "a text needs quotes in a scene: command = \"integrate\"",
+        ),
+        (
+            format!("{good}law = \"spinodl\""),
+            5,
+            "law is spinodl, but must be one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip; did you mean \"spinodal\"?",
+        ),
         (format!("{good}driving = 3"), 5, "duplicate key"),
         (format!("{good}rtol = "), 5, ""),
         (

@@ -145,7 +145,12 @@ fn equilibria() {
         uncertain(&one["stress"]);
         for field in ["state", "log_state", "slip_rate"] {
             assert_eq!(one[field].as_array().map(Vec::len), Some(2), "{field}");
+            let bounds = &one[format!("{field}_uncertainty")];
+            let bounds = bounds.as_array().expect("a list");
+            assert!(bounds.len() == 2 && bounds.iter().all(|x| x.as_f64() > Some(0.0)));
         }
+        let bounds = one["eigenvalue_uncertainty"].as_array().expect("a list");
+        assert!(bounds.len() == 3 && bounds.iter().all(|x| x.as_f64() > Some(0.0)));
         let eigenvalues = one["eigenvalues"].as_array().expect("a list");
         assert_eq!(eigenvalues.len(), 3);
         assert!(
@@ -247,7 +252,7 @@ fn an_orbit_that_is_none_fails_and_bad_input_is_refused() {
         (
             "orbit --driving 1 --stiffness 0.14 --crosscheck taylor",
             2,
-            "the method itself",
+            "the method of the orbit itself",
         ),
         (
             "orbit --driving 1 --stiffness 0.14 --period-guess 3",
@@ -343,10 +348,12 @@ fn specials(made: &Value) {
     assert!(!list.is_empty());
     for one in list {
         assert_eq!(
-            fields(one)[..8],
+            fields(one)[..10],
             [
                 "label",
                 "name",
+                "branch",
+                "symmetry",
                 "driving",
                 "stiffness",
                 "period",
@@ -364,7 +371,7 @@ fn specials(made: &Value) {
     }
 }
 
-const BRANCH: [&str; 15] = [
+const BRANCH: [&str; 16] = [
     "driving",
     "stiffness",
     "stress",
@@ -380,6 +387,7 @@ const BRANCH: [&str; 15] = [
     "verdict",
     "label",
     "branch",
+    "symmetry",
 ];
 
 #[test]
@@ -396,7 +404,8 @@ fn branch() {
     assert!(rows.iter().all(|row| row["period"].is_null()));
     assert!(rows.iter().all(|row| row["branch"].is_u64()));
     let table = csv(&twinslip(&format!("{arguments} --format csv")).out);
-    assert_eq!(table[0], BRANCH);
+    assert_eq!(table[0][..16], BRANCH);
+    assert_eq!(table[0][16..], ["row_check"]);
     assert_eq!(table.len() - 1, rows.len());
     for (line, row) in table[1..].iter().zip(rows) {
         assert_eq!(line[0].parse::<f64>().unwrap(), number(row, "/driving"));
@@ -430,7 +439,8 @@ fn locus() {
             "angle_over_pi",
             "criticality",
             "label",
-            "curve"
+            "curve",
+            "symmetry"
         ]
     );
     for row in rows {
@@ -449,7 +459,9 @@ fn locus() {
             "angle_over_pi",
             "criticality",
             "label",
-            "curve"
+            "curve",
+            "symmetry",
+            "row_check"
         ]
     );
     assert_eq!(table.len() - 1, rows.len());
@@ -501,6 +513,19 @@ fn csv_holds_the_same_numbers_as_json() {
     }
     let uncertain = csv(&twinslip("equilibria --driving 1000 --format csv").out);
     assert_eq!(uncertain[0][1..3], ["stress", "stress_uncertainty"]);
+    let stable = csv(&twinslip("equilibria --driving 1000 --stiffness 1 --format csv").out);
+    for name in [
+        "log_state_uncertainty_2",
+        "slip_rate_uncertainty_1",
+        "eigenvalue_uncertainty_3",
+    ] {
+        let column = stable[0].iter().position(|x| x == name).expect("a column");
+        assert!(
+            stable[1..]
+                .iter()
+                .all(|row| row[column].parse::<f64>().is_ok())
+        );
+    }
 }
 
 #[test]

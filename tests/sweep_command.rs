@@ -58,7 +58,8 @@ fn rows_are_those_of_the_grid_in_its_order_in_all_formats() {
             "start_stress",
             "start_state_1",
             "start_state_2",
-            "note"
+            "note",
+            "row_check"
         ]
     );
     assert_eq!(table.len(), 1 + 24);
@@ -164,7 +165,7 @@ fn a_torn_file_is_gone_on_with() {
     let torn = place.join("torn.csv");
     for more in ["", "--follow", "--shard 2/3"] {
         let whole = whole(&place, more);
-        let rows = whole.find(",note\n").expect("columns") + 5;
+        let rows = whole.find(",row_check\n").expect("columns") + 10;
         for part in [
             0,
             9,
@@ -282,7 +283,10 @@ fn files_of_other_sweeps_are_refused_and_stay() {
     let damaged = damaged.join("\n") + "\n";
     let older = whole.replacen("# twinslip ", "# twinslip 0.0.", 1);
     for (text, sentence) in [
-        (damaged.as_str(), "row 16 is not that of its point"),
+        (
+            damaged.as_str(),
+            "line 23 is damaged: a row is missing before it",
+        ),
         (&older, "it was written by twinslip 0.0."),
         ("a,b\n1,2\n", "it is not the CSV of a sweep"),
         (
@@ -500,10 +504,7 @@ fn parts_that_a_file_makes_up_are_refused() {
         "10/1000000, 11/1000000 and 999989 others are missing",
     );
     fs::write(&path, "# x\n".repeat(100_000)).expect("written");
-    refused(
-        &format!("merge {path} -o {out}"),
-        "it is not the CSV of a sweep",
-    );
+    refused(&format!("merge {path} -o {out}"), "too many remarks");
     refused(&format!("{GRID} --shard 1/1000000000"), "N at most 1000000");
     assert!(!Path::new(&out).exists());
 }

@@ -8,8 +8,10 @@ mod request;
 pub mod strong_resonance;
 
 use crate::equilibrium::{Symmetry, Verdict};
+use crate::error::{Error, Result};
 use crate::number::Uncertain;
 use crate::orbit::Slab;
+use std::ops::ControlFlow;
 
 pub use crate::model::Parameter;
 
@@ -184,6 +186,10 @@ impl Criticality {
 pub struct Special {
     /// What it is.
     pub label: Label,
+    /// The number of the branch or curve that it is on.
+    pub branch: usize,
+    /// The symmetry of the states or orbits of that branch.
+    pub symmetry: Option<Symmetry>,
     /// V_H.
     pub driving: Uncertain,
     /// K.
@@ -205,6 +211,8 @@ impl Special {
     pub fn new(label: Label, driving: Uncertain, stiffness: Uncertain) -> Self {
         Special {
             label,
+            branch: 0,
+            symmetry: None,
             driving,
             stiffness,
             period: None,
@@ -231,6 +239,8 @@ impl Special {
 pub struct BranchRow {
     /// The number of the branch, from 0: one run may follow several.
     pub branch: usize,
+    /// The symmetry of its states or orbits.
+    pub symmetry: Symmetry,
     /// V_H.
     pub driving: f64,
     /// K.
@@ -258,6 +268,8 @@ pub struct BranchRow {
 pub struct LocusRow {
     /// The number of the curve, from 0: a locus may consist of several.
     pub curve: usize,
+    /// The symmetry of the states or orbits that bifurcate.
+    pub symmetry: Symmetry,
     /// V_H.
     pub driving: Uncertain,
     /// K.
@@ -284,6 +296,18 @@ pub enum Event {
 }
 
 impl Event {
+    /// A special point with the branch or curve that it is on; what else there is as it is.
+    fn on(self, branch: usize, symmetry: Symmetry) -> Self {
+        match self {
+            Event::Special(special) => Event::Special(Special {
+                branch,
+                symmetry: Some(symmetry),
+                ..special
+            }),
+            row => row,
+        }
+    }
+
     /// A special point with a word where it is less accurate than was asked for; what else there is as it is.
     fn against(self, tolerance: f64) -> Self {
         match self {
@@ -294,7 +318,7 @@ impl Event {
 }
 
 /// Whether to go on.
-pub type Seen<'a> = &'a mut dyn FnMut(Event) -> std::ops::ControlFlow<()>;
+pub type Seen<'a> = &'a mut dyn FnMut(Event) -> ControlFlow<()>;
 
 /// A branch that is asked for.
 #[derive(Debug, Clone, PartialEq)]
@@ -317,6 +341,8 @@ pub struct BranchRequest {
     pub skip: Vec<usize>,
     /// How many times orbits may double their period: the branches of all these are followed too.
     pub doublings: usize,
+    /// More points than this are an error, of all branches together.
+    pub max_points: usize,
 }
 
 impl BranchRequest {
@@ -332,6 +358,7 @@ impl BranchRequest {
             tolerance: TOLERANCE,
             skip: Vec::new(),
             doublings: 0,
+            max_points: MAX_POINTS,
         }
     }
 }
@@ -351,12 +378,41 @@ impl LocusRequest {
             tolerance: TOLERANCE,
             criticality: false,
             skip: Vec::new(),
+            max_points: MAX_POINTS,
         }
     }
 }
 
 /// Accuracy of special points where nobody says otherwise.
 const TOLERANCE: f64 = 1e-11;
+
+/// How many points branches and curves may have where nothing else is asked for: a hundred times as many as they usually have.
+pub const MAX_POINTS: usize = 20_000;
+
+/// Hands rows on as long as there are no more than `limit`.
+///
+/// # Errors
+/// [`Error::TooManyPoints`] where there are, after these; those of `follow`.
+pub(crate) fn within(
+    limit: usize,
+    seen: Seen<'_>,
+    follow: impl FnOnce(Seen<'_>) -> Result<()>,
+) -> Result<()> {
+    let (mut points, mut beyond) = (0, false);
+    let ended = follow(&mut |event| {
+        points += usize::from(!matches!(event, Event::Special(_)));
+        beyond = points > limit;
+        if beyond {
+            ControlFlow::Break(())
+        } else {
+            seen(event)
+        }
+    });
+    if beyond {
+        return Err(Error::TooManyPoints { limit });
+    }
+    ended
+}
 
 /// The curves that there are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -402,4 +458,6 @@ pub struct LocusRequest {
     pub criticality: bool,
     /// Numbers of curves that are known already and not told of again.
     pub skip: Vec<usize>,
+    /// More points than this are an error, of all curves together.
+    pub max_points: usize,
 }

@@ -1,7 +1,7 @@
 //! `twinslip branch`.
 
-use super::Ending;
 use super::continuation::Task;
+use super::{Ending, say};
 use crate::error::Result;
 use crate::scene::{BranchOptions, BranchPlan, Of};
 use crate::views;
@@ -21,7 +21,7 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     };
     let report = task.report()?;
     if options.output.explain {
-        eprintln!("{}", plan.explain());
+        say(plan.explain());
     }
     task.run(
         &report,

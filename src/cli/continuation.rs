@@ -2,18 +2,22 @@
 
 use super::progress::Progress;
 use super::report::{Report, unit_names};
-use super::resume::Kept;
+use super::resume::{Expected, Kept, beside, row_key, special_key};
 use super::rows::Row;
-use super::{Ending, interrupt, special, written};
+use super::words::{several, time};
+use super::{Ending, interrupt, say, special, written};
 use crate::bifurcation::{Criticality, Event, Label, Seen, Special, orbits};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
 use crate::orbit::Slab;
-use crate::output::{Format, RowWriter, plot, seven_digits};
-use crate::scene::{OutputOptions, Quantity, System};
-use crate::views::{self, Column};
+use crate::output::{
+    self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot, seven_digits,
+};
+use crate::scene::{OutputOptions, Quantity, System, Units};
+use crate::views::{self, Column, special_columns};
 use serde_json::{Value, json};
-use std::io::{self, IsTerminal};
+use std::fs::File;
+use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
@@ -60,19 +64,25 @@ impl<'a, R: Row> Task<'a, R> {
         let mut out = Out::new(self, report)?;
         interrupt::watch();
         let skipped = std::mem::take(&mut out.skipped);
-        let failure = match compute(&skipped, &mut |event| out.take(event)) {
+        let computed = match out.complete {
+            true => Ok(()),
+            false => compute(&skipped, &mut |event| out.take(event)),
+        };
+        let failure = match computed {
             Err(error) if error.is_input() && out.new == 0 => return Err(error),
             computed => computed.err(),
         };
         if let Err(error) = out.open() {
             out.broken.get_or_insert(error);
         }
+        if let Some(error) = out.broken.take() {
+            out.progress.finish();
+            return written(Err(error), &report.place);
+        }
+        out.end(failure.is_some())?;
         let checks = self.recheck(report, &out.special, failure.is_some());
         interrupt::unwatch();
         let seconds = out.progress.finish().as_secs_f64();
-        if let Some(error) = out.broken.take() {
-            return written(Err(error), &report.place);
-        }
         let ending = self.write(report, &out, &checks, failure.as_ref())?;
         match self.plot {
             Some(path) if !out.rows.is_empty() => {
@@ -84,7 +94,7 @@ impl<'a, R: Row> Task<'a, R> {
         report.say(out.summary(seconds));
         match failure {
             Some(error) => Err(error),
-            None if interrupt::asked() => Ok(interrupted(report)),
+            None if interrupt::asked() => Ok(Ending::Interrupted),
             None if ending == Ending::Done => Ok(out.ending()),
             None => Ok(ending),
         }
@@ -148,15 +158,12 @@ impl<'a, R: Row> Task<'a, R> {
     }
 }
 
-/// Says how to go on.
-pub fn interrupted(report: &Report<'_>) -> Ending {
-    if let (Format::Csv, Some(path)) = (report.format, report.place.path()) {
-        report.say(format!(
-            "interrupted; go on with --resume {}",
-            path.display()
-        ));
-    }
-    Ending::Interrupted
+/// Where rows go.
+enum To {
+    Nothing,
+    Table(Box<dyn RowWriter>),
+    /// Checked lines of rows, and of special points where there is a file for them.
+    Lines(Box<dyn Write>, Option<File>),
 }
 
 /// Takes what is found: writes it and keeps it.
@@ -166,9 +173,16 @@ struct Out<'a, R> {
     remarks: Vec<String>,
     names: Vec<(String, Quantity)>,
     /// Opened with the first row: a request that is refused leaves no file.
-    writer: Option<Box<dyn RowWriter>>,
+    to: To,
+    /// The file of special points beside that of the rows.
+    special_file: Option<RowFile>,
     broken: Option<io::Error>,
-    kept: Vec<String>,
+    /// Whether an earlier run has left nothing to do.
+    complete: bool,
+    /// Where what stays of an earlier run ends, in the file of rows and in that of special points.
+    bytes: [u64; 2],
+    /// So many special points stay.
+    kept_special: usize,
     skipped: Vec<usize>,
     rows: Vec<R>,
     new: usize,
@@ -182,9 +196,31 @@ impl<'a, R: Row> Out<'a, R> {
         let table = report.format == Format::Table;
         let names = views::names(&task.columns, table);
         let mut kept = Kept::default();
+        let csv = report
+            .place
+            .path()
+            .filter(|_| report.file.is_some() && report.format == Format::Csv);
+        let special_file = match csv {
+            // Whoever may replace the rows may replace what belongs to them.
+            Some(path) if !task.output.force => RowFile::claim(&beside(path), Over::Ours)?,
+            Some(path) => RowFile::claim(&beside(path), Over::All)?,
+            None => None,
+        };
         if let Some(path) = task.resume {
-            let plain: Vec<String> = names.iter().map(|(name, _)| name.clone()).collect();
-            kept = Kept::read(path, &remarks, &plain, &task.system.units)?;
+            let [rows, special] = [
+                checked(&names),
+                checked(&views::names(&special_columns(), false)),
+            ];
+            let expected = |columns| Expected {
+                remarks: &remarks,
+                columns,
+            };
+            kept = Kept::read(
+                path,
+                &expected(&rows),
+                &expected(&special),
+                &task.system.units,
+            )?;
         }
         // Rows that scroll by on the terminal are progress enough.
         let scrolling = report.format != Format::Json
@@ -195,10 +231,13 @@ impl<'a, R: Row> Out<'a, R> {
             report,
             remarks,
             names,
-            writer: None,
+            to: To::Nothing,
+            special_file,
             broken: None,
-            special: kept.special(),
-            kept: kept.lines,
+            complete: kept.complete,
+            bytes: [kept.bytes, kept.special_bytes],
+            kept_special: kept.special.len(),
+            special: kept.special,
             skipped: kept.numbers,
             rows: kept.rows,
             new: 0,
@@ -208,18 +247,44 @@ impl<'a, R: Row> Out<'a, R> {
 
     /// Opens the table or CSV, once.
     fn open(&mut self) -> io::Result<()> {
-        if self.writer.is_some() || self.report.format == Format::Json {
+        if !matches!(self.to, To::Nothing) || self.report.format == Format::Json || self.complete {
             return Ok(());
         }
-        let names: Vec<String> = self.names.iter().map(|(name, _)| name.clone()).collect();
-        self.writer = Some(if self.task.resume.is_some() {
-            self.report.rows_after(&self.remarks, &names, &self.kept)?
-        } else {
-            let quantities = self.names.iter().map(|(_, quantity)| *quantity);
-            let units = unit_names(&self.task.system.units, quantities);
-            let stream = self.report.place.stream().map_err(io::Error::other)?;
-            self.report.rows(stream, &self.remarks, &names, &units)?
-        });
+        if self.report.format == Format::Table {
+            let (names, quantities): (Vec<_>, Vec<_>) = self.names.iter().cloned().unzip();
+            let units = unit_names(&self.task.system.units, quantities.into_iter());
+            self.to = To::Table(self.report.begin(self.remarks.clone(), &names, &units)?);
+            return Ok(());
+        }
+        let mut remarks = self.remarks.clone();
+        remarks.extend(
+            self.report
+                .file
+                .as_ref()
+                .map(|_| Status::Unfinished.remark()),
+        );
+        let [bytes, special_bytes] = self.bytes;
+        // First the rows are cut: they must never be ahead of their special points.
+        let mut to = self.report.stream(bytes)?;
+        let special = match &self.special_file {
+            None => None,
+            Some(file) => {
+                let mut to = file.after(special_bytes)?;
+                if special_bytes == 0 {
+                    let names = checked(&views::names(&special_columns(), false));
+                    to.write_all(&output::head(&remarks, &names))?;
+                }
+                for (number, one) in self.special.iter().enumerate().skip(self.kept_special) {
+                    to.write_all(special_line(number, one, &self.task.system.units).as_bytes())?;
+                }
+                Some(to)
+            }
+        };
+        if bytes == 0 {
+            to.write_all(&output::head(&remarks, &checked(&self.names)))?;
+            to.flush()?;
+        }
+        self.to = To::Lines(to, special);
         Ok(())
     }
 
@@ -227,13 +292,47 @@ impl<'a, R: Row> Out<'a, R> {
         self.open()?;
         let table = self.report.format == Format::Table;
         let cells = views::cells(&self.task.columns, row, &self.task.system.units, table);
-        self.writer
-            .as_mut()
-            .map_or(Ok(()), |writer| writer.row(&cells))
+        match &mut self.to {
+            To::Nothing => {
+                interrupt::holds();
+                Ok(())
+            }
+            To::Table(writer) => writer.row(&cells),
+            To::Lines(to, _) => {
+                let key = row_key(self.rows.len(), self.special.len());
+                to.write_all(checked_line(&key, &cells).as_bytes())?;
+                to.flush()
+            }
+        }
+    }
+
+    fn special(&mut self, special: &Special) -> io::Result<()> {
+        let line = special_line(self.special.len(), special, &self.task.system.units);
+        match &mut self.to {
+            To::Lines(_, Some(to)) => to.write_all(line.as_bytes()),
+            _ => Ok(()),
+        }
+    }
+
+    /// Says in the files how far they are.
+    fn end(&self, failed: bool) -> Result<()> {
+        let status = |rows: usize| match (failed, interrupt::asked()) {
+            (true, _) => Status::Failed,
+            (false, true) => Status::Unfinished,
+            (false, false) => Status::Complete(Some(rows)),
+        };
+        if let Some(file) = &self.special_file {
+            file.end(status(self.special.len()))?;
+        }
+        self.report.end(status(self.rows.len()))
     }
 
     fn take(&mut self, event: Event) -> ControlFlow<()> {
         if let Event::Special(special) = event {
+            if let Err(error) = self.special(&special) {
+                self.broken = Some(error);
+                return ControlFlow::Break(());
+            }
             self.special.push(special);
         } else if let Some(row) = R::of(event) {
             if let Err(error) = self.row(&row) {
@@ -261,19 +360,16 @@ impl<'a, R: Row> Out<'a, R> {
         let mut numbers: Vec<usize> = self.rows.iter().map(R::number).collect();
         numbers.sort_unstable();
         numbers.dedup();
-        let count = |n: usize, one: &str, more: &str| match n {
-            1 => format!("1 {one}"),
-            n => format!("{n} {more}"),
-        };
         let mut text = format!(
-            "{} on {}, {}, {seconds:.3} s",
-            count(self.rows.len(), "point", "points"),
-            count(numbers.len(), R::WHOLE, R::WHOLES),
-            count(self.special.len(), "special point", "special points")
+            "{} on {}, {}, {}",
+            several(self.rows.len(), "point", "points"),
+            several(numbers.len(), R::WHOLE, R::WHOLES),
+            several(self.special.len(), "special point", "special points"),
+            time(seconds)
         );
         if self.task.resume.is_some() {
             let kept = self.rows.len() - self.new;
-            text += &format!("; {} kept", count(kept, "point", "points"));
+            text += &format!("; {} kept", several(kept, "point", "points"));
         }
         text
     }
@@ -285,12 +381,12 @@ impl<'a, R: Row> Out<'a, R> {
         for one in stuck {
             let units = &self.task.system.units;
             let note = one.note.as_deref().unwrap_or("the method goes no further");
-            eprintln!(
+            say(format_args!(
                 "error: a {} ends at V_H = {}, K = {}: {note}",
                 R::WHOLE,
                 units.outward(Quantity::SlipRate, one.driving.value),
                 units.outward(Quantity::Stiffness, one.stiffness.value)
-            );
+            ));
             ending = Ending::Stuck;
         }
         // Where a coefficient is zero by definition, as at GH, nothing is left to decide.
@@ -304,4 +400,15 @@ impl<'a, R: Row> Out<'a, R> {
         }
         ending
     }
+}
+
+/// The names of columns with that of the check.
+fn checked(names: &[(String, Quantity)]) -> Vec<String> {
+    let names = names.iter().map(|(name, _)| name.clone());
+    names.chain([ROW_CHECK.to_owned()]).collect()
+}
+
+fn special_line(number: usize, special: &Special, units: &Units) -> String {
+    let cells = views::cells(&special_columns(), special, units, false);
+    checked_line(&special_key(number), &cells)
 }

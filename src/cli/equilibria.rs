@@ -1,7 +1,7 @@
 //! `twinslip equilibria`.
 
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::equilibrium::{
     Equilibrium, Solver, Stability, SteadyStates, Symmetry, Verdict, stability, steady_states,
 };
@@ -73,24 +73,26 @@ fn solver(name: Option<&str>) -> Result<(&'static str, Solver)> {
             "solver kinsol needs SUNDIALS, which this build is without; choose newton".into(),
         )),
         "newton" => Ok(("newton", Solver::Newton)),
-        other => Err(Error::parameter("solver", other, "kinsol or newton")),
+        other => Err(Error::unknown("solver", other, &["kinsol", "newton"])),
     }
 }
 
 fn explain(system: &System, solver: &str) {
-    eprintln!("plan of this command");
-    eprintln!("  symmetric         closed formula at V_H over the number of interfaces");
+    say("plan of this command");
+    say("  symmetric         closed formula at V_H over the number of interfaces");
     if system.interfaces == 2 {
-        eprintln!("  asymmetric        {solver}, from a certain bracket around each solution");
+        say(format_args!(
+            "  asymmetric        {solver}, from a certain bracket around each solution"
+        ));
     } else {
-        eprintln!("  asymmetric        off: one interface has none");
+        say("  asymmetric        off: one interface has none");
     }
     if system.stiffness.is_some() {
-        eprintln!(
-            "  stability         on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials"
+        say(
+            "  stability         on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials",
         );
     } else {
-        eprintln!("  stability         off: it depends on the stiffness, which is not given");
+        say("  stability         off: it depends on the stiffness, which is not given");
     }
 }
 
@@ -114,15 +116,14 @@ fn write(
     let remarks = report.remarks(system, &numerics);
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     let units = unit_names(&system.units, columns.iter().map(|(_, quantity)| *quantity));
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &names, &units)
+        .begin(remarks, &names, &units)
         .and_then(|mut writer| {
             found
                 .iter()
                 .try_for_each(|one| writer.row(&cells(one, system, table)))
         });
-    written(all, &report.place)
+    report.ended(written(all, &report.place))
 }
 
 /// The columns of CSV; a table has room for what is looked at first.
@@ -143,10 +144,17 @@ fn columns(interfaces: usize, table: bool) -> Vec<(String, Quantity)> {
         if !(table && quantity == Quantity::LogState) {
             columns.extend((1..=interfaces).map(|i| (format!("{name}_{i}"), quantity)));
         }
+        if !table {
+            let uncertainty = |i| (format!("{name}_uncertainty_{i}"), quantity);
+            columns.extend((1..=interfaces).map(uncertainty));
+        }
     }
     for i in 1..=shown_eigenvalues(interfaces, table) {
         columns.push((format!("eigenvalue_{i}_re"), Quantity::Growth));
         columns.push((format!("eigenvalue_{i}_im"), Quantity::Growth));
+        if !table {
+            columns.push((format!("eigenvalue_uncertainty_{i}"), Quantity::Growth));
+        }
     }
     columns.push(("verdict".to_owned(), Quantity::Number));
     if !table {
@@ -171,21 +179,27 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
     if !table {
         cells.push(stress.uncertainty.into());
     }
-    let mut extend = |quantity, values: &[f64]| {
-        cells.extend(
-            values
-                .iter()
-                .map(|&x| Cell::Number(units.outward(quantity, x))),
-        );
+    let mut extend = |quantity, values: Vec<f64>, uncertainties: Vec<f64>| {
+        let shown = if table { Vec::new() } else { uncertainties };
+        let all = values.into_iter().chain(shown);
+        cells.extend(all.map(|x| Cell::Number(units.outward(quantity, x))));
     };
-    extend(Quantity::State, &equilibrium.state());
+    let [state, log_state, slip_rate] = uncertainties(equilibrium);
+    extend(Quantity::State, equilibrium.state(), state);
     if !table {
-        extend(Quantity::LogState, &equilibrium.log_state);
+        let values = equilibrium.log_state.clone();
+        extend(Quantity::LogState, values, log_state);
     }
-    extend(Quantity::SlipRate, &equilibrium.slip_rate);
+    extend(Quantity::SlipRate, equilibrium.slip_rate.clone(), slip_rate);
     for i in 0..shown_eigenvalues(system.interfaces, table) {
-        let eigenvalue = found.stability.as_ref().map(|s| s.eigenvalues[i]);
-        for part in [eigenvalue.map(|z| z.re), eigenvalue.map(|z| z.im)] {
+        let known = found.stability.as_ref();
+        let eigenvalue = known.and_then(|s| s.eigenvalues.get(i));
+        let uncertainty = known.and_then(|s| s.uncertainty.get(i).copied());
+        let mut parts = vec![eigenvalue.map(|z| z.re), eigenvalue.map(|z| z.im)];
+        if !table {
+            parts.push(uncertainty);
+        }
+        for part in parts {
             cells.push(part.map(|x| units.outward(Quantity::Growth, x)).into());
         }
     }
@@ -197,6 +211,15 @@ fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
     cells
 }
 
+/// Of the states, of their logarithms and of the slip rates.
+fn uncertainties(equilibrium: &Equilibrium) -> [Vec<f64>; 3] {
+    [
+        equilibrium.state_uncertainty(),
+        equilibrium.log_state_uncertainty(),
+        equilibrium.slip_rate_uncertainty(),
+    ]
+}
+
 fn object(found: &Found, system: &System) -> Value {
     let units = &system.units;
     let equilibrium = &found.equilibrium;
@@ -204,18 +227,32 @@ fn object(found: &Found, system: &System) -> Value {
         values.iter().map(|&x| units.outward(quantity, x)).collect()
     };
     let pair = |z: &Complex<f64>| [z.re, z.im].map(|x| units.outward(Quantity::Growth, x));
-    let eigenvalues = found.stability.as_ref().map(|stability| {
-        let list: Vec<[f64; 2]> = stability.eigenvalues.iter().map(pair).collect();
-        list
-    });
+    // as many as there are, null where one is beyond the range of doubles
+    let count = shown_eigenvalues(system.interfaces, false);
+    let [eigenvalues, eigenvalue_uncertainty] = match &found.stability {
+        None => [Value::Null, Value::Null],
+        Some(stability) => {
+            let known = |i| stability.eigenvalues.get(i).map(pair);
+            let radius = |i| stability.uncertainty.get(i).copied();
+            let radius = |i| radius(i).map(|x| units.outward(Quantity::Growth, x));
+            [
+                json!((0..count).map(known).collect::<Vec<_>>()),
+                json!((0..count).map(radius).collect::<Vec<_>>()),
+            ]
+        }
+    };
+    let [state, log_state, slip_rate] = uncertainties(equilibrium);
     json!({
         "symmetry": symmetry(equilibrium.symmetry),
         "stress": report::uncertain(units, Quantity::Stress, equilibrium.stress),
         "state": out(Quantity::State, &equilibrium.state()),
+        "state_uncertainty": out(Quantity::State, &state),
         "log_state": out(Quantity::LogState, &equilibrium.log_state),
+        "log_state_uncertainty": out(Quantity::LogState, &log_state),
         "slip_rate": out(Quantity::SlipRate, &equilibrium.slip_rate),
-        "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
+        "slip_rate_uncertainty": out(Quantity::SlipRate, &slip_rate),
         "eigenvalues": eigenvalues,
+        "eigenvalue_uncertainty": eigenvalue_uncertainty,
         "verdict": found.stability.as_ref().map(|s| s.verdict.name()),
         "residual": found.residual,
     })

@@ -3,7 +3,8 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::Out;
-use super::{Ending, written};
+use super::words::{count, several, time};
+use super::{Ending, say, written};
 use crate::error::Result;
 use crate::output::{Cell, Format, Place, Rows, object, plot};
 use crate::scene::{
@@ -43,7 +44,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         } else {
             Keeping::Streamed
         };
-        eprint!("{}", explain(&plan, keeping));
+        say(explain(&plan, keeping).trim_end());
     }
     let columns = plan.columns.iter().map(|c| (c.name(), c.quantity()));
     let pictured = Column::pictured(plan.system.interfaces);
@@ -72,11 +73,11 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         plot::write(path, &picture(&plan, &drawn))?;
     }
     report.say(summary(&outcome, plan.events.is_some(), seconds));
-    match outcome.failure {
+    report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None => Ok(ending),
-    }
+    })
 }
 
 fn numerics(plan: &Plan) -> Value {
@@ -218,13 +219,16 @@ fn event_object(event: &Event, system: &System) -> Map<String, Value> {
 fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
-        "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {seconds:.3} s",
-        work.steps, work.rejected, work.rhs, work.jacobians
+        "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {}",
+        count(work.steps),
+        count(work.rejected),
+        count(work.rhs),
+        count(work.jacobians),
+        time(seconds)
     );
     if events {
-        let count = outcome.events.len();
-        let plural = if count == 1 { "" } else { "s" };
-        text.push_str(&format!(", {count} event{plural}"));
+        let events = several(outcome.events.len(), "event", "events");
+        text.push_str(&format!(", {events}"));
     }
     if let Some(estimate) = outcome.error_estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));

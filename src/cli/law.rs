@@ -1,12 +1,13 @@
 //! `twinslip law`.
 
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::friction::{
     Extremum, ExtremumKind, Law, critical_stiffness, critical_stiffness_maximum, positive,
     steady_stress,
 };
+use crate::number::Uncertain;
 use crate::output::{Cell, Format, Rows, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
@@ -42,11 +43,11 @@ pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
 }
 
 fn report_plan(grid: &[f64]) {
-    eprintln!(
+    say(format_args!(
         "plan of this command\n  {} closed formulas at {} slip rates; extrema enclosed by interval arithmetic; no integration",
         COLUMNS.len() - 1,
         grid.len()
-    );
+    ));
 }
 
 /// Slip rates equally spaced in ln V, dimensionless.
@@ -149,9 +150,8 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
     let found = landmark_lines(&extrema, &maximum, transition);
     remarks.extend(found.iter().cloned());
     let units = unit_names(&system.units, COLUMNS.iter().map(|(_, quantity)| *quantity));
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &rows.columns, &units)
+        .begin(remarks, &rows.columns, &units)
         .and_then(|mut writer| {
             let mut cells = Vec::new();
             rows.iter().try_for_each(|row| {
@@ -160,7 +160,7 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
                 writer.row(&cells)
             })
         });
-    let ending = written(all, &report.place)?;
+    let ending = report.ended(written(all, &report.place))?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)
 }
@@ -168,11 +168,12 @@ fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
 /// The landmarks in words.
 fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -> Vec<String> {
     let pair = |x: &Value| {
-        format!(
-            "{} +- {:e}",
-            x["value"],
-            x["uncertainty"].as_f64().unwrap_or(f64::NAN)
-        )
+        let number = |name: &str| x[name].as_f64();
+        match (number("value"), number("uncertainty")) {
+            (Some(value), Some(uncertainty)) => Uncertain::new(value, uncertainty).to_string(),
+            (Some(value), None) => format!("{value:e}, no digit of which is certain"),
+            (None, _) => "unknown".to_owned(),
+        }
     };
     let mut lines: Vec<String> = extrema
         .iter()

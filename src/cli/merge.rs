@@ -1,9 +1,9 @@
 //! `twinslip merge`: the files of all parts of a sweep become the file that one run would have written.
 
 use super::sweep::file;
-use super::{Ending, written};
+use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Place, write_whole_by};
+use crate::output::{Format, Place, Status, write_whole_by};
 use crate::scene::{Shard, SweepPlan};
 use crate::section::Regime;
 use crate::views;
@@ -37,6 +37,12 @@ pub struct MergeOptions {
 
 pub fn run(options: &MergeOptions) -> Result<Ending> {
     let place = Place::new(Some(&options.output));
+    if Format::choose(None, place.path(), false)? != Format::Csv {
+        return Err(Error::Input(format!(
+            "--output {}: merge writes CSV; choose a name that ends in .csv",
+            options.output.display()
+        )));
+    }
     place.check()?;
     if let Some(file) = options
         .files
@@ -50,12 +56,13 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
         return Err(Error::Input("there are no files to merge".into()));
     };
     let columns = views::sweep_columns();
-    let beginning = file::beginning(plan, None, &columns);
+    let status = Status::Complete(Some(plan.settings.points()));
+    let beginning = file::beginning(plan, None, &columns, place.path().map(|_| status));
     let mut sources = Vec::new();
     let mut undecided = 0;
     for (plan, path) in &parts {
-        let mut count = |_: usize, line: &str| {
-            undecided += usize::from(file::regime(line) == Regime::Undecided.name());
+        let mut count = |_: usize, cells: &[String]| {
+            undecided += usize::from(file::regime(cells) == Regime::Undecided.name());
         };
         let standing = file::read(path, plan, &columns, &mut count)?;
         let all = plan.part().units(plan.settings.units());
@@ -70,8 +77,7 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
                 ),
             ));
         }
-        let beginning = file::beginning(plan, plan.shard, &columns).len() as u64;
-        sources.push(rows(path, beginning).map_err(|error| file::unreadable(path, error))?);
+        sources.push(rows(path, standing.rows).map_err(|error| file::unreadable(path, error))?);
     }
     let mut fill = |to: &mut dyn Write| interleave(plan, &beginning, &mut sources, to);
     let merged = match place.path() {
@@ -87,11 +93,11 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
             0 => String::new(),
             n => format!(", {n} of them undecided"),
         };
-        eprintln!(
+        say(format_args!(
             "{} rows of {} parts{open}",
             plan.settings.points(),
             parts.len()
-        );
+        ));
     }
     // As the sweep in one run would have ended.
     Ok(match ending {

@@ -16,16 +16,20 @@ mod resume;
 mod rows;
 mod run;
 mod section;
+mod shell;
 mod special;
 mod stream;
 mod sweep;
+mod words;
 
 use crate::error::Error;
-use crate::integrate::allowed_vectors;
+use crate::integrate::{VECTORS, allowed_vectors, used_vectors};
 use crate::scene;
-use clap::{Parser, Subcommand};
+use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
+use std::io::Write;
 use std::process::ExitCode;
+use std::sync::OnceLock;
 
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
 /// maps, branches and their bifurcations, maps of regimes.
@@ -44,10 +48,10 @@ struct Line {
 enum Command {
     #[command(flatten)]
     Compute(scene::Command),
-    /// What a scene file says
+    /// A scene: one that is built in, such as fig12, or a file
     #[command(after_help = run::EXAMPLE)]
     Run(run::RunOptions),
-    /// The files of all parts of a sweep into the one that a single run would have written
+    /// Join the files of all parts of a sweep into the one that a single run would have written
     #[command(after_help = merge::EXAMPLE)]
     Merge(merge::MergeOptions),
     /// The whole paper: every figure, Table 1, a scorecard of what it says, and a report to read
@@ -56,6 +60,34 @@ enum Command {
     /// One figure of the paper, as CSV and SVG
     #[command(after_help = reproduce::FIGURE_EXAMPLE)]
     Figure(reproduce::FigureOptions),
+    /// A script that completes commands, options and names in a shell
+    #[command(after_help = shell::COMPLETIONS_EXAMPLE)]
+    Completions(shell::CompletionsOptions),
+    /// Manual pages, one for each command
+    #[command(after_help = shell::MAN_EXAMPLE)]
+    Man(shell::ManOptions),
+}
+
+/// The whole command line, with all that `--version` tells.
+fn program() -> clap::Command {
+    static VERSION: OnceLock<String> = OnceLock::new();
+    let text = VERSION.get_or_init(|| {
+        let sundials = report::sundials().unwrap_or_else(|| "not built in".into());
+        let vectors = used_vectors().name();
+        let features = [
+            ("mpi", cfg!(feature = "mpi")),
+            ("parquet", cfg!(feature = "parquet")),
+        ];
+        let mut text = format!(
+            "{}\nSUNDIALS {sundials}\nvector instructions {vectors} ({VECTORS} holds it to fewer)",
+            env!("CARGO_PKG_VERSION")
+        );
+        for (name, _) in features.iter().filter(|(_, on)| *on) {
+            text += &format!("\nwith {name}");
+        }
+        text
+    });
+    Line::command().long_version(text.as_str())
 }
 
 /// How a command ended, if it ended well.
@@ -71,6 +103,8 @@ pub(crate) enum Ending {
     Interrupted,
 }
 
+/// Messages on wrong usage that are longer lose what is in the midst of them.
+const LONGEST: usize = 1200;
 /// Exit status of a failed computation.
 const FAILED: u8 = 1;
 /// Exit status of wrong usage or input.
@@ -83,11 +117,22 @@ const INTERRUPTED: u8 = 130;
 /// Parses the arguments, runs, and says how it ended.
 pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let arguments: Vec<OsString> = arguments.into_iter().collect();
-    let line = match Line::try_parse_from(&arguments) {
+    interrupt::listen();
+    // A file that grows larger than is allowed is then an error of writing, and not the end of the process.
+    #[cfg(unix)]
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
+    let parsed = program()
+        .try_get_matches_from(&arguments)
+        .and_then(|matches| Line::from_arg_matches(&matches));
+    let line = match parsed {
         Ok(line) => line,
         Err(error) => {
             // Help and version are no errors; a closed standard output is nobody's.
-            let _ = error.print();
+            if error.use_stderr() && error.to_string().len() > LONGEST {
+                say(shortened(error.to_string()));
+            } else {
+                let _ = error.print();
+            }
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT));
         }
     };
@@ -105,14 +150,19 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         Command::Merge(options) => merge::run(options),
         Command::Reproduce(options) => reproduce::run(options),
         Command::Figure(options) => reproduce::run_figure(options),
+        Command::Completions(options) => shell::completions(options),
+        Command::Man(options) => shell::man(options),
     });
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Stuck) => ExitCode::from(FAILED),
         Ok(Ending::Undecided) => ExitCode::from(UNDECIDED),
-        Ok(Ending::Interrupted) => ExitCode::from(INTERRUPTED),
+        Ok(Ending::Interrupted) => {
+            say(interrupt::words());
+            ExitCode::from(INTERRUPTED)
+        }
         Err(error) => {
-            eprintln!("error: {error}");
+            say(format_args!("error: {}", shortened(error.to_string())));
             ExitCode::from(if error.is_input() {
                 WRONG_INPUT
             } else {
@@ -120,6 +170,24 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             })
         }
     }
+}
+
+/// A message on standard error. That nobody reads it, or that it can't be written, is no error.
+fn say(text: impl std::fmt::Display) {
+    let _ = writeln!(std::io::stderr().lock(), "{text}");
+}
+
+/// A message may hold what was given, which may be long: its begin and its end say enough.
+fn shortened(text: String) -> String {
+    /// Letters that are shown of each.
+    const SHOWN: usize = 400;
+    let length = text.chars().count();
+    if length <= 3 * SHOWN {
+        return text;
+    }
+    let begin: String = text.chars().take(SHOWN).collect();
+    let end: String = text.chars().skip(length - SHOWN).collect();
+    format!("{begin} [{} letters left out] {end}", length - 2 * SHOWN)
 }
 
 /// What a scene file or the command line asks for.
@@ -156,6 +224,6 @@ fn written(result: std::io::Result<()>, place: &crate::output::Place) -> Result<
 mod test {
     #[test]
     fn arguments_are_consistent() {
-        <super::Line as clap::CommandFactory>::command().debug_assert();
+        super::program().debug_assert();
     }
 }

@@ -2,7 +2,8 @@
 
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
-use super::{Ending, written};
+use super::words::several;
+use super::{Ending, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -33,10 +34,10 @@ impl Plan {
             "symmetric" => Symmetry::Symmetric,
             "asymmetric" => Symmetry::Asymmetric,
             other => {
-                return Err(Error::parameter(
+                return Err(Error::unknown(
                     "symmetry",
                     other,
-                    "symmetric or asymmetric",
+                    &["symmetric", "asymmetric"],
                 ));
             }
         };
@@ -92,15 +93,15 @@ impl Plan {
         } else {
             3
         };
-        eprintln!("plan of this command");
-        eprintln!(
+        say("plan of this command");
+        say(format_args!(
             "  dimension         {dimension}{}",
             match (dimension, interfaces) {
                 (2, 2) => ": both interfaces move alike; the multiplier across is a quadrature",
                 _ => "",
             }
-        );
-        eprintln!(
+        ));
+        say(format_args!(
             "  guess             {}",
             match self.query.begin {
                 Begin::At {
@@ -111,24 +112,24 @@ impl Plan {
                     "what runs settle on, else the branch from the nearest Hopf point",
                 Begin::Hopf => "the branch from the nearest Hopf point, past its folds",
             }
-        );
-        eprintln!(
+        ));
+        say(format_args!(
             "  method            {}, tangents on, multiple shooting; rtol {:e}",
             method_name(self.accuracy.method),
             self.accuracy.tolerances.rtol
-        );
-        eprintln!(
-            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser"
+        ));
+        say(
+            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser",
         );
         match &self.second {
-            Some(second) => eprintln!(
+            Some(second) => say(format_args!(
                 "  crosscheck        {}, from nodes cut to three digits; rtol {:e}",
                 second.method.name(),
                 second.tolerances.rtol
-            ),
-            None => eprintln!("  crosscheck        off: --crosscheck none"),
+            )),
+            None => say("  crosscheck        off: --crosscheck none"),
         }
-        eprintln!("  dense output      on, for the extremes alone");
+        say("  dense output      on, for the extremes alone");
     }
 }
 
@@ -154,7 +155,7 @@ fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
     let method = Choice::named(name)?;
     if method_name(method) == method_name(first) {
         return Err(Error::Input(format!(
-            "--crosscheck {name} is the method itself; choose an unlike one, or none"
+            "--crosscheck {name} is the method of the orbit itself; choose another, or none"
         )));
     }
     Ok(Some(Accuracy {
@@ -191,13 +192,11 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
     let unit = system.units.name(Quantity::Time);
     let period = system.units.outward_uncertain(Quantity::Time, orbit.period);
     let mut text = format!(
-        "period {} ± {:.1e} {unit}, {}; {} nodes, {} iterations, {} steps",
-        period.value,
-        period.uncertainty,
+        "period ({period}) {unit}, {}; {}, {}, {}",
         orbit.verdict().name(),
-        orbit.nodes.len(),
-        orbit.iterations,
-        orbit.work.steps
+        several(orbit.nodes.len(), "node", "nodes"),
+        several(orbit.iterations, "iteration", "iterations"),
+        several(orbit.work.steps, "step", "steps")
     );
     if let Some(Crosscheck {
         orbit: second,
@@ -207,7 +206,7 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
     {
         let relative = period_difference / orbit.period.value;
         text += &format!(
-            "; {} finds a period {relative:.1e} off, relatively",
+            "; the period by {} differs by {relative:.1e} of it",
             second.method
         );
     }
@@ -245,15 +244,14 @@ fn write(
     let names: Vec<String> = columns.iter().map(|(name, _)| name.clone()).collect();
     let units = unit_names(&system.units, columns.iter().map(|(_, quantity)| *quantity));
     let remarks = report.remarks(system, &numerics);
-    let stream = report.place.stream()?;
     let all = report
-        .rows(stream, &remarks, &names, &units)
+        .begin(remarks, &names, &units)
         .and_then(|mut writer| {
             std::iter::once(orbit)
                 .chain(others)
                 .try_for_each(|one| writer.row(&cells(one, system, table)))
         });
-    written(all, &report.place)
+    report.ended(written(all, &report.place))
 }
 
 /// The columns of CSV; a table has room for what is looked at first.

@@ -1,13 +1,16 @@
 //! What all commands share: format and place of the output, the object around a result, remarks, messages.
 
+use super::{Ending, interrupt, say};
 use crate::error::{Error, Result};
 use crate::integrate::Work;
 use crate::number::Uncertain;
-use crate::output::{self, CsvRows, Envelope, Format, Place, RowWriter, TableRows, plot};
+use crate::output::{
+    self, CsvRows, Envelope, Format, Over, Place, RowFile, RowWriter, Status, TableRows, plot,
+};
 use crate::scene::{OutputOptions, Quantity, System, Units};
 use serde::Serialize;
 use serde_json::{Value, json};
-use std::io::{IsTerminal, Write};
+use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
 /// Where a command's output goes, checked.
@@ -18,29 +21,53 @@ pub struct Report<'a> {
     pub place: Place,
     /// No talk.
     pub quiet: bool,
+    /// The file of rows, which is written row by row; none for a whole object, for a device and for a pipe.
+    pub file: Option<RowFile>,
     words: &'a [String],
 }
 
 impl<'a> Report<'a> {
     /// Chooses the format and makes sure that all files can be written, before anything is computed.
     pub fn new(options: &OutputOptions, words: &'a [String], others: &[&Path]) -> Result<Self> {
+        let over = if options.force {
+            Over::All
+        } else {
+            Over::Ended
+        };
+        Self::over(options, words, others, over)
+    }
+
+    fn over(
+        options: &OutputOptions,
+        words: &'a [String],
+        others: &[&Path],
+        over: Over,
+    ) -> Result<Self> {
         let place = Place::new(options.output.as_deref());
         let terminal = std::io::stdout().is_terminal();
+        if let Some(path) = others.iter().find(|path| place.path() == Some(path)) {
+            return Err(Error::Input(format!(
+                "{} cannot be both data and picture",
+                path.display()
+            )));
+        }
         let format = Format::choose(options.format.as_deref(), place.path(), terminal)?;
-        place.check()?;
+        let rows = place.path().filter(|_| format != Format::Json);
+        let file = match rows {
+            Some(path) => RowFile::claim(path, over)?,
+            None => place.check().map(|()| None)?,
+        };
+        if let (Some(_), Some(path)) = (&file, rows) {
+            interrupt::keeps(format!("the rows so far are in {}", path.display()));
+        }
         for path in others {
             Place::File(path.to_path_buf()).check()?;
-            if place.path() == Some(path) {
-                return Err(Error::Input(format!(
-                    "{} cannot be both data and picture",
-                    path.display()
-                )));
-            }
         }
         Ok(Report {
             format,
             place,
             quiet: options.quiet,
+            file,
             words,
         })
     }
@@ -55,22 +82,38 @@ impl<'a> Report<'a> {
             plot::Kind::of(path)?;
         }
         let others: Vec<&Path> = plot.into_iter().collect();
+        let goes_on = |report: &Report<'_>| {
+            if let (Some(_), Format::Csv, Some(path)) =
+                (&report.file, report.format, report.place.path())
+            {
+                interrupt::keeps(format!("go on with --resume {}", path.display()));
+            }
+        };
         let Some(resumed) = resume else {
-            return Report::new(options, words, &others);
+            let report = Report::new(options, words, &others)?;
+            goes_on(&report);
+            return Ok(report);
         };
         let refused = |why: &str| Err(Error::Input(format!("--resume {}{why}", resumed.display())));
         let output = options.output.as_deref();
         if output.is_some_and(|output| output != resumed) {
             return refused(" writes into that file; leave out --output");
         }
+        // What can be gone on with is CSV, whatever its name.
+        let csv = || (resumed.extension() != Some("json".as_ref())).then(|| "csv".to_owned());
         let output = OutputOptions {
             output: Some(resumed.to_owned()),
+            format: options.format.clone().or_else(csv),
             ..options.clone()
         };
-        let report = Report::new(&output, words, &others)?;
-        match (report.format, report.place.path()) {
-            (Format::Csv, Some(_)) => Ok(report),
-            (_, None) => refused(": only a file can be gone on with"),
+        let report = Report::over(&output, words, &others, Over::All)?;
+        match (report.format, &report.file) {
+            (Format::Csv, Some(_)) => {
+                goes_on(&report);
+                Ok(report)
+            }
+            (Format::Csv | Format::Table, None) => refused(": only a file can be gone on with"),
+            _ if report.place.path().is_none() => refused(": only a file can be gone on with"),
             _ => refused(
                 ": only CSV can be gone on with; leave out --format, and name a file that does not end in .json",
             ),
@@ -80,8 +123,52 @@ impl<'a> Report<'a> {
     /// A message on standard error.
     pub fn say(&self, text: impl std::fmt::Display) {
         if !self.quiet {
-            eprintln!("{text}");
+            say(text);
         }
+    }
+
+    /// Begins the table or CSV, a new one.
+    pub fn begin(
+        &self,
+        mut remarks: Vec<String>,
+        columns: &[String],
+        units: &[String],
+    ) -> io::Result<Box<dyn RowWriter>> {
+        let mut to = self.stream(0)?;
+        if self.file.is_some() {
+            remarks.push(Status::Unfinished.remark());
+            if self.format == Format::Table {
+                remarks
+                    .iter()
+                    .try_for_each(|remark| writeln!(to, "# {remark}"))?;
+            }
+        }
+        self.rows(to, &remarks, columns, units)
+    }
+
+    /// Where rows go: in a file after the first so many bytes of it.
+    pub fn stream(&self, bytes: u64) -> io::Result<Box<dyn Write>> {
+        match &self.file {
+            Some(file) => Ok(Box::new(file.after(bytes)?)),
+            None => self.place.stream().map_err(io::Error::other),
+        }
+    }
+
+    /// Says in the file how the run ended; hands on what is said of it.
+    pub fn ended(&self, ended: Result<Ending>) -> Result<Ending> {
+        let status = match &ended {
+            Ok(Ending::Interrupted) => Status::Unfinished,
+            Ok(_) => Status::Complete(None),
+            Err(error) if error.is_input() => return ended,
+            Err(_) => Status::Failed,
+        };
+        self.end(status)?;
+        ended
+    }
+
+    /// Says in the file how far its rows are.
+    pub fn end(&self, status: Status) -> Result<()> {
+        self.file.as_ref().map_or(Ok(()), |file| file.end(status))
     }
 
     /// The `# ` lines of CSV: program, command, parameters, units.
@@ -89,7 +176,7 @@ impl<'a> Report<'a> {
         remarks(self.words, system, numerics)
     }
 
-    /// Opens the table or CSV.
+    /// Begins a table or CSV at any place.
     pub fn rows(
         &self,
         to: Box<dyn std::io::Write>,
@@ -98,24 +185,31 @@ impl<'a> Report<'a> {
         units: &[String],
     ) -> std::io::Result<Box<dyn RowWriter>> {
         Ok(match self.format {
-            Format::Table => Box::new(TableRows::new(to, columns, units)?),
+            Format::Table => self.table(to, columns, units)?,
             Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
         })
     }
 
-    /// Writes the CSV file of an earlier run anew, with the rows that stay in it, and goes on after them.
-    pub fn rows_after(
+    /// Opens a table no wider than the terminal, and says which columns that has no room for.
+    fn table(
         &self,
-        remarks: &[String],
+        to: Box<dyn std::io::Write>,
         columns: &[String],
-        kept: &[String],
+        units: &[String],
     ) -> std::io::Result<Box<dyn RowWriter>> {
-        let mut text = Vec::new();
-        CsvRows::new(&mut text, remarks, columns)?;
-        kept.iter().try_for_each(|line| writeln!(text, "{line}"))?;
-        self.place.write(&text)?;
-        let to = self.place.append().map_err(std::io::Error::other)?;
-        Ok(Box::new(CsvRows::continued(to)))
+        let width = match self.place {
+            Place::Standard => terminal_size::terminal_size_of(std::io::stdout()),
+            Place::File(_) => None,
+        };
+        let width = width.map_or(usize::MAX, |(width, _)| usize::from(width.0));
+        let table = TableRows::within(width, to, columns, units)?;
+        if !table.hidden().is_empty() {
+            self.say(format!(
+                "no room for {}: widen the terminal, or ask for --format csv or json",
+                table.hidden().join(", ")
+            ));
+        }
+        Ok(Box::new(table))
     }
 
     /// The object of a command as one line.

@@ -1,9 +1,11 @@
 //! `twinslip reproduce` and `twinslip figure`: the whole paper again, or a part of it.
 
-use super::Ending;
 use super::interrupt;
 use super::report::sundials;
+use super::words::{count, time};
+use super::{Ending, say};
 use crate::error::{Error, Result};
+use crate::integrate::used_vectors;
 use crate::paper::{Done, Order, PRODUCTS, Product, Told, hash, reproduce};
 use crate::sweep::threads_checked;
 use indicatif::{ProgressBar, ProgressStyle};
@@ -39,9 +41,9 @@ pub struct ReproduceOptions {
 /// `figure`: one figure as CSV and SVG.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct FigureOptions {
-    /// Its number in the paper, 1 to 17
+    /// Its number in the paper, 1 to 17; fig7 and fig07 mean the same
     #[arg(value_name = "N")]
-    number: u8,
+    number: String,
     /// Where the files go
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
@@ -56,7 +58,7 @@ pub struct Making {
     /// Pictures as PNG too
     #[arg(long)]
     png: bool,
-    /// Threads [default: one a processor]; results do not depend on them
+    /// Threads [default: one per processor]; results do not depend on them
     #[arg(long, value_name = "N")]
     threads: Option<usize>,
     /// Say nothing but errors
@@ -89,11 +91,7 @@ pub fn run(options: &ReproduceOptions) -> Result<Ending> {
 }
 
 pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
-    let number = options.number;
-    if !(1..=17).contains(&number) {
-        return Err(Error::parameter("figure", number, "from 1 to 17"));
-    }
-    let product = Product::named(&format!("fig{number:02}"))?;
+    let product = Product::named(&options.number)?;
     make(&options.out, vec![product], &options.making, Kept::Files)
 }
 
@@ -117,6 +115,13 @@ fn make(
     };
     let begun = Instant::now();
     let bar = Bar::new(making.quiet);
+    interrupt::keeps(match kept {
+        Kept::Whole { .. } => format!(
+            "what was finished is in {} and is not made again by the same command",
+            out.display()
+        ),
+        Kept::Files => "the figure was not finished, and no file was written".into(),
+    });
     interrupt::watch();
     let done = reproduce(&order, interrupt::flag(), &|told| bar.tell(told));
     interrupt::unwatch();
@@ -140,27 +145,12 @@ fn machine() -> BTreeMap<String, String> {
         ("architecture", std::env::consts::ARCH.to_owned()),
         ("system", std::env::consts::OS.to_owned()),
         ("processors", cores.to_string()),
-        ("vectors", vectors().to_owned()),
+        ("vectors", used_vectors().name().to_owned()),
     ];
     facts
         .into_iter()
         .map(|(name, value)| (name.to_owned(), value))
         .collect()
-}
-
-/// The widest vectors that the processor computes with: fused multiplications change last digits.
-fn vectors() -> &'static str {
-    #[cfg(target_arch = "x86_64")]
-    {
-        if std::arch::is_x86_feature_detected!("avx512f") {
-            return "AVX-512";
-        }
-        if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("fma")
-        {
-            return "AVX2 with FMA";
-        }
-    }
-    "none"
 }
 
 /// What decides about the numbers: all of that but the number of processors, and the program itself, to the byte.
@@ -175,19 +165,25 @@ fn program(machine: &BTreeMap<String, String>) -> String {
 
 fn summary(done: &Done, order: &Order, wall: Duration) {
     for (product, seconds) in &done.made {
-        eprintln!("{:<10} {seconds:7.2} s  {}", product.id, product.title);
+        say(format_args!(
+            "{:<10} {seconds:7.2} s  {}",
+            product.id, product.title
+        ));
     }
     if !done.stood.is_empty() {
         let ids: Vec<&str> = done.stood.iter().map(|product| product.id).collect();
-        eprintln!("up to date, not made again: {}", ids.join(", "));
+        say(format_args!(
+            "up to date, not made again: {}",
+            ids.join(", ")
+        ));
     }
     let report = if order.report { ", report.html" } else { "" };
-    eprintln!(
-        "{} made in {:.1} s{report} in {}",
-        done.made.len(),
-        wall.as_secs_f64(),
+    say(format_args!(
+        "{} made in {}{report}, in the directory {}",
+        count(done.made.len()),
+        time(wall.as_secs_f64()),
         order.out.display()
-    );
+    ));
 }
 
 /// One clear error: what can't be written goes before what was interrupted for that.
@@ -201,7 +197,7 @@ fn ending(done: Done) -> Result<Ending> {
         if *error == Error::Interrupted {
             ending = Ending::Interrupted;
         } else {
-            eprintln!("error: {}: {error}", product.id);
+            say(format_args!("error: {}: {error}", product.id));
             if ending == Ending::Done {
                 ending = Ending::Stuck;
             }

@@ -1,125 +1,235 @@
-//! Going on with the CSV file of an interrupted run: what is complete in it stays, if it is of the same command and model.
+//! Going on with the CSV file of an interrupted run: the rows of all branches but the last one that it had begun stay as they are,
+//! with their special points in the file beside it. What follows is computed as if nothing had happened.
 
-use super::rows::{Row, unknown};
-use crate::bifurcation::{Label, Special};
+use super::rows::{Row, special_row};
+use crate::bifurcation::Special;
 use crate::error::{Error, Result};
-use crate::output::EarlierRows;
+use crate::output::{Head, OURS, Status, checked_cells, damage, whole_line};
 use crate::scene::Units;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::fs::File;
+use std::io::{BufReader, ErrorKind, Read};
+use std::path::{Path, PathBuf};
+
+/// Between two rows there are never as many special points.
+const FEW: usize = 300;
 
 /// What stays of an earlier run.
 #[derive(Debug)]
 pub struct Kept<R> {
-    /// The lines, as they stand.
-    pub lines: Vec<String>,
-    /// What they say.
+    /// The rows.
     pub rows: Vec<R>,
-    /// The numbers of the branches or curves, which are not computed again.
+    /// The special points.
+    pub special: Vec<Special>,
+    /// The numbers of the branches or curves, which are not told of again.
     pub numbers: Vec<usize>,
+    /// Whether all is there.
+    pub complete: bool,
+    /// Where in the file ends what stays; 0 where not even its head is whole.
+    pub bytes: u64,
+    /// The same of the file of special points.
+    pub special_bytes: u64,
 }
 
 impl<R> Default for Kept<R> {
     fn default() -> Self {
         Kept {
-            lines: Vec::new(),
             rows: Vec::new(),
+            special: Vec::new(),
             numbers: Vec::new(),
+            complete: false,
+            bytes: 0,
+            special_bytes: 0,
         }
+    }
+}
+
+/// The file of the special points beside that of the rows: `orbits.special.csv` beside `orbits.csv`.
+pub fn beside(rows: &Path) -> PathBuf {
+    let mut name = rows.file_stem().unwrap_or_default().to_owned();
+    name.push(".special.");
+    name.push(rows.extension().unwrap_or("csv".as_ref()));
+    rows.with_file_name(name)
+}
+
+/// What the check of a row is made with: its number, and how many special points were told of before it. So the rows know whether
+/// any of these is missing.
+pub fn row_key(row: usize, special: usize) -> String {
+    format!("{row} {special}")
+}
+
+/// What the check of a special point is made with: its number.
+pub fn special_key(number: usize) -> String {
+    number.to_string()
+}
+
+/// What a file must begin with to be gone on with.
+pub struct Expected<'a> {
+    /// Its remarks, but for the command, what the second method is, and how far it is.
+    pub remarks: &'a [String],
+    /// The names of its columns.
+    pub columns: &'a [String],
+}
+
+/// What the check of a row may have been made with.
+type Keys = Box<dyn Iterator<Item = String>>;
+
+/// The rows of a file, each with where it ends.
+struct Table<R> {
+    head: Head,
+    rows: Vec<R>,
+    ends: Vec<u64>,
+}
+
+impl<R> Table<R> {
+    /// Reads a file; `None` if there is none, or its head is torn.
+    fn read(
+        path: &Path,
+        expected: &Expected<'_>,
+        keys: &dyn Fn(usize) -> Keys,
+        row: &mut dyn FnMut(&dyn Fn(&str) -> String, usize) -> Option<R>,
+    ) -> Result<Option<Self>> {
+        let unreadable = |error: std::io::Error| Error::File {
+            action: "read",
+            path: path.to_owned(),
+            reason: error.to_string(),
+        };
+        let mut file = match File::open(path) {
+            Ok(file) => BufReader::new(file),
+            Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+            Err(error) => return Err(unreadable(error)),
+        };
+        let head = Head::read(&mut file).map_err(unreadable)?;
+        if head.columns.is_empty() {
+            let mut begin = Vec::new();
+            File::open(path)
+                .and_then(|file| file.take(OURS.len() as u64).read_to_end(&mut begin))
+                .map_err(unreadable)?;
+            return match OURS.as_bytes().starts_with(&begin) {
+                true => Ok(None),
+                false => Err(wrong(path, "it is not a CSV of this program")),
+            };
+        }
+        same(&head, expected.remarks, expected.columns).map_err(|why| wrong(path, &why))?;
+        let mut table = Table {
+            ends: vec![head.bytes],
+            rows: Vec::new(),
+            head,
+        };
+        while let Some(line) = whole_line(&mut file).map_err(unreadable)? {
+            let number = table.rows.len();
+            let known = keys(number).enumerate();
+            let read = checked_cells(&line, known).and_then(|(key, cells)| {
+                row(&|column| table.head.cell(&cells, column).to_owned(), key)
+            });
+            let Some(read) = read else {
+                let at = table.head.lines + number + 1;
+                let why = damage(&line, number, keys);
+                return Err(wrong(path, &format!("line {at} is damaged: {why}")));
+            };
+            table.rows.push(read);
+            table.ends.push(table.ends[number] + line.len() as u64 + 1);
+        }
+        Ok(Some(table))
+    }
+
+    /// Whether the file says that its rows are all there, and they are.
+    fn complete(&self) -> bool {
+        let remarks = self.head.remarks.iter().map(String::as_str);
+        Status::of(remarks) == Some(Status::Complete(Some(self.rows.len())))
+    }
+
+    /// The first rows that are to stay, and where they end.
+    fn staying(mut self, stays: impl Fn(&R) -> bool) -> (Vec<R>, u64) {
+        let first = self.rows.iter().position(|row| !stays(row));
+        let count = first.unwrap_or(self.rows.len());
+        self.rows.truncate(count);
+        (self.rows, self.ends[count])
     }
 }
 
 impl<R: Row> Kept<R> {
-    /// Reads the file; nothing stays of one that does not exist, is empty or ends before the first complete branch.
+    /// Reads both files; nothing stays of what does not exist, is empty or ends before a second branch begins.
     ///
     /// # Errors
-    /// [`Error::File`] if it can't be read; [`Error::Input`] if it is of another command or model than the one with these
-    /// remarks and columns.
+    /// [`Error::File`] if one can't be read; [`Error::Input`] if it is of another command, model or version than this one, or has
+    /// a line that is not as it was written.
     pub fn read(
         path: &Path,
-        remarks: &[String],
-        columns: &[String],
+        rows: &Expected<'_>,
+        special: &Expected<'_>,
         units: &Units,
     ) -> Result<Self> {
-        let text = text_of(path)?;
-        if text.is_empty() {
+        // How many special points there were before the last row.
+        let before = std::cell::Cell::new(0);
+        let rows = Table::read(
+            path,
+            rows,
+            &|row| {
+                let some = before.get()..before.get() + FEW;
+                Box::new(some.map(move |special| row_key(row, special)))
+            },
+            &mut |cell, more| {
+                before.set(before.get() + more);
+                R::read(cell, units)
+            },
+        )?;
+        let Some(rows) = rows else {
             return Ok(Kept::default());
-        }
-        let earlier = EarlierRows::read(&text);
-        same(&earlier, remarks, columns)
-            .map_err(|why| Error::Input(format!("--resume {}: {why}", path.display())))?;
-        let mut branches: BTreeMap<usize, Vec<(&String, R)>> = BTreeMap::new();
-        let mut last = None;
-        for line in &earlier.lines {
-            let row = R::read(&|column| earlier.cell(line, column), units).ok_or_else(|| {
-                Error::Input(format!(
-                    "--resume {}: the row {line:?} can't be read",
-                    path.display()
-                ))
-            })?;
-            last = Some(row.number());
-            branches.entry(row.number()).or_default().push((line, row));
-        }
-        let mut kept = Kept::default();
-        for (number, rows) in branches {
-            let label = rows.last().and_then(|(_, row)| row.label());
-            if rows.len() > 1 && whole(label, Some(number) == last) {
-                kept.numbers.push(number);
-                for (line, row) in rows {
-                    kept.lines.push(line.clone());
-                    kept.rows.push(row);
-                }
-            }
-        }
-        Ok(kept)
-    }
-
-    /// The special points, without what a row does not hold.
-    pub fn special(&self) -> Vec<Special> {
-        let special = |row: &R| {
-            let (driving, stiffness) = row.loading();
-            Some(Special {
-                label: row.label()?,
-                driving,
-                stiffness,
-                period: row.period().map(unknown),
-                criticality: None,
-                coefficient: None,
-                note: Some("of the earlier run".into()),
-                orbit: None,
-            })
         };
-        self.rows.iter().filter_map(special).collect()
+        let points = beside(path);
+        let special = Table::read(
+            &points,
+            special,
+            &|number| Box::new(std::iter::once(special_key(number))),
+            &mut |cell, _| special_row(cell, units),
+        )?;
+        let bytes = rows.head.bytes;
+        let Some(special) = special else {
+            // Without their special points the rows are of no use: all is computed again.
+            return Ok(Kept {
+                bytes,
+                ..Kept::default()
+            });
+        };
+        if special.rows.len() < before.get() {
+            let (there, told) = (special.rows.len(), before.get());
+            return Err(wrong(
+                &points,
+                &format!(
+                    "it ends after {there} special points, but {told} are on the branches of {}",
+                    path.display()
+                ),
+            ));
+        }
+        let complete = rows.complete() && special.complete();
+        let last = rows.rows.last().map_or(0, R::number);
+        let (special, special_bytes) = special.staying(|one| complete || one.branch < last);
+        let (rows, bytes) = rows.staying(|row| complete || row.number() < last);
+        Ok(Kept {
+            rows,
+            special,
+            numbers: (0..last).collect(),
+            complete,
+            bytes,
+            special_bytes,
+        })
     }
 }
 
-/// What a file holds; nothing if there is none.
-fn text_of(path: &Path) -> Result<String> {
-    match std::fs::read_to_string(path) {
-        Ok(text) => Ok(text),
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(String::new()),
-        Err(error) => Err(Error::File {
-            action: "read",
-            path: path.to_owned(),
-            reason: error.to_string(),
-        }),
-    }
-}
-
-/// Whether a branch is complete by the label of its last row: one comes after the other, so that it is if another one follows.
-/// What the method gave up is tried again; that a last branch ends in a bifurcation is not told from one that only passes it.
-fn whole(label: Option<Label>, last: bool) -> bool {
-    label == Some(Label::Ep) || (!last && label != Some(Label::Mx))
+fn wrong(path: &Path, why: &str) -> Error {
+    Error::Input(format!("--resume {}: {why}", path.display()))
 }
 
 /// Whether a file was written by the same command with the same model; if not, why not.
-pub(super) fn same(
-    earlier: &EarlierRows,
-    remarks: &[String],
-    columns: &[String],
-) -> Result<(), String> {
+pub(super) fn same(earlier: &Head, remarks: &[String], columns: &[String]) -> Result<(), String> {
     if !earlier.columns.is_empty() && earlier.columns != columns {
         return Err("its columns are not those of this command".into());
+    }
+    let version = |remarks: &[String]| remarks.first().cloned().unwrap_or_default();
+    let (theirs, ours) = (version(&earlier.remarks), version(remarks));
+    if theirs.starts_with("twinslip ") && theirs != ours {
+        return Err(format!("it was written by {theirs}, but this is {ours}"));
     }
     for subject in ["model", "numerics", "units"] {
         let (Some(theirs), Some(ours)) =

@@ -1,7 +1,7 @@
 //! The rows of branches and of curves, and the way back from CSV.
 
-use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow};
-use crate::equilibrium::Verdict;
+use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow, Special};
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
 use crate::scene::{Quantity, Units};
 
@@ -14,15 +14,11 @@ pub trait Row: Sized {
     /// The row that an event is, if it is one of these.
     fn of(event: Event) -> Option<Self>;
     /// From the cells of a CSV in the user's units.
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self>;
+    fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self>;
     /// The number of the branch or curve.
     fn number(&self) -> usize;
-    /// What is special.
-    fn label(&self) -> Option<Label>;
     /// V_H and K.
     fn loading(&self) -> (Uncertain, Uncertain);
-    /// The period, where there is one.
-    fn period(&self) -> Option<f64>;
     /// Whether its stability is undecided where it could be told.
     fn undecided(&self) -> bool;
 }
@@ -30,6 +26,48 @@ pub trait Row: Sized {
 /// A value whose error budget was not written.
 pub fn unknown(value: f64) -> Uncertain {
     Uncertain::new(value, f64::INFINITY)
+}
+
+/// A value with its error budget.
+fn uncertain(
+    cell: &dyn Fn(&str) -> String,
+    units: &Units,
+    name: &str,
+    quantity: Quantity,
+) -> Option<Uncertain> {
+    let number = |name: &str| cell(name).parse::<f64>().ok();
+    let value = units.inward(quantity, number(name)?);
+    let bound = number(&format!("{name}_uncertainty"));
+    Some(bound.map_or(unknown(value), |bound| {
+        Uncertain::new(value, bound / units.factor(quantity))
+    }))
+}
+
+fn criticality(cell: &dyn Fn(&str) -> String) -> Option<Criticality> {
+    let sides = [
+        Criticality::Supercritical,
+        Criticality::Subcritical,
+        Criticality::Undecided,
+    ];
+    let name = cell("criticality");
+    sides.into_iter().find(|side| side.name() == name)
+}
+
+/// A special point from the cells of a CSV in the user's units.
+pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Special> {
+    let uncertain = |name: &str, quantity| uncertain(cell, units, name, quantity);
+    Some(Special {
+        label: Label::named(&cell("label"))?,
+        branch: cell("branch").parse().ok()?,
+        symmetry: Symmetry::named(&cell("symmetry")),
+        driving: uncertain("driving", Quantity::SlipRate)?,
+        stiffness: uncertain("stiffness", Quantity::Stiffness)?,
+        period: uncertain("period", Quantity::Time),
+        criticality: criticality(cell),
+        coefficient: cell("coefficient").parse().ok(),
+        note: Some(cell("note")).filter(|note| !note.is_empty()),
+        orbit: None,
+    })
 }
 
 impl Row for BranchRow {
@@ -43,7 +81,7 @@ impl Row for BranchRow {
         }
     }
 
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
+    fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self> {
         let maybe = |name: &str, quantity| {
             let x = cell(name).parse::<f64>().ok()?;
             Some(units.inward(quantity, x))
@@ -59,6 +97,7 @@ impl Row for BranchRow {
         let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
         Some(BranchRow {
             branch: cell("branch").parse().ok()?,
+            symmetry: Symmetry::named(&cell("symmetry"))?,
             driving: maybe("driving", Quantity::SlipRate)?,
             stiffness: maybe("stiffness", Quantity::Stiffness)?,
             stress: maybe("stress", Quantity::Stress)?,
@@ -74,7 +113,7 @@ impl Row for BranchRow {
             verdict: verdicts
                 .into_iter()
                 .find(|&verdict| verdict.name() == cell("verdict"))?,
-            label: Label::named(cell("label")),
+            label: Label::named(&cell("label")),
         })
     }
 
@@ -82,16 +121,8 @@ impl Row for BranchRow {
         self.branch
     }
 
-    fn label(&self) -> Option<Label> {
-        self.label
-    }
-
     fn loading(&self) -> (Uncertain, Uncertain) {
         (unknown(self.driving), unknown(self.stiffness))
-    }
-
-    fn period(&self) -> Option<f64> {
-        self.period
     }
 
     /// At a bifurcation, and where a branch ends in one, there is nothing to decide.
@@ -111,30 +142,18 @@ impl Row for LocusRow {
         }
     }
 
-    fn read<'a>(cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Self> {
+    fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self> {
         let number = |name: &str| cell(name).parse::<f64>().ok();
-        let uncertain = |name: &str, quantity| {
-            let value = units.inward(quantity, number(name)?);
-            let bound = number(&format!("{name}_uncertainty"));
-            Some(bound.map_or(unknown(value), |bound| {
-                Uncertain::new(value, bound / units.factor(quantity))
-            }))
-        };
-        let sides = [
-            Criticality::Supercritical,
-            Criticality::Subcritical,
-            Criticality::Undecided,
-        ];
+        let uncertain = |name: &str, quantity| uncertain(cell, units, name, quantity);
         Some(LocusRow {
             curve: cell("curve").parse().ok()?,
+            symmetry: Symmetry::named(&cell("symmetry"))?,
             driving: uncertain("driving", Quantity::SlipRate)?,
             stiffness: uncertain("stiffness", Quantity::Stiffness)?,
             period: number("period").map(|t| units.inward(Quantity::Time, t)),
             angle_over_pi: number("angle_over_pi"),
-            criticality: sides
-                .into_iter()
-                .find(|&side| side.name() == cell("criticality")),
-            label: Label::named(cell("label")),
+            criticality: criticality(cell),
+            label: Label::named(&cell("label")),
         })
     }
 
@@ -142,16 +161,8 @@ impl Row for LocusRow {
         self.curve
     }
 
-    fn label(&self) -> Option<Label> {
-        self.label
-    }
-
     fn loading(&self) -> (Uncertain, Uncertain) {
         (self.driving, self.stiffness)
-    }
-
-    fn period(&self) -> Option<f64> {
-        self.period
     }
 
     /// Points of a curve have no verdict.

@@ -1,19 +1,30 @@
-//! `twinslip run SCENE.toml`.
+//! `twinslip run SCENE`.
 
-use super::{Ending, compute};
-use crate::error::{Error, Result};
-use crate::scene::{Command, SceneFile};
-use std::path::PathBuf;
+use super::{Ending, compute, written};
+use crate::error::{Error, Result, did_you_mean};
+use crate::output::Place;
+use crate::scene::{Command, SceneFile, about, shipped, shipped_names};
+use std::io::Write;
+use std::path::{Path, PathBuf};
 
-pub const EXAMPLE: &str = "Example, the torus of the paper's Fig. 13:
-  twinslip run scenes/fig13.toml -o fig13.csv --plot fig13.svg";
+pub const EXAMPLE: &str =
+    "Example, the torus of the paper's Fig. 13, and what other scenes there are:
+  twinslip run fig13 -o fig13.csv --plot fig13.svg
+  twinslip run --list";
 
 /// `run`: a scene file, and what may be said anew.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct RunOptions {
-    /// The scene: TOML with command = "integrate" (or another command) and that command's options by their own names
-    #[arg(value_name = "SCENE.toml")]
-    scene: PathBuf,
+    /// The scene: the name of one that is built in, or a file: TOML with command = "integrate" (or another command) and that
+    /// command's options by their own names
+    #[arg(value_name = "SCENE", required_unless_present = "list")]
+    scene: Option<PathBuf>,
+    /// Say which scenes are built in, and what each shows
+    #[arg(long)]
+    list: bool,
+    /// Write the text of the scene instead of running it, as a beginning of one's own
+    #[arg(long, conflicts_with = "list")]
+    show: bool,
     /// Draw into FILE.svg or FILE.png
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
@@ -23,11 +34,28 @@ pub struct RunOptions {
 }
 
 pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
-    let scene = SceneFile::read(&options.scene, &Command::program())?;
+    let path = match &options.scene {
+        Some(path) if !options.list => path,
+        _ => return said(&list()),
+    };
+    let built_in = built_in(path)?;
+    if options.show {
+        return match built_in {
+            Some((_, text)) => said(text),
+            None => Err(Error::Input(format!(
+                "--show is for scenes that are built in, and {} is a file",
+                path.display()
+            ))),
+        };
+    }
+    let scene = match built_in {
+        Some((name, text)) => SceneFile::parse(&name, text, &Command::program())?,
+        None => SceneFile::read(path, &Command::program())?,
+    };
     let (mut replaced, mut added) = (Vec::new(), Vec::new());
     let texts = [
-        ("plot", path(&options.plot)),
-        ("output", path(&options.output.output)),
+        ("plot", text(&options.plot)),
+        ("output", text(&options.output.output)),
         ("format", options.output.format.clone()),
     ];
     for (flag, value) in texts {
@@ -42,6 +70,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
     }
     let switches = [
         ("quiet", options.output.quiet),
+        ("force", options.output.force),
         ("explain", options.output.explain),
     ];
     for (flag, on) in switches {
@@ -57,7 +86,49 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
     })
 }
 
-fn path(path: &Option<PathBuf>) -> Option<String> {
+/// The name and text of the scene that is built in, if there is no such file: `fig12`, `fig12.toml` or `scenes/fig12.toml`.
+fn built_in(path: &Path) -> Result<Option<(String, &'static str)>> {
+    if path.exists() {
+        return Ok(None);
+    }
+    let plain = path.strip_prefix("scenes").unwrap_or(path);
+    let text = plain.to_string_lossy();
+    let name = text.strip_suffix(".toml").unwrap_or(&text);
+    if let Some(text) = shipped(name) {
+        return Ok(Some((name.to_owned(), text)));
+    }
+    let hint = did_you_mean(name, shipped_names().into_iter());
+    Err(Error::Input(format!(
+        "cannot read {}: there is no such file, and no built-in scene of this name{hint} (twinslip run --list names them all)",
+        path.display()
+    )))
+}
+
+/// The scenes that are built in, with what each shows.
+fn list() -> String {
+    let names = shipped_names();
+    let width = names.iter().map(|name| name.len()).max().unwrap_or(0);
+    names
+        .into_iter()
+        .map(|name| {
+            format!(
+                "{name:<width$}  {}\n",
+                about(shipped(name).unwrap_or_default())
+            )
+        })
+        .collect()
+}
+
+fn said(text: &str) -> Result<Ending> {
+    let place = Place::Standard;
+    let mut to = place.stream()?;
+    written(
+        to.write_all(text.as_bytes()).and_then(|()| to.flush()),
+        &place,
+    )
+}
+
+fn text(path: &Option<PathBuf>) -> Option<String> {
     path.as_ref()
         .map(|path| path.to_string_lossy().into_owned())
 }

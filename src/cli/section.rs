@@ -3,7 +3,8 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::Out;
-use super::{Ending, written};
+use super::words::{count, several, time};
+use super::{Ending, say, written};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::output::{Cell, Format, Rows, plot};
@@ -25,7 +26,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
     let report = Report::new(&options.output, words, &others)?;
     if options.output.explain {
-        eprint!("{}", explain_section(&plan));
+        say(explain_section(&plan).trim_end());
     }
     let columns = SectionColumn::all(plan.system.interfaces);
     let columns = columns.iter().map(|c| (c.name(), c.quantity())).collect();
@@ -50,14 +51,14 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
         None => {}
     }
     report.say(summary(&plan, &outcome, seconds));
-    match outcome.failure {
+    report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
             Ok(Ending::Undecided)
         }
         None => Ok(ending),
-    }
+    })
 }
 
 fn numerics(plan: &SectionPlan) -> Value {
@@ -106,7 +107,7 @@ fn write(
     let mut quantities = vec![Quantity::Number; 2];
     let mut add = |name: &str, quantity, x: Option<Uncertain>| {
         let x = x.map(|x| plan.system.units.outward_uncertain(quantity, x));
-        columns.extend([name.to_owned(), "+-".to_owned()]);
+        columns.extend([name.to_owned(), "±".to_owned()]);
         cells.extend([x.map(|x| x.value).into(), x.map(|x| x.uncertainty).into()]);
         quantities.extend([quantity; 2]);
     };
@@ -172,27 +173,25 @@ fn result<'a>(plan: &SectionPlan, rows: &'a Rows, outcome: &SectionOutcome) -> F
 fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
-        "{} steps ({} rejected), {} evaluations of f, {seconds:.3} s, {} returns: {}",
-        work.steps,
-        work.rejected,
-        work.rhs,
-        outcome.returns,
+        "{} steps ({} rejected), {} evaluations of f, {}, {}: {}",
+        count(work.steps),
+        count(work.rejected),
+        count(work.rhs),
+        time(seconds),
+        several(outcome.returns, "return", "returns"),
         outcome.regime.name()
     );
     if let Some(q) = outcome.period_of_orbit {
         text.push_str(&format!(", period {q}"));
     }
     if let Some(rotation) = outcome.rotation_number {
-        let Uncertain { value, uncertainty } = rotation;
-        text.push_str(&format!(
-            ", rotation number {value:.9} +- {uncertainty:.1e}"
-        ));
+        text.push_str(&format!(", rotation number {rotation}"));
     }
     let exponents = outcome.lyapunov.iter().flat_map(|found| &found.exponents);
     let exponents: Vec<String> = exponents
         .map(|x| {
-            let x = plan.system.units.outward_uncertain(Quantity::Growth, *x);
-            format!("{:.3e} +- {:.1e}", x.value, x.uncertainty)
+            let units = &plan.system.units;
+            units.outward_uncertain(Quantity::Growth, *x).to_string()
         })
         .collect();
     if !exponents.is_empty() {

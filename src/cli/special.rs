@@ -1,8 +1,6 @@
 //! Special points as objects and as a short table.
 
 use crate::bifurcation::{Criticality, Special};
-use crate::number::Uncertain;
-use crate::output::shortest;
 use crate::scene::{Quantity, System, Units};
 use crate::views::{self, special_columns};
 use serde_json::{Value, json};
@@ -66,7 +64,7 @@ pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<Strin
 }
 
 fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<String> {
-    let number = |quantity, x| written(units.outward_uncertain(quantity, x));
+    let number = |quantity, x| units.outward_uncertain(quantity, x).to_string();
     let period = one.period.map(|x| number(Quantity::Time, x));
     let difference = difference.map(|[v, k, t]| format!("{v:.1e}, {k:.1e}, {t:.1e}"));
     vec![
@@ -79,15 +77,6 @@ fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<Strin
         difference.unwrap_or_default(),
         one.note.clone().unwrap_or_default(),
     ]
-}
-
-/// A value with the bound on its error, if there is any.
-fn written(x: Uncertain) -> String {
-    if x.uncertainty == 0.0 || !x.uncertainty.is_finite() {
-        shortest(x.value)
-    } else {
-        format!("{} ± {:.1e}", shortest(x.value), x.uncertainty)
-    }
 }
 
 /// Columns of equal width, without those in which no row has anything.

@@ -38,8 +38,7 @@ impl Out {
         } else {
             let units = unit_names(&system.units, quantities.into_iter());
             let remarks = report.remarks(system, numerics);
-            let stream = report.place.stream().map_err(io::Error::other)?;
-            Some(report.rows(stream, &remarks, &names, &units)?)
+            Some(report.begin(remarks, &names, &units)?)
         };
         Ok(Out {
             keep: keep || writer.is_none(),

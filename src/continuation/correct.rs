@@ -121,6 +121,58 @@ pub(super) fn onto(
     Err(failed(MOST, last, tolerance))
 }
 
+/// The same from a rough guess: the step is damped as long as the next correction, by the same matrix, would not be shorter (the
+/// natural monotonicity test of Deuflhard 2004, Newton Methods for Nonlinear Problems, section 3.3).
+pub(super) fn from_afar(
+    problem: &dyn ZeroProblem,
+    guess: &DVector<f64>,
+    plane: &Plane,
+    tolerance: f64,
+) -> Result<DVector<f64>> {
+    /// Damped steps, and the least part of a correction that is taken.
+    const STEPS: usize = 200;
+    const LEAST: f64 = 1e-6;
+    let n = problem.dimension();
+    let right = |x: &DVector<f64>| {
+        let g = problem.residual(&x.rows(0, n).into_owned(), x[n])?;
+        Ok::<_, Error>(joined(&-g, plane.offset - plane.normal.dot(x)))
+    };
+    let (mut x, mut part) = (guess.clone(), 1.0_f64);
+    let mut size = f64::INFINITY;
+    for iteration in 1..=STEPS {
+        let left = right(&x)?;
+        let matrix = bordered(problem, &x, &plane.normal)?.lu();
+        let change = matrix
+            .solve(&left)
+            .filter(|change| change.norm().is_finite());
+        let Some(change) = change else {
+            return Err(failed(iteration, size, tolerance));
+        };
+        size = change.amax() / (1.0 + x.amax());
+        part = (2.0 * part).min(1.0);
+        x = loop {
+            let next = &x + &change * part;
+            // outside its domain the residual is an error or no number: a shorter step stays inside
+            let after = right(&next).ok().and_then(|right| matrix.solve(&right));
+            let shorter =
+                |after: &DVector<f64>| after.norm() <= (1.0 - 0.25 * part) * change.norm();
+            if after.as_ref().is_some_and(shorter) {
+                break next;
+            }
+            part *= 0.5;
+            if part < LEAST {
+                return Err(failed(iteration, size, tolerance));
+            }
+        };
+        if part == 1.0
+            && let Ok((x, _)) = onto(problem, &x, plane, tolerance)
+        {
+            return Ok(x);
+        }
+    }
+    Err(failed(STEPS, size, tolerance))
+}
+
 /// The unit tangent at x whose product with `along` is positive.
 pub(super) fn tangent(
     problem: &dyn ZeroProblem,

@@ -1,6 +1,6 @@
 //! The walk along a curve.
 
-use super::correct::{Plane, joined, onto, tangent};
+use super::correct::{Plane, from_afar, joined, onto, tangent};
 use super::locate::{Met, Step};
 use super::{Branch, Mark, Point, Settings, Start, Stop, Watch, ZeroProblem};
 use crate::error::{Error, Result};
@@ -41,6 +41,7 @@ pub fn follow(
         settings: &settings,
         watch,
         points: Vec::new(),
+        before: None,
         bend: DVector::zeros(problem.dimension() + 1),
     };
     let stopped = walk.whole(first);
@@ -59,7 +60,8 @@ fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Resul
         normal: start.direction.clone(),
     };
     let plane = if start.across { &across } else { &fixed };
-    let (mut x, _) = onto(problem, &guess, plane, settings.tolerance)?;
+    let near = onto(problem, &guess, plane, settings.tolerance).map(|(x, _)| x);
+    let mut x = near.or_else(|_| from_afar(problem, &guess, plane, settings.tolerance))?;
     x[n] = x[n].clamp(settings.range.0, settings.range.1);
     Ok(Point {
         u: x.rows(0, n).into_owned(),
@@ -75,6 +77,8 @@ struct Walk<'a> {
     watch: &'a mut dyn Watch,
     points: Vec<(Point, Mark)>,
     length: f64,
+    /// (u, lambda) of the point before.
+    before: Option<DVector<f64>>,
     /// The change of the tangent per length in the last step: the predictor's second order.
     bend: DVector<f64>,
 }
@@ -95,7 +99,10 @@ impl Walk<'_> {
         let mut here = first;
         for _ in 1..self.settings.max_points {
             match self.step(&here) {
-                ControlFlow::Continue(next) => here = next,
+                ControlFlow::Continue(next) => {
+                    self.before = Some(joined(&here.u, here.lambda));
+                    here = next;
+                }
                 ControlFlow::Break(stop) => return stop,
             }
         }
@@ -120,6 +127,9 @@ impl Walk<'_> {
                 Ok(None) if self.length > self.settings.shortest_step => self.length *= SHORTER,
                 Err(_) if self.length > self.settings.shortest_step => self.length *= SHORTER,
                 failed => {
+                    if let Some(here) = self.by_secant(here) {
+                        return self.step(&here);
+                    }
                     return ControlFlow::Break(Stop::StepTooSmall {
                         lambda: here.lambda,
                         because: failed.err(),
@@ -127,6 +137,21 @@ impl Walk<'_> {
                 }
             }
         }
+    }
+
+    /// The same point with the direction from the one before: next to a branch point, by an accident of the steps, a tangent is
+    /// lost to rounding or to the errors of the derivatives. Once only.
+    fn by_secant(&mut self, here: &Point) -> Option<Point> {
+        let across = joined(&here.u, here.lambda) - self.before.take()?;
+        let length = across.norm();
+        let tangent = across / length;
+        if !(length > self.settings.shortest_step && tangent.dot(&here.tangent) > 0.0) {
+            return None;
+        }
+        self.length = length.min(self.settings.longest_step);
+        self.bend.fill(0.0);
+        let here = here.clone();
+        Some(Point { tangent, ..here })
     }
 
     /// The next point and what lies before it; nothing where the step is too long.

@@ -238,7 +238,7 @@ impl Step<'_> {
         }
         let mut t = (a.values[i] / (a.values[i] - b.values[i])).clamp(0.01, 0.99);
         for _ in 0..EVALUATIONS {
-            let x = match self.sample(watch, &a, &b, a.s + t * (b.s - a.s)) {
+            let x = match self.sample_beside(watch, &a, &b, t) {
                 Ok(x) => x,
                 Err(_) if (b.s - a.s).abs() < NARROW * self.length => {
                     return Ok(chord(&a, &b, i));
@@ -265,6 +265,20 @@ impl Step<'_> {
             t = t.clamp(margin, 1.0 - margin);
         }
         Ok(best)
+    }
+
+    /// A sample at this part of the bracket, or beside it: next to a branch point, which may be just where a zero is supposed, no
+    /// point can be corrected.
+    fn sample_beside(&self, watch: &dyn Watch, a: &Sample, b: &Sample, t: f64) -> Result<Sample> {
+        /// Parts of the bracket.
+        const BESIDE: [f64; 6] = [1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3];
+        let at = |t: f64| self.sample(watch, a, b, a.s + t * (b.s - a.s));
+        let beside = || {
+            let inside = BESIDE.iter().map(|aside| t + aside);
+            let mut inside = inside.filter(|t| *t > 0.0 && *t < 1.0);
+            inside.find_map(|t| at(t).ok())
+        };
+        at(t).or_else(|error| beside().ok_or(error))
     }
 
     /// A zero as what it means; with exactly the value of lambda where it means one.

@@ -1,18 +1,16 @@
 //! Eigenvalues and stability of an equilibrium, from the characteristic polynomials (14), (26) and (30).
 //!
-//! The polynomials keep the small eigenvalues of a stiff equilibrium to full relative accuracy, where a matrix algorithm has
-//! only an absolute one. The verdict does not look at eigenvalues: it is the Routh-Hurwitz criterion in interval arithmetic
-//! over the error budget of the equilibrium, and "undecided" where that can't tell.
+//! The coefficients are computed in 31 digits, with bounds on what they may be off: the slope in the slower rate over its
+//! bounds, in intervals, and the effect of the rounding of the law's parameters. The verdict does not look at eigenvalues: it is
+//! the Routh-Hurwitz criterion over these bounds, and "undecided" where that can't tell.
 
-use super::interface::{Interface, routh_hurwitz};
-use super::{Equilibrium, Symmetry};
+use super::interface::{Interface, weighted};
+use super::polynomial::{Coefficients, roots};
+use super::{Equilibrium, OF_31_DIGITS, Symmetry};
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, positive, with_law};
-use crate::number::{Interval, Real};
-use nalgebra::{Complex, Matrix3};
-
-/// Newton corrections of an eigenvalue; two suffice from the start that the matrix algorithm gives.
-const POLISH: usize = 6;
+use crate::friction::{AnyLaw, effects, positive};
+use crate::number::{Interval, Jet, Real};
+use nalgebra::Complex;
 
 /// What is known of the stability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -39,8 +37,10 @@ impl Verdict {
 /// Eigenvalues, largest real part first, and the verdict.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stability {
-    /// In V*/L.
+    /// In V*/L; one beyond the range of doubles is left out.
     pub eigenvalues: Vec<Complex<f64>>,
+    /// The distance in the complex plane within which the true eigenvalue lies, for each; infinite where there is no bound.
+    pub uncertainty: Vec<f64>,
     /// Stable, unstable or undecided.
     pub verdict: Verdict,
 }
@@ -51,127 +51,153 @@ pub struct Stability {
 /// [`crate::Error::Parameter`] unless K is positive and finite.
 pub fn stability(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Result<Stability> {
     positive("stiffness", stiffness)?;
-    Ok(with_law!(law, law => of_law(law, equilibrium, stiffness)))
+    let known = bounded(law, equilibrium, stiffness);
+    let found = sorted(equilibrium, &known);
+    Ok(Stability {
+        eigenvalues: found.iter().map(|(z, _)| *z).collect(),
+        uncertainty: found.iter().map(|(_, radius)| *radius).collect(),
+        verdict: verdict(equilibrium, &known),
+    })
 }
 
-fn of_law(law: &impl Law, equilibrium: &Equilibrium, k: f64) -> Stability {
-    let rates = &equilibrium.slip_rate;
-    let bounds: Vec<_> = equilibrium
-        .rate_bounds
-        .iter()
-        .map(|&v| Interface::at(law, v))
-        .collect();
+/// The eigenvalues alone, largest real part first: without bounds, at a part of the price.
+///
+/// # Errors
+/// As of [`stability`].
+pub fn eigenvalues(
+    law: &AnyLaw,
+    equilibrium: &Equilibrium,
+    stiffness: f64,
+) -> Result<Vec<Complex<f64>>> {
+    positive("stiffness", stiffness)?;
+    let values = coefficients(law, equilibrium.symmetry, &equilibrium.precise, stiffness);
+    let known = Coefficients {
+        values: values.to_vec(),
+        shifts: Vec::new(),
+        rest: vec![0.0; COUNT],
+    };
+    let found = sorted(equilibrium, &known);
+    Ok(found.into_iter().map(|(z, _)| z).collect())
+}
+
+/// Of the polynomials whose product is the characteristic one: [p_0, p_1] of a linear factor, then [p_0, p_1, ..] of the rest.
+const COUNT: usize = 6;
+
+/// Where the second polynomial begins.
+const SECOND: usize = 2;
+
+/// All coefficients, over the larger one of K and 1, so that none overflows. Those that are not there are zero.
+fn coefficients<T: Real>(
+    law: &AnyLaw,
+    symmetry: Symmetry,
+    rates: &[T],
+    stiffness: f64,
+) -> [T; COUNT] {
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
+    let (m, k) = if stiffness > 1.0 {
+        (one / stiffness, one)
+    } else {
+        (one, T::constant(stiffness))
+    };
     let first = Interface::at(law, rates[0]);
-    let (mut eigenvalues, verdict) = match (equilibrium.symmetry, rates.len()) {
-        (_, 1) => (
-            quadratic(&first, k).to_vec(),
-            oscillation_verdict(&bounds[0], k),
-        ),
+    // s^2 - s (k_c - k)/F_V + k G_psi/F_V: (14), and P_2 of (26) with 2 k for k
+    let quadratic = |k: T| {
+        [
+            k * first.g_psi * first.compliance,
+            k * first.compliance - first.s * m,
+        ]
+    };
+    match (symmetry, rates) {
+        (Symmetry::Symmetric, [_]) => {
+            let [p_0, p_1] = quadratic(k);
+            [zero, zero, p_0, p_1, m, zero]
+        }
         (Symmetry::Symmetric, _) => {
-            let [plus, minus] = quadratic(&first, 2.0 * k);
-            (
-                vec![Complex::new(first.s, 0.0), plus, minus],
-                symmetric_verdict(&bounds[0], k),
-            )
+            let [p_0, p_1] = quadratic(k * 2.0);
+            [-first.s, one, p_0, p_1, m, zero]
         }
         (Symmetry::Asymmetric, _) => {
+            // P_3 (30)
             let second = Interface::at(law, rates[1]);
-            (
-                cubic(&first, &second, k),
-                asymmetric_verdict(&bounds[0], &bounds[1], k),
-            )
+            let [p_2, p_1, p_0] = weighted(&first, &second, m, k);
+            [zero, zero, p_0, p_1, p_2, m]
         }
+    }
+}
+
+/// The same with what they may be off.
+fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Coefficients {
+    let (symmetry, rates) = (equilibrium.symmetry, &equilibrium.slip_rate);
+    let (slow, driving) = (rates[0], equilibrium.driving);
+    let exact = coefficients(law, symmetry, &equilibrium.precise, stiffness);
+    let of_inputs = effects(law, |law| coefficients(law, symmetry, rates, stiffness));
+    // both rates, of which the faster one is V_H less the other
+    let both = |slow: Jet<Interval, 2>, driving: Jet<Interval, 2>| match symmetry {
+        Symmetry::Symmetric => vec![driving / rates.len() as f64; rates.len()],
+        Symmetry::Asymmetric => vec![slow, driving - slow],
     };
-    eigenvalues.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
-    Stability {
-        eigenvalues,
-        verdict,
+    let point = [slow, driving].map(Interval::constant);
+    let [at_slow, at_driving] = Jet::variables(point);
+    let at_point = coefficients(law, symmetry, &both(at_slow, at_driving), stiffness);
+    let apart = driving * f64::EPSILON;
+    let around = [equilibrium.rate_bounds[0], Interval::around(driving, apart)];
+    let [near_slow, near_driving] = Jet::variables(around);
+    let around = coefficients(law, symmetry, &both(near_slow, near_driving), stiffness);
+    let reach = [equilibrium.radius, apart];
+    let mut shifts: Vec<_> = of_inputs.iter().map(|effect| effect.to_vec()).collect();
+    let slope = |i: usize, of: usize| around[i].gradient[of];
+    for (of, reach) in reach.into_iter().enumerate() {
+        let middle = |i| slope(i, of).leading() * reach;
+        shifts.push((0..COUNT).map(middle).collect());
     }
-}
-
-/// The roots of s^2 - s (k_c - k)/F_V + k G_psi/F_V: (14), and P_2 of (26) with 2 k for k.
-fn quadratic(one: &Interface<f64>, k: f64) -> [Complex<f64>; 2] {
-    let half = 0.5 * (one.s - k * one.compliance);
-    let product = k * one.g_psi * one.compliance;
-    let discriminant = half * half - product;
-    if discriminant < 0.0 {
-        let im = (-discriminant).sqrt();
-        return [Complex::new(half, im), Complex::new(half, -im)];
-    }
-    // The larger root by addition of like signs, the other from the product: no digit is lost.
-    let large = half + discriminant.sqrt().copysign(half);
-    let small = if large == 0.0 { 0.0 } else { product / large };
-    [Complex::new(large, 0.0), Complex::new(small, 0.0)]
-}
-
-/// The roots of P_3 (30): (s_3 + s)(s - s_1)(s - s_2) + k a_2 s_2 (s - s_1) + k a_1 s_1 (s - s_2) = 0.
-fn cubic(one: &Interface<f64>, two: &Interface<f64>, k: f64) -> Vec<Complex<f64>> {
-    let s_3 = k * (one.compliance + two.compliance);
-    // Symmetrised: the product of the off-diagonal entries is all that the eigenvalues see.
-    let (p_1, p_2) = (k * one.a_s, k * two.a_s);
-    let (r_1, r_2) = (p_1.abs().sqrt(), p_2.abs().sqrt());
-    #[rustfmt::skip]
-    let matrix = Matrix3::new(
-        -s_3,                     r_1,   r_2,
-        -r_1.copysign(p_1),       one.s, 0.0,
-        -r_2.copysign(p_2),       0.0,   two.s,
-    );
-    let polynomial = |s: Complex<f64>| {
-        let (d_1, d_2, d_3) = (s - one.s, s - two.s, s + s_3);
-        let value = d_3 * d_1 * d_2 + d_1 * p_2 + d_2 * p_1;
-        let slope = d_1 * d_2 + d_3 * d_2 + d_3 * d_1 + p_1 + p_2;
-        (value, slope)
+    let rest = |i: usize| {
+        let value = exact[i].to_f64();
+        // below, 31 digits are no longer that many
+        let digits = (1e-250..1e250).contains(&value.abs());
+        let part = if digits { OF_31_DIGITS } else { 1.0 };
+        let rounding = part * at_point[i].value.distance_from(value);
+        let within = |of: usize| slope(i, of).distance_from(slope(i, of).leading());
+        rounding + within(0) * reach[0] + within(1) * reach[1]
     };
-    matrix
-        .complex_eigenvalues()
-        .iter()
-        .map(|&start| polished(start, polynomial))
-        .collect()
-}
-
-/// Newton's method for a zero that is nearly known; stops where the residual no longer falls.
-fn polished(
-    start: Complex<f64>,
-    g: impl Fn(Complex<f64>) -> (Complex<f64>, Complex<f64>),
-) -> Complex<f64> {
-    let mut s = start;
-    let (mut value, mut slope) = g(s);
-    for _ in 0..POLISH {
-        let next = s - value / slope;
-        let (at_next, slope_at_next) = g(next);
-        if at_next.norm().is_nan() || at_next.norm() >= value.norm() {
-            break;
-        }
-        (s, value, slope) = (next, at_next, slope_at_next);
-    }
-    s
-}
-
-fn verdict(stable_if_negative: Interval) -> Verdict {
-    match stable_if_negative.sign() {
-        Some(sign) if sign < 0.0 => Verdict::Stable,
-        Some(_) => Verdict::Unstable,
-        None => Verdict::Undecided,
+    Coefficients {
+        values: exact.to_vec(),
+        shifts,
+        rest: (0..COUNT).map(rest).collect(),
     }
 }
 
-/// One interface: stable where k > k_c  (16).
-fn oscillation_verdict(one: &Interface<Interval>, k: f64) -> Verdict {
-    verdict(one.s - one.compliance * k)
+/// All roots, largest real part first.
+fn sorted(equilibrium: &Equilibrium, known: &Coefficients) -> Vec<(Complex<f64>, f64)> {
+    let mut found = roots(&known.part(SECOND..COUNT));
+    if equilibrium.symmetry == Symmetry::Symmetric && equilibrium.slip_rate.len() == 2 {
+        found.extend(roots(&known.part(0..SECOND)));
+    }
+    found.sort_by(|(a, _), (b, _)| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
+    found
 }
 
-/// The symmetric state is stable exactly where k_c < 0, whatever the stiffness (27).
-fn symmetric_verdict(one: &Interface<Interval>, _k: f64) -> Verdict {
-    verdict(one.s)
+fn verdict(equilibrium: &Equilibrium, known: &Coefficients) -> Verdict {
+    let within = |i: usize| {
+        let value = known.values[i].to_f64();
+        Interval::around(value, known.error(i) + f64::EPSILON * value.abs())
+    };
+    let [q_0, _, p_0, p_1, p_2, p_3] = std::array::from_fn(within);
+    match (equilibrium.symmetry, equilibrium.slip_rate.len()) {
+        // one interface: stable where k > k_c  (16), p_0 being positive
+        (Symmetry::Symmetric, 1) => all_positive(&[p_1]),
+        // the symmetric state is stable exactly where k_c < 0, whatever the stiffness (27)
+        (Symmetry::Symmetric, _) => all_positive(&[q_0]),
+        // Routh-Hurwitz for (30)
+        (Symmetry::Asymmetric, _) => all_positive(&[p_2, p_0, p_2 * p_1 - p_3 * p_0]),
+    }
 }
 
-/// Routh-Hurwitz for (30).
-fn asymmetric_verdict(one: &Interface<Interval>, two: &Interface<Interval>, k: f64) -> Verdict {
-    let [c_2, c_1, c_0] = routh_hurwitz(one, two, Interval::constant(k));
-    let conditions = [c_2, c_0, c_2 * c_1 - c_0].map(Interval::sign);
-    if conditions.contains(&Some(-1.0)) {
+/// Stable where all of these are positive.
+fn all_positive(conditions: &[Interval]) -> Verdict {
+    let signs = || conditions.iter().map(|x| x.sign());
+    if signs().any(|sign| sign == Some(-1.0)) {
         Verdict::Unstable
-    } else if conditions.contains(&None) {
+    } else if signs().any(|sign| sign.is_none()) {
         Verdict::Undecided
     } else {
         Verdict::Stable

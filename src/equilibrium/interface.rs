@@ -1,6 +1,6 @@
 //! One interface's part of the linearised system, in the paper's letters: what (14), (26) and (30) are made of.
 
-use crate::friction::{Law, critical_stiffness};
+use crate::friction::Law;
 use crate::number::{Jet, Real};
 
 /// An interface that slides steadily.
@@ -17,27 +17,42 @@ pub(crate) struct Interface<T> {
 }
 
 impl<T: Real> Interface<T> {
-    /// At the slip rate v.
+    /// At the slip rate v. In logarithms of the strength h, F_psi = F_V v (ln h)' and s = -G_psi d ln s(tau_ss)/d ln V: nothing
+    /// overflows.
     pub fn at(law: &impl Law, v: T) -> Self {
-        let [rate, psi] = Jet::<T, 2>::variables([v, law.steady_state(v)]);
-        let [f_v, f_psi] = law.stress(rate, psi).gradient;
-        let [minus_g_v, minus_g_psi] = law.evolution(rate, psi).gradient;
+        let along = Jet {
+            value: v,
+            gradient: [v],
+        };
+        let steady = law.steady_state(along);
+        let psi = steady.value;
+        let strength = law.log_strength(Jet::<T, 1>::variable(psi, 0));
+        let steepness = strength.gradient[0];
+        let compliance = law.compliance(v, strength.value);
+        let [rate, state] = Jet::<T, 2>::variables([v, psi]);
+        let [minus_g_v, minus_g_psi] = law.evolution(rate, state).gradient;
         Interface {
-            compliance: T::constant(1.0) / f_v,
+            compliance,
             g_psi: -minus_g_psi,
-            s: critical_stiffness(law, v) / f_v,
-            a_s: -(f_psi * minus_g_v / (f_v * f_v)),
+            s: minus_g_psi * (steepness * steady.gradient[0] + 1.0),
+            a_s: -(v * steepness * minus_g_v * compliance),
         }
     }
 }
 
 /// [c_2, c_1, c_0] of the characteristic polynomial (30), written s^3 + c_2 s^2 + c_1 s + c_0.
 pub(crate) fn routh_hurwitz<T: Real>(one: &Interface<T>, two: &Interface<T>, k: T) -> [T; 3] {
+    weighted(one, two, T::constant(1.0), k)
+}
+
+/// The coefficients of s^2, s and 1 in m times (30) at the stiffness k/m, whose leading one is m: at a large K, with m = 1/K and
+/// k = 1, none overflows.
+pub(crate) fn weighted<T: Real>(one: &Interface<T>, two: &Interface<T>, m: T, k: T) -> [T; 3] {
     let s_3 = (one.compliance + two.compliance) * k;
     let (sum, product) = (one.s + two.s, one.s * two.s);
     [
-        s_3 - sum,
-        product - s_3 * sum + (one.a_s + two.a_s) * k,
+        s_3 - sum * m,
+        product * m - s_3 * sum + (one.a_s + two.a_s) * k,
         s_3 * product - (one.a_s * two.s + two.a_s * one.s) * k,
     ]
 }

@@ -1,13 +1,14 @@
 //! Where the asymmetric steady states are: one bracket of the slower rate for each solution of (20), and none overlooked.
 //!
-//! Two interfaces slide steadily at s < V_H/2 and V_H - s where phi(s) = tau_ss(V_H - s) - tau_ss(s) = 0 (21). The trivial
-//! zero s = V_H/2, the symmetric state, is divided out: Q(s) = phi(s) / (V_H - 2 s), with Q(V_H/2) = tau_ss'(V_H/2). The
-//! extrema of tau_ss cut (0, V_H/2) into pieces on which both stresses are monotonic. Where they fall and rise together phi is
+//! Two interfaces slide steadily at s < V_H/2 and V_H - s where tau_ss(V_H - s) = tau_ss(s)  (21). Stresses are compared by
+//! what they activate, ln s(tau_ss), which rises and falls with them and has a double for any parameters: the zeros are those of
+//! phi(s) = ln s(tau_ss(V_H - s)) - ln s(tau_ss(s)). The trivial one, s = V_H/2, the symmetric state, is divided out:
+//! Q(s) = phi(s) / (V_H - 2 s), whose sign at V_H/2 is that of tau_ss'(V_H/2). The extrema of tau_ss cut (0, V_H/2) into pieces on which both stresses are monotonic. Where they fall and rise together phi is
 //! monotonic and its signs at the ends decide; elsewhere its turning points, found by the sign of phi', cut further.
 //! All signs that decide a count are evaluated in interval arithmetic: what can't be told is said.
 
 use crate::error::Result;
-use crate::friction::{Law, steady_slope, steady_stress};
+use crate::friction::{Law, steady_log_activation, steady_log_slope};
 use crate::number::{Difference, Interval, Jet, Real, bracketed_root};
 
 /// Halvings of a piece towards each of its ends, in ln s, at which the sign of phi' is looked at: turning points gather
@@ -16,16 +17,17 @@ const GRADING: i32 = 40;
 /// Equal parts of a piece besides.
 const PARTS: i32 = 24;
 
-/// Q(s), the difference quotient of the steady stress at the two rates s and V_H - s.
+/// Q(s), the difference quotient of the logarithm of the steady activation at the two rates s and V_H - s.
 pub(crate) fn quotient<T: Real>(law: &impl Law, driving: f64, s: T) -> T {
     let fast = T::constant(driving) - s;
     let gap = T::constant(driving) - s * 2.0;
-    steady_stress(law, Difference::new(fast, s, gap)).gap / gap
+    steady_log_activation(law, Difference::new(fast, s, gap)).gap / gap
 }
 
-/// phi'(s) = -(tau_ss'(V_H - s) + tau_ss'(s)).
+/// phi'(s) s.
 fn phi_slope<T: Real>(law: &impl Law, driving: f64, s: T) -> T {
-    -(steady_slope(law, T::constant(driving) - s) + steady_slope(law, s))
+    let fast = T::constant(driving) - s;
+    -(steady_log_slope(law, fast) * (s / fast) + steady_log_slope(law, s))
 }
 
 /// A range of s with exactly one zero of Q.
@@ -39,6 +41,8 @@ pub(super) struct Bracket {
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Isolation {
     pub brackets: Vec<Bracket>,
+    /// Whether there is one more below all, whose slower rate is smaller than any double.
+    pub at_rest: bool,
     pub certain: bool,
 }
 
@@ -54,10 +58,13 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
     cuts.sort_by(f64::total_cmp);
     if cuts.is_empty() {
         // Both rates lie on one monotonic piece of tau_ss. The pitchfork itself needs a look: is V_H/2 certainly on one side?
-        let certain =
-            extrema.is_empty() || steady_slope(law, Interval::constant(half)).sign().is_some();
+        let certain = extrema.is_empty()
+            || steady_log_slope(law, Interval::constant(half))
+                .sign()
+                .is_some();
         return Ok(Isolation {
             brackets: Vec::new(),
+            at_rest: false,
             certain,
         });
     }
@@ -73,13 +80,15 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
     let sign = |s: f64| {
         let point = Interval::constant(s);
         if s == half {
-            steady_slope(law, point).sign()
+            steady_log_slope(law, point).sign()
         } else {
             quotient(law, driving, point).sign()
         }
     };
     let mut found = Isolation {
         brackets: Vec::new(),
+        // tau_ss rises from 0, so that phi falls from infinity
+        at_rest: sign(ends[0]) == Some(-1.0),
         certain: true,
     };
     let mut last: Option<(f64, f64)> = None;
@@ -98,22 +107,21 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
     Ok(found)
 }
 
-/// A rate so small that tau_ss there is below tau_ss(V_H) and nothing lies further down: the first piece rises from 0.
+/// A rate so small that tau_ss there is below tau_ss(V_H) and nothing lies further down: the first piece rises from 0. The
+/// smallest normal double where no rate is so small.
 fn below_all(law: &impl Law, driving: f64, first: f64) -> f64 {
     let mut s = 0.5 * first;
     while s > f64::MIN_POSITIVE && quotient(law, driving, Interval::constant(s)).sign() != Some(1.0)
     {
-        s *= 0.125;
+        s = (0.125 * s).max(f64::MIN_POSITIVE);
     }
     s
 }
 
 /// The zeros of phi' inside a piece.
 fn turning_points(law: &impl Law, driving: f64, low: f64, high: f64) -> Result<Vec<f64>> {
-    let (slow, fast) = (
-        steady_slope(law, (low * high).sqrt()),
-        steady_slope(law, driving - (low * high).sqrt()),
-    );
+    let middle = low.sqrt() * high.sqrt();
+    let [slow, fast] = [middle, driving - middle].map(|v| steady_log_slope(law, v));
     if slow * fast > 0.0 {
         return Ok(Vec::new());
     }

@@ -6,7 +6,7 @@
 use super::isolate::Bracket;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State};
-use crate::friction::{Law, steady_stress};
+use crate::friction::{Law, steady_log_activation};
 use crate::number::{Difference, Jet, Real};
 use crate::sundials::{Kinsol, KinsolSettings, Residual, Strategy};
 
@@ -18,7 +18,8 @@ const NEAR: f64 = 1e-9;
 /// Rounds of two Newton steps from there; one or two reach rounding, but at a fold each step only halves the error.
 const ROUNDS: usize = 30;
 
-/// V_slow + V_fast = V_H and tau_ss(V_slow) = tau_ss(V_fast)  (20), the second divided by ln V_fast - ln V_slow.
+/// V_slow + V_fast = V_H and tau_ss(V_slow) = tau_ss(V_fast)  (20), the second as logarithms of the activation, divided by
+/// ln V_fast - ln V_slow.
 #[derive(Debug)]
 struct Steady<'a, L> {
     law: &'a L,
@@ -30,7 +31,10 @@ impl<L: Law> Steady<'_, L> {
         let logarithms = Difference::new(fast, slow, fast - slow);
         let rates = logarithms.exp();
         let balance = (rates.first + rates.second) / self.driving - 1.0;
-        [balance, steady_stress(self.law, rates).gap / logarithms.gap]
+        [
+            balance,
+            steady_log_activation(self.law, rates).gap / logarithms.gap,
+        ]
     }
 }
 

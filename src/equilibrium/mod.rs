@@ -1,8 +1,8 @@
 //! Equilibria: all steady states at a driving velocity, by KINSOL and by a pure-Rust Newton method, with eigenvalues.
 //!
 //! The steady states depend on V_H alone (20); the stiffness enters their stability. Both solvers start from the same
-//! brackets (one for each solution, see `isolate`) and share nothing after: Newton follows one unknown, the slower rate,
-//! KINSOL the two logarithms of the rates.
+//! brackets (one for each solution, see `isolate`): Newton follows one unknown, the slower rate, KINSOL the two logarithms of the
+//! rates. What either finds is then carried to 31 digits, and bounded (see `refine`).
 
 mod eigenvalues;
 mod interface;
@@ -11,15 +11,23 @@ mod isolate;
 mod kinsol;
 mod newton;
 mod pitchfork;
+mod polynomial;
+mod refine;
 
-pub use eigenvalues::{Stability, Verdict, stability};
+pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
 pub(crate) use interface::{Interface, routh_hurwitz};
 pub(crate) use isolate::quotient;
 pub use pitchfork::Pitchfork;
+pub(crate) use refine::refined;
 
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, positive, steady_stress_within, with_law};
-use crate::number::{Interval, Jet, Uncertain, enclosing_radius};
+use crate::friction::{
+    AnyLaw, Law, positive, rounding, steady_log_activation, steady_slope, steady_stress,
+};
+use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain};
+
+/// A state with a larger residual, which is a relative error, is none.
+const VANISHING: f64 = 1e-9;
 
 /// Which solver finds the asymmetric steady states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,6 +48,22 @@ pub enum Symmetry {
     Asymmetric,
 }
 
+impl Symmetry {
+    /// In a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Symmetry::Symmetric => "symmetric",
+            Symmetry::Asymmetric => "asymmetric",
+        }
+    }
+
+    /// The one of that name.
+    pub fn named(name: &str) -> Option<Self> {
+        let both = [Symmetry::Symmetric, Symmetry::Asymmetric];
+        both.into_iter().find(|symmetry| symmetry.name() == name)
+    }
+}
+
 /// A steady state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Equilibrium {
@@ -51,30 +75,68 @@ pub struct Equilibrium {
     pub slip_rate: Vec<f64>,
     /// ln psi of each interface.
     pub log_state: Vec<f64>,
+    /// V_H.
+    pub(crate) driving: f64,
+    /// The slip rates in 31 digits.
+    pub(crate) precise: Vec<DoubleDouble>,
     /// The true slip rates.
     pub(crate) rate_bounds: Vec<Interval>,
+    /// The true slower rate lies within this distance.
+    pub(crate) radius: f64,
+    /// The true psi and ln psi lie within these distances.
+    state_uncertainty: Vec<[f64; 2]>,
 }
 
 impl Equilibrium {
     /// The state in which one or two interfaces slide alike at V_H.
-    pub(crate) fn symmetric(law: &impl Law, driving: f64, interfaces: usize) -> Self {
-        let each = driving / interfaces as f64;
-        Self::at(law, Symmetry::Symmetric, &vec![(each, 0.0); interfaces])
+    pub(crate) fn symmetric(law: &AnyLaw, driving: f64, interfaces: usize) -> Self {
+        let each = DoubleDouble::from(driving) / interfaces as f64;
+        let radius = each.to_f64() * f64::EPSILON;
+        let rates = vec![(each, radius); interfaces];
+        Self::at(law, driving, Symmetry::Symmetric, &rates)
     }
 
-    /// The asymmetric state at V_H with this slower rate, enclosed: without bounds where it can't be, as at the fold V_sn.
-    pub(crate) fn asymmetric(law: &impl Law, driving: f64, slow: f64) -> Self {
+    /// The asymmetric state at V_H with about this slower rate: without bounds where it can't be enclosed, as at the fold V_sn.
+    pub(crate) fn asymmetric(law: &AnyLaw, driving: f64, slow: f64) -> Self {
+        if slow < f64::MIN_POSITIVE {
+            return Self::at_rest(law, driving);
+        }
+        let precise = refined(law, driving, DoubleDouble::from(slow));
+        let slow = if precise.is_finite() {
+            precise
+        } else {
+            DoubleDouble::from(slow)
+        };
+        // The error budget belongs to the number, not to the solver: signs on both sides of it.
+        let radius = refine::radius(law, driving, slow.to_f64());
+        Self::pair(law, driving, slow, radius)
+    }
+
+    /// The asymmetric state whose slower rate is positive, but smaller than any double.
+    fn at_rest(law: &AnyLaw, driving: f64) -> Self {
+        Self::pair(law, driving, DoubleDouble::ZERO, f64::MIN_POSITIVE)
+    }
+
+    fn pair(law: &AnyLaw, driving: f64, slow: DoubleDouble, radius: f64) -> Self {
         // of the two, the faster rate is the one that V_H - V does not rob of digits
-        let fast = driving - slow;
-        // The error budget belongs to the number, not to the solver: signs on both sides of it, in intervals.
-        let radius = enclosing_radius(slow, |s| quotient(law, driving, s));
-        let rates = [(slow, radius), (fast, radius + fast * f64::EPSILON)];
-        Self::at(law, Symmetry::Asymmetric, &rates)
+        let fast = DoubleDouble::from(driving) - slow;
+        let rates = [(slow, radius), (fast, radius + driving * f64::EPSILON)];
+        Self::at(law, driving, Symmetry::Asymmetric, &rates)
     }
 
     /// psi of each interface.
     pub fn state(&self) -> Vec<f64> {
         self.log_state.iter().map(|w| w.exp()).collect()
+    }
+
+    /// The true psi of each interface lies within this distance, for the law's parameters and V_H as doubles and as decimals.
+    pub fn state_uncertainty(&self) -> Vec<f64> {
+        self.state_uncertainty.iter().map(|both| both[0]).collect()
+    }
+
+    /// The true ln psi of each interface lies within this distance.
+    pub fn log_state_uncertainty(&self) -> Vec<f64> {
+        self.state_uncertainty.iter().map(|both| both[1]).collect()
     }
 
     /// The true slip rate of each interface lies within this distance.
@@ -89,12 +151,15 @@ impl Equilibrium {
     /// The largest residual of (19): of the balance of the rates, relative to V_H, and of each evolution, relative to the rate
     /// G_psi at which its state is renewed. Both then are relative errors, of a rate and of a state.
     pub fn residual(&self, law: &impl Law, driving: f64) -> f64 {
-        let s = law.activation(self.stress.value);
-        let rates: Vec<f64> = self
-            .state()
-            .iter()
-            .map(|&psi| law.slip_rate(s, psi))
-            .collect();
+        // v = s(tau) / h(psi), neither of which need have a double
+        let activation = if self.stress.value.is_normal() {
+            law.log_activation(self.stress.value)
+        } else {
+            let fast = self.slip_rate[self.slip_rate.len() - 1];
+            steady_log_activation(law, fast)
+        };
+        let rate = |psi: f64| (activation - law.log_strength(psi)).exp();
+        let rates: Vec<f64> = self.state().into_iter().map(rate).collect();
         let balance = (driving - rates.iter().sum::<f64>()).abs() / driving;
         let evolutions = rates.iter().zip(self.state()).map(|(&v, psi)| {
             let held = Jet {
@@ -104,22 +169,76 @@ impl Equilibrium {
             let rate = law.evolution(held, Jet::variable(psi, 0));
             (rate.value / (rate.gradient[0] * psi)).abs()
         });
-        evolutions.fold(balance, f64::max)
+        // of what has no value nothing vanishes
+        let known = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+        evolutions.map(known).fold(known(balance), f64::max)
     }
 
-    fn at(law: &impl Law, symmetry: Symmetry, rates: &[(f64, f64)]) -> Self {
-        let (slow, radius) = rates[0];
+    fn at(law: &AnyLaw, driving: f64, symmetry: Symmetry, rates: &[(DoubleDouble, f64)]) -> Self {
+        let bounds = |&(v, r): &(DoubleDouble, f64)| {
+            let around = Interval::around(v.to_f64(), r);
+            Interval::new(around.lo().max(0.0), around.hi())
+        };
+        let rate_bounds: Vec<_> = rates.iter().map(bounds).collect();
+        let stresses = rates.iter().zip(&rate_bounds);
+        let stress = stresses
+            .map(|(&(v, radius), &within)| stress(law, v, radius, within))
+            .min_by(|a, b| a.uncertainty.total_cmp(&b.uncertainty));
+        let states = rates.iter().zip(&rate_bounds);
+        let states: Vec<_> = states
+            .map(|(&(v, _), &within)| state(law, v, within))
+            .collect();
         Equilibrium {
             symmetry,
-            stress: steady_stress_within(law, slow, radius),
-            slip_rate: rates.iter().map(|&(v, _)| v).collect(),
-            log_state: rates
-                .iter()
-                .map(|&(v, _)| law.steady_state(v).ln())
-                .collect(),
-            rate_bounds: rates.iter().map(|&(v, r)| Interval::around(v, r)).collect(),
+            stress: stress.unwrap_or(Uncertain::new(f64::INFINITY, f64::INFINITY)),
+            slip_rate: rates.iter().map(|(v, _)| v.to_f64()).collect(),
+            log_state: states.iter().map(|(w, _)| *w).collect(),
+            driving,
+            precise: rates.iter().map(|(v, _)| *v).collect(),
+            rate_bounds,
+            radius: rates[0].1,
+            state_uncertainty: states.iter().map(|(_, both)| *both).collect(),
         }
     }
+}
+
+/// The part of the width of intervals, which is that of rounding in 16 digits, that the same operations err by in 31: 1e-15, and a
+/// factor of a thousand.
+const OF_31_DIGITS: f64 = 1e-12;
+
+/// tau_ss at a rate known within bounds.
+fn stress(law: &AnyLaw, v: DoubleDouble, radius: f64, within: Interval) -> Uncertain {
+    let rate = v.to_f64();
+    let value = steady_stress(law, v).to_f64();
+    let bounds = steady_stress(law, Interval::constant(rate));
+    let slope = steady_slope(law, within).abs();
+    let spread = (slope * radius).hi();
+    // in 31 digits nothing but the last one is lost, unless the numbers are too small or too large for these
+    let ordinary = (1e-200..1e200).contains(&value) && (1e-200..1e200).contains(&rate);
+    let (value, rounded) = if ordinary {
+        let lost = OF_31_DIGITS * bounds.distance_from(value);
+        (value, 0.5 * f64::EPSILON * value + lost)
+    } else {
+        let value = steady_stress(law, rate);
+        (value, bounds.distance_from(value))
+    };
+    let inputs = rounding(law, |law| Some(steady_stress(law, rate)));
+    Uncertain::new(value, (rounded + spread + inputs).next_up())
+}
+
+/// ln psi_ss at a rate known within bounds, with what psi_ss and it may be off.
+fn state(law: &AnyLaw, v: DoubleDouble, within: Interval) -> (f64, [f64; 2]) {
+    let log = law.steady_state(v).ln().to_f64();
+    let rate = v.to_f64();
+    let bounds = law.steady_state(within);
+    let known = |x: f64| if x.is_nan() { f64::INFINITY } else { x };
+    let of_state = rounding(law, |law| Some(law.steady_state(rate)));
+    let of_log = rounding(law, |law| Some(law.steady_state(rate).ln()));
+    let both = [
+        bounds.distance_from(log.exp()) + of_state,
+        bounds.ln().distance_from(log) + of_log,
+    ];
+    (log, both.map(known))
 }
 
 /// All steady states at one driving velocity.
@@ -155,10 +274,6 @@ pub fn steady_states(
     if !(1..=2).contains(&interfaces) {
         return Err(crate::Error::parameter("interfaces", interfaces, "1 or 2"));
     }
-    with_law!(law, law => of_law(law, driving, interfaces, solver))
-}
-
-fn of_law(law: &impl Law, driving: f64, interfaces: usize, solver: Solver) -> Result<SteadyStates> {
     let symmetric = Equilibrium::symmetric(law, driving, interfaces);
     let mut found = SteadyStates {
         equilibria: vec![symmetric],
@@ -172,10 +287,17 @@ fn of_law(law: &impl Law, driving: f64, interfaces: usize, solver: Solver) -> Re
             Solver::Kinsol => kinsol::solve(law, driving, &isolation.brackets)?,
             Solver::Newton => newton::solve(law, driving, &isolation.brackets)?,
         };
-        for slow in slower_rates {
-            found
-                .equilibria
-                .push(Equilibrium::asymmetric(law, driving, slow));
+        let asymmetric = |slow| Equilibrium::asymmetric(law, driving, slow);
+        let mut states: Vec<_> = slower_rates.into_iter().map(asymmetric).collect();
+        if isolation.at_rest {
+            states.push(Equilibrium::at_rest(law, driving));
+        }
+        for state in states {
+            if state.residual(law, driving) <= VANISHING {
+                found.equilibria.push(state);
+            } else {
+                found.complete = false;
+            }
         }
     }
     found

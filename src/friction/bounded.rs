@@ -46,6 +46,18 @@ impl Law for Bounded {
         self.as_limit().slip_rate(activation, psi)
     }
 
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        self.as_limit().log_strength(psi)
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        self.as_limit().log_activation(tau)
+    }
+
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        self.as_limit().compliance(v, log_strength)
+    }
+
     // tau = asinh{(v/2) exp[(a_v + b ln(psi/psi_*))/a]}  (6)
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
         self.as_limit().stress(v, psi)

@@ -32,6 +32,19 @@ impl Law for DieterichRuina {
         activation * psi.powf(-self.beta)
     }
 
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        psi.ln() * self.beta
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        tau + (0.5 * self.gamma0).ln()
+    }
+
+    // F_V = 1/v
+    fn compliance<T: Real>(&self, v: T, _: T) -> T {
+        v
+    }
+
     // tau = a_v/a + ln v + beta ln psi  (4)
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
         v.ln() + psi.ln() * self.beta - T::constant(0.5 * self.gamma0).ln()

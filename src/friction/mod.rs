@@ -8,7 +8,9 @@
 
 mod bounded;
 mod dieterich_ruina;
+mod direct;
 mod regularised;
+mod rounding;
 mod slip;
 mod spinodal;
 mod steady;
@@ -16,11 +18,12 @@ mod steady;
 pub use bounded::Bounded;
 pub use dieterich_ruina::DieterichRuina;
 pub use regularised::RegularisedAgeing;
+pub(crate) use rounding::{effects, rounding};
 pub use slip::Slip;
 pub use spinodal::Spinodal;
 pub use steady::{
     Extremum, ExtremumKind, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
-    steady_slope, steady_stress, steady_stress_within,
+    steady_log_activation, steady_log_slope, steady_slope, steady_stress, steady_stress_within,
 };
 
 use crate::error::{Error, Result};
@@ -50,6 +53,15 @@ pub trait Law: Copy + Debug + Send + Sync {
 
     /// v, from s(tau) and psi: the direct effect, solved for the slip rate.
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T;
+
+    /// ln h(psi), h being strength(psi): it has a double where h overflows.
+    fn log_strength<T: Real>(&self, psi: T) -> T;
+
+    /// ln s(tau) for tau > 0.
+    fn log_activation(&self, tau: f64) -> f64;
+
+    /// dv/dtau = 1/F_V at the slip rate v and this ln h.
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T;
 
     /// tau = F(v, psi): the direct effect as printed.
     fn stress<T: Real>(&self, v: T, psi: T) -> T;
@@ -234,13 +246,7 @@ impl AnyLaw {
             "regularised-ageing" => AnyLaw::RegularisedAgeing(parameters.regularised_ageing()),
             "dieterich-ruina" => AnyLaw::DieterichRuina(parameters.dieterich_ruina()),
             "slip" => AnyLaw::Slip(parameters.slip()),
-            _ => {
-                return Err(Error::parameter(
-                    "law",
-                    name,
-                    "one of spinodal, bounded, regularised-ageing, dieterich-ruina, slip",
-                ));
-            }
+            _ => return Err(Error::unknown("law", name, &AnyLaw::NAMES)),
         })
     }
 
@@ -266,6 +272,15 @@ impl Law for AnyLaw {
     }
     fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         with_law!(self, law => law.slip_rate(activation, psi))
+    }
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        with_law!(self, law => law.log_strength(psi))
+    }
+    fn log_activation(&self, tau: f64) -> f64 {
+        with_law!(self, law => law.log_activation(tau))
+    }
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        with_law!(self, law => law.compliance(v, log_strength))
     }
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
         with_law!(self, law => law.stress(v, psi))

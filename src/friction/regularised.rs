@@ -1,6 +1,6 @@
 //! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
 
-use super::Law;
+use super::{Law, direct};
 use crate::number::Real;
 
 /// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
@@ -29,9 +29,22 @@ impl Law for RegularisedAgeing {
         activation * psi.powf(-self.beta)
     }
 
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        psi.ln() * self.beta
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        direct::log_activation(tau, self.gamma0)
+    }
+
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        direct::compliance(v, log_strength, self.gamma0)
+    }
+
     // tau = asinh{(v/2) exp[(a_v + b ln psi)/a]}  (5)
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        (v * psi.powf(self.beta) / self.gamma0).asinh()
+        let log_h = || self.log_strength(psi);
+        direct::stress(v, psi.powf(self.beta), log_h, self.gamma0)
     }
 
     // dpsi/dt = 1 - |v| psi

@@ -40,6 +40,18 @@ impl Law for Slip {
         self.direct_effect().slip_rate(activation, psi)
     }
 
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        self.direct_effect().log_strength(psi)
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        self.direct_effect().log_activation(tau)
+    }
+
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        self.direct_effect().compliance(v, log_strength)
+    }
+
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
         self.direct_effect().stress(v, psi)
     }

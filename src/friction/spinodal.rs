@@ -1,7 +1,7 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::Law;
+use super::{Law, direct};
 use crate::number::Real;
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -45,9 +45,22 @@ impl Law for Spinodal {
         activation / self.strength(psi).powf(self.beta)
     }
 
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        self.strength(psi).ln() * self.beta
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        direct::log_activation(tau, self.gamma0)
+    }
+
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        direct::compliance(v, log_strength, self.gamma0)
+    }
+
     // tau = asinh{v [c + (1+R) psi]^beta / gamma0}  (35)
     fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        (v * self.strength(psi).powf(self.beta) / self.gamma0).asinh()
+        let log_h = || self.log_strength(psi);
+        direct::stress(v, self.strength(psi).powf(self.beta), log_h, self.gamma0)
     }
 
     // dpsi/dt = (1 - psi)/R - |v| psi  (35)
@@ -61,20 +74,19 @@ impl Law for Spinodal {
         T::constant(1.0) / (v * self.r + 1.0)
     }
 
-    // With X = 1 + R V the extrema of (36) solve c X^2 - (1+R)(beta-1) X + beta (1+R) = 0. Written in V no digit is lost:
-    // c R^2 V^2 - R [(1+R)(beta-1) - 2 c] V + (1 + R + c) = 0.
+    // With X = 1 + R V the extrema of (36) solve c X^2 - (1+R)(beta-1) X + beta (1+R) = 0. Written in y = R V no digit is lost,
+    // and with q = c/(1+R) nothing overflows: q y^2 - [(beta-1) - 2 q] y + (1 + q) = 0.
     fn steady_extrema(&self) -> Vec<f64> {
-        let (r, c) = (self.r, self.c);
-        let half = 0.5 * r * ((1.0 + r) * (self.beta - 1.0) - 2.0 * c);
-        let constant = 1.0 + r + c;
-        let discriminant = half * half - c * r * r * constant;
+        let q = self.c / (1.0 + self.r);
+        let half = 0.5 * (self.beta - 1.0) - q;
+        let discriminant = 1.0 - (q / half) * ((1.0 + q) / half);
         // Without a positive discriminant the stress rises throughout; a double root is an inflection, no extremum.
         if !(half > 0.0 && discriminant > 0.0) {
             return Vec::new();
         }
-        let sum = half + discriminant.sqrt();
-        let (v_peak, v_trough) = (constant / sum, sum / (c * r * r));
-        if c > 0.0 && v_trough.is_finite() {
+        let sum = half * (1.0 + discriminant.sqrt());
+        let (v_peak, v_trough) = ((1.0 + q) / sum / self.r, sum / q / self.r);
+        if v_trough.is_finite() {
             vec![v_peak, v_trough]
         } else {
             vec![v_peak]

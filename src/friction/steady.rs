@@ -9,32 +9,46 @@ pub fn steady_stress<T: Real>(law: &impl Law, v: T) -> T {
     law.stress(v, law.steady_state(v))
 }
 
-/// d tau_ss / dV.
+/// d tau_ss / dV = F_V d ln s(tau_ss)/d ln V: next to an extremum it has the digits of the latter, of whatever size F_V is.
 pub fn steady_slope<T: Real>(law: &impl Law, v: T) -> T {
-    steady_stress(law, Jet::<T, 1>::variable(v, 0)).gradient[0]
+    let log_strength = law.log_strength(law.steady_state(v));
+    steady_log_slope(law, v) / law.compliance(v, log_strength)
+}
+
+/// ln s(tau_ss(V)), the logarithm of the activation that steady sliding takes: it rises and falls as tau_ss does, and has a
+/// double where tau_ss or the strength has none.
+pub fn steady_log_activation<T: Real>(law: &impl Law, v: T) -> T {
+    v.ln() + law.log_strength(law.steady_state(v))
+}
+
+/// d ln s(tau_ss) / d ln V: positive where an interface strengthens with its slip rate, negative where it weakens.
+pub fn steady_log_slope<T: Real>(law: &impl Law, v: T) -> T {
+    let along = Jet {
+        value: v,
+        gradient: [v],
+    };
+    law.log_strength(law.steady_state(along)).gradient[0] + 1.0
 }
 
 /// tau_ss at a rate known within `radius`, with its error budget: rounding at the point, and the largest slope nearby.
 pub fn steady_stress_within(law: &impl Law, v: f64, radius: f64) -> Uncertain {
     let stress = steady_stress(law, v);
     let rounding = steady_stress(law, Interval::constant(v)).distance_from(stress);
-    let spread = if radius == 0.0 {
-        0.0
-    } else {
-        let slope = steady_slope(law, Interval::around(v, radius)).abs();
-        (slope * Interval::constant(radius)).hi()
-    };
-    Uncertain::new(stress, rounding + spread)
+    let slope = |x| steady_slope(law, x);
+    Uncertain::new(stress, rounding + spread(slope, v, radius))
+}
+
+/// How far a function of this slope goes within `radius` of v: infinite where that is not known.
+fn spread(slope: impl Fn(Interval) -> Interval, v: f64, radius: f64) -> f64 {
+    if radius == 0.0 || !radius.is_finite() {
+        return radius;
+    }
+    (slope(Interval::around(v, radius)).abs() * radius).hi()
 }
 
 /// k_c(V) = -G_psi d tau_ss/dV  (16): one interface driven at V slides steadily where it is stiffer than this.
 pub fn critical_stiffness<T: Real>(law: &impl Law, v: T) -> T {
-    let psi = Jet::<T, 1>::variable(law.steady_state(v), 0);
-    let held = Jet {
-        value: v,
-        gradient: [T::constant(0.0)],
-    };
-    law.evolution(held, psi).gradient[0] * steady_slope(law, v)
+    -(renewal_slope(law, v) * steady_log_slope(law, v))
 }
 
 /// Maximum (V_M) or minimum (V_m) of the steady stress.
@@ -64,7 +78,7 @@ impl Extremum {
             .into_iter()
             .enumerate()
             .map(|(i, v)| {
-                let radius = enclosing_radius(v, |x| steady_slope(law, x));
+                let radius = enclosing_radius(v, |x| steady_log_slope(law, x));
                 Extremum {
                     kind: if i % 2 == 0 {
                         ExtremumKind::Maximum
@@ -99,21 +113,48 @@ pub fn critical_stiffness_maximum(law: &impl Law) -> Result<Option<StiffnessMaxi
     let [v_peak, v_trough] = extrema[..] else {
         return Ok(None);
     };
-    // d k_c / d ln V, with its slope, along x = ln V
+    // along x = ln V
     let slope = |x: f64| {
-        let v = Jet::<Jet<f64, 1>, 1>::variable(Jet::variable(x, 0), 0).exp();
-        let rate = critical_stiffness(law, v).gradient[0];
+        let rate = stiffness_growth(law, Jet::<f64, 1>::variable(x, 0).exp());
         (rate.value, rate.gradient[0])
     };
     let v = bracketed_root("the maximum of k_c", v_peak.ln(), v_trough.ln(), slope)?.exp();
-    let rate =
-        |x: Interval| critical_stiffness(law, Jet::<Interval, 1>::variable(x, 0)).gradient[0];
-    let radius = enclosing_radius(v, rate);
+    let radius = enclosing_radius(v, |x| stiffness_growth(law, x));
+    let rate = |x: Interval| stiffness_growth(law, x) * renewal_slope(law, x) / x;
     let stiffness = critical_stiffness(law, v);
     let rounding = critical_stiffness(law, Interval::constant(v)).distance_from(stiffness);
-    let spread = (rate(Interval::around(v, radius)).abs() * Interval::constant(radius)).hi();
     Ok(Some(StiffnessMaximum {
         slip_rate: Uncertain::new(v, radius),
-        stiffness: Uncertain::new(stiffness, rounding + spread),
+        stiffness: Uncertain::new(stiffness, rounding + spread(rate, v, radius)),
     }))
+}
+
+/// G_psi F_V.
+fn renewal_slope<T: Real>(law: &impl Law, v: T) -> T {
+    let psi = law.steady_state(v);
+    let held = Jet {
+        value: v,
+        gradient: [T::constant(0.0)],
+    };
+    let renewal = -law.evolution(held, Jet::variable(psi, 0)).gradient[0];
+    renewal / law.compliance(v, law.log_strength(psi))
+}
+
+/// d k_c / d ln V over G_psi F_V > 0. As k_c = -G_psi F_V l, l = d ln s / d ln V of [`steady_log_slope`], that is
+/// -(l' + l (ln G_psi F_V)'). Of 1/F_V, the root of v^2 + (gamma0/h)^2, the logarithm has the derivative 1 - l (1 - (v F_V)^2):
+/// nothing overflows.
+fn stiffness_growth<T: Real>(law: &impl Law, v: T) -> T {
+    let along = Jet {
+        value: v,
+        gradient: [v],
+    };
+    let psi = law.steady_state(along);
+    let [rate, state] = Jet::<_, 2>::variables([along, psi]);
+    let renewal = -law.evolution(rate, state).gradient[1];
+    let compliance = law.compliance(v, law.log_strength(psi.value));
+    let slope = steady_log_slope(law, along);
+    let part = v / compliance;
+    let of_compliance = -(slope.value * (-(part * part) + 1.0)) + 1.0;
+    let of_renewal = renewal.gradient[0] / renewal.value;
+    -(slope.gradient[0] + slope.value * (of_renewal - of_compliance))
 }

@@ -48,10 +48,16 @@ impl Choice {
         taylor.chain(rosenbrock).chain(cvode).collect()
     }
 
+    /// The names of the methods of this build, `auto` first.
+    pub fn names() -> Vec<&'static str> {
+        let all = Choice::all().into_iter().map(Choice::name);
+        std::iter::once(Choice::Auto.name()).chain(all).collect()
+    }
+
     /// The method of that name.
     ///
     /// # Errors
-    /// [`Error::Input`] for a method that does not exist, or not in this build.
+    /// [`Error::Parameter`] for a method that does not exist, [`Error::Input`] for one that is not in this build.
     pub fn named(name: &str) -> Result<Self> {
         match name {
             "auto" => Ok(Choice::Auto),
@@ -62,16 +68,11 @@ impl Choice {
             "cvode-adams" => Ok(Choice::Cvode(sundials::Method::Adams)),
             _ if CVODE.contains(&name) => Err(Error::Input(format!(
                 "method {name} needs SUNDIALS, which this build is without; choose one of {}",
-                available()
+                Choice::names().join(", ")
             ))),
             _ => RosenbrockMethod::named(name)
                 .map(Choice::Rosenbrock)
-                .map_err(|_| {
-                    Error::Input(format!(
-                        "there is no method {name:?}; choose one of {}",
-                        available()
-                    ))
-                }),
+                .map_err(|_| Error::unknown("method", name, &Choice::names())),
         }
     }
 
@@ -143,13 +144,4 @@ impl Choice {
             }
         }
     }
-}
-
-/// The names of the methods in this build.
-pub fn available() -> String {
-    let names = Choice::all().into_iter().map(Choice::name);
-    std::iter::once("auto")
-        .chain(names)
-        .collect::<Vec<_>>()
-        .join(", ")
 }

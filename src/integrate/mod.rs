@@ -13,7 +13,7 @@ mod tableau;
 mod taylor;
 
 pub use auto::Auto;
-pub use choice::{Choice, HasSeries, available};
+pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
@@ -24,7 +24,7 @@ pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use crate::series::Expansion;
-pub use crate::series::{VECTORS, Vectors, allowed_vectors};
+pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::step_underflow;
 use std::ops::Deref;
 

@@ -39,7 +39,7 @@ pub fn bracketed_root(
     }
     // `below` keeps the side where g is negative.
     let (mut below, mut above) = if ga < 0.0 { (a, b) } else { (b, a) };
-    let mut x = 0.5 * a + 0.5 * b;
+    let mut x = middle(a, b);
     let mut last_step = (b - a).abs();
     let mut residual = f64::NAN;
     for _ in 0..MAX_ITERATIONS {
@@ -62,7 +62,7 @@ pub fn bracketed_root(
         let next = if newton == x || (inside && (newton - x).abs() < 0.5 * last_step) {
             newton
         } else {
-            0.5 * below + 0.5 * above
+            middle(below, above)
         };
         last_step = (next - x).abs();
         if last_step == 0.0 || next == below || next == above {
@@ -76,6 +76,17 @@ pub fn bracketed_root(
         residual: residual.abs(),
         tolerance: 0.0,
     })
+}
+
+/// Half-way between the ends of a bracket: by their logarithms where one is a million times the other.
+fn middle(a: f64, b: f64) -> f64 {
+    /// Beyond this ratio.
+    const FAR: f64 = 1e6;
+    if a * b.signum() > 0.0 && (a / b > FAR || b / a > FAR) {
+        (a.abs().sqrt() * b.abs().sqrt()).copysign(a)
+    } else {
+        0.5 * a + 0.5 * b
+    }
 }
 
 /// The smallest radius (by powers of two) within which g certainly changes sign around v > 0; infinite if there is none.

@@ -2,7 +2,7 @@
 
 use super::polygon::Polygon;
 use super::slab::Slab;
-use crate::equilibrium::{Equilibrium, Solver, Symmetry, stability, steady_states};
+use crate::equilibrium::{Equilibrium, Solver, Symmetry, eigenvalues, steady_states};
 use crate::error::Result;
 use crate::field::{State, VectorField};
 use crate::model::{Loading, Parameter};
@@ -45,7 +45,7 @@ fn spectrum(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, Vec<
     let Some(equilibrium) = wanted else {
         return Ok(None);
     };
-    let eigenvalues = stability(&slab.law, &equilibrium, slab.loading.stiffness)?.eigenvalues;
+    let eigenvalues = eigenvalues(&slab.law, &equilibrium, slab.loading.stiffness)?;
     Ok(Some((equilibrium, eigenvalues)))
 }
 
@@ -73,7 +73,7 @@ fn frequency(eigenvalues: &[C]) -> Option<f64> {
 /// own first.
 ///
 /// # Errors
-/// Those of [`steady_states`] and [`stability`].
+/// Those of [`steady_states`] and [`eigenvalues`].
 pub fn hopf_points(slab: &Slab, symmetry: Symmetry, along: Parameter) -> Result<Vec<HopfPoint>> {
     let there = |log: f64| match along {
         Parameter::Driving => slab.driven_at(log.exp()),

@@ -7,11 +7,13 @@ pub mod page;
 pub mod parquet;
 mod place;
 pub mod plot;
+mod rowfile;
 mod table;
 
-pub use csv::{CsvRows, EarlierRows, cells_of};
+pub use csv::{CsvRows, Head, ROW_CHECK, checked_cells, checked_line, damage, head, whole_line};
 pub use json::{Envelope, Rows, object, uncertain};
-pub use place::{Place, write_whole, write_whole_by};
+pub use place::{Place, remove_temporary, write_whole, write_whole_by};
+pub use rowfile::{OURS, Over, RowFile, Status};
 pub use table::{TableRows, number as seven_digits};
 
 use crate::error::{Error, Result};
@@ -29,27 +31,39 @@ pub enum Format {
 }
 
 impl Format {
-    /// The format of that name; without one, by the file's extension; without a file, a table on a terminal, else CSV.
+    /// What `--format` takes.
+    pub const NAMES: [&'static str; 3] = ["table", "csv", "json"];
+
+    /// The format of that name; without one, by the ending of the file's name (`.json`; `.csv`, `.txt`, `.dat` or none); without
+    /// a file, a table on a terminal, else CSV.
     ///
     /// # Errors
-    /// [`Error::Parameter`] for a name that is none.
+    /// [`Error::Parameter`] for a name that is none, [`Error::Input`] for an ending that is that of another format.
     pub fn choose(name: Option<&str>, file: Option<&Path>, terminal: bool) -> Result<Self> {
         match name {
             Some("table") => return Ok(Format::Table),
             Some("csv") => return Ok(Format::Csv),
             Some("json") => return Ok(Format::Json),
-            Some(other) => {
-                return Err(Error::parameter("format", other, "one of table, csv, json"));
-            }
+            Some(other) => return Err(Error::unknown("format", other, &Format::NAMES)),
             None => {}
         }
-        let extension = file.and_then(Path::extension).and_then(|e| e.to_str());
-        Ok(match extension {
-            Some("json") => Format::Json,
-            Some(_) => Format::Csv,
-            None if file.is_none() && terminal => Format::Table,
-            None => Format::Csv,
-        })
+        let Some(file) = file else {
+            return Ok(if terminal { Format::Table } else { Format::Csv });
+        };
+        let ending = file.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
+            Some("json") => Ok(Format::Json),
+            None | Some("csv" | "txt" | "dat") => Ok(Format::Csv),
+            Some(other) => Err(Error::Input(format!(
+                "--output {}: data is written as .csv or .json, not as .{other}; choose such a name, or say --format{}",
+                file.display(),
+                match other {
+                    "svg" | "png" => "; pictures are drawn by --plot",
+                    "parquet" => "; Parquet is written by sweep alone",
+                    _ => "",
+                }
+            ))),
+        }
     }
 }
 

@@ -4,6 +4,7 @@ use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// Standard output, or a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -74,21 +75,6 @@ impl Place {
         }
     }
 
-    /// A writer of rows after those that are there.
-    ///
-    /// # Errors
-    /// [`Error::File`] if the file can't be opened.
-    pub fn append(&self) -> Result<Box<dyn Write>> {
-        match self {
-            Place::Standard => Ok(Box::new(io::stdout().lock())),
-            Place::File(path) => OpenOptions::new()
-                .append(true)
-                .open(path)
-                .map(|file| Box::new(file) as Box<dyn Write>)
-                .map_err(|error| wrong(path, error)),
-        }
-    }
-
     /// Writes it all at once; a file appears complete or not at all.
     ///
     /// # Errors
@@ -131,17 +117,35 @@ pub fn write_whole_by<E>(
         return into(path);
     }
     let temporary = beside(path);
+    list(|all| all.push(temporary.clone()));
     let written = into(&temporary);
     let written = written.and_then(|()| fs::rename(&temporary, path).map_err(&system));
     if written.is_err() {
         // What is left of it is of no use; that it may not exist at all is no second error.
         let _ = fs::remove_file(&temporary);
     }
+    list(|all| all.retain(|one| *one != temporary));
     written
 }
 
+/// The files that are being written beside those whose place they will take.
+static TEMPORARY: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn list(change: impl FnOnce(&mut Vec<PathBuf>)) {
+    change(&mut TEMPORARY.lock().unwrap_or_else(PoisonError::into_inner));
+}
+
+/// Removes what is not complete, before the process ends.
+pub fn remove_temporary() {
+    list(|all| {
+        for path in all.drain(..) {
+            let _ = fs::remove_file(path);
+        }
+    });
+}
+
 /// A device or a pipe, such as /dev/null, must not be replaced by a file.
-fn special(path: &Path) -> bool {
+pub(super) fn special(path: &Path) -> bool {
     fs::metadata(path).is_ok_and(|data| !data.is_file() && !data.is_dir())
 }
 

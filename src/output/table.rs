@@ -7,11 +7,16 @@ use std::io::{Result, Write};
 const WIDTH: usize = 14;
 /// Digits after the point.
 const DIGITS: usize = 6;
+/// What stands between two columns.
+const GAP: &str = "  ";
 
 /// Writes rows as a table.
 pub struct TableRows<W: Write> {
     to: W,
     widths: Vec<usize>,
+    /// Whether each column is shown.
+    shown: Vec<bool>,
+    hidden: Vec<String>,
 }
 
 impl<W: Write> TableRows<W> {
@@ -19,12 +24,29 @@ impl<W: Write> TableRows<W> {
     ///
     /// # Errors
     /// Those of the file or pipe.
-    pub fn new(mut to: W, columns: &[String], units: &[String]) -> Result<Self> {
+    pub fn new(to: W, columns: &[String], units: &[String]) -> Result<Self> {
+        Self::within(usize::MAX, to, columns, units)
+    }
+
+    /// The same in lines of so many characters. Columns without room are left out: those before the last one, which is what a
+    /// row comes to.
+    ///
+    /// # Errors
+    /// Those of the file or pipe.
+    pub fn within(width: usize, to: W, columns: &[String], units: &[String]) -> Result<Self> {
         let widths: Vec<usize> = columns
             .iter()
             .map(|name| name.chars().count().max(WIDTH))
             .collect();
-        line(&mut to, columns.iter().map(String::as_str), &widths)?;
+        let shown = fitting(&widths, width);
+        let hidden = columns.iter().zip(&shown).filter(|(_, shown)| !**shown);
+        let mut table = TableRows {
+            to,
+            hidden: hidden.map(|(name, _)| name.clone()).collect(),
+            widths,
+            shown,
+        };
+        table.line(columns.iter().map(String::as_str))?;
         let units: Vec<String> = units
             .iter()
             .map(|unit| match unit.as_str() {
@@ -33,33 +55,54 @@ impl<W: Write> TableRows<W> {
             })
             .collect();
         if units.iter().any(|unit| !unit.is_empty()) {
-            line(&mut to, units.iter().map(String::as_str), &widths)?;
+            table.line(units.iter().map(String::as_str))?;
         }
-        Ok(TableRows { to, widths })
+        Ok(table)
+    }
+
+    /// The columns for which there is no room.
+    pub fn hidden(&self) -> &[String] {
+        &self.hidden
+    }
+
+    fn line<'a>(&mut self, texts: impl Iterator<Item = &'a str>) -> Result<()> {
+        let mut line = String::new();
+        let columns = texts.zip(&self.widths).zip(&self.shown);
+        for ((text, &width), _) in columns.filter(|(_, shown)| **shown) {
+            if !line.is_empty() {
+                line.push_str(GAP);
+            }
+            line.push_str(&format!("{text:>width$}"));
+        }
+        writeln!(self.to, "{}", line.trim_end())?;
+        self.to.flush()
     }
 }
 
 impl<W: Write> RowWriter for TableRows<W> {
     fn row(&mut self, cells: &[Cell]) -> Result<()> {
         let texts: Vec<String> = cells.iter().map(text).collect();
-        line(&mut self.to, texts.iter().map(String::as_str), &self.widths)
+        self.line(texts.iter().map(String::as_str))
     }
 }
 
-fn line<'a>(
-    to: &mut impl Write,
-    texts: impl Iterator<Item = &'a str>,
-    widths: &[usize],
-) -> Result<()> {
-    let mut line = String::new();
-    for (text, &width) in texts.zip(widths) {
-        if !line.is_empty() {
-            line.push_str("  ");
+/// Which columns fit: the first and the last one always, then the others from the left.
+fn fitting(widths: &[usize], room: usize) -> Vec<bool> {
+    let mut shown = vec![false; widths.len()];
+    let ends = [0, widths.len().saturating_sub(1)];
+    let mut used = 0;
+    for i in ends.into_iter().chain(0..widths.len()) {
+        if i >= widths.len() || shown[i] {
+            continue;
         }
-        line.push_str(&format!("{text:>width$}"));
+        let gap = if used == 0 { 0 } else { GAP.len() };
+        if !ends.contains(&i) && used + gap + widths[i] > room {
+            break;
+        }
+        used += gap + widths[i];
+        shown[i] = true;
     }
-    writeln!(to, "{}", line.trim_end())?;
-    to.flush()
+    shown
 }
 
 fn text(cell: &Cell) -> String {

@@ -12,7 +12,7 @@ mod run;
 pub mod scorecard;
 mod sheet;
 
-pub use pieces::{Branches, Curves, Map, Pieces, Run, SCENES};
+pub use pieces::{Branches, Curves, Map, Pieces, Run};
 pub use product::{Made, Make, PRODUCTS, Product};
 pub use record::{Entry, Record, Written, hash};
 pub use run::{Done, Order, Told, reproduce};

@@ -7,58 +7,13 @@ use crate::integrate::Control;
 use crate::output::Rows;
 use crate::scene::{
     BranchPlan, Column, Command, LocusPlan, Outcome, Plan, Sampling, SceneFile, SectionColumn,
-    SectionOutcome, SectionPlan, Sink, run, run_section,
+    SectionOutcome, SectionPlan, Sink, run, run_section, shipped, shipped_names,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::{Duration, Instant};
-
-macro_rules! scenes {
-    ($($name:literal),+ $(,)?) => {
-        /// The scene files that are shipped, by name, with their texts.
-        pub const SCENES: &[(&str, &str)] = &[$(
-            ($name, include_str!(concat!("../../scenes/", $name, ".toml"))),
-        )+];
-    };
-}
-
-scenes![
-    "fig03a",
-    "fig03b",
-    "fig05",
-    "fig06",
-    "fig06-folds",
-    "fig06-orbit-folds",
-    "fig06-orbit-pitchforks",
-    "fig06-pitchforks",
-    "fig07",
-    "fig07-equilibria",
-    "fig08a",
-    "fig08a-map",
-    "fig08b",
-    "fig08b-map",
-    "fig09",
-    "fig09-equilibria",
-    "fig10a",
-    "fig10b",
-    "fig11",
-    "fig12",
-    "fig12-period-doubling",
-    "fig13",
-    "fig13-map",
-    "fig16a",
-    "fig16a-map",
-    "fig16b",
-    "fig16b-map",
-];
-
-/// The text of a scene that is shipped.
-pub fn scene_text(name: &str) -> Option<&'static str> {
-    let found = SCENES.iter().find(|(scene, _)| *scene == name);
-    found.map(|(_, text)| *text)
-}
 
 /// A run in time, with its points as they are drawn.
 #[derive(Debug)]
@@ -125,7 +80,9 @@ pub struct Pieces<'a> {
 impl<'a> Pieces<'a> {
     /// None yet. Once `stop` is set, what is being computed ends with [`Error::Interrupted`].
     pub fn new(stop: &'a AtomicBool) -> Self {
-        let cells = SCENES.iter().map(|&(name, _)| (name, OnceLock::new()));
+        let cells = shipped_names()
+            .into_iter()
+            .map(|name| (name, OnceLock::new()));
         Pieces {
             cells: cells.collect(),
             stop,
@@ -207,7 +164,7 @@ impl<'a> Pieces<'a> {
 
     fn made(&self, name: &str) -> Result<Piece> {
         self.going_on()?;
-        let text = scene_text(name).ok_or_else(|| not(name, "shipped"))?;
+        let text = shipped(name).ok_or_else(|| not(name, "shipped"))?;
         let file = SceneFile::parse(&format!("{name}.toml"), text, &Command::program())?;
         match Command::of_scene(&file, &[], &[])? {
             Command::Integrate(options) => self.run_of(Plan::new(&options)?),

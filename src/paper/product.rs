@@ -73,17 +73,18 @@ impl Product {
     /// The product of that name; figures may be called by their number alone, as 7, fig7 or fig07.
     ///
     /// # Errors
-    /// [`Error::Input`] with the names that there are.
+    /// [`Error::Parameter`] with the names that there are.
     pub fn named(name: &str) -> Result<&'static Product> {
-        let number = name.strip_prefix("fig").unwrap_or(name).parse::<u8>();
+        let plain = name.to_lowercase();
+        let digits = plain
+            .trim_start_matches("fig")
+            .trim_start_matches(['.', ' ']);
+        let number = digits.parse::<u8>();
         let id = number.map_or_else(|_| name.to_owned(), |n| format!("fig{n:02}"));
         let found = PRODUCTS.iter().find(|product| product.id == id);
         found.copied().ok_or_else(|| {
             let ids: Vec<&str> = PRODUCTS.iter().map(|product| product.id).collect();
-            Error::Input(format!(
-                "there is no {name:?} to make; there are {}",
-                ids.join(", ")
-            ))
+            Error::unknown("figure", name, &ids)
         })
     }
 

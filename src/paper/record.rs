@@ -1,7 +1,7 @@
 //! What lies in the directory of an earlier run, and whether it still is what would be computed now.
 
-use super::pieces::scene_text;
 use super::product::Product;
+use crate::scene::shipped;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -101,7 +101,7 @@ pub fn key(product: &Product, program: &str) -> String {
     take(product.id);
     for scene in product.scenes {
         take(scene);
-        take(scene_text(scene).unwrap_or_default());
+        take(shipped(scene).unwrap_or_default());
     }
     hex(&hasher.finalize())
 }

@@ -1,11 +1,11 @@
 //! The report: one page of all that lies complete in the directory, made of the files themselves.
 
-use super::pieces::scene_text;
 use super::product::{Make, PRODUCTS, Product};
 use super::record::{Entry, Record};
 use crate::error::Result;
-use crate::output::EarlierRows;
+use crate::output::Head;
 use crate::output::page::{Figure, FileRow, Page, Score, Table};
+use crate::scene::shipped;
 use serde_json::Value;
 use std::path::Path;
 
@@ -115,7 +115,7 @@ fn manifest(record: &Record) -> Vec<(String, String)> {
 
 fn figure(dir: &Path, product: &Product, entry: &Entry) -> Figure {
     let scenes = product.scenes.iter().map(|scene| {
-        let text = scene_text(scene).unwrap_or_default();
+        let text = shipped(scene).unwrap_or_default();
         (format!("{scene}.toml"), text.to_owned())
     });
     let svg_file = format!("{}.svg", product.id);
@@ -135,9 +135,12 @@ fn figure(dir: &Path, product: &Product, entry: &Entry) -> Figure {
 
 fn table(dir: &Path, product: &Product) -> Table {
     let csv_file = format!("{}.csv", product.id);
-    let rows = EarlierRows::read(&text(dir, &csv_file));
+    let text = text(dir, &csv_file);
+    let mut rows = text.as_bytes();
+    let head = Head::read(&mut rows).unwrap_or_default();
     // The first column only names the part of the file.
-    let cells = |line: &String| {
+    let cells = |line: std::io::Result<String>| {
+        let line = line.unwrap_or_default();
         let cells = line.split(',').skip(1);
         cells.map(str::to_owned).collect::<Vec<String>>()
     };
@@ -145,13 +148,13 @@ fn table(dir: &Path, product: &Product) -> Table {
         id: product.id.into(),
         title: product.title.into(),
         caption: product.caption.into(),
-        columns: rows
+        columns: head
             .columns
             .iter()
             .skip(1)
             .map(|name| name.replace('_', " "))
             .collect(),
-        rows: rows.lines.iter().map(cells).collect(),
+        rows: std::io::BufRead::lines(rows).map(cells).collect(),
         csv_file,
     }
 }

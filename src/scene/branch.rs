@@ -4,7 +4,7 @@ use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits};
+use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits, within};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
@@ -21,15 +21,16 @@ pub enum Of {
 }
 
 impl Of {
+    /// What branches there are.
+    pub(super) const NAMES: [&'static str; 2] = ["equilibria", "orbits"];
+
     fn named(name: Option<&str>) -> Result<Self> {
         match name {
             Some("equilibria") => Ok(Of::Equilibria),
             Some("orbits") => Ok(Of::Orbits),
-            Some(other) => Err(Error::Input(format!(
-                "there are no branches of {other:?}; choose branch equilibria or branch orbits"
-            ))),
+            Some(other) => Err(Error::unknown("branch", other, &Of::NAMES)),
             None => Err(Error::Input(
-                "it is missing of what the branches are: branch equilibria or branch orbits".into(),
+                "say what to follow: twinslip branch equilibria, or twinslip branch orbits".into(),
             )),
         }
     }
@@ -54,6 +55,9 @@ pub struct Along {
 }
 
 impl Along {
+    /// What may vary.
+    pub(super) const NAMES: [&'static str; 2] = ["driving", "stiffness"];
+
     fn named(name: &str) -> Result<Self> {
         match name {
             "driving" => Ok(Along {
@@ -68,7 +72,7 @@ impl Along {
                 quantity: Quantity::Stiffness,
                 range: following::STIFFNESS,
             }),
-            other => Err(Error::parameter("along", other, "driving or stiffness")),
+            other => Err(Error::unknown("along", other, &Along::NAMES)),
         }
     }
 
@@ -156,6 +160,7 @@ impl BranchPlan {
             tolerance: following.tolerance,
             skip: Vec::new(),
             doublings: options.doublings,
+            max_points: following.max_points,
         };
         Ok(BranchPlan {
             of,
@@ -196,10 +201,10 @@ impl BranchPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        match self.of {
+        within(request.max_points, seen, |seen| match self.of {
             Of::Equilibria => equilibria::branch(&request, seen),
             Of::Orbits => orbits::branch(&request, seen),
-        }
+        })
     }
 }
 

@@ -72,7 +72,7 @@ impl Column {
     /// The columns of a comma-separated list of names.
     ///
     /// # Errors
-    /// [`Error::Input`] for a name that is none, with the nearest that is one.
+    /// [`Error::Parameter`] for a name that is none, with the nearest that is one.
     pub fn listed(names: &str, interfaces: usize) -> Result<Vec<Column>> {
         let all = Column::all(interfaces);
         names
@@ -82,11 +82,8 @@ impl Column {
                 let found = all.iter().copied().find(|column| column.name() == name);
                 found.ok_or_else(|| {
                     let known: Vec<String> = all.iter().map(Column::name).collect();
-                    Error::Input(format!(
-                        "there is no column {name:?}{}; the columns are {}",
-                        super::file::did_you_mean(name, known.iter().map(String::as_str)),
-                        known.join(", ")
-                    ))
+                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
+                    Error::unknown("columns", name, &known)
                 })
             })
             .collect()

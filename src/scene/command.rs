@@ -79,7 +79,10 @@ const INTEGRATE: &str =
   twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
 
 const EQUILIBRIA: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
-  twinslip equilibria --driving 1000 --stiffness 0.45";
+  twinslip equilibria --driving 1000 --stiffness 0.45
+
+CSV and JSON say how far each number may be off: stress_uncertainty (in JSON stress.uncertainty), state_uncertainty,
+log_state_uncertainty, slip_rate_uncertainty, and eigenvalue_uncertainty, a distance in the complex plane.";
 
 const ORBIT: &str = "Example, the three orbits that coexist at K = 0.05 and V_H = 0.2, the last one unstable:
   twinslip orbit --driving 0.2 --stiffness 0.05

@@ -1,6 +1,11 @@
 //! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
 
-use super::options::{ModelOptions, OutputOptions, number};
+use super::branch::{Along, Of};
+use super::following::SYMMETRIES;
+use super::locus::Curve;
+use super::options::{ModelOptions, Names, OutputOptions, count, number};
+use crate::bifurcation::MAX_POINTS;
+use crate::integrate::Choice;
 use std::path::PathBuf;
 
 #[cfg(feature = "sundials")]
@@ -15,20 +20,23 @@ pub struct ContinuationOptions {
     /// Factor on the limits of continuation steps: below 1 there are more points, above 1 fewer
     #[arg(long, value_name = "FACTOR", default_value = "1", value_parser = number, allow_negative_numbers = true)]
     pub step_limit: f64,
+    /// How many points there may be, of all branches or curves together; beyond is a failure, and the points are kept
+    #[arg(long, value_name = "N", default_value_t = MAX_POINTS)]
+    pub max_points: usize,
     /// Relative accuracy of special points, and of all points of a curve
     #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
     pub tolerance: f64,
-    /// Compute each special point of orbits once more with a second method and tell the difference [METHOD: cvode-bdf
+    /// Compute each special point of orbits once more with a second method and report the difference [METHOD: cvode-bdf
     /// unless given; rodas5p in a build without SUNDIALS]
-    #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD)]
+    #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD, value_parser = Names::of(Choice::names()), hide_possible_values = true)]
     pub crosscheck: Option<String>,
 }
 
 /// `branch`: equilibria or periodic orbits as a parameter varies.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct BranchOptions {
-    /// Of what the branches are; in a scene file the key `of`
-    #[arg(value_name = "equilibria|orbits")]
+    /// What is followed: equilibria or orbits; in a scene file the key `of`
+    #[arg(value_name = "equilibria|orbits", value_parser = Names::of(Of::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
     #[command(flatten)]
@@ -38,6 +46,8 @@ pub struct BranchOptions {
         long,
         value_name = "PARAMETER",
         default_value = "driving",
+        value_parser = Names::of(Along::NAMES),
+        hide_possible_values = true,
         help_heading = "Branch"
     )]
     pub along: String,
@@ -52,6 +62,8 @@ pub struct BranchOptions {
         long,
         value_name = "NAME",
         default_value = "both",
+        value_parser = Names::of(SYMMETRIES),
+        hide_possible_values = true,
         help_heading = "Branch"
     )]
     pub symmetry: String,
@@ -63,13 +75,13 @@ pub struct BranchOptions {
         help_heading = "Branch"
     )]
     pub at: Option<String>,
-    /// How often orbits may double their period: the branches of doubled orbits are followed too
-    #[arg(long, value_name = "N", default_value = "0", help_heading = "Branch")]
+    /// How many period doublings to follow: the branches of orbits with doubled period are computed too
+    #[arg(long, value_name = "N", value_parser = count, default_value = "0", help_heading = "Branch")]
     pub doublings: usize,
     /// How they are followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,
-    /// Go on with FILE, the CSV of an interrupted run of the same command: branches that are complete in it are kept
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete branches are kept
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
     /// Draw stress (and period) against the parameter, stable parts solid, as FILE.svg or FILE.png
@@ -83,11 +95,11 @@ pub struct BranchOptions {
 /// `locus`: a curve of bifurcations in the plane of V_H and K.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LocusOptions {
-    /// Of which bifurcation the curve is: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
+    /// The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
     /// period-doubling or torus of periodic orbits; in a scene file the key `of`
-    #[arg(value_name = "BIFURCATION")]
+    #[arg(value_name = "BIFURCATION", value_parser = Names::of(Curve::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
-    /// What slides; V_H and K vary both and are not given.
+    /// What slides; both V_H and K vary and are not given.
     #[command(flatten)]
     pub model: ModelOptions,
     /// symmetric (both interfaces alike), asymmetric or both, where there are both
@@ -95,21 +107,23 @@ pub struct LocusOptions {
         long,
         value_name = "NAME",
         default_value = "both",
+        value_parser = Names::of(SYMMETRIES),
+        hide_possible_values = true,
         help_heading = "Curve"
     )]
     pub symmetry: String,
-    /// V_H from A to B [default: 1e-3,1e6 V*]
+    /// V_H from A to B [default: 1e-3:1e6 V*]
     #[arg(
         long,
-        value_name = "A,B",
+        value_name = "A:B",
         allow_hyphen_values = true,
         help_heading = "Curve"
     )]
     pub driving_range: Option<String>,
-    /// K from A to B [default: 1e-3,1 a sigma/L]
+    /// K from A to B [default: 1e-3:1 a sigma/L]
     #[arg(
         long,
-        value_name = "A,B",
+        value_name = "A:B",
         allow_hyphen_values = true,
         help_heading = "Curve"
     )]
@@ -130,13 +144,13 @@ pub struct LocusOptions {
         help_heading = "Curve"
     )]
     pub at_stiffness: Option<String>,
-    /// Tell of every point to which side the bifurcating solutions lie
+    /// Say at every point whether the bifurcation is supercritical or subcritical
     #[arg(long, help_heading = "Curve")]
     pub criticality: bool,
     /// How it is followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,
-    /// Go on with FILE, the CSV of an interrupted run of the same command: curves that are complete in it are kept
+    /// Continue FILE, the CSV of an interrupted run of the same command: its complete curves are kept
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
     /// Draw the curves in the plane of V_H and K as FILE.svg or FILE.png

@@ -3,6 +3,7 @@
 use super::estimate::Companion;
 use super::plan::{Dimension, Plan, Sampling};
 use super::units::Quantity;
+use crate::error::count;
 use crate::integrate::HasSeries;
 use std::fmt::Write;
 
@@ -27,7 +28,9 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         "tolerances",
         format!(
             "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps",
-            plan.tolerances.rtol, plan.tolerances.atol, plan.max_steps
+            plan.tolerances.rtol,
+            plan.tolerances.atol,
+            count(plan.max_steps)
         ),
     );
     line(
@@ -139,7 +142,7 @@ fn trajectory(plan: &Plan, keeping: Keeping) -> String {
             return "off: only the end is asked for; steps are watched for slip alone".into();
         }
         Sampling::FinalOnly => {
-            return "off: only the end is asked for, nobody watches the steps".into();
+            return "off: only the end is asked for, no output needs the steps".into();
         }
         Sampling::EveryStep => "a row at every step".to_owned(),
         Sampling::Points(n) => format!("{n} rows equally spaced in time"),

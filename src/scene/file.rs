@@ -2,15 +2,17 @@
 //!
 //! Its keys are turned into the flags themselves, so a scene and a command line are read, checked and run by the same code.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, did_you_mean};
 use clap::{Arg, ArgAction, Command};
+use std::fs::File;
+use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-/// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
-const SIMILAR: f64 = 0.75;
+/// No scene is longer, in bytes.
+const LONGEST: u64 = 1 << 18;
 
 /// The key of the word after the command, as in `branch orbits`.
 const POSITIONAL: &str = "of";
@@ -34,11 +36,7 @@ impl SceneFile {
     /// # Errors
     /// [`Error::File`] if it can't be read; [`Error::Input`] with file, line and key for what is wrong in it.
     pub fn read(path: &Path, program: &Command) -> Result<Self> {
-        let text = std::fs::read_to_string(path).map_err(|error| Error::File {
-            action: "read",
-            path: path.to_owned(),
-            reason: error.to_string(),
-        })?;
+        let text = read_bounded(path, LONGEST)?;
         Self::parse(&path.display().to_string(), &text, program)
     }
 
@@ -50,7 +48,8 @@ impl SceneFile {
         let reader = Reader { name, text };
         let table = DeTable::parse(text).map_err(|error| {
             let place = error.span().unwrap_or(0..0);
-            reader.wrong(&place, error.message().replace('\n', ", "))
+            let message = error.message().replace('\n', ", ");
+            reader.wrong(&place, reader.unquoted(&place).unwrap_or(message))
         })?;
         let table = table.get_ref();
         let command = reader.command(table, program)?;
@@ -129,6 +128,19 @@ impl Reader<'_> {
 
     fn wrong(&self, span: &Range<usize>, what: impl std::fmt::Display) -> Error {
         Error::Input(format!("{}:{}: {what}", self.name, self.line(span)))
+    }
+
+    /// What is wrong on the line of `span` if a text there has no quotes, with the line as it should be.
+    fn unquoted(&self, span: &Range<usize>) -> Option<String> {
+        let line = self.text.lines().nth(self.line(span) - 1)?;
+        let (key, value) = line.split_once('=')?;
+        let (key, value) = (key.trim(), value.split('#').next()?.trim());
+        let bare = |c: char| c.is_alphanumeric() || "_-+:;,./=()* ".contains(c);
+        let begins = |c: char| c.is_alphabetic() || "./".contains(c);
+        let text = value.starts_with(begins) || value.contains(':');
+        let other = value.parse::<f64>().is_ok() || ["true", "false"].contains(&value);
+        (text && !other && value.chars().all(bare) && !key.is_empty())
+            .then(|| format!("a text needs quotes in a scene: {key} = {value:?}"))
     }
 
     fn command<'c>(&self, table: &DeTable<'_>, program: &'c Command) -> Result<&'c Command> {
@@ -227,6 +239,25 @@ fn scalar(value: &DeValue<'_>) -> Option<String> {
     }
 }
 
+/// The text of a file that is not longer than so many bytes; of a longer one no more is read.
+///
+/// # Errors
+/// [`Error::File`] if it can't be read, is no text or is longer.
+fn read_bounded(path: &Path, most: u64) -> Result<String> {
+    let wrong = |reason: String| Error::File {
+        action: "read",
+        path: path.to_owned(),
+        reason,
+    };
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes));
+    read.map_err(|error| wrong(error.to_string()))?;
+    if bytes.len() as u64 > most {
+        return Err(wrong(format!("it is longer than {most} bytes")));
+    }
+    String::from_utf8(bytes).map_err(|_| wrong("it is not UTF-8".into()))
+}
+
 /// Whether an option takes a number: its parser says what it makes.
 fn is_numeric(option: &Arg) -> bool {
     let made = option.get_value_parser().type_id();
@@ -234,18 +265,4 @@ fn is_numeric(option: &Arg) -> bool {
         || made == std::any::TypeId::of::<usize>()
         || made == std::any::TypeId::of::<u64>()
         || made == std::any::TypeId::of::<u8>()
-}
-
-/// `; did you mean "x"?` for the known name most like the given one, or nothing if none is.
-pub(super) fn did_you_mean<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
-    // Underscores are what most would write first: they count as hyphens.
-    let given = given.replace('_', "-");
-    let plain = |name: &str| name.replace('_', "-");
-    known
-        .map(|name| (strsim::jaro_winkler(&given, &plain(name)), name))
-        .filter(|&(similarity, _)| similarity >= SIMILAR)
-        .max_by(|a, b| a.0.total_cmp(&b.0))
-        .map_or(String::new(), |(_, name)| {
-            format!("; did you mean {name:?}?")
-        })
 }

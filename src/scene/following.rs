@@ -12,6 +12,9 @@ pub(super) const DRIVING: (f64, f64) = (1e-3, 1e6);
 /// K from, to.
 pub(super) const STIFFNESS: (f64, f64) = (1e-3, 1.0);
 
+/// What `--symmetry` takes.
+pub(super) const SYMMETRIES: [&str; 3] = ["symmetric", "asymmetric", "both"];
+
 /// How to follow, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Following {
@@ -19,6 +22,8 @@ pub struct Following {
     pub step: f64,
     /// Accuracy of special points.
     pub tolerance: f64,
+    /// How many points there may be.
+    pub max_points: usize,
     /// The second method.
     pub second: Option<Choice>,
 }
@@ -43,6 +48,10 @@ impl Following {
         Ok(Following {
             step: positive("step-limit", options.step_limit)?,
             tolerance,
+            max_points: match options.max_points {
+                0 => return Err(Error::parameter("max-points", 0, "at least 1")),
+                points => points,
+            },
             second: second.map(Choice::named).transpose()?,
         })
     }
@@ -57,11 +66,7 @@ pub(super) fn symmetry(name: &str, interfaces: usize) -> Result<Option<Symmetry>
             "symmetry is asymmetric, but a single interface has nothing to differ from".into(),
         )),
         "asymmetric" => Ok(Some(Symmetry::Asymmetric)),
-        other => Err(Error::parameter(
-            "symmetry",
-            other,
-            "symmetric, asymmetric or both",
-        )),
+        other => Err(Error::unknown("symmetry", other, &SYMMETRIES)),
     }
 }
 
@@ -78,13 +83,18 @@ pub(super) fn range(name: &str, (from, to): (f64, f64)) -> Result<(f64, f64)> {
 /// Positive numbers, comma-separated, in the user's units.
 pub(super) fn numbers(name: &str, text: &str) -> Result<Vec<f64>> {
     text.split(',')
-        .map(|word| match word.trim().parse::<f64>() {
-            Ok(x) => positive(name, x),
-            Err(_) => Err(Error::Input(format!(
-                "--{name} {text}: {word:?} is not a number; it must be positive numbers with commas between"
-            ))),
-        })
+        .map(|word| number(name, text, word))
         .collect()
+}
+
+/// One of the positive numbers in the text of an option.
+pub(super) fn number(name: &str, text: &str, word: &str) -> Result<f64> {
+    match word.trim().parse::<f64>() {
+        Ok(x) => positive(name, x),
+        Err(_) => Err(Error::Input(format!(
+            "--{name} {text}: {word:?} is not a number"
+        ))),
+    }
 }
 
 /// The values of an option to land on, dimensionless, which must lie in the range.
@@ -134,10 +144,11 @@ pub(super) fn explain(following: &Following, at: &[f64]) -> String {
     };
     format!(
         "  step limits       times {}
+  points            at most {}
   special points    to {:e}, relatively
   landings          {landings}
   crosscheck        {second}
   rows              written as they come, and kept for the picture and the object",
-        following.step, following.tolerance
+        following.step, following.max_points, following.tolerance
     )
 }

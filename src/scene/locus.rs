@@ -1,13 +1,14 @@
 //! Curves of bifurcations from options: of which, and where in the (V_H, K) plane.
 
 use super::continuation::LocusOptions;
-use super::following::{self, Following, landings, numbers, range};
+use super::following::{self, Following, landings, number, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{LocusKind, LocusRequest, Seen, equilibria, orbits};
+use crate::bifurcation::{LocusKind, LocusRequest, Seen, equilibria, orbits, within};
 use crate::error::{Error, Result};
 use crate::model::Loading;
 use crate::orbit::Slab;
+use crate::sweep::fields;
 use serde_json::{Value, json};
 
 /// A curve that can be asked for.
@@ -82,25 +83,30 @@ pub struct LocusPlan {
 }
 
 impl Curve {
+    /// The names of all.
+    pub(super) const NAMES: [&'static str; CURVES.len()] = {
+        let mut names = [""; CURVES.len()];
+        let mut i = 0;
+        while i < CURVES.len() {
+            names[i] = CURVES[i].name;
+            i += 1;
+        }
+        names
+    };
+
     fn named(name: Option<&str>) -> Result<Self> {
-        let known = || CURVES.map(|curve| curve.name).join(", ");
         let name = name.ok_or_else(|| {
             Error::Input(format!(
-                "it is missing of which bifurcation the curve is: locus followed by one of {}",
-                known()
+                "say which bifurcation to follow: twinslip locus followed by one of {}",
+                Curve::NAMES.join(", ")
             ))
         })?;
         let found = CURVES.into_iter().find(|curve| curve.name == name);
-        found.ok_or_else(|| {
-            Error::Input(format!(
-                "there is no curve of {name:?}; choose one of {}",
-                known()
-            ))
-        })
+        found.ok_or_else(|| Error::unknown("bifurcation", name, &Curve::NAMES))
     }
 }
 
-/// A range A,B, dimensionless.
+/// A range `A:B`, dimensionless.
 fn ends(
     name: &str,
     text: Option<&str>,
@@ -110,11 +116,12 @@ fn ends(
     let Some(text) = text else {
         return Ok(default);
     };
-    let [from, to] = numbers(name, text)?[..] else {
+    let [from, to] = fields(text)[..] else {
         return Err(Error::Input(format!(
-            "--{name} {text} must be two numbers, A,B"
+            "--{name} {text} must be A:B, two numbers with a colon between"
         )));
     };
+    let (from, to) = (number(name, text, from)?, number(name, text, to)?);
     let (from, to) = range(
         &format!("--{name}"),
         (units.inward(quantity, from), units.inward(quantity, to)),
@@ -181,6 +188,7 @@ impl LocusPlan {
             tolerance: following.tolerance,
             criticality: options.criticality,
             skip: Vec::new(),
+            max_points: following.max_points,
         };
         Ok(LocusPlan {
             numerics: numerics(curve.name, options, &request, &following, &system.units),
@@ -231,11 +239,13 @@ impl LocusPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        if self.curve.orbits {
-            orbits::locus(&request, seen)
-        } else {
-            equilibria::locus(&request, seen)
-        }
+        within(request.max_points, seen, |seen| {
+            if self.curve.orbits {
+                orbits::locus(&request, seen)
+            } else {
+                equilibria::locus(&request, seen)
+            }
+        })
     }
 }
 

@@ -39,6 +39,7 @@ mod options;
 mod plan;
 mod run;
 mod section;
+mod shipped;
 mod slip;
 mod sweep;
 mod system;
@@ -62,6 +63,7 @@ pub use run::{Outcome, Sink, run};
 pub use section::{
     Lyapunov, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
 };
+pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};
 pub use system::System;
 pub use units::{Quantity, Units};

@@ -1,6 +1,9 @@
 //! What a user can set. Declared once: the flags of the command line, their help and the keys of a scene file are these
 //! fields, so they cannot drift apart.
 
+use crate::friction::AnyLaw;
+use crate::integrate::Choice;
+use clap::builder::{PossibleValue, TypedValueParser};
 use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
@@ -28,8 +31,9 @@ pub struct ModelOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
 pub struct SlabOptions {
-    /// Friction law: spinodal (35), bounded (6), regularised-ageing (5), dieterich-ruina (4) or slip (Ruina 1983)
-    #[arg(long, value_name = "NAME", default_value = "spinodal")]
+    /// Friction law: spinodal, bounded, regularised-ageing, dieterich-ruina (equations 35, 6, 5 and 4 of the paper) or slip (Ruina
+    /// 1983)
+    #[arg(long, value_name = "NAME", default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
     /// Number of frictional interfaces in the slab, 1 or 2
     #[arg(long, value_name = "N", default_value_t = 2)]
@@ -68,7 +72,7 @@ pub struct SlabOptions {
 #[command(next_help_heading = "Numerics")]
 pub struct NumericsOptions {
     /// Integrator: auto, taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
-    #[arg(long, value_name = "NAME", default_value = "auto")]
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Names::of(Choice::names()), hide_possible_values = true)]
     pub method: String,
     /// Relative local error tolerance
     #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true)]
@@ -77,7 +81,7 @@ pub struct NumericsOptions {
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true)]
     pub atol: Option<f64>,
     /// Give up after so many steps
-    #[arg(long, value_name = "N", default_value_t = crate::integrate::MAX_STEPS)]
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS)]
     pub max_steps: usize,
 }
 
@@ -85,16 +89,19 @@ pub struct NumericsOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Output")]
 pub struct OutputOptions {
-    /// table, csv or json [default: by FILE's extension; else table on a terminal, csv into a file or pipe]
-    #[arg(long, value_name = "FORMAT")]
+    /// table, csv or json [default: by the ending of FILE; else table on a terminal, csv into a file or pipe]
+    #[arg(long, value_name = "FORMAT", value_parser = Names::of(["table", "csv", "json"]), hide_possible_values = true)]
     pub format: Option<String>,
     /// Write data to FILE; - is standard output
     #[arg(short, long, value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// No messages, no progress, no summary; errors are still told
+    /// Replace FILE even if it holds an unfinished run, or what this program has not written
+    #[arg(long)]
+    pub force: bool,
+    /// No messages, no progress, no summary; errors are still shown
     #[arg(short, long)]
     pub quiet: bool,
-    /// Before computing, tell on standard error what will be computed, how and why
+    /// Before computing, say on standard error what will be computed, how and why
     #[arg(long)]
     pub explain: bool,
 }
@@ -112,7 +119,7 @@ pub struct LawOptions {
     #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Grid")]
     pub to: Option<f64>,
     /// Number of slip rates, equally spaced in ln V
-    #[arg(long, value_name = "N", default_value_t = 200, help_heading = "Grid")]
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = 200, help_heading = "Grid")]
     pub points: usize,
     /// Draw tau_ss and k_c against V as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
@@ -142,7 +149,7 @@ pub struct IntegrateOptions {
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub until: Option<f64>,
     /// N rows equally spaced in time, both ends included, instead of one at every step
-    #[arg(long, value_name = "N", conflicts_with_all = ["every", "final_only"], help_heading = "Run")]
+    #[arg(long, value_name = "N", value_parser = count, conflicts_with_all = ["every", "final_only"], help_heading = "Run")]
     pub points: Option<usize>,
     /// A row at every multiple of DT
     #[arg(long, value_name = "DT", value_parser = number, allow_negative_numbers = true, conflicts_with = "final_only", help_heading = "Run")]
@@ -195,7 +202,7 @@ pub struct SectionOptions {
         help = START_HELP
     )]
     pub start: String,
-    /// Where the run is intersected: stress=VALUE, or stress=auto for the steady stress of the mean slip rate, tau_ss(V_H/2)
+    /// The section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2)
     /// of two interfaces
     #[arg(
         long,
@@ -204,20 +211,20 @@ pub struct SectionOptions {
         help_heading = "Run"
     )]
     pub surface: String,
-    /// Where the stress rises through the surface, instead of where it falls
+    /// Count returns where the stress rises through the section, instead of where it falls
     #[arg(long, help_heading = "Run")]
     pub upwards: bool,
     /// Returns that are recorded
-    #[arg(long, value_name = "N", default_value_t = 1000, help_heading = "Run")]
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, help_heading = "Run")]
     pub returns: usize,
-    /// Returns that are let pass before, so that the run settles
-    #[arg(long, value_name = "M", default_value_t = 1000, help_heading = "Run")]
+    /// Returns that are skipped before, so that the run settles
+    #[arg(long, value_name = "M", value_parser = count, default_value_t = 1000, help_heading = "Run")]
     pub skip: usize,
     /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H)]
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub patience: Option<f64>,
     /// Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns of a run of their own; without them
-    /// chaos is not told
+    /// chaos is not recognised
     #[arg(long, help_heading = "Run")]
     pub lyapunov: bool,
     /// By which method.
@@ -238,7 +245,7 @@ pub struct EquilibriaOptions {
     #[command(flatten)]
     pub model: ModelOptions,
     /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
-    #[arg(long, value_name = "NAME", help_heading = "Numerics")]
+    #[arg(long, value_name = "NAME", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
     pub solver: Option<String>,
     /// Where results go.
     #[command(flatten)]
@@ -256,6 +263,8 @@ pub struct OrbitOptions {
         long,
         value_name = "NAME",
         default_value = "symmetric",
+        value_parser = Names::of(["symmetric", "asymmetric"]),
+        hide_possible_values = true,
         help_heading = "Orbit"
     )]
     pub symmetry: String,
@@ -271,7 +280,7 @@ pub struct OrbitOptions {
     /// The period, roughly; with it no shorter cycle is taken instead
     #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
-    /// A second method that computes the orbit once more, or none [default: cvode-bdf; rodas5p in a build without SUNDIALS]
+    /// A second method that computes the orbit again, or none [default: cvode-bdf; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
     pub crosscheck: Option<String>,
     /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
@@ -279,6 +288,8 @@ pub struct OrbitOptions {
         long,
         value_name = "NAME",
         default_value = "auto",
+        value_parser = Names::of(Choice::names()),
+        hide_possible_values = true,
         help_heading = "Numerics"
     )]
     pub method: String,
@@ -289,11 +300,55 @@ pub struct OrbitOptions {
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub atol: Option<f64>,
     /// Give up an arc after so many steps
-    #[arg(long, value_name = "N", default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,
+}
+
+/// Takes any text, and tells the shell which names there are: whether a name is one is checked where it has its meaning, by the
+/// same words for flags and scenes.
+#[derive(Debug, Clone)]
+pub(super) struct Names(Vec<&'static str>);
+
+impl Names {
+    pub fn of(names: impl Into<Vec<&'static str>>) -> Self {
+        Names(names.into())
+    }
+}
+
+impl TypedValueParser for Names {
+    type Value = String;
+
+    fn parse_ref(
+        &self,
+        _: &clap::Command,
+        _: Option<&clap::Arg>,
+        value: &std::ffi::OsStr,
+    ) -> Result<String, clap::Error> {
+        let text = value.to_str().map(str::to_owned);
+        text.ok_or_else(|| clap::Error::new(clap::error::ErrorKind::InvalidUtf8))
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        Some(Box::new(self.0.iter().map(PossibleValue::new)))
+    }
+}
+
+/// A whole number, which may be written as 1e6; the domain of each is checked where it has its meaning.
+pub(super) fn count(text: &str) -> Result<usize, String> {
+    /// Doubles count to here without gaps.
+    const MOST: f64 = 9e15;
+    let text = text.trim();
+    let plain = text.parse::<usize>().ok();
+    let short = || {
+        let x = text.parse::<f64>().ok()?;
+        (x.fract() == 0.0 && (0.0..=MOST).contains(&x)).then_some(x as usize)
+    };
+    plain
+        .or_else(short)
+        .ok_or_else(|| "must be a whole number, not negative".into())
 }
 
 /// A finite number; the domain of each parameter is checked where it has its meaning.

@@ -51,7 +51,7 @@ pub use stepper::Stepper;
 pub use tape::Order;
 pub use transport::{Cubics, Transport};
 pub use variational::Variational;
-pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors};
+pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use vectors::{avx2, avx512};
 

@@ -22,6 +22,31 @@ pub enum Vectors {
     Avx512,
 }
 
+impl Vectors {
+    /// As one reads it: `AVX-512`, `AVX2 with FMA` or `none`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Vectors::None => "none",
+            Vectors::Avx2 => "AVX2 with FMA",
+            Vectors::Avx512 => "AVX-512",
+        }
+    }
+}
+
+/// What this process computes with: the widest that the processor has and the user allows.
+pub fn used() -> Vectors {
+    #[cfg(target_arch = "x86_64")]
+    {
+        if avx512().is_some() {
+            return Vectors::Avx512;
+        }
+        if avx2().is_some() {
+            return Vectors::Avx2;
+        }
+    }
+    Vectors::None
+}
+
 /// What the user allows. Asked once: it holds for the process.
 ///
 /// # Errors
@@ -32,7 +57,7 @@ pub fn allowed() -> Result<Vectors> {
         Err(_) | Ok("avx512") => Ok(Vectors::Avx512),
         Ok("avx2") => Ok(Vectors::Avx2),
         Ok("none") => Ok(Vectors::None),
-        Ok(other) => Err(Error::parameter(VARIABLE, other, "avx512, avx2 or none")),
+        Ok(other) => Err(Error::unknown(VARIABLE, other, &["avx512", "avx2", "none"])),
     };
     ALLOWED.get_or_init(asked).clone()
 }

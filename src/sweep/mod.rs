@@ -19,7 +19,7 @@ mod sweeper;
 mod wander;
 mod watch;
 
-pub use range::Range;
+pub use range::{Range, fields};
 pub use run::{Units, run, threads_checked};
 pub use sweeper::Sweeper;
 

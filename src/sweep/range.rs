@@ -19,6 +19,13 @@ pub struct Range {
     pub log: bool,
 }
 
+/// The fields of a range: `A:B` or `A:B:N`. Commas in place of all colons mean the same, as they are what a list in a scene
+/// becomes.
+pub fn fields(text: &str) -> Vec<&str> {
+    let between = if text.contains(':') { ':' } else { ',' };
+    text.split(between).map(str::trim).collect()
+}
+
 impl Range {
     /// Reads `A:B:N` or `A:B:Nlog`: N values from A to B. `name` is how the user knows the axis.
     ///
@@ -41,8 +48,7 @@ impl Range {
                 "--{name} {text:?} must be A:B:N or A:B:Nlog, N values from A to B"
             ))
         };
-        let parts: Vec<&str> = text.split(':').map(str::trim).collect();
-        let [from, to, count] = parts[..] else {
+        let [from, to, count] = fields(text)[..] else {
             return Err(unreadable());
         };
         let (count, log) = match count.strip_suffix("log") {

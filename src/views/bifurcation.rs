@@ -2,6 +2,7 @@
 
 use super::{Column, Entry};
 use crate::bifurcation::{BranchRow, Criticality, Label, LocusRow, Special};
+use crate::equilibrium::Symmetry;
 use crate::scene::Quantity;
 
 /// The columns of branches of orbits or of equilibria; a table leaves out what is less looked at.
@@ -32,6 +33,7 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
             row.label.map(Label::name).into()
         }),
         Column::new("branch", Number, |row: &Row| row.branch.into()),
+        Column::new("symmetry", Number, |row: &Row| row.symmetry.name().into()),
     ];
     if interfaces == 1 {
         columns.retain(|column| !column.name.ends_with("_2"));
@@ -42,6 +44,7 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
             "slip_rate_1",
             "slip_rate_2",
             "ln_abs_multiplier_2",
+            "symmetry",
         ]
     } else {
         &[
@@ -50,6 +53,7 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
             "period",
             "ln_abs_multiplier_1",
             "ln_abs_multiplier_2",
+            "symmetry",
         ]
     };
     for column in &mut columns {
@@ -76,6 +80,7 @@ pub fn locus_columns() -> Vec<Column<LocusRow>> {
             row.label.map(Label::name).into()
         }),
         Column::new("curve", Number, |row: &Row| row.curve.into()),
+        Column::new("symmetry", Number, |row: &Row| row.symmetry.name().into()),
     ]
 }
 
@@ -85,6 +90,10 @@ pub fn special_columns() -> Vec<Column<Special>> {
     vec![
         Column::new("label", Number, |one: &Special| one.label.name().into()),
         Column::new("name", Number, |one| one.label.meaning().into()),
+        Column::new("branch", Number, |one| one.branch.into()),
+        Column::new("symmetry", Number, |one| {
+            one.symmetry.map(Symmetry::name).into()
+        }),
         Column::uncertain("driving", SlipRate, |one| one.driving.into()),
         Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
         Column::uncertain("period", Time, |one| one.period.into()),
@@ -92,6 +101,9 @@ pub fn special_columns() -> Vec<Column<Special>> {
             one.criticality.map(Criticality::name).into()
         }),
         Column::new("coefficient", Number, |one| one.coefficient.into()),
-        Column::new("note", Number, |one| Entry::Word(one.note.clone())),
+        Column::new("note", Number, |one| {
+            // A row is a line, whatever the reason says.
+            Entry::Word(one.note.as_ref().map(|note| note.replace('\n', " ")))
+        }),
     ]
 }

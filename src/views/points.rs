@@ -16,13 +16,6 @@ pub const REGIMES: [Regime; 5] = [
     Regime::Undecided,
 ];
 
-fn symmetry_name(symmetry: Symmetry) -> &'static str {
-    match symmetry {
-        Symmetry::Symmetric => "symmetric",
-        Symmetry::Asymmetric => "asymmetric",
-    }
-}
-
 /// The columns of the points of a sweep. A row's start is one that `integrate --start` takes.
 pub fn sweep_columns() -> Vec<Column<Row>> {
     use Quantity::{Growth, Number, SlipRate, State, Stiffness, Stress, Time};
@@ -31,7 +24,7 @@ pub fn sweep_columns() -> Vec<Column<Row>> {
         Column::new("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
         Column::new("regime", Number, |row: &Row| row.regime.name().into()),
         Column::new("symmetry", Number, |row: &Row| {
-            row.symmetry.map(symmetry_name).into()
+            row.symmetry.map(Symmetry::name).into()
         }),
         Column::new("period", Time, |row: &Row| row.period.into()),
         Column::new("stress_min", Stress, |row: &Row| {
@@ -80,7 +73,6 @@ pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Unit
     let exponent = maybe("lyapunov_max", Quantity::Growth)?;
     let bound = maybe("lyapunov_max_uncertainty", Quantity::Growth)?;
     let text = |name: &str| Some(cell(name)).filter(|text| !text.is_empty());
-    let symmetries = [Symmetry::Symmetric, Symmetry::Asymmetric];
     Some(Row {
         number,
         driving: known("driving", Quantity::SlipRate)?,
@@ -93,9 +85,7 @@ pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Unit
         regime: REGIMES
             .into_iter()
             .find(|regime| regime.name() == cell("regime"))?,
-        symmetry: symmetries
-            .into_iter()
-            .find(|&symmetry| symmetry_name(symmetry) == cell("symmetry")),
+        symmetry: Symmetry::named(cell("symmetry")),
         returns_per_period: text("period_of_orbit").and_then(|text| text.parse().ok()),
         period: maybe("period", Quantity::Time)?,
         stress_range: both.0.zip(both.1),

@@ -57,6 +57,7 @@ fn the_legend_has_what_there_is_and_no_more() {
     found[5].lyapunov_max = Some(Uncertain::new(8e-4, 1e-6));
     let curve = |stiffness: f64| LocusRow {
         curve: 0,
+        symmetry: Symmetry::Asymmetric,
         driving: Uncertain::new(10.0 * stiffness, 0.0),
         stiffness: Uncertain::new(stiffness, 0.0),
         period: None,

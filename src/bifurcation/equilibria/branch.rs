@@ -7,7 +7,7 @@ use super::walk::Walk;
 use crate::bifurcation::{BranchRequest, Parameter, Seen};
 use crate::continuation::{Branch, Settings, Stop, ZeroProblem, follow};
 use crate::equilibrium::{Solver, Symmetry, steady_states};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use std::ops::ControlFlow;
 
 /// The longest step, in ln V_H and ln K.
@@ -37,6 +37,7 @@ fn settings(request: &BranchRequest) -> Result<Settings> {
     let wanted = request.at.iter().filter(inside).map(|x| x.ln()).collect();
     Settings {
         wanted,
+        max_points: request.max_points,
         ..Settings::new((a.min(b).ln(), a.max(b).ln()), LONGEST * request.step)?
     }
     .checked()
@@ -61,7 +62,8 @@ impl Run<'_> {
         if self.wants(Symmetry::Symmetric) {
             let curve = Curve::Symmetric { interfaces };
             let problem = AlongDriving { law, curve };
-            let begin = Begin::at_range_end(curve, from, from < to, [from / interfaces as f64; 2]);
+            let rates = [from / interfaces as f64; 2];
+            let begin = Begin::at_range_end(law, curve, from, from < to, rates);
             if self.one(&problem, curve, None, &begin)?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }
@@ -93,7 +95,7 @@ impl Run<'_> {
                     Symmetry::Asymmetric => Curve::Asymmetric,
                 };
                 let rates = [state.slip_rate[0], state.slip_rate[interfaces - 1]];
-                let fixed = Begin::on_a_line(from, from < to, rates);
+                let fixed = Begin::on_a_line(&slab.law, from, from < to, rates);
                 if self
                     .one(&AlongStiffness, curve, Some(rates), &fixed)?
                     .is_break()
@@ -127,7 +129,11 @@ impl Run<'_> {
         if let Some(error) = walk.failure {
             return Err(error);
         }
-        if let Stop::StepTooSmall { .. } | Stop::MaxPoints = branch.stopped
+        if branch.stopped == Stop::MaxPoints {
+            let limit = self.request.max_points;
+            return Err(Error::TooManyPoints { limit });
+        }
+        if let Stop::StepTooSmall { .. } = branch.stopped
             && walk.gave_up(&branch).is_break()
         {
             return Ok(ControlFlow::Break(()));

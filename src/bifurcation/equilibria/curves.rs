@@ -5,35 +5,36 @@
 //! and the symmetric state is no part of it.
 
 use crate::continuation::{Point, ZeroProblem};
+use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, steady_stress};
+use crate::friction::{AnyLaw, Law, steady_log_activation};
 use crate::number::{Difference, Jet, Real};
 use nalgebra::{DMatrix, DVector};
 
 /// Below this z the quotient is its series: the term left out is of the fourth order.
 const SERIES: f64 = 1e-5;
 
-/// [tau_ss(V_fast) - tau_ss(V_slow)] / (ln V_fast - ln V_slow) where both sum to V_H  (20), (21).
+/// [ln s(tau_ss(V_fast)) - ln s(tau_ss(V_slow))] / (ln V_fast - ln V_slow) where both sum to V_H  (20), (21). The logarithm of the
+/// activation rises and falls with the stress, and has a double where V_slow has none.
 fn balance<T: Real>(law: &impl Law, z: T, log_driving: T) -> T {
     if z.leading().abs() < SERIES {
-        // tau_ss as a function of x = ln V, about x = ln(V_H / 2)
+        // as a function of x = ln V, about x = ln(V_H / 2)
         let x = log_driving - std::f64::consts::LN_2 - z * z * 0.5;
-        let [_, first, third] = log_derivatives(law, x);
+        let [first, third] = log_derivatives(law, x);
         return first + third * z * z / 6.0;
     }
-    let slow = log_driving - ((z * 2.0).exp() + 1.0).ln();
-    let rates = Difference::new(slow + z * 2.0, slow, z * 2.0).exp();
-    steady_stress(law, rates).gap / (z * 2.0)
+    let fast = log_driving - (-z * 2.0).exp().ln_1p();
+    let rates = Difference::new(fast, fast - z * 2.0, z * 2.0).exp();
+    law.log_strength(law.steady_state(rates)).gap / (z * 2.0) + 1.0
 }
 
-/// tau_ss and its first and third derivatives in x = ln V.
-fn log_derivatives<T: Real>(law: &impl Law, x: T) -> [T; 3] {
+/// The first and third derivatives of ln s(tau_ss) in x = ln V.
+fn log_derivatives<T: Real>(law: &impl Law, x: T) -> [T; 2] {
     let x = Jet::<_, 1>::variable(Jet::<_, 1>::variable(Jet::<T, 1>::variable(x, 0), 0), 0);
-    let stress = steady_stress(law, x.exp());
+    let level = law.log_strength(law.steady_state(x.exp()));
     [
-        stress.value.value.value,
-        stress.value.value.gradient[0],
-        stress.gradient[0].gradient[0].gradient[0],
+        level.value.value.gradient[0] + 1.0,
+        level.gradient[0].gradient[0].gradient[0],
     ]
 }
 
@@ -47,6 +48,14 @@ pub(super) enum Curve {
 }
 
 impl Curve {
+    /// The symmetry of its equilibria.
+    pub fn symmetry(self) -> Symmetry {
+        match self {
+            Curve::Symmetric { .. } => Symmetry::Symmetric,
+            Curve::Asymmetric => Symmetry::Asymmetric,
+        }
+    }
+
     /// Both slip rates at V_H, the slower one first.
     pub fn rates(self, point: &Point, driving: f64) -> [f64; 2] {
         match self {
@@ -59,10 +68,17 @@ impl Curve {
     }
 
     /// u of these rates.
-    pub fn unknown(self, [slow, fast]: [f64; 2]) -> DVector<f64> {
+    pub fn unknown(self, law: &AnyLaw, [slow, fast]: [f64; 2]) -> DVector<f64> {
+        let ratio = if slow > 0.0 {
+            (fast / slow).ln()
+        } else {
+            // the slower one, smaller than any double, has healed
+            let healed = law.log_strength(law.steady_state(0.0));
+            fast.ln() - (steady_log_activation(law, fast) - healed)
+        };
         match self {
             Curve::Symmetric { .. } => DVector::zeros(0),
-            Curve::Asymmetric => DVector::from_element(1, 0.5 * (fast / slow).ln()),
+            Curve::Asymmetric => DVector::from_element(1, 0.5 * ratio),
         }
     }
 }

@@ -208,6 +208,23 @@ impl<const N: usize> ZeroProblem for Family<'_, N> {
     }
 }
 
+/// Below this a component of the unit tangent is rounding: that of the difference in p.
+const SLOPE: f64 = 1e-12;
+/// Below this part of its bound a determinant is rounding.
+const DETERMINANT: f64 = 1e-14;
+
+/// Zero where nothing but rounding is left: of a function that is zero throughout, as the sums of eigenvalues of a conservative
+/// system or the slope of a branch at one parameter, rounding has signs that mean nothing.
+fn certain(x: f64, rounding: f64) -> f64 {
+    if x.abs() < rounding { 0.0 } else { x }
+}
+
+/// A determinant over Hadamard's bound, the product of the lengths of the rows.
+fn determinant(matrix: &DMatrix<f64>) -> f64 {
+    let bound: f64 = matrix.row_iter().map(|row| row.norm()).product();
+    certain(matrix.determinant() / bound, DETERMINANT)
+}
+
 /// The test functions' order.
 const LABELS: [Label; 3] = [Label::Lp, Label::Bp, Label::Hb];
 
@@ -224,9 +241,9 @@ impl<const N: usize> Watch for Look<'_, '_, N> {
         square.row_mut(N).copy_from(&point.tangent.transpose());
         let pairs = bialternate(&self.family.dense(&y, point.lambda));
         Ok(vec![
-            point.lambda_slope(),
-            square.determinant(),
-            pairs.determinant(),
+            certain(point.lambda_slope(), SLOPE),
+            determinant(&square),
+            determinant(&pairs),
         ])
     }
 

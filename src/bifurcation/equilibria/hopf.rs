@@ -6,10 +6,10 @@
 
 use super::crossing::{self, Root};
 use super::curves::Curve;
-use super::inputs::rounding;
 use crate::continuation::Point;
 use crate::equilibrium::Interface;
 use crate::friction::AnyLaw;
+use crate::friction::rounding;
 use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain, bracketed_root};
 use std::f64::consts::TAU;
 

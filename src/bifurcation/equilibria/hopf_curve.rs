@@ -49,13 +49,18 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
             &mut trace,
         )?;
         let observer = branch.stopped == Stop::Observer;
-        let gave_up = matches!(branch.stopped, Stop::StepTooSmall { .. } | Stop::MaxPoints);
+        if branch.stopped == Stop::MaxPoints {
+            let limit = request.max_points;
+            return Err(Error::TooManyPoints { limit });
+        }
+        let gave_up = matches!(branch.stopped, Stop::StepTooSmall { .. });
         let ended = observer || gave_up && trace.gave_up(&branch).is_break();
         Ok::<_, Error>((!ended).then_some(branch))
     };
     if wants(Symmetry::Symmetric) {
         let curve = Curve::Symmetric { interfaces };
-        let begin = Begin::at_range_end(curve, from, from < to, [from / interfaces as f64; 2]);
+        let rates = [from / interfaces as f64; 2];
+        let begin = Begin::at_range_end(law, curve, from, from < to, rates);
         if piece(curve, Root::Larger, &begin)?.is_none() {
             return Ok(ControlFlow::Break(()));
         }
@@ -80,6 +85,7 @@ fn settings(request: &LocusRequest) -> Result<Settings> {
     let wanted = request.at_driving.iter().filter(inside);
     Settings {
         wanted: wanted.map(|x| x.ln()).collect(),
+        max_points: request.max_points,
         ..Settings::new((a.min(b).ln(), a.max(b).ln()), LONGEST * request.step)?
     }
     .checked()

@@ -12,7 +12,6 @@ pub mod generic;
 mod hopf;
 mod hopf_curve;
 mod hopf_special;
-mod inputs;
 mod lyapunov;
 mod pieces;
 mod rates;

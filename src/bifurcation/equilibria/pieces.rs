@@ -22,8 +22,14 @@ pub(super) struct Begin {
 }
 
 impl Begin {
-    pub fn at_range_end(curve: Curve, value: f64, forward: bool, rates: [f64; 2]) -> Self {
-        let u = curve.unknown(rates);
+    pub fn at_range_end(
+        law: &AnyLaw,
+        curve: Curve,
+        value: f64,
+        forward: bool,
+        rates: [f64; 2],
+    ) -> Self {
+        let u = curve.unknown(law, rates);
         let mut direction = DVector::zeros(u.len() + 1);
         direction[u.len()] = if forward { 1.0 } else { -1.0 };
         Begin {
@@ -39,8 +45,9 @@ impl Begin {
     }
 
     /// Where nothing but lambda changes.
-    pub fn on_a_line(value: f64, forward: bool, rates: [f64; 2]) -> Self {
-        Self::at_range_end(Curve::Symmetric { interfaces: 1 }, value, forward, rates)
+    pub fn on_a_line(law: &AnyLaw, value: f64, forward: bool, rates: [f64; 2]) -> Self {
+        let curve = Curve::Symmetric { interfaces: 1 };
+        Self::at_range_end(law, curve, value, forward, rates)
     }
 
     fn at_pitchfork(driving: f64) -> Self {
@@ -82,6 +89,7 @@ impl Ends {
                 if state.symmetry == Symmetry::Asymmetric {
                     let rates = [state.slip_rate[0], state.slip_rate[1]];
                     all.push(Begin::at_range_end(
+                        law,
                         Curve::Asymmetric,
                         value,
                         value < other,

@@ -1,27 +1,9 @@
 //! The slip rates of an asymmetric state at an exact V_H: refined in any numbers, enclosed in intervals, with their derivative.
 
 use super::curves::Curve;
-use crate::equilibrium::quotient;
+use crate::equilibrium::{quotient, refined};
 use crate::friction::{AnyLaw, steady_slope};
-use crate::number::{DoubleDouble, Interval, Jet, Real, enclosing_radius};
-
-/// The slower rate at V_H by Newton's method from one that is nearly right; stops where the corrections no longer shrink.
-fn refined<T: Real>(law: &AnyLaw, driving: f64, slow: T) -> T {
-    /// From 15 digits to 30 and a spare one.
-    const STEPS: usize = 4;
-    let (mut slow, mut last) = (slow, f64::INFINITY);
-    for _ in 0..STEPS {
-        let q = quotient(law, driving, Jet::<T, 1>::variable(slow, 0));
-        let next = slow - q.value / q.gradient[0];
-        let change = (next - slow).leading().abs();
-        let fits = change < 0.1 * slow.leading() && change < last && next.leading() < 0.5 * driving;
-        if !fits {
-            break;
-        }
-        (slow, last) = (next, change);
-    }
-    slow
-}
+use crate::number::{DoubleDouble, Interval, Real, enclosing_radius};
 
 impl Curve {
     /// Both rates at V_H, next to these.

@@ -1,6 +1,7 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
 use crate::bifurcation::{BranchRow, Event, LocusRow, Seen, Special};
+use crate::equilibrium::Symmetry;
 use std::ops::ControlFlow;
 
 /// Tells the observer.
@@ -8,9 +9,11 @@ pub(super) struct Teller<'a> {
     seen: Seen<'a>,
     /// Asked for, relative.
     tolerance: f64,
-    /// Numbers of the branches or curves of which nothing is to be told, and whether the last row was of one of them.
+    /// Numbers of the branches or curves of which nothing is to be told.
     skip: &'a [usize],
-    skipping: bool,
+    /// The branch or curve that is told of.
+    number: usize,
+    symmetry: Symmetry,
 }
 
 impl<'a> Teller<'a> {
@@ -19,31 +22,36 @@ impl<'a> Teller<'a> {
             seen,
             tolerance,
             skip,
-            skipping: false,
+            number: 0,
+            symmetry: Symmetry::Symmetric,
         }
+    }
+
+    /// What follows is of the branch or curve of that number.
+    pub fn on(&mut self, number: usize, symmetry: Symmetry) {
+        (self.number, self.symmetry) = (number, symmetry);
     }
 
     pub fn branch(&mut self, row: BranchRow) -> ControlFlow<()> {
-        self.row(row.branch, Event::Branch(row))
+        self.on(row.branch, row.symmetry);
+        self.tell(Event::Branch(row))
     }
 
     pub fn locus(&mut self, row: LocusRow) -> ControlFlow<()> {
-        self.row(row.curve, Event::Locus(row))
+        self.on(row.curve, row.symmetry);
+        self.tell(Event::Locus(row))
     }
 
-    fn row(&mut self, number: usize, row: Event) -> ControlFlow<()> {
-        self.skipping = self.skip.contains(&number);
-        if self.skipping {
-            return ControlFlow::Continue(());
-        }
-        (self.seen)(row)
-    }
-
-    /// After the row that it is the special point of.
+    /// After the row that it is the special point of, or after [`Teller::on`].
     pub fn special(&mut self, special: Special) -> ControlFlow<()> {
-        if self.skipping {
+        let event = Event::Special(special).on(self.number, self.symmetry);
+        self.tell(event.against(self.tolerance))
+    }
+
+    fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        if self.skip.contains(&self.number) {
             return ControlFlow::Continue(());
         }
-        (self.seen)(Event::Special(special).against(self.tolerance))
+        (self.seen)(event)
     }
 }

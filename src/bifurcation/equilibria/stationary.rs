@@ -1,10 +1,10 @@
 //! Pitchforks and folds: both are properties of the steady-state friction law alone, the same at every stiffness.
 
 use super::hopf::bound;
-use super::inputs::rounding;
 use crate::bifurcation::Criticality;
 use crate::continuation::Point;
 use crate::equilibrium::{Interface, routh_hurwitz};
+use crate::friction::rounding;
 use crate::friction::{AnyLaw, Extremum, Law, steady_slope, steady_stress};
 use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
 
@@ -87,7 +87,8 @@ fn counterpart(law: &AnyLaw, rate: f64, guess: f64) -> (f64, f64) {
     (v, enclosing_radius(v, |x| steady_stress(law, x) - exact))
 }
 
-/// The fold near these rates: where tau_ss'(V_1) + tau_ss'(V_2) = 0 and the stresses are equal. None if there is none.
+/// The fold near these rates: where tau_ss'(V_1) + tau_ss'(V_2) = 0 and the stresses are equal. None if dV_H along the states does
+/// not certainly change its sign there.
 ///
 /// Of the two rates that nearer to its extremum of tau_ss is the unknown; the other one follows from it and is well determined.
 pub(super) fn fold(law: &AnyLaw, near: [f64; 2]) -> Option<Fold> {
@@ -115,6 +116,9 @@ fn of_law(law: &AnyLaw, near: [f64; 2]) -> Option<Fold> {
         steady_slope(law, x) / steady_slope(law, Interval::around(d, radius)) + 1.0
     };
     let radius = enclosing_radius(p, certain);
+    if !radius.is_finite() {
+        return None;
+    }
     let (d, d_radius) = counterpart(law, p, d);
     // V_H = p + d(p); within the radius its slope is next to nothing
     let p_range = Interval::around(p, radius);

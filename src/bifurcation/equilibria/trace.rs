@@ -116,6 +116,7 @@ impl Trace<'_, '_> {
             .then(|| self.points.criticality(point));
         self.teller.locus(LocusRow {
             curve: self.curves.saturating_sub(1),
+            symmetry: self.points.curve.symmetry(),
             driving: point.driving,
             stiffness: point.stiffness,
             period: Some(point.period.value),
@@ -136,6 +137,12 @@ impl Trace<'_, '_> {
             coefficient: Some(l_1.value),
             ..Special::new(label, point.driving, point.stiffness)
         })
+    }
+
+    /// What is told of next has no row but is of this curve.
+    fn here(&mut self) {
+        let number = self.curves.saturating_sub(1);
+        self.teller.on(number, self.points.curve.symmetry());
     }
 
     fn enter(&mut self) {
@@ -199,6 +206,7 @@ impl Trace<'_, '_> {
         let at = fold.and_then(|f| Some((f.driving, f.bogdanov_takens(self.points.law)?)));
         let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
         let (driving, stiffness) = at.unwrap_or((unknown(place.driving), unknown(k)));
+        self.here();
         self.teller.special(Special {
             note: Some("a curve of Hopf points ends here".into()),
             ..Special::new(Label::Bt, driving, stiffness)
@@ -225,6 +233,7 @@ impl Trace<'_, '_> {
         let place = self.place(point, point.lambda.exp());
         let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
         let k = self.points.closed_form(place.rates);
+        self.here();
         self.teller.special(Special {
             note: Some(format!("no further: {:?}", branch.stopped)),
             ..Special::new(Label::Mx, unknown(place.driving), unknown(k))

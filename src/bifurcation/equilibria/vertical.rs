@@ -10,6 +10,7 @@ use super::special::Teller;
 use super::stationary::{Fold, fold, fold_test, pitchforks};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
 use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::number::Uncertain;
@@ -58,34 +59,42 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
     Ok(ControlFlow::Continue(()))
 }
 
-/// All values of K to be shown, in order, with what they are.
-fn values(request: &LocusRequest, line: &Line) -> Vec<(Uncertain, Option<Label>)> {
+/// All values of K to be shown, in order, with what they are: as they are asked for, however many there may be.
+fn values(
+    request: &LocusRequest,
+    line: &Line,
+) -> impl Iterator<Item = (Uncertain, Option<Label>)> + use<> {
     let (from, to) = request.stiffness;
     let (low, high) = (from.min(to), from.max(to));
-    let parts = ((high / low).ln() / (LONGEST * request.step))
-        .ceil()
-        .max(1.0);
     let exact = |k: f64| Uncertain::new(k, 0.0);
-    let mut all: Vec<_> = (1..parts as usize)
-        .map(|i| low * (high / low).powf(i as f64 / parts))
-        .map(|k| (exact(k), None))
-        .collect();
-    all.extend([low, high].map(|k| (exact(k), Some(Label::Ep))));
-    let wanted = request
-        .at_stiffness
-        .iter()
-        .map(|&k| (exact(k), Some(Label::Uz)));
-    let special = line.bogdanov_takens.map(|k| (k, Some(Label::Bt)));
-    all.extend(
-        wanted
-            .chain(special)
-            .filter(|(k, _)| (low..=high).contains(&k.value)),
-    );
-    all.sort_by(|(a, _), (b, _)| a.value.total_cmp(&b.value));
+    let mut special: Vec<_> = [low, high].map(|k| (exact(k), Label::Ep)).into();
+    let wanted = request.at_stiffness.iter();
+    special.extend(wanted.map(|&k| (exact(k), Label::Uz)));
+    special.extend(line.bogdanov_takens.map(|k| (k, Label::Bt)));
+    special.retain(|(k, _)| (low..=high).contains(&k.value));
+    special.sort_by(|(a, _), (b, _)| a.value.total_cmp(&b.value));
     if from > to {
-        all.reverse();
+        special.reverse();
     }
-    all
+    let (begin, width) = (from.ln(), to.ln() - from.ln());
+    let parts = (width.abs() / (LONGEST * request.step)).ceil().max(1.0);
+    let steps = (1_u64..)
+        .map(|i| i as f64)
+        .take_while(move |&i: &f64| i < parts)
+        .map(move |i| (begin + width * (i / parts)).exp());
+    let (mut steps, mut special) = (steps.peekable(), special.into_iter().peekable());
+    let up = from < to;
+    std::iter::from_fn(move || {
+        let first = match (steps.peek(), special.peek()) {
+            (Some(step), Some((k, _))) => (*step < k.value) == up && *step != k.value,
+            (step, _) => step.is_some(),
+        };
+        if first {
+            steps.next().map(|k| (exact(k), None))
+        } else {
+            special.next().map(|(k, label)| (k, Some(label)))
+        }
+    })
 }
 
 fn along(
@@ -97,6 +106,10 @@ fn along(
     for (stiffness, label) in values(request, line) {
         teller.locus(LocusRow {
             curve,
+            symmetry: match request.kind {
+                LocusKind::Pitchfork => Symmetry::Symmetric,
+                _ => Symmetry::Asymmetric,
+            },
             driving: line.driving,
             stiffness,
             period: None,

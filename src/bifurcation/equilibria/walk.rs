@@ -114,6 +114,7 @@ impl Walk<'_, '_> {
         let pair = |all: &[f64]| [all[0], *all.last().unwrap_or(&all[0])];
         Ok(BranchRow {
             branch: self.number,
+            symmetry: self.curve.symmetry(),
             driving: place.driving,
             stiffness: place.stiffness,
             stress,
@@ -182,8 +183,9 @@ impl Walk<'_, '_> {
     }
 
     fn fold(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+        // a fold is where dV_H/dz certainly changes its sign
         let Some(fold) = fold(&self.request.slab.law, place.rates) else {
-            return self.plain(place, Label::Lp, "not refined");
+            return Ok(ControlFlow::Continue(()));
         };
         let at = Place {
             driving: fold.driving.value,
@@ -227,9 +229,9 @@ impl Walk<'_, '_> {
                 because: Some(error),
                 ..
             } => format!("no step is short enough: {error}"),
-            Stop::StepTooSmall { .. } => "no step is short enough".into(),
-            _ => "as many points as allowed".into(),
+            _ => "no step is short enough".into(),
         });
+        self.teller.on(self.number, self.curve.symmetry());
         self.teller.special(special)
     }
 

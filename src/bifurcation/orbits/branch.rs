@@ -3,6 +3,7 @@
 
 use super::chart::Chart;
 use super::course::Course;
+use super::rows::symmetry;
 use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special, equilibria};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
@@ -177,12 +178,14 @@ impl<'r> Branches<'r> {
         let family = self.family;
         let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
         let inside = self.in_range(hopf.at()[self.free]);
-        let special = Event::Special(self.hopf(i)).against(self.request.tolerance);
+        let symmetry = symmetry::<N>();
+        let special = Event::Special(self.hopf(i)).on(number, symmetry);
+        let special = special.against(self.request.tolerance);
         if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
-            Some(mut walk) => Course::new(self, number, inside, seen).go(&mut walk),
+            Some(mut walk) => Course::new(self, (number, symmetry), inside, seen).go(&mut walk),
             None => Ok(Continue(())),
         }
     }
@@ -201,7 +204,8 @@ impl<'r> Branches<'r> {
         let first = site.moved(&direction, ASIDE);
         match Walk::from(&mut corrector, self.path(), first, direction) {
             Some(mut walk) => {
-                let mut course = Course::new(self, number, inside, seen);
+                let symmetry = Symmetry::Asymmetric;
+                let mut course = Course::new(self, (number, symmetry), inside, seen);
                 course.times = times;
                 course.go(&mut walk)
             }

@@ -9,6 +9,7 @@ use super::rows::{Given, asked, row};
 use super::sharp::{Exactly, Sharp, rough, sharpened, special};
 use super::way::Way;
 use crate::bifurcation::{Event, Label, Seen, Special};
+use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
 use std::any::Any;
@@ -21,6 +22,7 @@ const STEPS: usize = 5000;
 pub(super) struct Course<'b, 'r, 's> {
     pub branches: &'b mut Branches<'r>,
     pub number: usize,
+    symmetry: Symmetry,
     /// Whether it has been in the range.
     pub inside: bool,
     /// How often the period has doubled.
@@ -43,13 +45,14 @@ type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Walk<'c, 'f, F, N>;
 impl<'b, 'r, 's> Course<'b, 'r, 's> {
     pub fn new(
         branches: &'b mut Branches<'r>,
-        number: usize,
+        (number, symmetry): (usize, Symmetry),
         inside: bool,
         seen: Seen<'s>,
     ) -> Self {
         Course {
             branches,
             number,
+            symmetry,
             inside,
             times: 0,
             seen,
@@ -149,6 +152,7 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         if !self.branches.tells(self.number) {
             return Continue(());
         }
+        let event = event.on(self.number, self.symmetry);
         let told = (self.seen)(event.against(self.branches.request.tolerance));
         self.told |= told.is_break();
         told

@@ -5,11 +5,12 @@ use super::chart::{Chart, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::locus::Locus;
-use super::rows::{Given, asked};
+use super::rows::{Given, asked, symmetry};
 use super::sharp::{Exactly, rough, sharpened, special};
 use super::top::top;
 use super::way::{Decided, Way, degenerate_pitchfork};
 use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
+use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Corrector, Indicator, OverLoadings, Pace, Regular, Site, Walk};
@@ -60,6 +61,7 @@ pub(super) struct Leg<'r, 's> {
     request: &'r LocusRequest,
     indicator: Indicator,
     number: usize,
+    symmetry: Symmetry,
     /// Where both ways begin.
     begin: Pass,
     /// Who is told, or what is to be told later.
@@ -82,6 +84,7 @@ impl<'r, 's> Leg<'r, 's> {
             request: locus.request,
             indicator: locus.indicator,
             number,
+            symmetry: symmetry::<N>(),
             begin,
             seen,
             events: Vec::new(),
@@ -97,6 +100,7 @@ impl<'r, 's> Leg<'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        let event = event.on(self.number, self.symmetry);
         let event = event.against(self.request.tolerance);
         let Some(seen) = &mut self.seen else {
             self.events.push(event);
@@ -239,6 +243,7 @@ impl<'r, 's> Leg<'r, 's> {
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
             curve: self.number,
+            symmetry: self.symmetry,
             driving,
             stiffness,
             period: Some(period),

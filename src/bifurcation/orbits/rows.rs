@@ -2,10 +2,18 @@
 
 use super::chart::Chart;
 use crate::bifurcation::{BranchRow, Label, Special};
-use crate::equilibrium::Verdict;
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Profile, Regular, profile};
+
+/// The symmetry of orbits in N variables.
+pub(super) fn symmetry<const N: usize>() -> Symmetry {
+    match N {
+        2 => Symmetry::Symmetric,
+        _ => Symmetry::Asymmetric,
+    }
+}
 
 /// An orbit of a slab, in any of its variables.
 pub(super) fn row<F: Chart<N>, const N: usize>(
@@ -44,6 +52,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
     let [driving, stiffness] = [here.loading.driving, here.loading.stiffness];
     Ok(BranchRow {
         branch,
+        symmetry: symmetry::<N>(),
         driving,
         stiffness,
         stress: mean_stress,

@@ -168,5 +168,6 @@ fn point(line: &str) -> Option<LocusRow> {
         angle_over_pi: None,
         criticality: None,
         label: None,
+        symmetry: None,
     })
 }

@@ -4,20 +4,18 @@
 use super::super::report;
 use super::super::resume::same;
 use crate::error::{Error, Result};
-use crate::output::{CsvRows, EarlierRows, RowWriter, shortest};
+use crate::output::{self, Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest};
 use crate::scene::{Quantity, Shard, SweepPlan};
 use crate::sweep::Row;
 use crate::views::{self, Column};
 use std::fs::File;
-use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 /// What the remark on a part begins with.
 const SHARD: &str = "shard: ";
-/// No line of remarks or rows is longer.
-const LONGEST_LINE: u64 = 1 << 16;
-/// No sweep has more remarks.
-const MOST_REMARKS: usize = 100;
+/// No remarks are longer.
+const LONGEST_HEAD: u64 = 1 << 16;
 
 /// The remarks of a sweep; its part, if it is one, is told in the last.
 pub fn remarks(plan: &SweepPlan, shard: Option<Shard>) -> Vec<String> {
@@ -26,26 +24,28 @@ pub fn remarks(plan: &SweepPlan, shard: Option<Shard>) -> Vec<String> {
     remarks
 }
 
-/// What the file begins with: remarks and names of columns.
-pub fn beginning(plan: &SweepPlan, shard: Option<Shard>, columns: &[Column<Row>]) -> Vec<u8> {
+/// What the rows begin with: remarks and names of columns. In a file a remark says how far it is.
+pub fn beginning(
+    plan: &SweepPlan,
+    shard: Option<Shard>,
+    columns: &[Column<Row>],
+    status: Option<Status>,
+) -> Vec<u8> {
     let names = views::names(columns, false);
-    let names: Vec<String> = names.into_iter().map(|(name, _)| name).collect();
-    let mut bytes = Vec::new();
-    CsvRows::new(&mut bytes, &remarks(plan, shard), &names).expect("memory can be written");
-    bytes
+    let names = names.into_iter().map(|(name, _)| name);
+    let names: Vec<String> = names.chain([ROW_CHECK.to_owned()]).collect();
+    let mut remarks = remarks(plan, shard);
+    remarks.extend(status.map(Status::remark));
+    output::head(&remarks, &names)
 }
 
-/// Rows as lines.
+/// Rows as lines, checked by their numbers: so the lines of parts are those of the whole.
 pub fn lines(plan: &SweepPlan, columns: &[Column<Row>], rows: &[Row]) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    {
-        let mut writer = CsvRows::continued(&mut bytes);
-        for row in rows {
-            let cells = views::cells(columns, row, &plan.system.units, false);
-            writer.row(&cells).expect("memory can be written");
-        }
-    }
-    bytes
+    let line = |row: &Row| {
+        let cells = views::cells(columns, row, &plan.system.units, false);
+        checked_line(&row.number.to_string(), &cells)
+    };
+    rows.iter().map(line).collect::<String>().into_bytes()
 }
 
 /// How far a file has come.
@@ -53,53 +53,64 @@ pub fn lines(plan: &SweepPlan, columns: &[Column<Row>], rows: &[Row]) -> Vec<u8>
 pub struct Standing {
     /// Units whose rows are complete.
     pub units: usize,
+    /// Where the first row begins.
+    pub rows: u64,
     /// Where the last of these rows ends; what follows is torn.
     pub bytes: u64,
 }
 
-/// Reads a file up to its last complete unit and shows the line of each row that stays, with the row's number.
+/// Reads a file up to its last complete unit and shows the cells of each row that stays, with the row's number.
 ///
 /// Nothing stays of a file that does not exist or ends before its first row.
 ///
 /// # Errors
-/// [`Error::File`] if it can't be read; [`Error::Input`] if it is of another sweep, or has rows that do not belong where they
-/// are.
+/// [`Error::File`] if it can't be read; [`Error::Input`] if it is of another sweep, or has a line that is not as it was written or
+/// does not belong where it is.
 pub fn read(
     path: &Path,
     plan: &SweepPlan,
     columns: &[Column<Row>],
-    kept: &mut dyn FnMut(usize, &str),
+    kept: &mut dyn FnMut(usize, &[String]),
 ) -> Result<Standing> {
     let mut file = match File::open(path) {
         Ok(file) => BufReader::new(file),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Standing::default()),
         Err(error) => return Err(unreadable(path, error)),
     };
-    let expected = beginning(plan, plan.shard, columns);
-    if !begins_with(path, &mut file, &expected)? {
+    let Some(beginning) = begins(path, &mut file, plan, columns)? else {
         return Ok(Standing::default());
-    }
+    };
     let (per_unit, part) = (plan.rows_per_unit(), plan.part());
+    let bytes = beginning.len() as u64;
     let mut standing = Standing {
         units: 0,
-        bytes: expected.len() as u64,
+        rows: bytes,
+        bytes,
     };
-    let (mut lines, mut length) = (Vec::new(), 0);
+    let mut number_of_line = beginning.iter().filter(|&&byte| byte == b'\n').count();
+    let (mut rows, mut length) = (Vec::new(), 0);
     while let Some(line) = whole_line(path, &mut file)? {
+        number_of_line += 1;
         let unit = part.unit(standing.units);
-        let number = unit * per_unit + lines.len();
+        let number = unit * per_unit + rows.len();
         if standing.units >= part.units(plan.settings.units()) {
             return Err(wrong(path, "it has more rows than the sweep"));
         }
-        if !belongs(plan, number, &line) {
-            let which = standing.units * per_unit + lines.len() + 1;
-            return Err(wrong(path, format!("row {which} is not that of its point")));
-        }
+        let cells = checked_cells(&line, [((), number.to_string())]);
+        let Some(((), cells)) = cells.filter(|(_, cells)| belongs(plan, number, cells)) else {
+            let place = standing.units * per_unit + rows.len();
+            let number = |place| part.unit(place / per_unit) * per_unit + place % per_unit;
+            let why = damage(&line, place, |place| [number(place).to_string()]);
+            return Err(wrong(
+                path,
+                format!("line {number_of_line} is damaged: {why}"),
+            ));
+        };
         length += line.len() as u64 + 1;
-        lines.push(line);
-        if lines.len() == per_unit {
-            for (i, line) in lines.drain(..).enumerate() {
-                kept(unit * per_unit + i, &line);
+        rows.push(cells);
+        if rows.len() == per_unit {
+            for (i, cells) in rows.drain(..).enumerate() {
+                kept(unit * per_unit + i, &cells);
             }
             standing.units += 1;
             standing.bytes += std::mem::take(&mut length);
@@ -108,32 +119,51 @@ pub fn read(
     Ok(standing)
 }
 
-/// Whether a file begins with this; not if it is torn before.
-fn begins_with(path: &Path, file: &mut impl BufRead, expected: &[u8]) -> Result<bool> {
+/// What a file of this sweep begins with, its status aside; nothing if it is torn before its first row.
+fn begins(
+    path: &Path,
+    file: &mut BufReader<File>,
+    plan: &SweepPlan,
+    columns: &[Column<Row>],
+) -> Result<Option<Vec<u8>>> {
+    let marked = beginning(plan, plan.shard, columns, Some(Status::Unfinished));
     let mut found = Vec::new();
-    file.take(expected.len() as u64)
+    file.take(marked.len() as u64)
         .read_to_end(&mut found)
         .map_err(|error| unreadable(path, error))?;
-    if found == expected {
-        return Ok(true);
+    let mut plain = found.clone();
+    if let Some(place) = Status::place(&marked)
+        && let Some(status) = plain.get_mut(place.clone())
+    {
+        status.copy_from_slice(&marked[place]);
     }
-    if expected.starts_with(&found) {
-        return Ok(false);
+    if plain == marked {
+        return Ok(Some(marked));
+    }
+    // What came through a pipe says nothing of how far it is.
+    let bare = beginning(plan, plan.shard, columns, None);
+    if found.starts_with(&bare) {
+        let sought = file.seek(SeekFrom::Start(bare.len() as u64));
+        sought.map_err(|error| unreadable(path, error))?;
+        return Ok(Some(bare));
+    }
+    if marked.starts_with(&plain) || bare.starts_with(&found) {
+        return Ok(None);
     }
     // Another sweep: its remarks to their end say in what it differs.
     let mut rest = Vec::new();
-    file.take(LONGEST_LINE)
+    file.take(LONGEST_HEAD)
         .read_to_end(&mut rest)
         .map_err(|error| unreadable(path, error))?;
     found.extend(rest);
-    let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-    Err(wrong(path, difference(&text(&found), &text(expected))))
+    Err(wrong(path, difference(&found, &marked)))
 }
 
 /// In what the first lines of a file differ from those of this sweep.
-fn difference(found: &str, expected: &str) -> String {
-    let (theirs, ours) = (EarlierRows::read(found), EarlierRows::read(expected));
-    let shard = |rows: &EarlierRows| {
+fn difference(mut found: &[u8], mut expected: &[u8]) -> String {
+    let head = |bytes: &mut &[u8]| Head::read(bytes).unwrap_or_default();
+    let (theirs, ours) = (head(&mut found), head(&mut expected));
+    let shard = |rows: &Head| {
         let remark = rows.remarks.iter().find(|remark| remark.starts_with(SHARD));
         remark.map_or("of the whole sweep".to_owned(), |remark| {
             format!("of the part {}", &remark[SHARD.len()..])
@@ -162,31 +192,28 @@ fn difference(found: &str, expected: &str) -> String {
 
 /// The next line if it is complete.
 pub fn whole_line(path: &Path, file: &mut impl BufRead) -> Result<Option<String>> {
-    let mut line = Vec::new();
-    file.take(LONGEST_LINE)
-        .read_until(b'\n', &mut line)
-        .map_err(|error| unreadable(path, error))?;
-    if line.pop() != Some(b'\n') {
-        return Ok(None);
-    }
-    String::from_utf8(line)
-        .map(Some)
-        .map_err(|_| wrong(path, "a row is no text"))
+    output::whole_line(file).map_err(|error| unreadable(path, error))
 }
 
-/// Whether a line begins with V_H and K of a row of that number.
-fn belongs(plan: &SweepPlan, number: usize, line: &str) -> bool {
+/// Whether cells begin with V_H and K of a row of that number.
+fn belongs(plan: &SweepPlan, number: usize, cells: &[String]) -> bool {
     let units = &plan.system.units;
     let (driving, stiffness) = plan.loading(number);
-    let mut cells = line.split(',');
-    cells.next() == Some(&*shortest(units.outward(Quantity::SlipRate, driving)))
-        && cells.next() == Some(&*shortest(units.outward(Quantity::Stiffness, stiffness)))
+    let expected = [
+        shortest(units.outward(Quantity::SlipRate, driving)),
+        shortest(units.outward(Quantity::Stiffness, stiffness)),
+    ];
+    cells.starts_with(&expected)
 }
 
-/// A row from its line; `None` if the line is none.
-pub fn row(plan: &SweepPlan, columns: &[Column<Row>], number: usize, line: &str) -> Option<Row> {
+/// A row from its cells; `None` if they are not those of a row.
+pub fn row(
+    plan: &SweepPlan,
+    columns: &[Column<Row>],
+    number: usize,
+    cells: &[String],
+) -> Option<Row> {
     let names = views::names(columns, false);
-    let cells = crate::output::cells_of(line)?;
     let cell = |name: &str| {
         let at = names.iter().position(|(one, _)| one == name);
         at.and_then(|at| cells.get(at)).map_or("", String::as_str)
@@ -194,25 +221,16 @@ pub fn row(plan: &SweepPlan, columns: &[Column<Row>], number: usize, line: &str)
     views::sweep_row(number, &cell, &plan.system.units)
 }
 
-/// The regime that the line of a row tells.
-pub fn regime(line: &str) -> &str {
-    line.split(',').nth(2).unwrap_or_default()
+/// The regime that the cells of a row tell.
+pub fn regime(cells: &[String]) -> &str {
+    cells.get(2).map_or("", String::as_str)
 }
 
 /// The remarks of a sweep's file, without `# `.
 pub fn remarks_of(path: &Path) -> Result<Vec<String>> {
     let mut file = BufReader::new(File::open(path).map_err(|error| unreadable(path, error))?);
-    let mut remarks = Vec::new();
-    while let Some(line) = whole_line(path, &mut file)? {
-        match line.strip_prefix("# ") {
-            Some(_) if remarks.len() == MOST_REMARKS => {
-                return Err(wrong(path, "it is not the CSV of a sweep"));
-            }
-            Some(remark) => remarks.push(remark.to_owned()),
-            None => break,
-        }
-    }
-    Ok(remarks)
+    let head = Head::read(&mut file).map_err(|error| unreadable(path, error))?;
+    Ok(head.remarks)
 }
 
 /// The plan of the sweep that a file is of, with its part.

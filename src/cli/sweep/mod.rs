@@ -10,9 +10,8 @@ mod ranks;
 #[cfg(any(feature = "mpi", test))]
 mod wire;
 
-use super::continuation::interrupted;
 use super::report::Report;
-use super::{Ending, interrupt, written};
+use super::{Ending, interrupt, say, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{SweepOptions, SweepPlan};
@@ -49,9 +48,9 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     let (resume, plot) = (options.resume.as_deref(), options.plot.as_deref());
     let report = Report::resuming(&options.output, words, (resume, plot))?;
     if options.output.explain {
-        eprintln!("{}", plan.explain());
+        say(plan.explain());
         if let Some(text) = curves::explain(&plan.curves) {
-            eprintln!("{text}");
+            say(text);
         }
     }
     let columns = views::sweep_columns();
@@ -80,13 +79,14 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
         return written(Err(error), &report.place);
     }
     failure?;
+    out.end(interrupt::asked())?;
     let ending = write(&plan, &report, &out)?;
     if let Some(path) = plot {
         picture::draw(&plan, &report, &out.rows, path)?;
     }
     report.say(out.summary(seconds));
     Ok(match ending {
-        _ if interrupt::asked() => interrupted(&report),
+        _ if interrupt::asked() => Ending::Interrupted,
         Ending::Done if out.undecided() > 0 => Ending::Undecided,
         ending => ending,
     })

@@ -1,15 +1,16 @@
 //! The rows of a sweep on their way out.
 
+use super::super::interrupt;
 use super::super::progress::Progress;
 use super::super::report::{Report, unit_names};
+use super::super::words::{count, several, time};
 use super::file;
 use crate::error::Result;
-use crate::output::{Format, RowWriter};
+use crate::output::{Format, RowWriter, Status};
 use crate::scene::SweepPlan;
 use crate::section::Regime;
 use crate::sweep::Row;
 use crate::views::{self, Column, REGIMES};
-use std::fs::OpenOptions;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -69,17 +70,17 @@ impl<'a> Out<'a> {
     pub fn keep(&mut self, path: &Path, columns: &[Column<Row>]) -> Result<usize> {
         let plan = self.plan;
         let mut unreadable = None;
-        let standing = file::read(path, plan, columns, &mut |number, line| {
-            let name = file::regime(line);
+        let standing = file::read(path, plan, columns, &mut |number, cells| {
+            let name = file::regime(cells);
             let regime = REGIMES.iter().position(|regime| regime.name() == name);
-            let row = self.keeps.then(|| file::row(plan, columns, number, line));
+            let row = self.keeps.then(|| file::row(plan, columns, number, cells));
             match (regime, row) {
                 (Some(regime), None) => self.counts[regime] += 1,
                 (Some(regime), Some(Some(row))) => {
                     self.counts[regime] += 1;
                     self.rows.push(row);
                 }
-                _ => unreadable = Some(line.to_owned()),
+                _ => unreadable = Some(cells.join(",")),
             }
         })?;
         if let Some(line) = unreadable {
@@ -91,30 +92,35 @@ impl<'a> Out<'a> {
 
     /// Begins the table or CSV, or goes on with that of an earlier run after what is whole in it.
     pub fn open(&mut self, resumed: bool) -> io::Result<()> {
-        let place = &self.report.place;
-        let stream = || place.stream().map_err(io::Error::other);
-        let remarks = file::remarks(self.plan, self.plan.shard);
-        self.to = match (self.report.format, place.path()) {
-            (Format::Json, _) => To::Nothing,
-            (Format::Table, _) => {
+        let report = self.report;
+        self.to = match report.format {
+            Format::Json => To::Nothing,
+            Format::Table => {
                 let names = views::names(self.columns, true);
                 let (names, quantities): (Vec<_>, Vec<_>) = names.into_iter().unzip();
                 let units = unit_names(&self.plan.system.units, quantities.into_iter());
-                To::Table(self.report.rows(stream()?, &remarks, &names, &units)?)
+                let remarks = file::remarks(self.plan, self.plan.shard);
+                To::Table(report.begin(remarks, &names, &units)?)
             }
-            (Format::Csv, Some(path)) if resumed && self.torn > 0 => {
-                let file = OpenOptions::new().append(true).open(path)?;
-                file.set_len(self.torn)?;
-                To::Lines(Box::new(file))
-            }
-            (Format::Csv, _) => {
-                let mut to = stream()?;
-                to.write_all(&file::beginning(self.plan, self.plan.shard, self.columns))?;
+            Format::Csv if resumed && self.torn > 0 => To::Lines(report.stream(self.torn)?),
+            Format::Csv => {
+                let mut to = report.stream(0)?;
+                let status = report.file.as_ref().map(|_| Status::Unfinished);
+                let beginning = file::beginning(self.plan, self.plan.shard, self.columns, status);
+                to.write_all(&beginning)?;
                 to.flush()?;
                 To::Lines(to)
             }
         };
         Ok(())
+    }
+
+    /// Says in the file how far its rows are.
+    pub fn end(&self, interrupted: bool) -> Result<()> {
+        self.report.end(match interrupted {
+            true => Status::Unfinished,
+            false => Status::Complete(Some(self.counts.iter().sum())),
+        })
     }
 
     /// The next rows.
@@ -129,6 +135,9 @@ impl<'a> Out<'a> {
         }
         if self.keeps {
             self.rows.extend_from_slice(rows);
+            if matches!(self.to, To::Nothing) {
+                interrupt::holds();
+            }
         }
         self.new += rows.len();
         let all: usize = self.counts.iter().sum();
@@ -171,16 +180,22 @@ impl<'a> Out<'a> {
         let regimes: Vec<String> = self
             .regimes()
             .filter(|(_, count)| *count > 0)
-            .map(|(name, count)| format!("{count} {name}"))
+            .map(|(name, number)| format!("{} {name}", count(number)))
             .collect();
         let earlier = self.counts.iter().sum::<usize>() - self.new;
         let earlier = match earlier {
             0 => String::new(),
-            n => format!(" after {n} of an earlier run"),
+            n => format!(" after {} of an earlier run", count(n)),
         };
         format!(
-            "{} points{earlier} in {seconds:.3} s, {rate:.1} a second: {}",
-            self.new,
+            "{}{earlier} in {}, {} a second: {}",
+            several(self.new, "point", "points"),
+            time(seconds),
+            if rate < 10.0 {
+                format!("{rate:.1}")
+            } else {
+                count(rate as usize)
+            },
             regimes.join(", ")
         )
     }

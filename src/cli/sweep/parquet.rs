@@ -50,7 +50,12 @@ pub fn finish(target: &Path, ending: Ending) -> Result<Ending> {
     }
     let rows = beside(target);
     #[cfg(feature = "parquet")]
-    crate::output::parquet::from_csv(&rows, target, &["returns"], &["regime", "symmetry", "note"])?;
+    crate::output::parquet::from_csv(
+        &rows,
+        target,
+        &["returns", crate::output::ROW_CHECK],
+        &["regime", "symmetry", "note"],
+    )?;
     std::fs::remove_file(&rows).map_err(|error| Error::File {
         action: "remove",
         path: rows,

@@ -63,7 +63,13 @@ impl RosenbrockMethod {
         Self::ALL
             .into_iter()
             .find(|method| method.tableau().name == name)
-            .ok_or_else(|| Error::parameter("method", name, "one of rodas5p, rodas4, rosenbrock23"))
+            .ok_or_else(|| {
+                Error::unknown(
+                    "method",
+                    name,
+                    &Self::ALL.map(|method| method.tableau().name),
+                )
+            })
     }
 }
 

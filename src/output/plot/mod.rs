@@ -50,7 +50,8 @@ impl Kind {
     /// # Errors
     /// [`Error::Input`] for any other than svg and png.
     pub fn of(path: &Path) -> Result<Self> {
-        match path.extension().and_then(|e| e.to_str()) {
+        let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
+        match ending.as_deref() {
             Some("svg") => Ok(Kind::Svg),
             Some("png") => Ok(Kind::Png),
             _ => Err(Error::Input(format!(

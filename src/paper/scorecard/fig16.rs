@@ -92,7 +92,7 @@ fn way(pieces: &Pieces<'_>, torus: &Special) -> Result<Entry> {
         Answer::Word(whether(between, "supercritical", "no torus found")),
     )
     .noted(format!(
-        "by a hair: the cubic coefficient is {:.5}; at V_H = {ABOVE} the distance of returns from \
+        "only just: the cubic coefficient is {:.5}; at V_H = {ABOVE} the distance of returns from \
          the orbit grows from {:.4} to {:.4} and falls from {:.4} to {:.4}, to a torus between; at \
          {BELOW}, where the orbit is stable, returns that begin 0.3 away stay {:.2} away, so that \
          simulations look subcritical",

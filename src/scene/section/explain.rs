@@ -3,6 +3,7 @@
 use super::super::plan::Dimension;
 use super::super::units::Quantity;
 use super::SectionPlan;
+use crate::error::count;
 use crate::integrate::HasSeries;
 use crate::number::polynomial::Crossing;
 use crate::section::LONGEST_PERIOD;
@@ -34,14 +35,16 @@ pub fn explain_section(plan: &SectionPlan) -> String {
         "tolerances",
         format!(
             "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps",
-            plan.tolerances.rtol, plan.tolerances.atol, plan.max_steps
+            plan.tolerances.rtol,
+            plan.tolerances.atol,
+            count(plan.max_steps)
         ),
     );
     line("section", section(plan));
     line(
         "returns",
         format!(
-            "{} after {} that are let pass; a run that does not return for {} {} ends",
+            "{} after {} that are skipped; a run that does not return for {} {} ends",
             plan.returns,
             plan.skip,
             units.outward(Quantity::Time, plan.patience),

@@ -12,7 +12,7 @@ use super::continuation::LocusOptions;
 use super::locus::LocusPlan;
 use super::system::System;
 use super::units::Quantity;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, count};
 use crate::model::Loading;
 use crate::sweep::{Grid, Settings, threads_checked};
 use clap::Parser;
@@ -164,7 +164,7 @@ impl SweepPlan {
         };
         let part = match self.shard {
             None => "all".to_owned(),
-            Some(shard) => format!("part {shard}, {} rows", self.rows()),
+            Some(shard) => format!("part {shard}, {} rows", count(self.rows())),
         };
         let follow = match settings.follow {
             true => {
@@ -187,10 +187,10 @@ impl SweepPlan {
   exponents         {lyapunov}
   bound on work     {} returns, {} steps a point
   rows              written in the order of the grid as soon as all before them are done",
-            settings.points(),
+            count(settings.points()),
             settings.rtol,
-            settings.max_returns,
-            settings.max_steps
+            count(settings.max_returns),
+            count(settings.max_steps)
         )
     }
 }
@@ -224,7 +224,7 @@ fn curves(options: &SweepOptions, system: &System, grid: &Grid) -> Result<Vec<Lo
     }
     let ends = |quantity, range: &crate::sweep::Range| {
         let [from, to] = [range.from, range.to].map(|x| system.units.outward(quantity, x));
-        Some(format!("{from:?},{to:?}"))
+        Some(format!("{from:?}:{to:?}"))
     };
     let mut asked = LocusLine::parse_from(["locus"]).options;
     asked.model.slab = options.slab.clone();

@@ -1,6 +1,6 @@
 //! What a user can set of sweeps; as in `options` above, these fields are the flags and the keys of a scene file.
 
-use super::super::options::{OutputOptions, SlabOptions, number};
+use super::super::options::{OutputOptions, SlabOptions, count, number};
 use crate::integrate::MAX_STEPS;
 use clap::Parser;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub struct SweepOptions {
         help_heading = "Grid"
     )]
     pub stiffness: Option<String>,
-    /// Starts of runs instead of V_H and K: to which attractor each leads at the one V_H and K given
+    /// A grid of starting states instead of one of V_H and K: which attractor each leads to, at one V_H and K
     #[arg(long, requires_all = ["state_1", "state_2"], conflicts_with_all = ["follow", "starts"], help_heading = "Grid")]
     pub basin: bool,
     /// With --basin: the values of psi1 to start from
@@ -49,13 +49,13 @@ pub struct SweepOptions {
     )]
     pub state_2: Option<String>,
     /// Starts at each point, a row for each: the first beside the symmetric steady state, the second with equal interfaces, the
-    /// third far from it, the others drawn by the seed
-    #[arg(long, value_name = "S", default_value_t = 1, help_heading = "Grid")]
+    /// third far from it, the others at random (--seed)
+    #[arg(long, value_name = "S", value_parser = count, default_value_t = 1, help_heading = "Grid")]
     pub starts: usize,
-    /// Seed of the starts: the same seed, the same rows
+    /// Seed of the random starts: the same seed gives the same rows
     #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = "Grid")]
     pub seed: u64,
-    /// Start each point on the attractor of its neighbour at the V_H before: fewer transients, and hysteresis is seen
+    /// Start each point on the attractor found at the V_H before: shorter transients, and hysteresis shows
     #[arg(long, help_heading = "Grid")]
     pub follow: bool,
     /// The largest Lyapunov exponent of every point, not only of those whose regime needs it
@@ -68,15 +68,16 @@ pub struct SweepOptions {
     #[arg(
         long,
         value_name = "N",
+        value_parser = count,
         default_value_t = 2000,
         help_heading = "Numerics"
     )]
     pub max_returns: usize,
     /// A point is undecided after so many steps
-    #[arg(long, value_name = "N", default_value_t = MAX_STEPS, help_heading = "Numerics")]
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
-    /// Threads [default: one a processor]; rows do not depend on them
-    #[arg(long, value_name = "N", help_heading = "Running")]
+    /// Threads [default: one per processor]; rows do not depend on them
+    #[arg(long, value_name = "N", value_parser = count, help_heading = "Running")]
     pub threads: Option<usize>,
     /// Compute only the I-th of N parts of the grid, I from 1; twinslip merge puts the files of all parts together
     #[arg(
@@ -86,7 +87,7 @@ pub struct SweepOptions {
         help_heading = "Running"
     )]
     pub shard: Option<String>,
-    /// Go on with FILE, the CSV of an interrupted run of the same sweep: rows that are complete in it are kept
+    /// Continue FILE, the CSV of an interrupted run of the same sweep: its complete rows are kept
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
     /// Draw the map of regimes as FILE.svg or FILE.png

@@ -1,0 +1,34 @@
+//! The scenes that the program carries: those of the paper's figures, and some more.
+
+use include_dir::{Dir, include_dir};
+
+static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
+
+/// The text of the scene of that name, which is that of its file without the ending.
+pub fn shipped(name: &str) -> Option<&'static str> {
+    SCENES.get_file(format!("{name}.toml"))?.contents_utf8()
+}
+
+/// The names of all, sorted.
+pub fn shipped_names() -> Vec<&'static str> {
+    let stem = |file: &include_dir::File<'static>| file.path().file_stem()?.to_str();
+    let mut names: Vec<&str> = SCENES.files().filter_map(stem).collect();
+    names.sort_unstable();
+    names
+}
+
+/// What a scene shows: the first sentence of the remark at its head.
+pub fn about(text: &str) -> String {
+    let remark: Vec<&str> = text
+        .lines()
+        .map_while(|line| line.strip_prefix('#').map(str::trim))
+        .collect();
+    let remark = remark.join(" ");
+    let end = remark
+        .match_indices(". ")
+        .map(|(i, _)| i)
+        .find(|&i| remark[i + 2..].starts_with(char::is_uppercase));
+    remark[..end.unwrap_or(remark.len())]
+        .trim_end_matches('.')
+        .to_owned()
+}
