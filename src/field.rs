@@ -34,6 +34,12 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
 
+    /// The law by whose name every solution, forwards in time, is known to exist for all time; `None` where that is not known.
+    /// What leaves the range of doubles is then no finite-time singularity.
+    fn lasting(&self) -> Option<&'static str> {
+        None
+    }
+
     /// The field in power series, where it can be written so: what a Taylor integrator steps with.
     fn analytic(&self) -> Option<&dyn Analytic<N>> {
         None

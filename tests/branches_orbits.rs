@@ -8,13 +8,14 @@ mod heard;
 mod returns;
 
 use common::{data, number};
-use heard::{Heard, assert_known, two};
+use heard::{Heard, assert_known, slab, two};
 use returns::returns;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{
-    BranchRequest, BranchRow, Criticality, Event, Label, Parameter, equilibria, orbits,
+    BranchRequest, BranchRow, Criticality, Event, Label, Parameter, Special, equilibria, orbits,
 };
 use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::number::Uncertain;
 
@@ -323,4 +324,95 @@ fn ranges_must_be_positive() {
         ..along_driving(0.14)
     };
     assert!(orbits::branch(&bad, &mut ignored).is_err_and(|e| e.is_input()));
+}
+
+/// Of one interface that ages or slips by (4) all orbits exist at K_c: a conservative system.
+#[test]
+fn branches_of_degenerate_hopf_points_are_vertical() {
+    let parameters = Parameters::heslot_1994();
+    for law in [
+        AnyLaw::DieterichRuina(parameters.dieterich_ruina()),
+        AnyLaw::Slip(parameters.slip()),
+    ] {
+        let slab = slab(law, 1, 1.0, 0.3);
+        let request = BranchRequest::new(slab, Parameter::Stiffness, (0.01, 0.5));
+        let heard = branch(&request);
+        let labels: Vec<Label> = heard.special.iter().map(|s| s.label).collect();
+        assert_eq!(labels, [Label::Hb, Label::Ep], "{:?}", heard.special);
+        let (hopf, end) = (&heard.special[0], &heard.special[1]);
+        let note = end.note.as_deref().expect("a note");
+        assert!(note.starts_with("vertical branch"), "{note}");
+        let critical = hopf.stiffness.value;
+        let off = (end.stiffness.value - critical).abs();
+        assert!(off <= end.stiffness.uncertainty, "{end:?}");
+        assert!(end.stiffness.uncertainty < 1e-8);
+        // The rows are orbits all the same, of all sizes.
+        let periods: Vec<f64> = heard.rows.iter().filter_map(|row| row.period).collect();
+        assert!(periods.len() > 30 && periods[periods.len() - 1] > 2.0 * periods[0]);
+        for row in &heard.rows {
+            assert!((row.stiffness / critical - 1.0).abs() < 1e-10, "{row:?}");
+        }
+    }
+}
+
+/// No fold without a turn: next to a Hopf point that is nearly degenerate K falls, at first by less than what the walk errs by.
+#[test]
+fn a_fold_is_told_of_only_where_the_parameter_turns() {
+    let parameters = Parameters::heslot_1994();
+    for law in [
+        AnyLaw::RegularisedAgeing(parameters.regularised_ageing()),
+        AnyLaw::Bounded(parameters.bounded()),
+    ] {
+        let slab = slab(law, 1, 1.0, 0.3);
+        let request = BranchRequest::new(slab, Parameter::Stiffness, (0.38, 0.5));
+        let heard = branch(&request);
+        let column: Vec<f64> = heard.rows.iter().map(|row| row.stiffness).collect();
+        assert!(column.windows(2).all(|pair| pair[1] < pair[0]));
+        assert_eq!(heard.of(Label::Sn).len(), 0, "{:?}", heard.special);
+    }
+    // And where there are folds, K or V_H turns in the rows.
+    let heard = branch(&along_driving(0.05));
+    let folds = heard.of(Label::Sn);
+    assert!(!folds.is_empty());
+    for fold in folds {
+        let at = heard
+            .rows
+            .iter()
+            .position(|row| row.label == Some(Label::Sn) && row.driving == fold.driving.value);
+        let at = at.expect("a row");
+        let [before, here, after] = [at - 1, at, at + 1].map(|i| heard.rows[i].driving);
+        assert!((here - before) * (here - after) > 0.0, "{fold:?}");
+    }
+}
+
+/// The coefficient of a normal form belongs to the bifurcation: not to the branch along which that was found, nor to its nodes.
+#[test]
+fn coefficients_do_not_depend_on_nodes() {
+    let along_stiffness = BranchRequest::new(two(3.9, 0.2), Parameter::Stiffness, (0.1, 0.5));
+    let heard = branch(&along_stiffness);
+    let [one] = heard.of(Label::Pf)[..] else {
+        panic!("{:?}", heard.special);
+    };
+    let known = |special: &Special| {
+        let (value, uncertainty) = (special.coefficient, special.coefficient_uncertainty);
+        Uncertain::new(value.expect("one"), uncertainty.expect("its error"))
+    };
+    for step in [1.0, 0.4] {
+        let along_driving = BranchRequest {
+            step,
+            ..BranchRequest::new(
+                two(1.0, one.stiffness.value),
+                Parameter::Driving,
+                (2.0, 8.0),
+            )
+        };
+        let heard = branch(&along_driving);
+        let other = heard.nearest(Label::Pf, 3.9);
+        assert!((other.driving.value / 3.9 - 1.0).abs() < 1e-10);
+        assert_eq!(one.criticality, other.criticality);
+        let (a, b) = (known(one), known(other));
+        let off = (a.value - b.value).abs();
+        assert!(off <= a.uncertainty + b.uncertainty, "{a:?}, {b:?}");
+        assert!(a.uncertainty < 1e-6 * a.value.abs(), "{a:?}");
+    }
 }

@@ -73,6 +73,19 @@ fn parameters_outside_their_domain_are_refused() {
         &model("--rtol 1"),
         "rtol is 1, but must be at least 1e-16 and less than 1",
     );
+    for atol in ["0", "1", "1e300"] {
+        refused(
+            &model(&format!("--atol {atol}")),
+            &format!("atol is {atol}, but must be greater than 0 and less than 1"),
+        );
+    }
+    for command in [
+        "section --driving 10 --stiffness 0.14 --atol 1e300",
+        "orbit --driving 10 --stiffness 0.14 --atol 1e300",
+        "orbit --driving 10 --stiffness 0.14 --rtol 1e-8 --atol 1e300",
+    ] {
+        refused(command, "atol is 1e300, but must be");
+    }
     refused(
         &model("--law byerlee"),
         "law is byerlee, but must be one of spinodal",
@@ -639,4 +652,19 @@ fn help_shows_an_example_that_runs() {
             assert!(status.success(), "{line}");
         }
     }
+}
+
+/// No orbit is looked for without end: the message names the bound.
+#[test]
+fn a_search_for_an_orbit_ends() {
+    let ended = twinslip("orbit --driving 10 --stiffness 1e-6 --crosscheck none");
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    assert!(
+        ended.err.contains("steps, as many as a search may take"),
+        "{}",
+        ended.err
+    );
+    // One step in an arc leads nowhere, at once.
+    let ended = twinslip("orbit --driving 1.831e-38 --stiffness 0.56 --max-steps 1");
+    assert_eq!(ended.code, 1, "{}", ended.err);
 }

@@ -262,7 +262,7 @@ fn what_is_no_orbit_is_said() {
         &query(symmetry),
         &taylor(),
     ) {
-        Err(Error::NoOrbit { what, hint }) => format!("{what}; {hint}"),
+        Err(Error::NoOrbit { what, hint, .. }) => format!("{what}; {hint}"),
         other => panic!("{other:?}"),
     };
     // Beyond all Hopf points.

@@ -2,14 +2,19 @@
 #![allow(missing_docs)]
 
 use std::ops::ControlFlow::{Break, Continue};
-use twinslip::bifurcation::orbits::{Met, Watch, follow};
-use twinslip::field::State;
+use twinslip::Error;
+use twinslip::bifurcation::Criticality;
+use twinslip::bifurcation::orbits::normal_form::{Form, normal_form};
+use twinslip::bifurcation::orbits::{End, Met, Watch, follow};
+use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
 use twinslip::model::classics::{Brusselator, Langford, Roessler, VanDerPol};
+use twinslip::number::Real;
 use twinslip::orbit::{
     Condition, Corrector, Family, Goal, Indicator, OverParameters, Path, Polygon, Site, Tracer,
     Walk,
 };
+use twinslip::series::Equations;
 
 /// The orbit that a run settles on, of about this period.
 fn settled<F: Family<N>, const N: usize>(
@@ -64,7 +69,8 @@ fn first<F: Family<3>>(
             Met::Orbit(pace) if pace.here.site.at[free] > end => Break(()),
             Met::Orbit(_) => Continue(()),
         },
-    );
+    )
+    .expect("a branch");
     let site = found?;
     let meets = [Condition::Indicator(watch)];
     let sharp = corrector.correct(site, &[free], &meets, Goal::SHARP);
@@ -93,6 +99,22 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
     assert!(error < 1e-10, "{error}");
     let period = torus.polygon.period() * 3.5 / std::f64::consts::TAU;
     assert!((period - 1.0).abs() < 1e-12);
+    // In (r, z) that is a Hopf point, with R' = a R^3 in x = z - 0.7, y = k (r - r_0): Guckenheimer, J. and Holmes, P. (1983).
+    // Nonlinear Oscillations, Dynamical Systems, and Bifurcations of Vector Fields, (3.4.11).
+    let rho = Langford::torus();
+    let (radius, c) = (Langford::radius(rho), 1.0 + 0.7 * rho);
+    let k = (2.0 * c).sqrt();
+    let (f_xx, f_yy, f_xy) = (-1.4, -2.0 * c / (k * k), -2.0 * rho * radius / k);
+    let (f_xxx, f_xyy) = (-2.0, -2.0 * rho / (k * k));
+    let frequency = k * radius;
+    let a = (f_xxx + f_xyy) / 16.0 + f_xy * (f_xx + f_yy) / (16.0 * frequency);
+    // Of an eigenvector of length 1, around the orbit once.
+    let exact = 4.0 * a * k * k / (1.0 + k * k) * torus.polygon.period();
+    let (coefficient, criticality) = normal_form(&family, &torus, Form::Torus);
+    let off = (coefficient.value - exact).abs();
+    assert!(off <= coefficient.uncertainty, "{coefficient:?}, {exact}");
+    assert!(off < 1e-7 * exact.abs(), "{coefficient:?}, {exact}");
+    assert_eq!(criticality, Criticality::Supercritical);
 }
 
 #[test]
@@ -143,7 +165,8 @@ fn roesslers_orbit_doubles_its_period_and_again() {
             }
             Met::Orbit(_) => Continue(()),
         },
-    );
+    )
+    .expect("a branch");
     let next = cascade.expect("a second doubling");
     assert!((3.7..3.9).contains(&next.at[1]), "{}", next.at[1]);
     let ratio = next.polygon.period() / doubling.polygon.period();
@@ -194,4 +217,212 @@ fn brusselators_orbits_begin_with_the_period_of_their_hopf_point() {
     let off = [&near, &nearer].map(|site| site.polygon.period() - tau);
     assert!(off[0].abs() < 0.05, "{off:?}");
     assert!((off[0] / off[1] / 5.0 - 1.0).abs() < 0.15, "{off:?}");
+}
+
+/// Roessler's equations with a fourth one that has nothing to do with them: w' = -w / 10.
+#[derive(Debug, Clone, Copy)]
+struct WithAnother([f64; 2]);
+
+impl VectorField<4> for WithAnother {
+    fn f(&self, y: &State<4>) -> State<4> {
+        let [a, c] = self.0;
+        State::<4>::new(
+            -y[1] - y[2],
+            y[0] + a * y[1],
+            0.2 + y[2] * (y[0] - c),
+            -0.1 * y[3],
+        )
+    }
+
+    fn jacobian(&self, y: &State<4>) -> Jacobian<4> {
+        let [a, c] = self.0;
+        #[rustfmt::skip]
+        let jacobian = Jacobian::<4>::new(
+            0.0, -1.0, -1.0, 0.0,
+            1.0, a, 0.0, 0.0,
+            y[2], 0.0, y[0] - c, 0.0,
+            0.0, 0.0, 0.0, -0.1,
+        );
+        jacobian
+    }
+
+    fn second_derivative(&self, _: &State<4>, u: &State<4>, v: &State<4>) -> State<4> {
+        State::<4>::new(0.0, 0.0, u[0] * v[2] + u[2] * v[0], 0.0)
+    }
+}
+
+struct FourOfThem;
+
+impl Family<4> for FourOfThem {
+    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<4> + '_> {
+        Box::new(WithAnother(at))
+    }
+
+    fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        at
+    }
+
+    fn scale(&self, _: [f64; 2]) -> [f64; 2] {
+        [1.0; 2]
+    }
+}
+
+/// Trace and determinant of a return map of three dimensions are no sum and product of two multipliers.
+#[test]
+fn indicators_are_refused_where_they_are_no_test_functions() {
+    let family = FourOfThem;
+    let choice = Choice::named("rodas5p").expect("a method");
+    let tolerances = Tolerances::equal(1e-10).expect("tolerances");
+    let mut corrector = Corrector::<_, 4>::by(
+        &family,
+        Tracer::new(choice, tolerances, MAX_STEPS).expect("a tracer"),
+    );
+    let at = [0.2, 2.5];
+    let field = family.field(at);
+    let start = State::<4>::new(-3.0, 0.0, 0.1, 0.0);
+    let tracer = &mut corrector.tracer;
+    let start = tracer.flow(&*field, &start, 100.0, None).expect("a run");
+    let polygon = Polygon::along(tracer, &*field, &start, 5.75).expect("a polygon");
+    drop(field);
+    let held = [Condition::Parameter(1, 2.5)];
+    // The orbit itself is found in any dimension.
+    let orbit = corrector
+        .correct(Site { polygon, at }, &[1], &held, Goal::STEP)
+        .expect("an orbit");
+    assert!((orbit.site.polygon.period() - 5.75).abs() < 0.05);
+    assert_eq!(orbit.spectrum.dimension, 4);
+    assert!(matches!(
+        orbit.spectrum.log_multipliers(),
+        Err(Error::Dimension { dimension: 4, .. })
+    ));
+    let indicators = [
+        Indicator::Fold,
+        Indicator::Doubling,
+        Indicator::Torus,
+        Indicator::Trace(-2.0),
+        Indicator::Across,
+    ];
+    for indicator in indicators {
+        let refused = |error: Error| {
+            assert!(
+                matches!(error, Error::Dimension { dimension: 4, .. }),
+                "{indicator:?}: {error}"
+            );
+            assert!(error.is_input());
+        };
+        let site = orbit.site.clone();
+        let meets = [Condition::Indicator(indicator)];
+        refused(
+            corrector
+                .correct(site.clone(), &[1], &meets, Goal::STEP)
+                .unwrap_err(),
+        );
+        refused(corrector.look(site.clone(), &[1], &meets).unwrap_err());
+        let direction = orbit.along[0].clone();
+        let path = Path::locus(indicator, 0.3);
+        let begun = Walk::from(&mut corrector, path, site.clone(), direction.clone());
+        refused(begun.err().expect("no walk"));
+        let mut walk =
+            Walk::from(&mut corrector, Path::branch(1, 0.3), site, direction).expect("a walk");
+        let watches = [Watch::Indicator(indicator)];
+        refused(follow(&mut walk, &watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
+    }
+    // In the plane there are neither period doublings nor tori.
+    for indicator in [Indicator::Doubling, Indicator::Torus] {
+        assert!(indicator.checked::<2>().is_err() && indicator.checked::<3>().is_ok());
+    }
+}
+
+/// Of an orbit's branch until it ends, leaves the range or has so many orbits: why, and the orbits' parameter and extent.
+fn along<F: Family<N>, const N: usize>(
+    family: &F,
+    site: Site<N>,
+    (free, sign): (usize, f64),
+    range: (f64, f64),
+    most: usize,
+) -> (End, Vec<(f64, f64)>) {
+    let mut corrector = Corrector::new(family, 1e-11).expect("a corrector");
+    let path = Path::branch(free, 0.3);
+    let here = corrector.look(site, &path.free, &[]).expect("an orbit");
+    let mut direction = here.along[0].clone();
+    if direction.parameters[free] * sign < 0.0 {
+        direction = direction.scaled(-1.0);
+    }
+    let mut walk = Walk::from(&mut corrector, path, here.site, direction).expect("a walk");
+    let mut orbits = Vec::new();
+    let end = follow(&mut walk, &[], most, &mut |_, _, met| {
+        if let Met::Orbit(pace) = met {
+            let site = &pace.here.site;
+            orbits.push((site.at[free], site.polygon.extent()));
+            if !(range.0..range.1).contains(&site.at[free]) || site.polygon.extent() < 0.02 {
+                return Break(());
+            }
+        }
+        Continue(())
+    });
+    (end.expect("a branch"), orbits)
+}
+
+/// The reaction A -> B -> C in a stirred tank, in (p_1, p_3): Uppal, A., Ray, W. H. and Poore, A. B. (1974). On the dynamic
+/// behavior of continuous stirred tank reactors. Chem. Eng. Sci. 29, 967-985; with the numbers of AUTO's demo `abc`.
+#[derive(Debug, Clone, Copy)]
+struct Reaction;
+
+impl Equations<3> for Reaction {
+    fn rates<T: Real>(&self, [u, v, w]: [T; 3], [p1, p3]: [T; 2]) -> [T; 3] {
+        let one = T::constant(1.0);
+        let rate = p1 * w.exp();
+        let first = rate * (one - u);
+        let second = rate * v * 0.04;
+        [
+            first - u,
+            first - v - second,
+            (first + second) * 8.0 - w - p3 * w,
+        ]
+    }
+}
+
+/// v' = v - v^3/3 - w + I, w' = eps (v + 0.7 - 0.8 w), in (I, eps): FitzHugh, R. (1961). Biophys. J. 1, 445-466.
+#[derive(Debug, Clone, Copy)]
+struct FitzHughNagumo;
+
+impl Equations<2> for FitzHughNagumo {
+    fn rates<T: Real>(&self, [v, w]: [T; 2], [current, eps]: [T; 2]) -> [T; 2] {
+        [v - v * v * v / 3.0 - w + current, eps * (v - w * 0.8 + 0.7)]
+    }
+}
+
+/// On other scales steps are shorter; a branch ends where it gets nowhere, not where steps are short.
+#[test]
+fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
+    let family = OverParameters(Reaction);
+    let start = State::<3>::new(0.5, 0.4, 2.0);
+    let site = settled(&family, [0.21, 1.55], start, (400.0, 7.1585));
+    let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
+    // Down to the Hopf point, and up for as long as is asked.
+    let (end, orbits) = along(&family, site.clone(), (0, -1.0), (0.1, 0.4), 150);
+    let last = orbits.last().expect("orbits");
+    assert!(end == End::Told && last.1 < 0.02, "{end:?}, {last:?}");
+    let (end, orbits) = along(&family, site, (0, 1.0), (0.1, 0.4), 60);
+    assert!(
+        orbits.len() >= 60 || end == End::Told,
+        "{end:?}, {}",
+        orbits.len()
+    );
+    // Through the canards, of steps that shrink by decades and grow again, to the Hopf point v = -sqrt(1 - 0.8 eps).
+    let family = OverParameters(FitzHughNagumo);
+    let start = State::<2>::new(1.0, 0.0);
+    for (eps, period) in [(0.08, 39.47), (0.02, 122.1)] {
+        let site = settled(&family, [0.5, eps], start, (2000.0, period));
+        let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
+        let (end, orbits) = along(&family, site, (0, -1.0), (0.0, 0.6), 600);
+        let &(current, extent) = orbits.last().expect("orbits");
+        assert!(
+            end == End::Told && extent < 0.02,
+            "{eps}: {end:?}, {extent}"
+        );
+        let v = -(1.0 - 0.8 * eps).sqrt();
+        let hopf = (v + 0.7) / 0.8 - v + v * v * v / 3.0;
+        assert!((current - hopf).abs() < 1e-4, "{current}, {hopf}");
+    }
 }

@@ -2,6 +2,8 @@
 #![allow(missing_docs)]
 
 mod drawn;
+#[path = "drawn/looks.rs"]
+mod looks;
 #[path = "drawn/sweeps.rs"]
 mod sweeps;
 

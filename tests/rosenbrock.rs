@@ -346,7 +346,7 @@ fn a_finite_time_singularity_is_found_where_it_is() {
         (RosenbrockMethod::Ros23, 1e-8, 1e-2),
     ] {
         let outcome = integrator::<3>(method, tolerance).flow(&*field, (0.0, 300.0), &start, None);
-        let Err(Error::BlowUp { t, rate }) = outcome else {
+        let Err(Error::BlowUp { t, rate, .. }) = outcome else {
             panic!("{method:?}: {outcome:?}");
         };
         println!("{method:?}: t = {t:.12}, rate {rate:e}");

@@ -35,7 +35,9 @@ fn check_outcome(name: &str, outcome: Result<Vec<f64>>, work: Work) {
         Ok(values) => assert!(values.iter().all(|x| x.is_finite()), "{name}: {values:?}"),
         Err(Error::TooManySteps { t, .. } | Error::NonFinite { t, .. }) => assert!(t.is_finite()),
         Err(Error::StepTooSmall { t, h }) => assert!(t.is_finite() && h.is_finite(), "{name}"),
-        Err(Error::BlowUp { t, rate }) => assert!(t.is_finite() && rate.is_finite(), "{name}"),
+        Err(Error::BlowUp { t, rate, .. } | Error::TooFast { t, rate, .. }) => {
+            assert!(t.is_finite() && rate.is_finite(), "{name}")
+        }
         Err(other) => panic!("{name}: {other:?}"),
     }
 }
@@ -114,5 +116,42 @@ fn where_the_field_ends_the_flow_ends() {
         assert!((t - 1.0).abs() < 1e-12, "{method:?}: {t}");
         let tangent = rosenbrock.tangent_flow(&Cliff, (0.0, 2.0), &State::zeros());
         assert!(matches!(tangent, Err(Error::StepTooSmall { .. })));
+    }
+}
+
+/// y' = -y, in any dimension.
+struct Decay;
+
+impl<const N: usize> VectorField<N> for Decay {
+    fn f(&self, y: &State<N>) -> State<N> {
+        -y
+    }
+    fn jacobian(&self, _: &State<N>) -> Jacobian<N> {
+        -Jacobian::<N>::identity()
+    }
+    fn second_derivative(&self, _: &State<N>, _: &State<N>, _: &State<N>) -> State<N> {
+        State::zeros()
+    }
+}
+
+/// Matrices stand on the stack, two megabytes of which are all that a thread has here.
+#[test]
+fn what_the_stack_cannot_hold_is_refused() {
+    const MOST: usize = Rosenbrock::<1>::MAX_DIMENSION;
+    const MOST_TANGENT: usize = Rosenbrock::<1>::MAX_TANGENT_DIMENSION;
+    let tolerances = Tolerances::equal(1e-6).unwrap();
+    for method in RosenbrockMethod::ALL {
+        let refused = Rosenbrock::<400>::new(method, tolerances, LIMIT);
+        assert!(refused.is_err_and(|error| error.is_input()));
+        let mut rosenbrock = Rosenbrock::<MOST>::new(method, tolerances, LIMIT).unwrap();
+        let end = rosenbrock.flow(&Decay, (0.0, 1.0), &State::repeat(1.0), None);
+        assert!((end.unwrap()[MOST - 1] - (-1.0_f64).exp()).abs() < 1e-4);
+        let refused = rosenbrock.tangent_flow(&Decay, (0.0, 1.0), &State::repeat(1.0));
+        assert!(refused.is_err_and(|error| error.is_input()));
+        let mut rosenbrock = Rosenbrock::<MOST_TANGENT>::new(method, tolerances, LIMIT).unwrap();
+        let (_, tangent) = rosenbrock
+            .tangent_flow(&Decay, (0.0, 1.0), &State::repeat(1.0))
+            .unwrap();
+        assert!((tangent[(0, 0)] - (-1.0_f64).exp()).abs() < 1e-4);
     }
 }

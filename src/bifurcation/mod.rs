@@ -198,8 +198,11 @@ pub struct Special {
     pub period: Option<Uncertain>,
     /// Where the bifurcation has one.
     pub criticality: Option<Criticality>,
-    /// The normal form's coefficient whose sign that is.
+    /// The normal form's coefficient whose sign that is. Of orbits that of [`orbits::normal_form::normal_form`], for an eigenvector whose
+    /// mean square over the period is 1.
     pub coefficient: Option<f64>,
+    /// The coefficient may be off by this, where that is known.
+    pub coefficient_uncertainty: Option<f64>,
     /// Why the branch ends here, or what else is to be said.
     pub note: Option<String>,
     /// The orbit there, where it is one of an orbit: what a second method begins with.
@@ -218,6 +221,7 @@ impl Special {
             period: None,
             criticality: None,
             coefficient: None,
+            coefficient_uncertainty: None,
             note: None,
             orbit: None,
         }

@@ -5,14 +5,14 @@ use super::report::{self, Report, unit_names};
 use super::stream::Out;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::{Cell, Format, Place, Rows, object, plot};
 use crate::scene::{
     Column, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, System, explain,
 };
 use crate::views;
 use serde_json::{Map, Value, json};
-use std::io::Write;
+use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 const EVENT_COLUMNS: [(&str, Quantity); 8] = [
@@ -31,8 +31,9 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     if let Some(path) = &options.plot {
         plot::Kind::of(path)?;
     }
-    let events_path = events_path(options);
-    let others: Vec<&Path> = [options.plot.as_deref(), events_path.as_deref()]
+    let events = events_place(options)?;
+    let events_path = events.as_ref().map(|(path, _)| path.as_path());
+    let others: Vec<&Path> = [options.plot.as_deref(), events_path]
         .into_iter()
         .flatten()
         .collect();
@@ -68,7 +69,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
-    let ending = write(&plan, &report, &rows, &outcome, events_path.as_deref())?;
+    let ending = write(&plan, &report, &rows, &outcome, events.as_ref())?;
     if let Some(path) = &options.plot {
         plot::write(path, &picture(&plan, &drawn))?;
     }
@@ -91,23 +92,41 @@ fn numerics(plan: &Plan) -> Value {
     })
 }
 
-/// The file of the events table, beside the file of the rows; `None` where events are in the object or follow on the
-/// standard output.
-fn events_path(options: &IntegrateOptions) -> Option<PathBuf> {
-    let file = options
-        .output
+/// The file of the events table: the one that is named, or one beside the file of the rows; `None` where events are in the
+/// object, or below the table on the standard output.
+///
+/// # Errors
+/// [`Error::Input`] where events would stand below the rows of one CSV, and where a file is named for those of an object.
+fn events_place(options: &IntegrateOptions) -> Result<Option<(PathBuf, Format)>> {
+    let Some(named) = &options.events else {
+        return Ok(None);
+    };
+    let named = Some(named.clone()).filter(|path| !path.as_os_str().is_empty());
+    let output = &options.output;
+    let file = output
         .output
         .as_deref()
-        .filter(|path| *path != Path::new("-"))?;
-    let named = options.output.format.as_deref();
-    let is_object = Format::choose(named, Some(file), false).ok()? == Format::Json;
-    if !options.events || is_object {
-        return None;
+        .filter(|path| *path != Path::new("-"));
+    let terminal = std::io::stdout().is_terminal();
+    let format = Format::choose(output.format.as_deref(), file, terminal)?;
+    match (format, named, file) {
+        (Format::Json, Some(named), _) => Err(Error::Input(format!(
+            "--events {}: a JSON object holds its events itself; leave the file out",
+            named.display()
+        ))),
+        (Format::Json, None, _) | (Format::Table, None, None) => Ok(None),
+        (_, Some(named), _) => Ok(Some((named, Format::Csv))),
+        (Format::Csv, None, None) => Err(Error::Input(
+            "--events needs a file of its own where rows go to standard output as CSV: --events FILE, or -o FILE, --format json or --format table"
+                .into(),
+        )),
+        (_, None, Some(file)) => {
+            let mut name = file.file_stem().unwrap_or_default().to_owned();
+            name.push(".events.");
+            name.push(file.extension().unwrap_or("csv".as_ref()));
+            Ok(Some((file.with_file_name(name), format)))
+        }
     }
-    let mut name = file.file_stem()?.to_owned();
-    name.push(".events.");
-    name.push(file.extension().unwrap_or("csv".as_ref()));
-    Some(file.with_file_name(name))
 }
 
 /// The object, or the events after the rows.
@@ -116,7 +135,7 @@ fn write(
     report: &Report<'_>,
     rows: &Rows,
     outcome: &Outcome,
-    events_path: Option<&Path>,
+    events: Option<&(PathBuf, Format)>,
 ) -> Result<Ending> {
     if report.format == Format::Json {
         let bytes = report.envelope(
@@ -131,10 +150,10 @@ fn write(
     if plan.events.is_none() {
         return Ok(Ending::Done);
     }
-    let place = Place::new(events_path);
+    let place = Place::new(events.map(|(path, _)| path.as_path()));
     let mut to = place.stream()?;
     let mut remarks = Vec::new();
-    let begun = if events_path.is_some() {
+    let begun = if events.is_some() {
         remarks = report.remarks(&plan.system, &numerics(plan));
         Ok(())
     } else {
@@ -142,8 +161,9 @@ fn write(
     };
     let columns = EVENT_COLUMNS.map(|(name, _)| name.to_owned());
     let units = unit_names(&plan.system.units, EVENT_COLUMNS.iter().map(|(_, q)| *q));
+    let format = events.map_or(report.format, |(_, format)| *format);
     let all = begun
-        .and_then(|()| report.rows(to, &remarks, &columns, &units))
+        .and_then(|()| report.rows_as(format, to, &remarks, &columns, &units))
         .and_then(|mut writer| {
             let mut events = outcome.events.iter();
             events.try_for_each(|event| writer.row(&cells(event, &plan.system)))

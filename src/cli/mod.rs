@@ -192,7 +192,7 @@ fn shortened(text: String) -> String {
 
 /// What a scene file or the command line asks for.
 fn compute(command: &scene::Command, words: &[String]) -> Result<Ending, Error> {
-    match command {
+    let ended = match command {
         scene::Command::Law(options) => law::run(options, words),
         scene::Command::Integrate(options) => integrate::run(options, words),
         scene::Command::Equilibria(options) => equilibria::run(options, words),
@@ -201,7 +201,12 @@ fn compute(command: &scene::Command, words: &[String]) -> Result<Ending, Error> 
         scene::Command::Branch(options) => branch::run(options, words),
         scene::Command::Locus(options) => locus::run(options, words),
         scene::Command::Sweep(options) => sweep::run(options, words),
-    }
+    };
+    ended.map_err(|error| {
+        command
+            .units()
+            .map_or(error.clone(), |units| units.told(error))
+    })
 }
 
 /// A failed write: to a file it is an error, to a pipe that nobody reads the end.

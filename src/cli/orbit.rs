@@ -3,17 +3,17 @@
 use super::equilibria::symmetry as symmetry_name;
 use super::report::{self, Report, unit_names};
 use super::words::several;
-use super::{Ending, say, written};
+use super::{Ending, progress, say, written};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
-use crate::integrate::{Choice, Tolerances};
+use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{
     Accuracy, Begin, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
 };
 use crate::output::{self, Cell, Format};
-use crate::scene::{OrbitOptions, Quantity, System, start};
+use crate::scene::{OrbitOptions, Quantity, System, start, tolerances};
 use serde_json::{Value, json};
 
 /// What is to be done, checked.
@@ -69,9 +69,9 @@ impl Plan {
         }
         accuracy.max_steps = options.max_steps;
         if let Some(rtol) = options.rtol {
-            accuracy.tolerances = Tolerances::new(rtol, options.atol.unwrap_or(rtol))?;
+            accuracy.tolerances = tolerances(rtol, options.atol)?;
         } else if let Some(atol) = options.atol {
-            accuracy.tolerances = Tolerances::new(accuracy.tolerances.rtol, atol)?;
+            accuracy.tolerances = tolerances(accuracy.tolerances.rtol, Some(atol))?;
         }
         Ok(Plan {
             slab: Slab {
@@ -119,7 +119,7 @@ impl Plan {
             self.accuracy.tolerances.rtol
         ));
         say(
-            "  uncertainties     the budget of all arcs, and a second solution at other nodes and 8 times looser",
+            "  uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser",
         );
         match &self.second {
             Some(second) => say(format_args!(
@@ -170,12 +170,17 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     if options.output.explain {
         plan.explain();
     }
-    let Found { orbit, others } = find(&plan.slab, &plan.query, &plan.accuracy)?;
+    let searched = || find(&plan.slab, &plan.query, &plan.accuracy);
+    let Found { orbit, others } =
+        progress::during(report.quiet, "looking for the orbit", searched)?;
     let mut trouble = None;
     let checked = plan.second.as_ref().and_then(|second| {
-        crosscheck(&plan.slab, &orbit, second)
-            .map_err(|error| trouble = Some((second.method.name(), error)))
-            .ok()
+        let words = format!("once more, by {}", second.method.name());
+        progress::during(report.quiet, &words, || {
+            crosscheck(&plan.slab, &orbit, second)
+        })
+        .map_err(|error| trouble = Some((second.method.name(), error)))
+        .ok()
     });
     if let Some((name, error)) = &trouble {
         report.say(format!("the crosscheck by {name} failed: {error}"));

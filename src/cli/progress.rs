@@ -2,6 +2,8 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 /// Runs shorter than this show nothing.
@@ -73,4 +75,33 @@ impl Progress {
         }
         self.begun.elapsed()
     }
+}
+
+/// Shows these words while something runs of which nothing is known but that it has not ended.
+pub fn during<T>(quiet: bool, words: &str, run: impl FnOnce() -> T) -> T {
+    /// Between two turns of the spinner.
+    const TURN: Duration = Duration::from_millis(120);
+    if quiet || !std::io::stderr().is_terminal() {
+        return run();
+    }
+    let (done, end) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        scope.spawn(move || {
+            if end.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+                return;
+            }
+            let style = ProgressStyle::with_template("{spinner} {msg}  {elapsed}")
+                .expect("the template is valid");
+            let bar = ProgressBar::new_spinner()
+                .with_style(style)
+                .with_message(words.to_owned());
+            while end.recv_timeout(TURN) == Err(RecvTimeoutError::Timeout) {
+                bar.tick();
+            }
+            bar.finish_and_clear();
+        });
+        let made = run();
+        drop(done);
+        made
+    })
 }

@@ -184,7 +184,19 @@ impl<'a> Report<'a> {
         columns: &[String],
         units: &[String],
     ) -> std::io::Result<Box<dyn RowWriter>> {
-        Ok(match self.format {
+        self.rows_as(self.format, to, remarks, columns, units)
+    }
+
+    /// The same in another format than the command's rows.
+    pub fn rows_as(
+        &self,
+        format: Format,
+        to: Box<dyn std::io::Write>,
+        remarks: &[String],
+        columns: &[String],
+        units: &[String],
+    ) -> std::io::Result<Box<dyn RowWriter>> {
+        Ok(match format {
             Format::Table => self.table(to, columns, units)?,
             Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
         })
@@ -230,7 +242,7 @@ impl<'a> Report<'a> {
             numerics,
             result,
             work,
-            error: error.map(Error::to_string),
+            error: error.map(|error| system.units.told(error.clone()).to_string()),
         };
         let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
         bytes.push(b'\n');

@@ -65,6 +65,7 @@ pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Speci
         period: uncertain("period", Quantity::Time),
         criticality: criticality(cell),
         coefficient: cell("coefficient").parse().ok(),
+        coefficient_uncertainty: cell("coefficient_uncertainty").parse().ok(),
         note: Some(cell("note")).filter(|note| !note.is_empty()),
         orbit: None,
     })

@@ -35,6 +35,10 @@ impl Law for Bounded {
         self.as_limit()
     }
 
+    fn name(&self) -> &'static str {
+        "bounded"
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.as_limit().activation(tau)
@@ -76,6 +80,10 @@ impl Law for Bounded {
     // V_M = 1 / (R (beta - 1))  (7)
     fn steady_extrema(&self) -> Vec<f64> {
         self.as_limit().steady_extrema()
+    }
+
+    fn lasts(&self) -> bool {
+        true
     }
 
     fn bounds_state(&self) -> bool {

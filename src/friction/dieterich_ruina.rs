@@ -20,6 +20,10 @@ impl Law for DieterichRuina {
         *self
     }
 
+    fn name(&self) -> &'static str {
+        "dieterich-ruina"
+    }
+
     // exp(-a_v/a) = gamma0 / 2
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {

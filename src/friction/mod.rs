@@ -48,6 +48,9 @@ pub trait Law: Copy + Debug + Send + Sync {
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 
+    /// The name by which the command line knows the law.
+    fn name(&self) -> &'static str;
+
     /// s(tau), the activation by the stress. Same sign as the slip rate.
     fn activation<T: Real>(&self, tau: T) -> T;
 
@@ -77,6 +80,12 @@ pub trait Law: Copy + Debug + Send + Sync {
 
     /// Whether the evolution keeps psi in (0, 1].
     fn bounds_state(&self) -> bool {
+        false
+    }
+
+    /// Whether every motion that it allows, forwards in time, exists for all time. Where v has the sign of tau the stress can't
+    /// pass through zero, so that the slip in a time t stays below |tau_0|/K + V_H t, and psi above a bound: then it does.
+    fn lasts(&self) -> bool {
         false
     }
 
@@ -187,6 +196,16 @@ impl Parameters {
     }
 }
 
+/// ln psi beside that of a steady state, by so much; towards less where more would leave the states of the law.
+pub(crate) fn beside(law: &impl Law, log_state: f64, by: f64) -> f64 {
+    let moved = log_state + by;
+    if law.bounds_state() && moved > 0.0 {
+        log_state - by.abs()
+    } else {
+        moved
+    }
+}
+
 /// A positive and finite number, or an error that names it.
 pub(crate) fn positive(name: &str, value: f64) -> Result<f64> {
     if value > 0.0 && value.is_finite() {
@@ -252,13 +271,7 @@ impl AnyLaw {
 
     /// The name by which the command line knows this law.
     pub fn name(&self) -> &'static str {
-        match self {
-            AnyLaw::Spinodal(_) => "spinodal",
-            AnyLaw::Bounded(_) => "bounded",
-            AnyLaw::RegularisedAgeing(_) => "regularised-ageing",
-            AnyLaw::DieterichRuina(_) => "dieterich-ruina",
-            AnyLaw::Slip(_) => "slip",
-        }
+        Law::name(self)
     }
 }
 
@@ -266,6 +279,9 @@ impl Law for AnyLaw {
     type Core = AnyLaw;
     fn core(&self) -> AnyLaw {
         *self
+    }
+    fn name(&self) -> &'static str {
+        with_law!(self, law => law.name())
     }
     fn activation<T: Real>(&self, tau: T) -> T {
         with_law!(self, law => law.activation(tau))
@@ -296,6 +312,9 @@ impl Law for AnyLaw {
     }
     fn bounds_state(&self) -> bool {
         with_law!(self, law => law.bounds_state())
+    }
+    fn lasts(&self) -> bool {
+        with_law!(self, law => law.lasts())
     }
     fn transition_rate(&self) -> Option<f64> {
         with_law!(self, law => law.transition_rate())

@@ -19,6 +19,10 @@ impl Law for RegularisedAgeing {
         *self
     }
 
+    fn name(&self) -> &'static str {
+        "regularised-ageing"
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0
@@ -55,6 +59,10 @@ impl Law for RegularisedAgeing {
 
     fn steady_state<T: Real>(&self, v: T) -> T {
         T::constant(1.0) / v
+    }
+
+    fn lasts(&self) -> bool {
+        true
     }
 
     // tau_ss = asinh(V^(1-beta) / gamma0) is monotonic

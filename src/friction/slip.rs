@@ -30,6 +30,10 @@ impl Law for Slip {
         *self
     }
 
+    fn name(&self) -> &'static str {
+        "slip"
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         self.direct_effect().activation(tau)

@@ -34,6 +34,10 @@ impl Law for Spinodal {
         *self
     }
 
+    fn name(&self) -> &'static str {
+        "spinodal"
+    }
+
     #[inline(always)]
     fn activation<T: Real>(&self, tau: T) -> T {
         tau.sinh() * self.gamma0
@@ -91,6 +95,10 @@ impl Law for Spinodal {
         } else {
             vec![v_peak]
         }
+    }
+
+    fn lasts(&self) -> bool {
+        true
     }
 
     fn bounds_state(&self) -> bool {

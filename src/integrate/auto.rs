@@ -309,7 +309,7 @@ fn dominant_mode<const N: usize>(jacobian: &Jacobian<N>) -> (f64, bool) {
     const DAMPED: f64 = 0.3;
     // No mode of these systems is orthogonal to it.
     let mut v = State::<N>::from_fn(|i, _| 1.0 / (1.0 + i as f64));
-    let mut growth = 1.0;
+    let mut log_growth = 0.0;
     for power in 0..2 * POWERS {
         let next = jacobian * v;
         let size = next.amax();
@@ -317,10 +317,11 @@ fn dominant_mode<const N: usize>(jacobian: &Jacobian<N>) -> (f64, bool) {
             return (0.0, false);
         }
         if power >= POWERS {
-            growth *= size;
+            // The product overflows where K is 1e100.
+            log_growth += size.ln();
         }
         v = next / size;
     }
-    let rate = f64::powf(growth, 1.0 / f64::from(POWERS));
+    let rate = f64::exp(log_growth / f64::from(POWERS));
     (rate, -jacobian.trace() > DAMPED * rate)
 }

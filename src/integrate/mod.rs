@@ -75,6 +75,7 @@ pub trait Integrator<const N: usize> {
     ///
     /// # Errors
     /// [`StepTooSmall`](crate::Error::StepTooSmall), [`BlowUp`](crate::Error::BlowUp),
+    /// [`TooFast`](crate::Error::TooFast),
     /// [`TooManySteps`](crate::Error::TooManySteps), [`NonFinite`](crate::Error::NonFinite) (at the start), those of
     /// SUNDIALS, and those of the observer. Never returns a state that is not finite.
     fn flow(

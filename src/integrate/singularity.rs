@@ -14,31 +14,60 @@ const PACES: usize = 1_000_000;
 /// Acceleration that no burst shows which ends within the numbers, if its derivatives have already left them.
 const RUNAWAY: f64 = 1e100;
 
-/// Names the reason for a step that has become too small to change t: a finite-time singularity if the solution, followed
-/// further, accelerates until it leaves the numbers, and does so within the rounding of t; else a tolerance that can't be met.
+/// Spacings of the numbers around t within which a state that changes by its own size leaves no room for steps, whatever the
+/// tolerance: between the strictest and the loosest of them steps differ by less.
+const NO_ROOM: f64 = 1e3;
+
+/// Names the reason for a step that has become too small to change t. If the solution, followed further, accelerates until it
+/// leaves the numbers, and does so within the rounding of t, that is a finite-time singularity, unless the field is known to
+/// have none. If it changes by its own size within a few spacings of t no tolerance helps. Else a larger one does.
 ///
-/// A burst that ends, however violent, is none: where beta < 1 the state falls by dozens of decades at once, but stops above
-/// zero.
+/// A burst that ends, however violent, is no singularity: where beta < 1 the state falls by dozens of decades at once, but
+/// stops above zero; and where the solutions of a law exist for all time slip rates of e^1000 last but for a moment.
 pub(crate) fn step_underflow<const N: usize>(
     field: &dyn VectorField<N>,
     t: f64,
     h: f64,
     y: &State<N>,
 ) -> Error {
-    let rate = field.f(y).amax();
+    let f = field.f(y);
+    let rate = f.amax();
+    let direction = h.signum();
+    let lasting = field.lasting().filter(|_| direction > 0.0);
+    let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
     if !rate.is_finite() {
-        return Error::NonFinite {
-            what: "the right-hand side",
-            t,
+        return match lasting {
+            Some(_) => Error::TooFast {
+                t,
+                uncertainty: None,
+                rate: f64::MAX,
+                overflows: true,
+                lasting,
+            },
+            None => Error::NonFinite {
+                what: "the right-hand side",
+                t,
+            },
         };
     }
-    let spacing = (t.abs() * f64::EPSILON).max(f64::MIN_POSITIVE);
-    match time_to_singularity(field, y, h.signum(), NEAR * spacing) {
-        Some(left) => Error::BlowUp {
-            t: t + left * h.signum(),
+    let singular = time_to_singularity(field, y, direction, NEAR * spacing);
+    let relative = (0..N)
+        .map(|i| f[i].abs() / (1.0 + y[i].abs()))
+        .fold(0.0, f64::max);
+    match singular {
+        Some(left) if lasting.is_none() => Error::BlowUp {
+            t: t + left * direction,
+            uncertainty: None,
             rate,
         },
-        None => Error::StepTooSmall { t, h },
+        None if relative * NO_ROOM * spacing < 1.0 => Error::StepTooSmall { t, h },
+        left => Error::TooFast {
+            t: t + left.unwrap_or(0.0) * direction,
+            uncertainty: None,
+            rate,
+            overflows: left.is_some(),
+            lasting,
+        },
     }
 }
 

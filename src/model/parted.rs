@@ -54,6 +54,10 @@ impl<L: Law> Equations<3> for Parted<L> {
             rate.gap / gap,
         ]
     }
+
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
 }
 
 /// From (tau, ln psi_1, ln psi_2) to (tau, ln psi_2, ln D); `None` unless psi_1 > psi_2. Of ln psi_1 - ln psi_2 it keeps the

@@ -63,6 +63,10 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
         )
     }
 
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<2>> {
         Some(self)
     }

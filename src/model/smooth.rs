@@ -68,6 +68,10 @@ fn constant(value: f64) -> Jet<f64, 1> {
 }
 
 impl<S: Equations<N>, const N: usize> VectorField<N> for Smooth<S, N> {
+    fn lasting(&self) -> Option<&'static str> {
+        self.equations.lasting()
+    }
+
     fn f(&self, y: &State<N>) -> State<N> {
         State::from(self.equations.rates(y.data.0[0], self.parameters))
     }

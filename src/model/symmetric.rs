@@ -54,6 +54,10 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
         self.equivalent.second_derivative(y, a, b)
     }
 
+    fn lasting(&self) -> Option<&'static str> {
+        self.equivalent.lasting()
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<2>> {
         Some(self)
     }

@@ -60,6 +60,10 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
         )
     }
 
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<3>> {
         Some(self)
     }

@@ -1,6 +1,6 @@
 //! Pieces of trajectories with their derivatives, by any of the methods.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::{Choice, Integrator, MAX_STEPS, Taylor, Tolerances, Work};
 
@@ -25,6 +25,11 @@ pub struct Arc<const N: usize> {
 }
 
 impl<const N: usize> Arc<N> {
+    /// Its error where the steps' errors are rounding, which adds up like a random walk.
+    pub fn noise(&self) -> f64 {
+        self.error / (self.steps.max(1) as f64).sqrt()
+    }
+
     /// ln |det| of the tangent: by the trace if the method has it, else by the tangent.
     pub fn volume(&self) -> f64 {
         self.log_determinant
@@ -66,6 +71,8 @@ pub struct Tracer<const N: usize> {
     /// What a step may err by, relative.
     step_error: f64,
     work: Work,
+    /// How many steps it may take in all.
+    limit: Option<usize>,
 }
 
 enum Method<const N: usize> {
@@ -98,6 +105,7 @@ impl<const N: usize> Tracer<N> {
             name,
             step_error: tolerances.rtol + tolerances.atol + ROUNDING,
             work: Work::default(),
+            limit: None,
         })
     }
 
@@ -129,6 +137,29 @@ impl<const N: usize> Tracer<N> {
         Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, MAX_STEPS)
     }
 
+    /// By Taylor's method with this tolerance, for no more than so many steps in an arc and about so many in all.
+    ///
+    /// # Errors
+    /// As of [`Self::taylor`].
+    pub fn limited(tolerance: f64, arc: usize, all: usize) -> Result<Self> {
+        Ok(Tracer {
+            limit: Some(all),
+            ..Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, arc.min(all))?
+        })
+    }
+
+    /// The bound on all steps, where it is used up.
+    pub fn used_up(&self) -> Option<usize> {
+        self.limit.filter(|&limit| self.work.steps >= limit)
+    }
+
+    fn allowed(&self, end: f64) -> Result<()> {
+        match self.used_up() {
+            Some(limit) => Err(Error::TooManySteps { t: 0.0, end, limit }),
+            None => Ok(()),
+        }
+    }
+
     /// The arc of this duration from `start`, with the derivatives in the parameters where asked for.
     ///
     /// # Errors
@@ -140,22 +171,27 @@ impl<const N: usize> Tracer<N> {
         duration: f64,
         parameters: bool,
     ) -> Result<Arc<N>> {
+        self.allowed(duration)?;
         let span = (0.0, duration);
-        let (end, tangent, in_parameters, logs, work) = match &mut self.method {
+        let (made, work) = match &mut self.method {
             Method::Taylor(taylor) => {
-                let (end, d) = taylor.derivatives(field, span, start, parameters)?;
-                let in_parameters = d.parameters.map(State::from);
-                let work = Integrator::<N>::work(taylor);
-                let logs = (Some(d.log_determinant), d.log_across);
-                (end, d.start.into(), in_parameters, logs, work)
+                let made = taylor.derivatives(field, span, start, parameters);
+                let made = made.map(|(end, d)| {
+                    let logs = (Some(d.log_determinant), d.log_across);
+                    (end, d.start.into(), d.parameters.map(State::from), logs)
+                });
+                (made, Integrator::<N>::work(taylor))
             }
             Method::Other(integrator) => {
-                let (end, tangent) = integrator.tangent_flow(field, span, start)?;
-                let work = integrator.work();
-                (end, tangent, [State::zeros(); 2], (None, None), work)
+                let made = integrator.tangent_flow(field, span, start);
+                let none = ([State::zeros(); 2], (None, None));
+                let made = made.map(|(end, tangent)| (end, tangent, none.0, none.1));
+                (made, integrator.work())
             }
         };
+        // Also of what fails.
         self.work += work;
+        let (end, tangent, in_parameters, logs) = made?;
         Ok(Arc {
             end,
             tangent,
@@ -178,18 +214,19 @@ impl<const N: usize> Tracer<N> {
         duration: f64,
         observer: Option<crate::integrate::Observer<'_, N>>,
     ) -> Result<State<N>> {
+        self.allowed(duration)?;
         let span = (0.0, duration);
         let (end, work) = match &mut self.method {
             Method::Taylor(taylor) => {
-                let end = taylor.flow(field, span, start, observer)?;
+                let end = taylor.flow(field, span, start, observer);
                 (end, Integrator::<N>::work(taylor))
             }
             Method::Other(integrator) => {
-                let end = integrator.flow(field, span, start, observer)?;
+                let end = integrator.flow(field, span, start, observer);
                 (end, integrator.work())
             }
         };
         self.work += work;
-        Ok(end)
+        end
     }
 }

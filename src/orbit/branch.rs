@@ -3,6 +3,7 @@
 use super::arc::Tracer;
 use super::correct::Corrector;
 use super::family::{Family, OverLoadings};
+use super::find::SEARCH;
 use super::hopf::{HopfPoint, hopf_points};
 use super::motion::{Motion, Site};
 use super::polygon::Polygon;
@@ -28,11 +29,14 @@ const BEYOND: f64 = 2.0;
 
 impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     /// Along the branch of a Hopf point, from a small orbit outwards.
+    ///
+    /// # Errors
+    /// As of [`Walk::from`].
     pub fn from_hopf(
         corrector: &'c mut Corrector<'f, F, N>,
         path: Path,
         hopf: &HopfPoint,
-    ) -> Option<Self> {
+    ) -> Result<Self> {
         let at = hopf.at();
         let polygon = hopf.ellipse(&*corrector.family.field(at), FIRST);
         let centre = polygon.nodes.iter().sum::<State<N>>() / polygon.nodes.len() as f64;
@@ -43,7 +47,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         };
         // The ellipse itself is the first prediction.
         let site = Site { polygon, at };
-        Walk::from(corrector, path, site, outwards.normalised()?)
+        Walk::from(corrector, path, site, outwards)
     }
 
     /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
@@ -112,12 +116,12 @@ where
     let begin = hopf.at()[0];
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
     let family = OverLoadings(*slab);
-    let mut corrector = Corrector::new(&family, ROUGH)?;
-    let Some(mut walk) = Walk::from_hopf(&mut corrector, Path::branch(0, LONGEST), hopf) else {
+    let mut corrector = Corrector::by(&family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
+    let Ok(mut walk) = Walk::from_hopf(&mut corrector, Path::branch(0, LONGEST), hopf) else {
         return Ok(());
     };
     for _ in 0..STEPS {
-        let Some((before, _)) = walk.step() else {
+        let Ok((before, _)) = walk.step() else {
             break;
         };
         let (old, new) = (&before.here.site, &walk.pace.here.site);
@@ -130,7 +134,7 @@ where
             }
         }
         let far = (new.at[0] - begin).abs() > reach;
-        if far || walk.ends_at(old, hopfs).is_some() || walk.mesh().is_none() {
+        if far || walk.ends_at(old, hopfs).is_some() || walk.mesh().is_err() {
             break;
         }
     }

@@ -10,6 +10,7 @@ use super::indicator::{Indicator, Spectrum};
 use super::linear::Linear;
 use super::motion::{Motion, Site};
 use super::polygon::Polygon;
+use crate::error::{Error, Result};
 use nalgebra::{Matrix2, Vector2};
 
 /// What an orbit is to meet.
@@ -141,14 +142,37 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         Some(())
     }
 
-    /// The orbit near `guess` that meets the conditions, one for each of the free parameters; `None` where Newton's method
-    /// finds none.
+    /// The orbit near `guess` that meets the conditions, one for each of the free parameters.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where Newton's method finds none; [`Error::Dimension`] where an indicator among the conditions is
+    /// no test function in so many dimensions.
     pub fn correct(
         &mut self,
         guess: Site<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
         goal: Goal,
+    ) -> Result<Regular<N>> {
+        checked(conditions)?;
+        let mut reached = (0, f64::INFINITY);
+        let found = self.newton(guess, free, conditions, goal, &mut reached);
+        found.ok_or(Error::NotConverged {
+            what: "the periodic orbit",
+            iterations: reached.0,
+            residual: reached.1,
+            tolerance: goal.done,
+        })
+    }
+
+    /// The same; `reached` are the iterations made and the last correction.
+    fn newton(
+        &mut self,
+        guess: Site<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+        goal: Goal,
+        reached: &mut (usize, f64),
     ) -> Option<Regular<N>> {
         let mut site = guess;
         let mut gradients: Option<Vec<Motion<N>>> = None;
@@ -173,6 +197,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                 correction = correction.plus(*weight, direction);
             }
             let (size, stretch) = site.size(&correction);
+            *reached = (iterations, size.max(stretch));
             if !(size < goal.largest && stretch < goal.largest) {
                 return None;
             }
@@ -215,14 +240,25 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// An orbit as it stands, with its surroundings and the gradients of the conditions' indicators.
+    ///
+    /// # Errors
+    /// As of [`Self::correct`]: [`Error::NotConverged`] where the linear equations are singular.
     pub fn look(
         &mut self,
         site: Site<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
-    ) -> Option<Regular<N>> {
-        let linear = self.linear(&site)?;
-        self.look_with(site, linear, free, conditions)
+    ) -> Result<Regular<N>> {
+        checked(conditions)?;
+        let looked = self
+            .linear(&site)
+            .and_then(|linear| self.look_with(site, linear, free, conditions));
+        looked.ok_or(Error::NotConverged {
+            what: "the directions in which the periodic orbit can move",
+            iterations: 0,
+            residual: f64::INFINITY,
+            tolerance: Goal::STEP.done,
+        })
     }
 
     /// The same where the linearisation is known.
@@ -301,6 +337,19 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         Some(indicators.iter().map(of).collect())
     }
 
+    /// What a small motion of an orbit changes its spectrum by.
+    pub(super) fn by_motion(&mut self, orbit: &Regular<N>, motion: &Motion<N>) -> Option<Spectrum> {
+        let length = motion.dot(motion).sqrt();
+        let direction = motion.clone().normalised()?;
+        let slope = self.slope(orbit, &direction)?;
+        Some(Spectrum {
+            trace: length * slope.trace,
+            volume: length * slope.volume,
+            across: length * slope.across,
+            ..slope
+        })
+    }
+
     /// How the spectrum of an orbit changes in a direction.
     pub fn slope(&mut self, orbit: &Regular<N>, direction: &Motion<N>) -> Option<Spectrum> {
         self.change(&orbit.site, &orbit.linear, direction, &orbit.spectrum)
@@ -321,6 +370,12 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }
+}
+
+/// Whether all indicators among the conditions are test functions here.
+fn checked<const N: usize>(conditions: &[Condition<'_, N>]) -> Result<()> {
+    let mut indicators = conditions.iter().filter_map(indicator);
+    indicators.try_for_each(Indicator::checked::<N>)
 }
 
 fn indicator<const N: usize>(condition: &Condition<'_, N>) -> Option<Indicator> {
@@ -367,7 +422,12 @@ fn weights<const N: usize>(
         };
         rows.push((slopes, missing));
     }
-    match &rows[..] {
+    combination(&rows)
+}
+
+/// The weights of one or two directions: of every condition, what they change it by and what is missing to it.
+pub(super) fn combination(rows: &[(Vec<f64>, f64)]) -> Option<Vec<f64>> {
+    match rows {
         [(a, b)] if a.len() == 1 => Some(vec![b / a[0]]),
         [(a, b), (c, d)] if a.len() == 2 => {
             let m = Matrix2::new(a[0], a[1], c[0], c[1]);

@@ -3,7 +3,7 @@
 use super::motion::Site;
 use super::polygon::Polygon;
 use super::slab::Slab;
-use crate::field::{State, VectorField};
+use crate::field::{Jacobian, State, VectorField};
 use crate::model::{Loading, Smooth, parted, united};
 use crate::series::Equations;
 
@@ -25,6 +25,17 @@ pub trait Family<const N: usize>: Sync {
     fn normal(&self, flow: State<N>) -> State<N> {
         flow
     }
+
+    /// What takes a displacement of a point x, where the flow is `flow`, to its part across the flow, in the variables in which
+    /// displacements are measured.
+    fn across(&self, _x: &State<N>, flow: &State<N>) -> Jacobian<N> {
+        projection(flow)
+    }
+}
+
+/// The projection across a direction.
+fn projection<const N: usize>(along: &State<N>) -> Jacobian<N> {
+    Jacobian::<N>::identity() - along * along.transpose() / along.norm_squared()
 }
 
 /// Any small system over its two parameters as they are.
@@ -122,6 +133,14 @@ impl Family<3> for OverParted {
     /// orbit. A plane that leans towards ln D would mix that shift with what grows by e^(0.5 / K) along the canard.
     fn normal(&self, flow: State<3>) -> State<3> {
         State::<3>::new(flow[0], flow[1], 0.0)
+    }
+
+    /// Measured in (tau, ln psi_1, ln psi_2), as on orbits whose interfaces differ by more.
+    fn across(&self, x: &State<3>, flow: &State<3>) -> Jacobian<3> {
+        // psi_1 = psi_2 + D
+        let part = 1.0 / (1.0 + (x[1] - x[2]).exp());
+        let united = Jacobian::<3>::new(1.0, 0.0, 0.0, 0.0, 1.0 - part, part, 0.0, 1.0, 0.0);
+        projection(&(united * flow)) * united
     }
 }
 

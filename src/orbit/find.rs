@@ -8,7 +8,7 @@ use super::shooting::close;
 use super::slab::Slab;
 use super::solve::{Accuracy, Orbit, orbit, traversals};
 use super::space::{Plane, Space, Whole};
-use super::{branch, no_orbit};
+use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::{State, VectorField};
@@ -52,6 +52,8 @@ pub struct Found {
 const ROUGH: f64 = 1e-10;
 /// Tolerance with which cycles are told from ones traversed twice.
 const FINE: f64 = 1e-15;
+/// Steps of a search, at most: some seconds of work.
+pub(super) const SEARCH: usize = 2_000_000;
 /// Periods that differ by less, relatively, are of one orbit.
 const SAME_PERIOD: f64 = 1e-7;
 
@@ -121,7 +123,7 @@ fn search<const N: usize>(
 where
     OverLoadings: Family<N>,
 {
-    let mut tracer = Tracer::taylor(ROUGH)?;
+    let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
     let mut guesses = Guesses {
         space,
         wanted: query.symmetry,
@@ -141,10 +143,16 @@ where
         Begin::Hopf => {}
     }
     let at = matches!(query.begin, Begin::At { .. });
-    if guesses.closed.is_empty() && !at {
+    if guesses.closed.is_empty() && !at && tracer.used_up().is_none() {
         for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
             guesses.take(polygon);
         }
+    }
+    if guesses.closed.is_empty() && tracer.used_up().is_some() {
+        return Err(no_orbit(
+            format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
+            "give a --start on the orbit and its --period-guess, or other --driving and --stiffness",
+        ));
     }
     if guesses.closed.is_empty() {
         return Err(guesses.otherwise.unwrap_or_else(|| {
@@ -199,11 +207,9 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     /// Keeps a closed polygon if it has the symmetry and is new.
     fn take(&mut self, polygon: Polygon<N>) -> bool {
         if self.space.symmetry(&polygon) != self.wanted {
-            self.otherwise = Some(no_orbit(
-                format!(
-                    "the search ended on the symmetric orbit, of period {}",
-                    polygon.period()
-                ),
+            self.otherwise = Some(other_orbit(
+                "the search ended on the symmetric orbit".into(),
+                polygon.period(),
                 "give a --start near an asymmetric one, or ask for --symmetry symmetric",
             ));
             return false;

@@ -8,6 +8,7 @@
 //! On a symmetric orbit, which lies in two dimensions, both are quadratures: the integral of the trace there, and that of the
 //! antisymmetric mode, the difference of the traces in three dimensions and in two.
 
+use super::arc::Arc;
 use super::shooting::Closed;
 use crate::equilibrium::Verdict;
 use crate::field::{Jacobian, State};
@@ -84,6 +85,13 @@ impl Floquet {
         verdict
     }
 
+    /// Every uncertainty so many times.
+    pub(super) fn widened(&mut self, times: f64) {
+        for multiplier in &mut self.multipliers {
+            multiplier.ln_abs.uncertainty *= times;
+        }
+    }
+
     /// Claims nothing.
     pub(super) fn doubt(&mut self) {
         for multiplier in &mut self.multipliers {
@@ -115,20 +123,35 @@ fn volume<const N: usize>(closed: &Closed<N>) -> (Uncertain, Option<f64>) {
     let by_matrix = closed.arcs().iter().map(|arc| arc.tangent_volume());
     let by_matrix: f64 = by_matrix.sum();
     let by_trace: Option<f64> = closed.arcs().iter().map(|arc| arc.log_determinant).sum();
-    let errors: f64 = closed.arcs().iter().map(|arc| arc.error).sum();
     match by_trace {
         Some(volume) => {
             let scale = closed.arcs().iter().filter_map(|arc| arc.log_determinant);
             let scale = scale.fold(1.0, |sum, x| sum + x.abs());
-            let uncertain = Uncertain::new(volume, TANGENT * errors + 1e-14 * scale);
+            let uncertain = Uncertain::new(
+                volume,
+                TANGENT * noise(closed.arcs()) + f64::EPSILON * scale,
+            );
             (uncertain, Some(by_matrix - volume))
         }
         None => {
             // The smallest direction of an arc errs by the norm over it.
-            let loss = closed.arcs().iter().map(|arc| arc.error * arc.loss().exp());
-            (Uncertain::new(by_matrix, TANGENT * loss.sum::<f64>()), None)
+            let loss = closed
+                .arcs()
+                .iter()
+                .map(|arc| arc.noise() * arc.loss().exp());
+            (Uncertain::new(by_matrix, TANGENT * together(loss)), None)
         }
     }
+}
+
+/// Independent errors together.
+fn together(errors: impl Iterator<Item = f64>) -> f64 {
+    errors.map(|error| error * error).sum::<f64>().sqrt()
+}
+
+/// The noise of all arcs.
+fn noise<const N: usize>(arcs: &[Arc<N>]) -> f64 {
+    together(arcs.iter().map(Arc::noise))
 }
 
 /// f at the next node over f carried there: the trivial multiplier of every arc, and their product minus 1.
@@ -149,7 +172,7 @@ pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> Stat
     let multipliers = if N == 2 {
         vec![Multiplier::real(volume.value, volume.uncertainty, false)]
     } else {
-        let errors: Vec<f64> = closed.arcs().iter().map(|arc| arc.error).collect();
+        let errors: Vec<f64> = closed.arcs().iter().map(Arc::noise).collect();
         pair(closed.maps(), &errors, volume)
     };
     Floquet {
@@ -163,10 +186,9 @@ pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> Stat
 pub fn symmetric_floquet(
     closed: &Closed<2>,
     f: &dyn Fn(&State<2>) -> State<2>,
-    across: &[super::arc::Arc<3>],
+    across: &[Arc<3>],
 ) -> Floquet {
     let (within, within_defect) = volume(closed);
-    let errors: f64 = across.iter().map(|arc| arc.error).sum();
     // The antisymmetric mode (0, 1, -1) stays one.
     let by_matrix: f64 = across
         .iter()
@@ -181,13 +203,13 @@ pub fn symmetric_floquet(
         None => (by_matrix, None),
     };
     let loss = match whole {
-        Some(_) => TANGENT * errors + 1e-14 * value.abs(),
+        Some(_) => TANGENT * noise(across) + f64::EPSILON * value.abs(),
         None => {
             let loss = across.iter().map(|arc| {
                 let mode = (arc.tangent[(1, 1)] - arc.tangent[(1, 2)]).abs();
-                arc.error * (arc.tangent.norm() / mode).max(1.0)
+                arc.noise() * (arc.tangent.norm() / mode).max(1.0)
             });
-            TANGENT * loss.sum::<f64>()
+            TANGENT * together(loss)
         }
     };
     let mut multipliers = vec![
@@ -253,11 +275,11 @@ fn pair<const N: usize>(
     let half = 0.5 * volume.value;
     // The matrix's first diagonal element is the dropped direction's, zero.
     let trace = product.matrix.trace() * (product.log - half).exp();
-    let mut error = trace.abs() * 0.5 * volume.uncertainty;
-    for (k, map) in maps.iter().enumerate() {
+    let of_maps = maps.iter().enumerate().map(|(k, map)| {
         let log = before[k].log + after[k + 1].log - half;
-        error += log.exp() * map.norm() * TANGENT * errors[k];
-    }
+        log.exp() * map.norm() * TANGENT * errors[k]
+    });
+    let error = trace.abs() * 0.5 * volume.uncertainty + together(of_maps);
     if !(trace.is_finite() && error.is_finite()) || error > 0.5 * trace.abs().max(2.0) {
         return along_direction(maps, errors, volume);
     }
@@ -346,11 +368,10 @@ fn along_direction<const N: usize>(
             y = next;
         }
     }
-    let mut error = 0.0;
-    for k in 0..count {
+    let error = together((0..count).map(|k| {
         let seen = duals[k].dot(&(maps[k] * directions[k])).abs();
-        error += TANGENT * errors[k] * maps[k].norm() / seen;
-    }
+        TANGENT * errors[k] * maps[k].norm() / seen
+    }));
     let smaller = volume.value - log;
     if !settled || !error.is_finite() || error > 0.5 || smaller > log {
         return floor();

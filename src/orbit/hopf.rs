@@ -158,6 +158,7 @@ impl HopfPoint {
     pub fn ellipse<const N: usize>(&self, field: &dyn VectorField<N>, size: f64) -> Polygon<N> {
         /// Nodes.
         const NODES: usize = 12;
+        const { assert!(N == 2 || N == 3, "a pair and at most one more eigenvalue") };
         let y = State::<N>::from_fn(|i, _| match i {
             0 => self.equilibrium.stress.value,
             i => self.equilibrium.log_state[i - 1],

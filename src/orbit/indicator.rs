@@ -3,8 +3,12 @@
 //! With the trace and the determinant of the return map, 1 - tr + det and 1 + tr + det; the determinant by the integral of
 //! the Jacobian's trace. The trace changes as the maps of the single arcs do: a difference of two traces would lose, at small
 //! stiffness, what the maps' product loses.
+//!
+//! With a return map of more than two dimensions these are no test functions: tr and det then are not the sum and the product of
+//! two multipliers. They are refused there.
 
 use super::linear::Linear;
+use crate::error::{Error, Result};
 use crate::field::Jacobian;
 
 /// What is to be zero.
@@ -25,6 +29,8 @@ pub enum Indicator {
 /// What the indicators are made of, or its change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
+    /// The number of variables: one more than there are nontrivial multipliers.
+    pub dimension: usize,
     /// Of the return map: the sum of the nontrivial multipliers.
     pub trace: f64,
     /// ln of the product of the nontrivial multipliers' moduli.
@@ -39,6 +45,7 @@ impl Spectrum {
         let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
         let across: Option<f64> = linear.arcs.iter().map(|arc| arc.log_across).sum();
         Spectrum {
+            dimension: N,
             // Of the identity's first diagonal entry the maps leave nothing.
             trace: product.trace(),
             volume: volume(linear),
@@ -68,24 +75,40 @@ impl Spectrum {
         let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
         let across = Spectrum::new(to).across - spectrum.across;
         Spectrum {
+            dimension: N,
             trace: trace / step,
             volume: volume / step,
             across: across / step,
         }
     }
 
-    /// ln |mu| of both nontrivial multipliers, the larger one first, where the return map is of two dimensions.
-    pub fn log_multipliers(&self) -> [f64; 2] {
-        let Spectrum { trace, volume, .. } = *self;
+    /// ln |mu| of both nontrivial multipliers, the larger one first, of an orbit in three dimensions.
+    ///
+    /// # Errors
+    /// [`Error::Dimension`] in others.
+    pub fn log_multipliers(&self) -> Result<[f64; 2]> {
+        let Spectrum {
+            dimension,
+            trace,
+            volume,
+            ..
+        } = *self;
+        if dimension != 3 {
+            return Err(Error::Dimension {
+                what: "the pair of multipliers by trace and determinant",
+                known: "3",
+                dimension,
+            });
+        }
         let det = volume.exp();
         let half = 0.5 * trace;
         let discriminant = half * half - det;
         if discriminant < 0.0 {
-            return [0.5 * volume; 2];
+            return Ok([0.5 * volume; 2]);
         }
         // Away from cancellation; the other one by the product.
         let larger = (half.abs() + discriminant.sqrt()).ln();
-        [larger, volume - larger]
+        Ok([larger, volume - larger])
     }
 }
 
@@ -94,12 +117,39 @@ fn volume<const N: usize>(linear: &Linear<N>) -> f64 {
 }
 
 impl Indicator {
-    /// Its value.
-    pub fn of<const N: usize>(self, spectrum: &Spectrum) -> f64 {
+    /// Whether it is a test function of orbits of so many variables.
+    ///
+    /// # Errors
+    /// [`Error::Dimension`] where it is not: its zeros would be no bifurcations.
+    pub fn checked<const N: usize>(self) -> Result<()> {
+        let (what, known, holds) = match self {
+            Indicator::Fold => (
+                "the test function of folds of orbits",
+                "2 or 3",
+                N == 2 || N == 3,
+            ),
+            Indicator::Doubling => ("the test function of period doublings", "3", N == 3),
+            Indicator::Torus => ("the test function of torus bifurcations", "3", N == 3),
+            Indicator::Trace(_) => ("the test function of strong resonances", "3", N == 3),
+            Indicator::Across => ("the test function of pitchforks of orbits", "2", N == 2),
+        };
+        if holds {
+            return Ok(());
+        }
+        Err(Error::Dimension {
+            what,
+            known,
+            dimension: N,
+        })
+    }
+
+    /// Its value, where it is a test function.
+    pub(crate) fn of<const N: usize>(self, spectrum: &Spectrum) -> f64 {
         let Spectrum {
             trace,
             volume,
             across,
+            ..
         } = *spectrum;
         match self {
             Indicator::Fold if N == 2 => volume.exp_m1(),
@@ -112,7 +162,7 @@ impl Indicator {
     }
 
     /// Its change with that of the spectrum.
-    pub fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
+    pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
         let of_det = at.volume.exp() * by.volume;
         match self {
             Indicator::Fold if N == 2 => of_det,

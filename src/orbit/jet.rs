@@ -44,14 +44,10 @@ pub fn jets<F: Family<3>>(
     let field = family.field(site.at);
     let mut taylor = Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?;
     let nodes = &site.polygon.nodes;
-    let plane = |x: &State<3>| {
-        let normal = family.normal(field.f(x));
-        match axes {
-            Axes::Any => frame(&normal),
-            Axes::Symmetry => symmetric_frame(&normal),
-        }
-    };
-    let frames: Vec<Jacobian<3>> = nodes.iter().map(plane).collect();
+    let frames: Vec<Jacobian<3>> = nodes
+        .iter()
+        .map(|x| plane(family, &field.f(x), axes))
+        .collect();
     let mut jet = |k: usize| {
         let next = (k + 1) % nodes.len();
         let (from, onto) = (&frames[k], &frames[next]);
@@ -72,6 +68,55 @@ pub fn jets<F: Family<3>>(
         })
     };
     (0..nodes.len()).map(&mut jet).collect()
+}
+
+/// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
+/// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane.
+pub fn squares<F: Family<3>>(family: &F, site: &Site<3>, axes: Axes) -> Option<Vec<Matrix2<f64>>> {
+    /// Points and weights of Gauss on (0, 1).
+    const POINTS: [(f64, f64); 6] = [
+        (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
+        (0.169_395_306_766_867_76, 0.180_380_786_524_069_3),
+        (0.380_690_406_958_401_55, 0.233_956_967_286_345_52),
+        (0.619_309_593_041_598_5, 0.233_956_967_286_345_52),
+        (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
+        (0.966_234_757_101_576, 0.085_662_246_189_585_17),
+    ];
+    let field = family.field(site.at);
+    let mut tracer = Tracer::taylor(FINE).ok()?;
+    let mut arc = |(node, &duration): (&State<3>, &f64)| {
+        let mut moved = plane(family, &field.f(node), axes)
+            .fixed_columns::<2>(1)
+            .into_owned();
+        let (mut x, mut at) = (*node, 0.0);
+        let mut sum = Matrix2::zeros();
+        for (point, weight) in POINTS {
+            let part = tracer
+                .arc(&*field, &x, (point - at) * duration, false)
+                .ok()?;
+            (x, at) = (part.end, point);
+            moved = part.tangent * moved;
+            let across = family.across(&x, &field.f(&x)) * moved;
+            sum += across.transpose() * across * (weight * duration);
+        }
+        Some(sum)
+    };
+    let polygon = &site.polygon;
+    polygon
+        .nodes
+        .iter()
+        .zip(&polygon.durations)
+        .map(&mut arc)
+        .collect()
+}
+
+/// The plane's coordinates: its normal, and the two directions in it.
+fn plane<F: Family<3>>(family: &F, flow: &State<3>, axes: Axes) -> Jacobian<3> {
+    let normal = family.normal(*flow);
+    match axes {
+        Axes::Any => frame(&normal),
+        Axes::Symmetry => symmetric_frame(&normal),
+    }
 }
 
 /// Orthonormal columns: a normal with equal components 1 and 2, the antisymmetric direction, and the one that is left.

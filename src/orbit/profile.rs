@@ -29,6 +29,7 @@ pub struct Profile {
 pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Profile> {
     /// Tolerance of the run.
     const ROUGH: f64 = 1e-7;
+    const { assert!(N == 2 || N == 3, "a slab's variables") };
     let mut seen = Seen {
         top: (f64::NEG_INFINITY, [0.0; 2]),
         bottom: f64::INFINITY,

@@ -3,6 +3,7 @@
 use super::arc::{Arc, Tracer};
 use super::linear::Linear;
 use super::no_orbit;
+use super::noise::{PROBES, Signs};
 use super::polygon::Polygon;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
@@ -16,8 +17,8 @@ pub struct Closed<const N: usize> {
     /// Iterations made.
     pub iterations: usize,
     pub(super) linear: Linear<N>,
-    /// The last correction, which was not made: of a node in units of 1 + |x|, or of the period, relative.
-    residual: f64,
+    /// The last correction, which was not made: of a node in units of 1 + |x|, and of the period, relative.
+    residual: (f64, f64),
 }
 
 impl<const N: usize> Closed<N> {
@@ -32,31 +33,41 @@ impl<const N: usize> Closed<N> {
         &self.linear.maps
     }
 
-    /// The period and a bound on the error of a node in units of 1 + |x|: what the errors of all arcs may make of them, every
-    /// arc's share added up.
-    pub fn budget(&self) -> (Uncertain, f64) {
-        let count = self.polygon.nodes.len();
-        let mut gaps = vec![State::<N>::zeros(); count];
-        let (mut of_period, mut of_nodes) = (0.0, vec![0.0; count]);
+    /// The period and a bound on the error of a node in units of 1 + |x|: what the noise of all arcs makes of them. The
+    /// truncation error is not in it, unless it is asked for that the steps' errors may all have one sign.
+    pub fn budget(&self, one_sign: bool) -> (Uncertain, f64) {
+        /// Standard deviations that are claimed.
+        const DEVIATIONS: f64 = 3.0;
+        const ROUNDING: f64 = 2.0 * f64::EPSILON;
+        let (mut of_period, mut of_nodes) = (0.0, vec![0.0; self.polygon.nodes.len()]);
         let period = self.polygon.period();
-        for k in 0..count {
-            let at = self.polygon.nodes[(k + 1) % count];
-            for i in 0..N {
-                gaps[k][i] = self.linear.arcs[k].error * (1.0 + at[i].abs());
-                let Some((nodes, durations)) = self.linear.correction(&gaps) else {
-                    return (Uncertain::new(period, f64::INFINITY), f64::INFINITY);
-                };
-                of_period += durations.iter().sum::<f64>().abs();
-                let moved = nodes.iter().zip(&self.polygon.nodes);
-                for (sum, (dx, x)) in of_nodes.iter_mut().zip(moved) {
-                    *sum += relative(dx, x);
-                }
-                gaps[k][i] = 0.0;
+        let mut signs = Signs::new();
+        for _ in 0..PROBES {
+            let noisy = self.linear.noisy(&self.polygon, &mut signs);
+            let Some((nodes, durations)) = self.linear.correction(&noisy.gaps) else {
+                return (Uncertain::new(period, f64::INFINITY), f64::INFINITY);
+            };
+            of_period += durations.iter().sum::<f64>().powi(2);
+            let moved = nodes.iter().zip(&self.polygon.nodes);
+            for (sum, (dx, x)) in of_nodes.iter_mut().zip(moved) {
+                *sum += relative(dx, x).powi(2);
             }
         }
-        let uncertainty = of_period + self.residual * period.abs();
-        let of_nodes = of_nodes.into_iter().fold(0.0, f64::max) + self.residual;
-        (Uncertain::new(period, uncertainty), of_nodes)
+        let steps: usize = self.arcs().iter().map(|arc| arc.steps).sum();
+        let factor = if one_sign {
+            (steps as f64).sqrt()
+        } else {
+            DEVIATIONS
+        };
+        let claimed = |sum: f64| factor * (sum / PROBES as f64).sqrt();
+        let of_nodes = of_nodes.into_iter().fold(0.0, f64::max);
+        (
+            Uncertain::new(
+                period,
+                claimed(of_period) + (ROUNDING + self.residual.1) * period.abs(),
+            ),
+            claimed(of_nodes) + ROUNDING + self.residual.0,
+        )
     }
 }
 
@@ -74,7 +85,7 @@ const TRUSTED: f64 = 0.5;
 const HALVINGS: usize = 8;
 
 /// The largest component of dx in units of 1 + |x|.
-fn relative<const N: usize>(dx: &State<N>, x: &State<N>) -> f64 {
+pub(super) fn relative<const N: usize>(dx: &State<N>, x: &State<N>) -> f64 {
     (0..N)
         .map(|i| dx[i].abs() / (1.0 + x[i].abs()))
         .fold(0.0, f64::max)
@@ -139,13 +150,14 @@ pub fn close<const N: usize>(
             .zip(&polygon.durations)
             .map(|(dt, t)| (dt / t).abs());
         let stretch = of_durations.fold(0.0, f64::max);
-        let size = of_nodes.max(durations.iter().sum::<f64>().abs() / period.abs());
+        let of_period = durations.iter().sum::<f64>().abs() / period.abs();
+        let size = of_nodes.max(of_period);
         if size < CLOSED || (size < NOISE && size > 0.3 * last) {
             return Ok(Closed {
                 polygon,
                 iterations,
                 linear,
-                residual: size,
+                residual: (of_nodes, of_period),
             });
         }
         last = size;

@@ -1,11 +1,11 @@
 //! A periodic orbit with all that is said of it.
 
 use super::arc::Tracer;
-use super::extremes::extremes;
+use super::extremes::{Extremes, extremes};
 use super::floquet::Floquet;
-use super::no_orbit;
+use super::other_orbit;
 use super::polygon::Polygon;
-use super::shooting::{Closed, close};
+use super::shooting::{Closed, close, relative};
 use super::slab::Slab;
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
@@ -63,7 +63,8 @@ pub struct Accuracy {
     pub tolerances: Tolerances,
     /// The bound on steps of an arc.
     pub max_steps: usize,
-    /// Whether a second solution, with other nodes and another tolerance, checks the uncertainties.
+    /// Whether other solutions, with other nodes and another tolerance, check the uncertainties. Without them the errors of all
+    /// steps are taken to have one sign.
     pub checked: bool,
 }
 
@@ -97,10 +98,12 @@ impl Accuracy {
     }
 }
 
-/// Tolerance of the second solution over that of the first.
+/// Tolerance of the other solutions over that of the first.
 const LOOSER: f64 = 8.0;
-/// Part of the cycle by which its first node is moved.
-const SHIFT: f64 = 0.37;
+/// Parts of the arcs by which their nodes are moved.
+const SHIFTS: [f64; 2] = [0.37, 0.71];
+/// What the period differs by counts so many times.
+const SPREAD: f64 = 2.0;
 
 /// A closed polygon of either dimension with its multipliers.
 pub(super) struct Solved<const N: usize> {
@@ -119,10 +122,9 @@ pub(super) fn solve<const N: usize>(
     let first = close(&mut tracers.here, field, guess)?;
     if let Some(times) = traversals(&mut tracers.here, field, &first.polygon)? {
         let period = first.polygon.period();
-        return Err(no_orbit(
-            format!(
-                "the cycle found, of period {period}, is a shorter one traversed {times} times"
-            ),
+        return Err(other_orbit(
+            format!("the cycle found is a shorter one traversed {times} times"),
+            period,
             "give a shorter --period-guess, or a --start farther from that orbit",
         ));
     }
@@ -182,38 +184,56 @@ pub(super) fn orbit<const N: usize>(
         iterations,
     } = solve(space, &mut tracers, guess)?;
     let polygon = &closed.polygon;
-    let (mut period, node_error) = closed.budget();
+    let (mut period, node_error) = closed.budget(!accuracy.checked);
     let mut work = tracers.work();
-    if accuracy.checked {
-        let mut second = Tracers::new(&accuracy.looser())?;
-        let moved = polygon.shifted(&mut second.here, space.field(), SHIFT);
-        match moved.and_then(|moved| solve(space, &mut second, moved)) {
-            Ok(other) => {
-                floquet.widened_by(&other.floquet);
-                period.uncertainty += 2.0 * (period.value - other.closed.polygon.period()).abs();
+    let level = slab.steady_stress();
+    let mut others = Vec::new();
+    if !accuracy.checked {
+        floquet.widened((work.steps.max(1) as f64).sqrt());
+    } else {
+        let mut apart = 0.0_f64;
+        for shift in SHIFTS {
+            let mut other = Tracers::new(&accuracy.looser())?;
+            let moved = polygon.shifted(&mut other.here, space.field(), shift);
+            match moved.and_then(|moved| solve(space, &mut other, moved)) {
+                Ok(again) => {
+                    floquet.widened_by(&again.floquet);
+                    let polygon = &again.closed.polygon;
+                    apart = apart.max((period.value - polygon.period()).abs());
+                    others.push(extremes(space.field(), polygon, level)?);
+                }
+                // Nothing is claimed that could not be done again.
+                Err(_) => {
+                    floquet.doubt();
+                    apart = f64::INFINITY;
+                }
             }
-            // Nothing is claimed that could not be done twice.
-            Err(_) => {
-                floquet.doubt();
-                period.uncertainty = f64::INFINITY;
-            }
+            work += other.work();
         }
-        work += second.work();
+        period.uncertainty += SPREAD * apart;
     }
-    let extremes = extremes(space.field(), polygon, slab.steady_stress())?;
+    let extremes = extremes(space.field(), polygon, level)?;
     let point = extremes.passage.unwrap_or(polygon.nodes[0]);
-    let of_stress = |stress: f64| {
-        // Within a stress extreme's rounding as well.
-        let uncertainty = (node_error + 4.0 * f64::EPSILON) * (1.0 + stress.abs());
-        Uncertain::new(stress, uncertainty)
+    // What others differ by, and within a stress extreme's rounding as well.
+    let of_stress = |of: &dyn Fn(&Extremes<N>) -> f64| {
+        let stress = of(&extremes);
+        let apart = others.iter().map(|other| (of(other) - stress).abs());
+        let noise = (node_error + 4.0 * f64::EPSILON) * (1.0 + stress.abs());
+        Uncertain::new(stress, noise + SPREAD * apart.fold(0.0, f64::max))
     };
+    /// Of several passages in a cycle another one is farther off.
+    const SAME: f64 = 1e-3;
+    let passages = others.iter().filter_map(|other| other.passage);
+    let of_point = passages.map(|other| relative(&(other - point), &point));
+    let of_point = of_point.filter(|&off| off < SAME);
+    let point_uncertainty = node_error + SPREAD * of_point.fold(0.0, f64::max);
     Ok(Orbit {
         symmetry: space.symmetry(polygon),
         period,
         point: point.iter().copied().collect(),
-        point_uncertainty: node_error,
-        stress_min: of_stress(extremes.stress.0),
-        stress_max: of_stress(extremes.stress.1),
+        point_uncertainty,
+        stress_min: of_stress(&|of| of.stress.0),
+        stress_max: of_stress(&|of| of.stress.1),
         slip_rate_max: extremes.slip_rate_max,
         state_min: extremes.state_min,
         floquet,

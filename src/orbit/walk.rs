@@ -6,6 +6,9 @@ use super::indicator::Indicator;
 use super::linear::Linear;
 use super::motion::{Motion, Site};
 use super::polygon::Mesh;
+use crate::error::{Error, Result};
+use std::collections::VecDeque;
+use std::fmt;
 
 /// Where a walk stands.
 #[derive(Debug, Clone)]
@@ -27,12 +30,12 @@ pub struct Path {
     pub longest: f64,
 }
 
-/// Lengths of steps.
+/// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
 const SHORTEST: f64 = 1e-7;
-/// So many steps in a row below this length are no way to go.
-const CRAWL: f64 = 3e-3;
-const CRAWLS: usize = 8;
+/// So many steps in a row that do not grow and together are shorter than this part of the way so far are no progress.
+const WINDOW: usize = 12;
+const PROGRESS: f64 = 1e-3;
 /// What a prediction may be off by, which grows with the square of the step; and the least and largest ratio of one step to
 /// the one before.
 const OFF: f64 = 0.03;
@@ -56,8 +59,61 @@ pub struct Walk<'c, 'f, F, const N: usize> {
     fresh: bool,
     /// How often they have been.
     cuts: usize,
-    /// How many of the last steps were very short.
-    crawls: usize,
+    /// The way so far, and the last steps' lengths.
+    travelled: f64,
+    lengths: VecDeque<f64>,
+}
+
+/// Why a walk goes no further.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Stop {
+    /// Newton's method fails, down to steps of this length.
+    NoOrbit {
+        /// The length of the last step that was tried.
+        length: f64,
+    },
+    /// Steps succeed, but lead nowhere.
+    NoProgress {
+        /// The length of so many steps together.
+        steps: usize,
+        /// What they add up to.
+        length: f64,
+        /// The length of the whole way.
+        travelled: f64,
+    },
+    /// So many steps of the integrator are used up: as many as it was given.
+    UsedUp {
+        /// That number.
+        steps: usize,
+    },
+    /// The orbit can't be cut into arcs anew: the flow along it, or its linear equations fail.
+    NoNodes,
+}
+
+impl fmt::Display for Stop {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Stop::NoOrbit { length } => write!(
+                f,
+                "Newton's method finds no next orbit, down to steps of {length:.1e}"
+            ),
+            Stop::NoProgress {
+                steps,
+                length,
+                travelled,
+            } => write!(
+                f,
+                "no progress: the last {steps} steps are {length:.1e} long together, the way before {travelled:.1e}"
+            ),
+            Stop::UsedUp { steps } => {
+                write!(f, "the bound of {steps} steps of the integrator is used up")
+            }
+            Stop::NoNodes => write!(
+                f,
+                "the orbit can't be cut into arcs anew: the integration along it fails"
+            ),
+        }
+    }
 }
 
 impl Path {
@@ -111,23 +167,27 @@ impl Path {
 
 impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     /// From an orbit nearby into a direction: the first correction is across it.
+    ///
+    /// # Errors
+    /// Those of [`Corrector::correct`].
     pub fn from(
         corrector: &'c mut Corrector<'f, F, N>,
         path: Path,
         site: Site<N>,
         direction: Motion<N>,
-    ) -> Option<Self> {
+    ) -> Result<Self> {
         let conditions = path.and(Condition::Plane(&direction, &site));
         let here = corrector.correct(site.clone(), &path.free, &conditions, Goal::STEP)?;
-        let direction = path.direction(&here, &direction)?;
-        Some(Walk {
+        let direction = path.direction(&here, &direction).ok_or_else(no_direction)?;
+        Ok(Walk {
             corrector,
             pace: Pace { here, direction },
             length: FIRST.min(path.longest),
             path,
             fresh: false,
             cuts: 0,
-            crawls: 0,
+            travelled: 0.0,
+            lengths: VecDeque::new(),
         })
     }
 
@@ -137,7 +197,7 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         path: Path,
         site: Site<N>,
         afar: [f64; 3],
-        length: f64,
+        (length, travelled): (f64, f64),
     ) -> Option<Self> {
         // Closed in the new variables, with the parameter in which it moves most held.
         let fixed = if afar[1].abs() > afar[0].abs() && path.free.contains(&1) {
@@ -146,7 +206,9 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             path.free[0]
         };
         let held = Condition::Parameter(fixed, site.at[fixed]);
-        let here = corrector.correct(site, &path.free, &path.and(held), Goal::STEP)?;
+        let here = corrector
+            .correct(site, &path.free, &path.and(held), Goal::STEP)
+            .ok()?;
         let mut walk = Walk {
             pace: Pace {
                 direction: here.along[0].clone(),
@@ -157,13 +219,19 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             length,
             fresh: false,
             cuts: 0,
-            crawls: 0,
+            travelled,
+            lengths: VecDeque::new(),
         };
         let site = walk.pace.here.site.clone();
         let linear = walk.pace.here.linear.clone();
         walk.pace = walk.arrived(site, linear, afar)?;
         walk.cut()?;
         Some(walk)
+    }
+
+    /// The length of the way so far.
+    pub fn travelled(&self) -> f64 {
+        self.travelled
     }
 
     /// How often the nodes have been cut anew.
@@ -195,9 +263,10 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         let predicted = here.site.moved(direction, length);
         let conditions = self.path.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
-        let next =
-            self.corrector
-                .correct(predicted.clone(), &self.path.free, &conditions, Goal::STEP)?;
+        let next = self
+            .corrector
+            .correct(predicted.clone(), &self.path.free, &conditions, Goal::STEP)
+            .ok()?;
         let along = self.path.direction(&next, direction)?;
         Some(Pace {
             here: next,
@@ -205,17 +274,26 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         })
     }
 
-    /// The next orbit, which the walk then stands at; returns where it stood and how far that was. `None` where the steps
-    /// shrink to nothing.
-    pub fn step(&mut self) -> Option<(Pace<N>, f64)> {
-        self.crawls = if self.length < CRAWL {
-            self.crawls + 1
-        } else {
-            0
-        };
-        if self.crawls > CRAWLS {
-            return None;
+    /// Whether the last steps lead nowhere: measured by the way so far, whatever the units of the variables.
+    fn progresses(&self) -> Result<(), Stop> {
+        let length: f64 = self.lengths.iter().sum();
+        let grow = self.lengths.back() > self.lengths.front();
+        if self.lengths.len() < WINDOW || grow || length > PROGRESS * self.travelled {
+            return Ok(());
         }
+        Err(Stop::NoProgress {
+            steps: WINDOW,
+            length,
+            travelled: self.travelled,
+        })
+    }
+
+    /// The next orbit, which the walk then stands at; returns where it stood and how far that was.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn step(&mut self) -> Result<(Pace<N>, f64), Stop> {
+        self.progresses()?;
         loop {
             let length = self.length;
             let next = self
@@ -223,13 +301,17 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
                 .filter(|next| next.direction.dot(&self.pace.direction) > TURN);
             let Some(next) = next else {
                 // Often a node's plane lies badly: nodes elsewhere may do.
+                if let Some(steps) = self.corrector.tracer.used_up() {
+                    return Err(Stop::UsedUp { steps });
+                }
                 if !self.fresh {
-                    self.cut()?;
+                    self.cut().ok_or(Stop::NoNodes)?;
                     continue;
                 }
                 self.length *= SHORTER;
-                if self.length < SHORTEST {
-                    return None;
+                let extent = self.pace.here.site.polygon.extent();
+                if self.length < SHORTEST * extent.min(1.0) {
+                    return Err(Stop::NoOrbit { length });
                 }
                 continue;
             };
@@ -237,17 +319,25 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             let ratio = (OFF / next.here.first).sqrt().clamp(RATIO.0, RATIO.1);
             self.length = (length * ratio).min(self.path.longest);
             let before = std::mem::replace(&mut self.pace, next);
-            return Some((before, length));
+            self.travelled += length;
+            self.lengths.push_back(length);
+            if self.lengths.len() > WINDOW {
+                self.lengths.pop_front();
+            }
+            return Ok((before, length));
         }
     }
 
     /// Cuts the orbit's arcs anew where they have become uneven. After that the walk's last orbit has other nodes than the one
     /// before.
-    pub fn mesh(&mut self) -> Option<()> {
+    ///
+    /// # Errors
+    /// [`Stop::NoNodes`].
+    pub fn mesh(&mut self) -> Result<(), Stop> {
         if uneven(&self.pace.here) {
-            self.cut()
+            self.cut().ok_or(Stop::NoNodes)
         } else {
-            Some(())
+            Ok(())
         }
     }
 
@@ -306,6 +396,16 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             direction = direction.scaled(-1.0);
         }
         Some(Pace { here, direction })
+    }
+}
+
+/// Where the walk begins the path has no direction.
+fn no_direction() -> Error {
+    Error::NotConverged {
+        what: "the direction of the curve",
+        iterations: 0,
+        residual: f64::INFINITY,
+        tolerance: Goal::STEP.done,
     }
 }
 

@@ -6,6 +6,8 @@ use super::options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions,
 };
 use super::sweep::SweepOptions;
+use super::system::System;
+use super::units::Units;
 use crate::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
 
@@ -46,6 +48,21 @@ struct Line {
 }
 
 impl Command {
+    /// The units of its numbers; `None` where its options make no system.
+    pub fn units(&self) -> Option<Units> {
+        let slab = match self {
+            Command::Law(options) => &options.model.slab,
+            Command::Integrate(options) => &options.model.slab,
+            Command::Equilibria(options) => &options.model.slab,
+            Command::Orbit(options) => &options.model.slab,
+            Command::Section(options) => &options.model.slab,
+            Command::Branch(options) => &options.model.slab,
+            Command::Locus(options) => &options.model.slab,
+            Command::Sweep(options) => &options.slab,
+        };
+        System::of(slab, None, None).ok().map(|system| system.units)
+    }
+
     /// The command line that scene files are read against.
     pub fn program() -> clap::Command {
         Line::command()

@@ -61,11 +61,11 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         "error estimate",
         match plan.estimate {
             Some(Companion::Tighter(second)) => format!(
-                "on: twice the distance to a second run by auto with rtol {:e}, atol {:e}, at the end only",
+                "on: twice the distance to a second run by auto with rtol {:e}, atol {:e}, and the rounding of the start by a tangent flow, at the end only",
                 second.rtol, second.atol
             ),
             Some(Companion::Reference) => {
-                "on: the distance to a second run in double-double arithmetic, at the end only"
+                "on: twice the distance to a second run in double-double arithmetic, and the rounding of the start by a tangent flow, at the end only"
                     .into()
             }
             None => "off: --estimate-error is not given".into(),

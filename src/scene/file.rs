@@ -194,6 +194,13 @@ impl Reader<'_> {
                 .ok_or_else(|| wrong("true or false"))?;
             return Ok(on.then(|| (name.to_owned(), None)));
         }
+        // A switch that may name something.
+        let optional = option
+            .get_num_args()
+            .is_some_and(|count| count.min_values() == 0);
+        if let (true, Some(on)) = (optional, value.get_ref().as_bool()) {
+            return Ok(on.then(|| (name.to_owned(), None)));
+        }
         let numeric = is_numeric(option);
         let text = match value.get_ref() {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),

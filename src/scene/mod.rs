@@ -58,7 +58,7 @@ pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,
 };
-pub use plan::{Dimension, Plan, Sampling, start};
+pub use plan::{Dimension, Plan, Sampling, start, tolerances};
 pub use run::{Outcome, Sink, run};
 pub use section::{
     Lyapunov, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,

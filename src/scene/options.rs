@@ -7,7 +7,7 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
-    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given";
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for";
@@ -161,10 +161,10 @@ pub struct IntegrateOptions {
     #[arg(long, value_name = "NAMES", help_heading = "Run")]
     pub columns: Option<String>,
     /// Find stick-slip events: times between a maximum and a minimum of stress, when the interfaces together slip faster
-    /// than V_H. In JSON they are result.events; in CSV and tables a second table, in FILE.events.csv beside -o FILE.csv or
-    /// after an empty line
-    #[arg(long, help_heading = "Run")]
-    pub events: bool,
+    /// than V_H. In JSON they are result.events; a table on standard output is followed by theirs; in CSV they go to FILE, or
+    /// beside -o RUN.csv to RUN.events.csv
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, help_heading = "Run")]
+    pub events: Option<PathBuf>,
     /// Count events whose total slip rate exceeds X times V_H [default: 2]
     #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub event_threshold: Option<f64>,
@@ -349,6 +349,11 @@ pub(super) fn count(text: &str) -> Result<usize, String> {
     plain
         .or_else(short)
         .ok_or_else(|| "must be a whole number, not negative".into())
+}
+
+/// A path, which is empty where an option that may have one is given without.
+fn path(text: &str) -> Result<PathBuf, String> {
+    Ok(PathBuf::from(text))
 }
 
 /// A finite number; the domain of each parameter is checked where it has its meaning.

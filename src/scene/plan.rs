@@ -7,7 +7,7 @@ use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result};
-use crate::friction::{Law, positive, steady_stress};
+use crate::friction::{Law, beside, positive, steady_stress};
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 
@@ -126,7 +126,8 @@ impl Plan {
             columns,
             events: options
                 .events
-                .then(|| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
+                .as_ref()
+                .map(|_| options.event_threshold.unwrap_or(EVENT_THRESHOLD)),
             picture: options.plot.is_some(),
             estimate: (options.estimate_error || options.reference)
                 .then(|| Companion::of(tolerances, options.reference)),
@@ -165,8 +166,25 @@ impl Plan {
 
 /// The method and the tolerances, checked.
 pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
-    let tolerances = Tolerances::new(options.rtol, options.atol.unwrap_or(options.rtol))?;
+    let tolerances = tolerances(options.rtol, options.atol)?;
     Ok((Choice::named(&options.method)?, tolerances))
+}
+
+/// The tolerances of a run in (tau, ln psi), both those of rtol where atol is not given.
+///
+/// # Errors
+/// [`Error::Parameter`] as of [`Tolerances::new`], and for an atol that is no tolerance of numbers of the order of ten.
+pub fn tolerances(rtol: f64, atol: Option<f64>) -> Result<Tolerances> {
+    let Tolerances { rtol, atol: equal } = Tolerances::equal(rtol)?;
+    let atol = atol.unwrap_or(equal);
+    if !(atol > 0.0 && atol < 1.0) {
+        return Err(Error::parameter(
+            "atol",
+            atol,
+            "greater than 0 and less than 1: an error by 1 of ln psi is a factor of e",
+        ));
+    }
+    Ok(Tolerances { rtol, atol })
 }
 
 fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<Sampling> {
@@ -202,8 +220,8 @@ fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<S
 pub fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
     if let Some(rest) = text.strip_prefix("near-symmetric") {
         let asymmetry = match rest.strip_prefix(':') {
-            Some(number) => start_number(number, text)?,
-            None if rest.is_empty() => NEAR_SYMMETRIC,
+            Some(number) => Some(start_number(number, text)?),
+            None if rest.is_empty() => None,
             None => return Err(unreadable(text, system)),
         };
         return near_symmetric(asymmetry, system, loading);
@@ -229,17 +247,32 @@ pub fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f6
     Ok((system.units.inward(Quantity::Stress, numbers[0]), log_state))
 }
 
-/// The symmetric steady state, with the second interface (the only one, if there is one) moved off it by exp(EPS).
-fn near_symmetric(asymmetry: f64, system: &System, loading: &Loading) -> Result<(f64, [f64; 2])> {
+/// The symmetric steady state, with the second interface (the only one, if there is one) moved off it by exp(EPS). Where no EPS
+/// is given, to the side on which the law has states, as the starts of a sweep are.
+fn near_symmetric(
+    asymmetry: Option<f64>,
+    system: &System,
+    loading: &Loading,
+) -> Result<(f64, [f64; 2])> {
     let v = loading.driving / system.interfaces as f64;
     let w = system.law.steady_state(v).ln();
-    let moved = w + asymmetry;
+    let moved = match asymmetry {
+        None => beside(&system.law, w, NEAR_SYMMETRIC),
+        Some(by) if system.law.bounds_state() && w + by > 0.0 => {
+            return Err(Error::Input(format!(
+                "--start near-symmetric:{by}: EPS moves psi from {:.6} at the steady state to {:.6}, but this law keeps psi in (0, 1]; EPS must be at most {:.6e} here",
+                w.exp(),
+                (w + by).exp(),
+                -w
+            )));
+        }
+        Some(by) => w + by,
+    };
     let log_state = if system.interfaces == 1 {
         [moved, moved]
     } else {
         [w, moved]
     };
-    bounded(log_state, system)?;
     Ok((steady_stress(&system.law, v), log_state))
 }
 

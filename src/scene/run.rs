@@ -1,7 +1,7 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
 use super::column::{Column, Instant, fill};
-use super::estimate::estimate;
+use super::estimate::{estimate, timed};
 use super::event::{Detector, Event};
 use super::plan::{Dimension, Plan, Sampling};
 use super::slip::{Slips, at, slips};
@@ -38,7 +38,7 @@ pub struct Outcome {
     pub error_estimate: Option<f64>,
     /// Why the error could not be estimated.
     pub estimate_failure: Option<Error>,
-    /// Why it ended early.
+    /// Why it ended early, in the user's units.
     pub failure: Option<Error>,
     /// Whether the sink stopped it.
     pub stopped: bool,
@@ -82,8 +82,8 @@ fn flow<const N: usize>(
     };
     let mut outcome = watch.finish(&end);
     outcome.work = integrator.work();
-    if let (Ok(y), Some(companion), false) = (end, plan.estimate, outcome.stopped) {
-        estimate(
+    match (end, plan.estimate) {
+        (Ok(y), Some(companion)) if !outcome.stopped => estimate(
             companion,
             plan,
             as_field(field),
@@ -91,8 +91,16 @@ fn flow<const N: usize>(
             &y,
             &mut outcome,
             sink,
-        )?;
+        )?,
+        (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
+            let timed = timed(error, plan, as_field(field), &y0, &mut outcome, sink)?;
+            outcome.failure = Some(timed);
+        }
+        _ => {}
     }
+    let told = |error: Error| plan.system.units.told(error);
+    outcome.failure = outcome.failure.map(told);
+    outcome.estimate_failure = outcome.estimate_failure.map(told);
     Ok(outcome)
 }
 

@@ -1,5 +1,6 @@
 //! What a number on the command line is measured in: dimensionless, or SI with `--si`.
 
+use crate::error::{Error, MessageUnits};
 use crate::model::scales::Scales;
 use crate::number::Uncertain;
 
@@ -95,6 +96,20 @@ impl Units {
         }
         let rounding = CONVERSION_ULPS * f64::EPSILON * value.abs();
         Uncertain::new(value, x.uncertainty * self.factor(quantity) + rounding)
+    }
+
+    /// The same error, its numbers in the user's units.
+    pub fn told(&self, error: Error) -> Error {
+        if !self.si() {
+            return error;
+        }
+        let unit = |quantity| (self.factor(quantity), self.name(quantity));
+        error.in_units(&MessageUnits {
+            time: unit(Quantity::Time),
+            stress: unit(Quantity::Stress),
+            slip_rate: unit(Quantity::SlipRate),
+            stiffness: unit(Quantity::Stiffness),
+        })
     }
 
     /// The unit's name.

@@ -18,6 +18,11 @@ use std::fmt::Debug;
 pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
     /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
     fn rates<T: Real>(&self, x: [T; N], parameters: [T; 2]) -> [T; N];
+
+    /// The name of a law by which every solution, forwards in time, is known to exist for all time.
+    fn lasting(&self) -> Option<&'static str> {
+        None
+    }
 }
 
 /// The equations as a formula, with parameters in E.

@@ -3,7 +3,7 @@
 
 use super::cvode::{Cvode, Operations};
 use super::vector::{Fixed, Serial};
-use super::{callback, check};
+use super::{callback, check, counted};
 use crate::error::Result;
 use std::ffi::c_int;
 
@@ -12,8 +12,9 @@ impl<const N: usize> Cvode<N> {
     /// in one direction of crossing only: 1 upwards, -1 downwards, 0 both; missing ones are 0.
     ///
     /// # Errors
-    /// [`crate::Error::Sundials`] if CVODES can't allocate.
+    /// [`crate::Error::Sundials`] if CVODES can't allocate; [`crate::Error::Parameter`] for more events than C can count.
     pub fn watch_events(&mut self, count: usize, directions: &[i32]) -> Result<()> {
+        let counted = counted("the number of events", count)?;
         let m = self.memory.as_ptr();
         let g = match self.operations {
             Operations::Fixed => callback::events::<Fixed, N>,
@@ -27,7 +28,7 @@ impl<const N: usize> Cvode<N> {
             check!(
                 CV,
                 &self.messages,
-                CVodeRootInit(m, count as c_int, (count > 0).then_some(g as _))
+                CVodeRootInit(m, counted, (count > 0).then_some(g as _))
             )?;
             if count > 0 {
                 check!(

@@ -201,22 +201,54 @@ pub fn version() -> &'static str {
     })
 }
 
+/// A number of things as C counts them.
+fn counted(what: &str, count: usize) -> Result<c_int> {
+    c_int::try_from(count).map_err(|_| Error::parameter(what, count, "at most 2147483647"))
+}
+
 /// sundials-sys turns to a source of its own, without a word, where it can't read the installed headers. What is linked then
 /// is not what this crate was built for.
+///
+/// Functions, structures and the types of numbers and indices are the same within a minor version: the loader looks for the
+/// library by its major version alone, and a distribution may update the patch.
 fn linked_version() -> Result<()> {
     static SAME: OnceLock<bool> = OnceLock::new();
-    if *SAME.get_or_init(|| native::linked() == native::HEADERS) {
+    if *SAME.get_or_init(|| compatible(native::linked(), native::HEADERS)) {
         return Ok(());
     }
-    let [major, minor, patch] = native::HEADERS;
+    let [major, minor, _] = native::HEADERS;
     Err(Error::Sundials {
         function: "SUNDIALSGetVersionNumber",
         name: "another version".to_owned(),
         code: 0,
         time: None,
         message: format!(
-            "built with the headers of SUNDIALS {major}.{minor}.{patch}, but linked with {}; install libclang-dev and build afresh",
+            "built for SUNDIALS {major}.{minor}, but linked with {}; major and minor version must be the same: install libclang-dev and build afresh",
             version()
         ),
     })
+}
+
+/// Whether a library of this version does what headers of that one say.
+fn compatible(linked: [i32; 3], headers: [i32; 3]) -> bool {
+    linked[..2] == headers[..2]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_update_is_the_same_library() {
+        assert!(compatible([6, 4, 1], [6, 4, 1]));
+        assert!(compatible([6, 4, 2], [6, 4, 1]));
+        assert!(!compatible([6, 5, 0], [6, 4, 1]));
+        assert!(!compatible([7, 4, 1], [6, 4, 1]));
+    }
+
+    #[test]
+    fn what_c_cannot_count_is_refused() {
+        assert_eq!(counted("x", 3), Ok(3));
+        assert!(counted("x", 1 << 31).is_err_and(|error| error.is_input()));
+    }
 }

@@ -21,7 +21,7 @@ mod missing {
     include!(concat!(env!("OUT_DIR"), "/missing.rs"));
 }
 
-/// The version of the headers, which the linked library must have.
+/// The version of the headers, whose major and minor number the linked library must have.
 pub(super) const HEADERS: [i32; 3] = [
     missing::SUNDIALS_VERSION_MAJOR as i32,
     missing::SUNDIALS_VERSION_MINOR as i32,

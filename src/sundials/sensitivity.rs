@@ -4,7 +4,7 @@
 use super::callback::{self, all_finite};
 use super::cvode::{Cvode, Operations, vector};
 use super::vector::{Fixed, Serial, Vector};
-use super::{Context, Messages, check, failure, flags};
+use super::{Context, Messages, check, counted, failure, flags};
 use crate::contract::Tolerances;
 use crate::error::{Error, Result};
 use crate::field::State;
@@ -97,7 +97,8 @@ impl<const N: usize> Cvode<N> {
     /// state, zero for that of a parameter, whose df/dp the [`super::Problem`] then gives.
     ///
     /// # Errors
-    /// [`Error::NonFinite`] if a number is not finite, [`Error::Input`] if there is no column.
+    /// [`Error::NonFinite`] if a number is not finite, [`Error::Input`] if there is no column, [`Error::Parameter`] if there
+    /// are more than C can count.
     pub fn start_with_sensitivities(
         &mut self,
         t0: f64,
@@ -114,6 +115,7 @@ impl<const N: usize> Cvode<N> {
                 t: t0,
             });
         }
+        let count = counted("the number of sensitivities", columns.len())?;
         self.restart(t0, y0)?;
         let reuse = self
             .columns
@@ -144,12 +146,16 @@ impl<const N: usize> Cvode<N> {
                     Operations::Fixed => callback::sensitivity_right_hand_side::<Fixed, N>,
                     Operations::Stock => callback::sensitivity_right_hand_side::<Serial, N>,
                 };
-                let count = columns.len() as c_int;
-                check!(
+                let begun = check!(
                     CV,
                     messages,
                     CVodeSensInit(m, count, ism, Some(f), pointers)
-                )?;
+                );
+                if begun.is_err() {
+                    // CVODES has none then, and must not be asked to go on with them.
+                    self.columns = None;
+                }
+                begun?;
             }
         }
         self.set_sensitivity_tolerances(columns.len(), settings)

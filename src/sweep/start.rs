@@ -2,7 +2,7 @@
 
 use super::{Grid, Settings};
 use crate::field::State;
-use crate::friction::Law;
+use crate::friction::{Law, beside};
 use crate::model::Loading;
 use crate::section::half_driving_stress;
 use rand_chacha::ChaCha8Rng;
@@ -41,7 +41,7 @@ pub(super) fn point(settings: &Settings, number: usize) -> Point {
             let tau = stress(loading.driving);
             let w = settings.law.steady_state(0.5 * loading.driving).ln();
             let start = match s {
-                0 => State::<3>::new(tau, w, w + BESIDE),
+                0 => State::<3>::new(tau, w, beside(&settings.law, w, BESIDE)),
                 1 => State::<3>::new(tau, w + SWUNG, w + SWUNG),
                 2 => State::<3>::new(tau + FAR.0, w, w + FAR.1),
                 _ => random(settings.seed, number, (tau, w)),

@@ -105,5 +105,8 @@ pub fn special_columns() -> Vec<Column<Special>> {
             // A row is a line, whatever the reason says.
             Entry::Word(one.note.as_ref().map(|note| note.replace('\n', " ")))
         }),
+        Column::new("coefficient_uncertainty", Number, |one| {
+            one.coefficient_uncertainty.into()
+        }),
     ]
 }

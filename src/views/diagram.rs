@@ -36,6 +36,7 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         ("equilibria", "stress τ")
     };
     let first = Panel {
+        strokes: named_strokes(&series),
         series,
         marks: points,
         ..Panel::new(
@@ -55,7 +56,7 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
         series: branch_lines(rows, &at, &period, false),
         marks: marks(rows, &at, &period, true),
         ..Panel::new(
-            "period",
+            format!("period at {}", fixed(along, slab, units)),
             x,
             Axis::log(axis_label("period", Quantity::Time, units)),
         )
@@ -65,17 +66,32 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
 
 /// The parameter that stays fixed, with its value.
 fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
-    let (name, quantity, x) = match along.parameter {
-        Parameter::Driving => ("K", Quantity::Stiffness, slab.loading.stiffness),
-        Parameter::Stiffness => ("V_H", Quantity::SlipRate, slab.loading.driving),
+    match along.parameter {
+        Parameter::Driving => value("K", Quantity::Stiffness, slab.loading.stiffness, units),
+        Parameter::Stiffness => value("V_H", Quantity::SlipRate, slab.loading.driving, units),
+    }
+}
+
+/// V_H and K of a run, for its title.
+pub fn parameters(driving: f64, stiffness: f64, units: &Units) -> String {
+    let driving = value("V_H", Quantity::SlipRate, driving, units);
+    let stiffness = value("K", Quantity::Stiffness, stiffness, units);
+    format!("{stiffness}, {driving}")
+}
+
+/// A symbol with its value and unit, but for that of what has none.
+fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> String {
+    let digits = seven_digits(units.outward(quantity, x));
+    let digits = match digits.contains(['e', 'E']) || !digits.contains('.') {
+        true => &digits,
+        false => digits.trim_end_matches('0').trim_end_matches('.'),
     };
-    let value = seven_digits(units.outward(quantity, x));
-    let value = if value.contains('e') {
-        &value
+    let unit = if units.si() {
+        format!(" {}", units.short_name(quantity))
     } else {
-        value.trim_end_matches('0').trim_end_matches('.')
+        String::new()
     };
-    format!("{name} = {value}")
+    format!("{name} = {digits}{unit}")
 }
 
 /// The label of an axis: name and unit.
@@ -95,7 +111,7 @@ fn apart(branch: &[BranchRow]) -> bool {
         .any(|row| row.slip_rate[0] != row.slip_rate[1])
 }
 
-/// Stable parts solid, all others dashed; in two colours.
+/// Stable parts solid, all others dashed; in two colours. With `legend` the colours have names; [`named_strokes`] tells the dashes.
 pub fn branch_lines(
     rows: &[BranchRow],
     x: &dyn Fn(&BranchRow) -> f64,
@@ -104,51 +120,58 @@ pub fn branch_lines(
 ) -> Vec<Series> {
     let kinds = [(ALIKE, true), (APART, true), (ALIKE, false), (APART, false)];
     let part = |(colour, stable): (usize, bool)| {
-        let (mut xs, mut ys) = (Vec::new(), Vec::new());
+        let (mut xs, mut ys, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
         for branch in whole(rows).filter(|branch| apart(branch) == (colour == APART)) {
-            for pair in branch.windows(2) {
-                let (a, b) = (&pair[0], &pair[1]);
-                if solid(a, b) != stable {
-                    continue;
-                }
-                if xs.last() != Some(&x(a)) || ys.last() != Some(&y(a)) {
-                    xs.extend([f64::NAN, x(a)]);
-                    ys.extend([f64::NAN, y(a)]);
-                }
-                xs.push(x(b));
-                ys.push(y(b));
+            let belongs = |pair: &[BranchRow]| solid(&pair[0], &pair[1]) == stable;
+            if !branch.windows(2).any(belongs) {
+                continue;
             }
+            // All of it, so that a part goes on into the next one.
+            xs.extend(branch.iter().map(x));
+            ys.extend(branch.iter().map(y));
+            left_out.extend(branch.windows(2).map(|pair| !belongs(pair)));
+            xs.push(f64::NAN);
+            ys.push(f64::NAN);
+            left_out.extend([true, true]);
         }
         let stroke = if stable {
             Stroke::Solid
         } else {
             Stroke::Dashed
         };
-        Series::new("", xs, ys).stroke(stroke).colour(colour)
+        Series {
+            left_out,
+            ..Series::new("", xs, ys).stroke(stroke).colour(colour)
+        }
     };
     let series = kinds.into_iter().map(part);
     let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
-    named(&mut series, legend);
+    let mut known = Vec::new();
+    for one in series.iter_mut().filter(|_| legend) {
+        if !known.contains(&one.colour) {
+            let name = if one.colour == Some(ALIKE) {
+                "symmetric"
+            } else {
+                "asymmetric"
+            };
+            one.label = name.to_owned();
+            known.push(one.colour);
+        }
+    }
     series
 }
 
-/// The legend: each colour once, dashes once.
-fn named(series: &mut [Series], legend: bool) {
-    let (mut colours, mut dashes) = (Vec::new(), false);
-    for one in series.iter_mut().filter(|_| legend) {
-        let dashed = one.stroke == Stroke::Dashed;
-        let unstable = (dashed && !dashes).then_some("unstable");
-        let new = !colours.contains(&one.colour);
-        let name = if one.colour == Some(ALIKE) {
-            "symmetric"
-        } else {
-            "asymmetric"
-        };
-        let words: Vec<&str> = new.then_some(name).into_iter().chain(unstable).collect();
-        one.label = words.join(", ");
-        colours.push(one.colour);
-        dashes |= dashed;
-    }
+/// The legend of the strokes that occur: dashes are what is not stable, in whatever colour.
+pub fn named_strokes(series: &[Series]) -> Vec<(Stroke, String)> {
+    let named = [(Stroke::Solid, "stable"), (Stroke::Dashed, "unstable")];
+    let occurs = |stroke| series.iter().any(|one| one.stroke == stroke);
+    let broken = occurs(Stroke::Dashed);
+    let present = named
+        .into_iter()
+        .filter(|(stroke, _)| broken && occurs(*stroke));
+    present
+        .map(|(stroke, words)| (stroke, words.to_owned()))
+        .collect()
 }
 
 /// Between two points: stable if one is, and the other is, or is a bifurcation.

@@ -3,6 +3,7 @@
 use crate::output::plot::{Axis, Panel, Series};
 use crate::output::{self, Rows};
 use crate::scene::{Quantity, SectionPlan};
+use crate::views;
 
 /// Slip rates that differ by more than this factor are drawn on logarithmic axes.
 const DECADES: f64 = 30.0;
@@ -31,9 +32,10 @@ pub fn return_map(plan: &SectionPlan, rows: &Rows) -> Panel {
     let rate = units.short_name(Quantity::SlipRate);
     let stress = units.outward(Quantity::Stress, plan.stress);
     let title = format!(
-        "return map at τ = {} [{}]",
+        "return map at τ = {} {}, {}",
         output::seven_digits(stress),
-        units.short_name(Quantity::Stress)
+        units.short_name(Quantity::Stress),
+        views::parameters(plan.loading.driving, plan.loading.stiffness, units)
     );
     Panel {
         series: vec![

@@ -13,7 +13,7 @@ mod run;
 mod sweep;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
-pub use diagram::{axis_label, branch_lines, branches, curves};
+pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use map::{return_map, states_at_returns};
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{panels_in_time, phase_plane};

@@ -1,8 +1,9 @@
 //! Pictures of a run in time.
 
 use crate::output::Rows;
-use crate::output::plot::{Axis, Panel, Series};
+use crate::output::plot::{Axis, Panel, Series, Stroke};
 use crate::scene::{Dimension, Plan, Quantity};
+use crate::views;
 
 /// Stress, states and slip rates against time, from points in the columns [`crate::scene::Column::pictured`].
 pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
@@ -14,7 +15,7 @@ pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
     };
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let of_each = |name: &str, field: &str| {
-        each(plan, name, &|i| {
+        each(plan, rows, name, &|i| {
             (column("time"), column(&format!("{field}_{i}")))
         })
     };
@@ -22,9 +23,14 @@ pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
         series,
         ..Panel::new(title, time.clone(), y)
     };
+    let parameters = views::parameters(plan.loading.driving, plan.loading.stiffness, units);
     let over_time = Series::new("", column("time"), column("stress"));
     vec![
-        panel("stress", stress_axis(plan), vec![over_time]),
+        panel(
+            &format!("stress, {parameters}"),
+            stress_axis(plan),
+            vec![over_time],
+        ),
         panel(
             "state",
             Axis::log(format!("state ψ{state_unit}")),
@@ -37,7 +43,7 @@ pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
 /// Stress against the slip rates.
 pub fn phase_plane(plan: &Plan, rows: &Rows) -> Panel {
     let column = |name: &str| rows.column(name).unwrap_or_default();
-    let series = each(plan, "v", &|i| {
+    let series = each(plan, rows, "v", &|i| {
         (column(&format!("slip_rate_{i}")), column("stress"))
     });
     Panel {
@@ -56,18 +62,47 @@ fn rate_axis(plan: &Plan) -> Axis {
     Axis::log(format!("slip rate v [{unit}]"))
 }
 
-/// A curve for each interface; equal interfaces are one curve, not one that hides another.
-fn each(plan: &Plan, name: &str, of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>)) -> Vec<Series> {
-    let curves = match plan.dimension {
-        Dimension::Single => vec![(1, "")],
-        Dimension::Symmetric => vec![(1, "₁ = ₂")],
-        Dimension::Full => vec![(1, "₁"), (2, "₂")],
-    };
-    let series = curves.iter().map(|(i, marks)| {
-        let (x, y) = of(*i);
+/// Colours of the faster interface and of the slower one.
+const FAST: usize = 1;
+const SLOW: usize = 0;
+
+/// A curve for each interface, of the slower one dashed and above that of the faster one, so that both are seen where they coincide;
+/// equal interfaces are one curve, not one that hides another. The faster one is that with the larger slip rate at its fastest:
+/// which of both it is depends on the start, and its look doesn't.
+fn each(
+    plan: &Plan,
+    rows: &Rows,
+    name: &str,
+    of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>),
+) -> Vec<Series> {
+    let one = |i: usize, marks: &str| {
+        let (x, y) = of(i);
         Series::new(label(name, marks), x, y)
-    });
-    series.collect()
+    };
+    let most = |name: &str| {
+        let rates = rows.column(name).unwrap_or_default();
+        rates.into_iter().fold(f64::NEG_INFINITY, f64::max)
+    };
+    match plan.dimension {
+        Dimension::Single => vec![one(1, "")],
+        Dimension::Symmetric => vec![one(1, "₁ = ₂")],
+        Dimension::Full => {
+            let (fast, slow) = if most("slip_rate_1") >= most("slip_rate_2") {
+                ((1, "₁"), (2, "₂"))
+            } else {
+                ((2, "₂"), (1, "₁"))
+            };
+            let named = |(i, mark): (usize, &str), role: &str| {
+                let series = one(i, mark);
+                let label = format!("{}, {role}", series.label);
+                Series { label, ..series }
+            };
+            vec![
+                named(fast, "fast").colour(FAST),
+                named(slow, "slow").colour(SLOW).stroke(Stroke::Dashed),
+            ]
+        }
+    }
 }
 
 /// `v₁ = v₂` from `v` and `₁ = ₂`.

@@ -1,7 +1,9 @@
 //! What a viewer of a picture sees: the words and shapes of its SVG with their places, in the font that is built in.
 #![allow(missing_docs)]
 
-use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree, fontdb::Database};
+use resvg::usvg::{
+    Group, Node, Options, Paint, Rect, Text, TextChunk, TextSpan, Tree, fontdb::Database,
+};
 use std::sync::Arc;
 use twinslip::output::plot::{Axis, Drawing, Panel};
 
@@ -24,6 +26,8 @@ pub struct Seen {
     pub height: f32,
     pub words: Vec<(String, Rect)>,
     pub shapes: Vec<Shape>,
+    /// Of all words but subscripts.
+    pub sizes: Vec<f32>,
 }
 
 pub fn seen(drawing: &Drawing) -> Seen {
@@ -43,9 +47,39 @@ pub fn seen(drawing: &Drawing) -> Seen {
         height: tree.size().height(),
         words: Vec::new(),
         shapes: Vec::new(),
+        sizes: Vec::new(),
     };
     seen.collect(tree.root());
     seen
+}
+
+/// A subscript is smaller than what stands before it: it is read with an underscore, which is never drawn.
+fn read(chunk: &TextChunk) -> String {
+    let text = chunk.text();
+    assert!(!text.contains('_'), "an underscore is drawn: {text:?}");
+    let largest = largest(chunk);
+    let part = |span: &TextSpan| {
+        let words = &text[span.start()..span.end()];
+        let lower = if span.font_size().get() < largest {
+            "_"
+        } else {
+            ""
+        };
+        format!("{lower}{words}")
+    };
+    chunk.spans().iter().map(part).collect()
+}
+
+fn largest(chunk: &TextChunk) -> f32 {
+    let sizes = chunk.spans().iter().map(|span| span.font_size().get());
+    sizes.fold(0.0, f32::max)
+}
+
+fn sizes(text: &Text) -> Vec<f32> {
+    // In the units of the picture, as it is shown.
+    let scale = text.abs_transform().get_scale().0;
+    let chunks = text.chunks().iter();
+    chunks.map(|chunk| scale * largest(chunk)).collect()
 }
 
 fn rgb(paint: &Paint) -> [u8; 3] {
@@ -61,9 +95,10 @@ impl Seen {
             match node {
                 Node::Group(group) => self.collect(group),
                 Node::Text(text) => {
-                    let words: String = text.chunks().iter().map(|chunk| chunk.text()).collect();
+                    let words: String = text.chunks().iter().map(read).collect();
                     self.words
                         .push((words.trim().to_owned(), text.abs_bounding_box()));
+                    self.sizes.extend(sizes(text));
                 }
                 Node::Path(path) => self.shapes.push(Shape {
                     stroke: path.stroke().map(|stroke| rgb(stroke.paint())),
@@ -88,6 +123,18 @@ impl Seen {
 
     pub fn says(&self, words: &str) -> bool {
         self.words.iter().any(|(text, _)| text == words)
+    }
+
+    /// Of a picture shown as broad as this, or in its own size where that is smaller.
+    pub fn assert_readable(&self, shown: f32, least: f32) {
+        let scale = (shown / self.width).min(1.0);
+        let smallest = self.sizes.iter().copied().fold(f32::INFINITY, f32::min);
+        assert!(
+            scale * smallest >= least,
+            "words of {} pixels at {shown} of {}",
+            scale * smallest,
+            self.width
+        );
     }
 
     /// Words stand apart from each other and within the picture.

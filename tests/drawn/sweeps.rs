@@ -10,8 +10,8 @@ use twinslip::scene::Units;
 use twinslip::section::Regime;
 use twinslip::views::{Outcome, Side, basin_map, regime_map};
 
-const TORUS: [u8; 3] = [95, 79, 7];
-const PERIOD_3: [u8; 3] = [219, 88, 121];
+const TORUS: [u8; 3] = [182, 168, 113];
+const PERIOD_3: [u8; 3] = [182, 71, 132];
 
 fn outcome(number: usize, regime: Regime, symmetry: Option<Symmetry>, returns: usize) -> Outcome {
     Outcome {
@@ -155,12 +155,12 @@ fn attractors_are_numbered_by_their_basins() {
             _ => outcome(number, Regime::Undecided, None, 0),
         })
         .collect();
-    let sides = (&side(0.1, 0.9, 4), &side(0.1, 0.9, 3));
+    let sides = (&side(0.1, 0.9, 4), &side(0.15, 0.95, 3));
     let map = basin_map(&found, sides, (0.09, 0.1), &Units::new(None, false));
     let seen = seen(&map);
     seen.assert_legible();
     for words in [
-        "basins at V_H = 0.09, K = 0.1",
+        "basins at K = 0.1, V_H = 0.09",
         "1: periodic, asymmetric, T = 512.3 L/V*, 41.7 %",
         "2: periodic, symmetric, T = 300.0 L/V*, 33.3 %",
         "3: periodic, asymmetric, T = 300.0 L/V*, 16.7 %",
@@ -168,4 +168,56 @@ fn attractors_are_numbered_by_their_basins() {
     ] {
         assert!(seen.says(words), "{words}: {:?}", seen.words);
     }
+}
+
+/// Equal states are a line, which no grid gives an area.
+#[test]
+fn starts_on_the_diagonal_are_no_basin() {
+    let n = 10;
+    let orbit = |number: usize| {
+        let equal = number % n == number / n;
+        let corner = number % n < 3 && number / n < 3;
+        let symmetry = if equal || corner {
+            Symmetry::Symmetric
+        } else {
+            Symmetry::Asymmetric
+        };
+        outcome(number, Regime::Periodic, Some(symmetry), 1)
+    };
+    let found: Vec<Outcome> = (0..n * n).map(orbit).collect();
+    let sides = (&side(0.1, 1.0, n), &side(0.1, 1.0, n));
+    let map = basin_map(&found, sides, (2.0, 0.1), &Units::new(None, false));
+    let seen = seen(&map);
+    seen.assert_legible();
+    // Of 90 starts that are not on it 6 lie in the corner.
+    for words in [
+        "1: periodic, asymmetric, 93.3 %",
+        "2: periodic, symmetric, 6.7 %",
+        "basins at K = 0.1, V_H = 2",
+    ] {
+        assert!(seen.says(words), "{words}: {:?}", seen.words);
+    }
+    let counted = seen
+        .words
+        .iter()
+        .any(|(text, _)| text.contains("not counted"));
+    assert!(counted, "{:?}", seen.words);
+    let frame = seen.frames()[0];
+    let [green] = filled(&seen, [0, 110, 52])[..] else {
+        panic!("the corner alone, without steps along the diagonal")
+    };
+    assert!(
+        green.width() < 0.31 * frame.width() + 0.2,
+        "{green:?} in {frame:?}"
+    );
+    // Without such starts nothing is said of them.
+    let beside = (&side(0.1, 1.0, n), &side(0.15, 1.05, n));
+    let map = basin_map(&found, beside, (2.0, 0.1), &Units::new(None, false));
+    let seen = drawn::seen(&map);
+    assert!(
+        !seen
+            .words
+            .iter()
+            .any(|(text, _)| text.contains("not counted"))
+    );
 }

@@ -117,3 +117,34 @@ fn full() {
     std::fs::write(path, text).expect("a writable folder");
     check(&tally);
 }
+
+/// From tau = -50 the stress could be loaded to -20 in one step, in which the rates grow by e^30 and none of the stages sees it.
+#[test]
+fn rates_that_grow_in_the_first_step_are_seen() {
+    let law = twinslip::friction::AnyLaw::named("slip", parameters(0.9)).expect("known");
+    let scene = Scene {
+        law,
+        loading: twinslip::model::Loading::new(1e-8, 10.0).expect("valid"),
+        start: [-50.0, 0.0, 1e-3_f64.ln()],
+        end: 3e8,
+        dimension: 3,
+    };
+    for (method, tolerance) in [("rodas5p", 1e-3), ("rodas5p", 1e-5), ("rodas4", 1e-3)] {
+        let trial = Trial {
+            method: twinslip::integrate::Choice::named(method).expect("known"),
+            tolerance,
+            watched: false,
+        };
+        let (_, outcomes) = run(&scene, &[trial]);
+        let trial::Outcome::Measured(factor) = outcomes[0] else {
+            panic!("{outcomes:?}");
+        };
+        assert!(factor < promised(method).factor, "{method}: {factor}");
+    }
+}
+
+fn parameters(beta: f64) -> twinslip::friction::Parameters {
+    const DIRECT: f64 = 0.0349;
+    let parameters = twinslip::friction::Parameters::new(DIRECT, DIRECT * beta, 0.369, 100.0, 1e-3);
+    parameters.expect("valid")
+}

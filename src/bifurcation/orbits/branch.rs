@@ -9,17 +9,30 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, HopfPoint, OverLoadings, Path, Regular, Switch, Walk, hopf_points};
+use crate::orbit::{
+    Corrector, Family, HopfPoint, OverLoadings, Path, Regular, Switch, Tracer, Walk, hopf_points,
+};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Tolerance of the walk.
 pub(super) const ROUGH: f64 = 1e-11;
 /// The longest step.
 pub(super) const LONGEST: f64 = 0.7;
+/// Steps of the integrator along a branch, or both ways along a curve, and on an arc, at most.
+const WORK: usize = 20_000_000;
+const ARC: usize = 100_000;
 /// The first step onto a branch that bifurcates.
 const ASIDE: f64 = 0.02;
 /// Coordinates of bifurcations that differ by less are of the same one.
 const SAME: f64 = 1e-6;
+
+/// What makes the orbits of a branch or a curve, its work bounded.
+///
+/// # Errors
+/// Those of [`Tracer::limited`].
+pub(super) fn walker<F: Family<N>, const N: usize>(family: &F) -> Result<Corrector<'_, F, N>> {
+    Ok(Corrector::by(family, Tracer::limited(ROUGH, ARC, WORK)?))
+}
 
 /// Follows the branches that are asked for and hands on what is found: from the Hopf points of symmetric equilibria, of
 /// asymmetric ones, from pitchforks of orbits that none of these has come to, and from period doublings.
@@ -176,8 +189,9 @@ impl<'r> Branches<'r> {
         let number = self.next();
         let hopf = self.hopfs[i].clone();
         let family = self.family;
-        let mut corrector = Corrector::<_, N>::new(&family, ROUGH)?;
-        let inside = self.in_range(hopf.at()[self.free]);
+        let mut corrector = walker::<_, N>(&family)?;
+        let begin = hopf.at()[self.free];
+        let inside = self.in_range(begin);
         let symmetry = symmetry::<N>();
         let special = Event::Special(self.hopf(i)).on(number, symmetry);
         let special = special.against(self.request.tolerance);
@@ -185,8 +199,19 @@ impl<'r> Branches<'r> {
             return Ok(Break(()));
         }
         match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
-            Some(mut walk) => Course::new(self, (number, symmetry), inside, seen).go(&mut walk),
-            None => Ok(Continue(())),
+            Ok(mut walk) => Course::new(self, (number, symmetry), begin, seen).go(&mut walk),
+            Err(error) if inside && self.tells(number) => {
+                let special = Special {
+                    note: Some(format!("no orbit is found beside the Hopf point: {error}")),
+                    label: Label::Mx,
+                    coefficient: None,
+                    coefficient_uncertainty: None,
+                    criticality: None,
+                    ..self.hopf(i)
+                };
+                Ok(seen(Event::Special(special).on(number, symmetry)))
+            }
+            Err(_) => Ok(Continue(())),
         }
     }
 
@@ -199,17 +224,17 @@ impl<'r> Branches<'r> {
     ) -> Result<ControlFlow<()>> {
         let number = self.next();
         let family = self.family;
-        let mut corrector = Corrector::<_, 3>::new(&family, ROUGH)?;
-        let inside = self.in_range(site.at[self.free]);
+        let mut corrector = walker::<_, 3>(&family)?;
+        let begin = site.at[self.free];
         let first = site.moved(&direction, ASIDE);
         match Walk::from(&mut corrector, self.path(), first, direction) {
-            Some(mut walk) => {
+            Ok(mut walk) => {
                 let symmetry = Symmetry::Asymmetric;
-                let mut course = Course::new(self, (number, symmetry), inside, seen);
+                let mut course = Course::new(self, (number, symmetry), begin, seen);
                 course.times = times;
                 course.go(&mut walk)
             }
-            None => Ok(Continue(())),
+            Err(_) => Ok(Continue(())),
         }
     }
 

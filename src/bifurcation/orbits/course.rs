@@ -1,17 +1,18 @@
 //! One branch of periodic orbits, followed to its end.
 
-use super::branch::{Branches, Doubling, ROUGH};
+use super::branch::{Branches, Doubling, walker};
 use super::chart::{Chart, embedded, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
 use super::normal_form::Form;
 use super::rows::{Given, asked, row};
 use super::sharp::{Exactly, Sharp, rough, sharpened, special};
+use super::vertical::Vertical;
 use super::way::Way;
 use crate::bifurcation::{Event, Label, Seen, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::orbit::{Corrector, Indicator, Pace, Regular, Site, Walk};
+use crate::orbit::{Indicator, Pace, Regular, Site, Walk};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -25,10 +26,14 @@ pub(super) struct Course<'b, 'r, 's> {
     symmetry: Symmetry,
     /// Whether it has been in the range.
     pub inside: bool,
+    /// The coordinate where it began.
+    begin: f64,
     /// How often the period has doubled.
     pub times: usize,
     seen: Seen<'s>,
     told: bool,
+    /// As long as the parameter has not varied.
+    vertical: Option<Vertical>,
 }
 
 /// How a branch of doubled orbits ends at one of orbits that go round once.
@@ -46,17 +51,20 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     pub fn new(
         branches: &'b mut Branches<'r>,
         (number, symmetry): (usize, Symmetry),
-        inside: bool,
+        begin: f64,
         seen: Seen<'s>,
     ) -> Self {
+        let inside = branches.in_range(begin);
         Course {
             branches,
             number,
             symmetry,
             inside,
+            begin,
             times: 0,
             seen,
             told: false,
+            vertical: Some(Vertical::default()),
         }
     }
 
@@ -66,32 +74,41 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         walk: Walker<'_, '_, '_, F, N>,
     ) -> Result<ControlFlow<()>> {
         let end = self.along(walk)?;
-        if end == End::Told {
+        if end == Some(End::Told) {
+            return Ok(if self.told { Break(()) } else { Continue(()) });
+        }
+        if let Some(vertical) = self.vertical.filter(Vertical::is_shown) {
+            let special = vertical.end(walk, self.branches.free, self.given(None));
+            let _ = self.tell(Event::Special(special));
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
         let site = &walk.pace.here.site;
-        let (family, path, length) = (*walk.corrector.family, walk.path.clone(), walk.length);
+        let (family, path) = (*walk.corrector.family, walk.path.clone());
+        let length = (walk.length, walk.travelled());
         if let Some((parted, there)) = family.keeping(site) {
             let afar = walk.afar();
-            let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
+            let mut corrector = walker::<_, 3>(&parted)?;
             if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
                 return self.go(&mut walk);
             }
         }
         if self.inside {
             let mut special = rough(Label::Mx, &family.usual(site));
-            special.note = Some(end.words().into());
+            special.note = Some(end.map_or_else(
+                || "the interfaces come so near each other that their difference is lost".into(),
+                End::words,
+            ));
             let _ = self.tell(Event::Special(special));
         }
         Ok(if self.told { Break(()) } else { Continue(()) })
     }
 
-    /// In the same variables throughout.
+    /// In the same variables throughout; `None` where these lose digits, or where the branch is vertical.
     fn along<F: Chart<N>, const N: usize>(
         &mut self,
         walk: Walker<'_, '_, '_, F, N>,
-    ) -> Result<End> {
-        let (mut failed, mut lost) = (None, false);
+    ) -> Result<Option<End>> {
+        let (mut failed, mut lost, mut vertical) = (None, false, false);
         let end = follow(
             walk,
             &self.watches::<N>(),
@@ -111,6 +128,10 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
                                 lost = true;
                                 Ok(Break(()))
                             }
+                            Ok(Continue(())) if self.is_vertical(walk, pace) => {
+                                vertical = true;
+                                Ok(Break(()))
+                            }
                             met => met,
                         }
                     }
@@ -120,12 +141,25 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
                     Break(())
                 })
             },
-        );
+        )?;
         match failed {
             Some(error) => Err(error),
-            None if lost => Ok(End::Stuck),
-            None => Ok(end),
+            None if lost || vertical => Ok(None),
+            None => Ok(Some(end)),
         }
+    }
+
+    /// Whether so much of the branch has been vertical that it is followed no further.
+    fn is_vertical<F: Chart<N>, const N: usize>(
+        &mut self,
+        walk: &mut Walk<'_, '_, F, N>,
+        pace: &Pace<N>,
+    ) -> bool {
+        let free = self.branches.free;
+        self.vertical = self
+            .vertical
+            .and_then(|vertical| vertical.and(walk, pace, free));
+        self.vertical.is_some_and(|vertical| vertical.is_enough())
     }
 
     fn watches<const N: usize>(&self) -> Vec<Watch> {
@@ -188,12 +222,25 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
             return Ok(Break(()));
         }
         if !self.branches.in_range(coordinate) {
-            return Ok(Continue(()));
+            return Ok(if self.strays(coordinate) {
+                Break(())
+            } else {
+                Continue(())
+            });
         }
         self.inside = true;
         let mut row = row(family, self.number, here, None)?;
         row.given(self.given(None));
         Ok(self.tell(Event::Branch(row)))
+    }
+
+    /// Whether a branch that has not been in the range leads away from it: farther than from where it began, by much.
+    fn strays(&self, coordinate: f64) -> bool {
+        /// In logarithms, and in units of where it began.
+        const FAR: (f64, f64) = (2.0, 2.0);
+        let (from, to) = self.branches.range;
+        let off = |x: f64| (from - x).max(x - to).max(0.0);
+        !self.inside && off(coordinate) > FAR.0 + FAR.1 * off(self.begin)
     }
 
     /// At the other Hopf point of the branch.

@@ -59,7 +59,9 @@ fn second<F: Family<N>, const N: usize>(
     let mut corrector = Corrector::by(family, Tracer::new(method, tolerances, MAX_STEPS)?);
     let found = DIGITS.iter().find_map(|&digits| {
         let site = cut::<N>(orbit, digits);
-        corrector.correct(site, &orbit.free, &conditions, Goal::SHARP)
+        corrector
+            .correct(site, &orbit.free, &conditions, Goal::SHARP)
+            .ok()
     });
     found_again(family, found)
 }
@@ -102,7 +104,9 @@ fn second_pitchfork(
         let site = Site { polygon, at };
         let mut conditions = vec![Condition::Plane(&shift, &site)];
         conditions.extend(&others);
-        corrector.correct(site.clone(), &orbit.free, &conditions, Goal::SHARP)
+        corrector
+            .correct(site.clone(), &orbit.free, &conditions, Goal::SHARP)
+            .ok()
     };
     let found = DIGITS.iter().find_map(|&digits| found(digits));
     found_again(&family, found)

@@ -1,6 +1,6 @@
 //! One curve of bifurcations, followed both ways from a point on it.
 
-use super::branch::ROUGH;
+use super::branch::walker;
 use super::chart::Chart;
 use super::leg::{Leg, Pass};
 use super::locus::Locus;
@@ -29,13 +29,13 @@ where
     OverLoadings: Chart<N>,
 {
     let path = Path::locus(locus.indicator, locus.longest());
-    let mut corrector = Corrector::<_, N>::new(&locus.family, ROUGH)?;
+    let mut corrector = walker::<_, N>(&locus.family)?;
     let Some((here, direction)) = first(&mut corrector, &path, seed) else {
         return Ok(None);
     };
     let begin = Pass::of(&here);
     let mut back = Leg::new(locus, number, begin, None);
-    if let Some(mut walk) = Walk::from(
+    if let Ok(mut walk) = Walk::from(
         &mut corrector,
         path.clone(),
         here.clone(),
@@ -57,7 +57,7 @@ where
         return Ok(Some(Curve { passes, told }));
     }
     let mut forth = Leg::new(locus, number, begin, Some(seen));
-    if let Some(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
+    if let Ok(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
         forth.begins(&mut walk);
         if !forth.told && !forth.leaves(&walk.pace) {
             forth.go(&mut walk)?;
@@ -82,13 +82,15 @@ where
     OverLoadings: Chart<N>,
 {
     let fixed = path.and(Condition::Parameter(1, seed.at[1]));
-    let closed: Regular<N> = corrector.correct(seed, &path.free, &fixed, Goal::STEP)?;
+    let closed: Regular<N> = corrector
+        .correct(seed, &path.free, &fixed, Goal::STEP)
+        .ok()?;
     let own: Vec<_> = path
         .indicator
         .map(Condition::Indicator)
         .into_iter()
         .collect();
-    let here = corrector.look(closed.site, &path.free, &own)?;
+    let here = corrector.look(closed.site, &path.free, &own).ok()?;
     let direction = path.direction(&here, &here.along[0])?;
     Some((here.site, direction))
 }

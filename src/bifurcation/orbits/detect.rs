@@ -24,6 +24,8 @@ pub(super) struct Zero<const N: usize> {
     pub at: f64,
     /// An orbit near it.
     pub near: Pace<N>,
+    /// Whether the values at both ends are far from zero, so that no noise changes their signs.
+    pub clear: bool,
 }
 
 /// What is watched, with the slopes along the walk where there are such.
@@ -37,6 +39,8 @@ struct Place<const N: usize> {
     values: Values,
 }
 
+/// Values beyond this are no noise. Of turns nothing can be said by their values.
+const CLEAR: f64 = 1e-5;
 /// How often a zero is tried to be landed on.
 const ATTEMPTS: usize = 12;
 /// Halvings of a step.
@@ -65,7 +69,7 @@ impl Watch {
     }
 }
 
-fn size<const N: usize>(indicator: Indicator, at: &Spectrum) -> f64 {
+pub(super) fn size<const N: usize>(indicator: Indicator, at: &Spectrum) -> f64 {
     match indicator {
         Indicator::Fold | Indicator::Doubling if N > 2 => 1.0 + at.trace.abs() + at.volume.exp(),
         _ => 1.0,
@@ -137,7 +141,13 @@ fn look<F: Family<N>, const N: usize>(
         // A value that is zero at an end belongs to the piece before.
         if left * right < 0.0 || (right == 0.0 && left != 0.0) {
             let part = left / (left - right);
+            let clear = left.abs().min(right.abs()) > CLEAR;
             found.push(Zero {
+                clear: match watches[i] {
+                    Watch::Turn(_) => false,
+                    Watch::Indicator(_) => clear,
+                    Watch::Value(..) => true,
+                },
                 watch: watches[i],
                 at: a.at + part * length,
                 near: if part < 0.5 {
@@ -215,7 +225,7 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
         for start in starts.into_iter().flatten() {
             let site = start.here.site.clone();
             let found = walk.corrector.correct(site, &free, &conditions, goal);
-            if let Some(found) = found {
+            if let Ok(found) = found {
                 let there = before.direction.dot(&found.site.from(&before.here.site));
                 if there > -0.1 * length && there < 1.1 * length {
                     return Some(found);

@@ -1,7 +1,9 @@
 //! Follows a curve of orbits of any family and hands on what it meets.
 
+use super::certain::certain;
 use super::detect::{Values, Watch, landed, zeros};
-use crate::orbit::{Family, Goal, Pace, Regular, Walk};
+use crate::error::Result;
+use crate::orbit::{Family, Goal, Pace, Regular, Stop, Walk};
 use std::ops::ControlFlow;
 
 /// Something that is met on the way.
@@ -13,23 +15,23 @@ pub enum Met<'a, const N: usize> {
 }
 
 /// Why a walk ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub enum End {
     /// Whoever is told had enough.
     Told,
-    /// Steps shrank to nothing.
-    Stuck,
+    /// There is no next orbit.
+    Stuck(Stop),
     /// As many orbits as were allowed.
-    Count,
+    Count(usize),
 }
 
 impl End {
     /// In words.
-    pub fn words(self) -> &'static str {
+    pub fn words(self) -> String {
         match self {
-            End::Told => "no more was asked for",
-            End::Stuck => "Newton's method finds no next orbit however short the step",
-            End::Count => "as many orbits as are allowed",
+            End::Told => "no more was asked for".into(),
+            End::Stuck(stop) => stop.to_string(),
+            End::Count(most) => format!("the bound of {most} orbits is used up"),
         }
     }
 }
@@ -40,16 +42,25 @@ type Told<'t, F, const N: usize> =
 
 /// Follows the walk, past all that is watched. Whoever is told of what is met is given where the step began too: with the same
 /// nodes as where it ended.
+///
+/// # Errors
+/// [`crate::Error::Dimension`] where an indicator that is watched is no test function in so many dimensions.
 pub fn follow<F: Family<N>, const N: usize>(
     walk: &mut Walk<'_, '_, F, N>,
     watches: &[Watch],
     most: usize,
     met: Told<'_, F, N>,
-) -> End {
+) -> Result<End> {
+    for watch in watches {
+        if let Watch::Indicator(indicator) = watch {
+            indicator.checked::<N>()?;
+        }
+    }
     let mut last: Option<(usize, Values)> = None;
     for _ in 0..most {
-        let Some((before, length)) = walk.step() else {
-            return End::Stuck;
+        let (before, length) = match walk.step() {
+            Ok(step) => step,
+            Err(stop) => return Ok(End::Stuck(stop)),
         };
         // Other nodes are another measure of length, and make other slopes.
         let known = last.take().filter(|(cuts, _)| *cuts == walk.cuts());
@@ -60,17 +71,24 @@ pub fn follow<F: Family<N>, const N: usize>(
             let Some(at) = landed(walk, &before, length, &zero, Goal::STEP) else {
                 continue;
             };
+            // Of a curve of bifurcations K alone is watched for turns, and each is looked at by who is told.
+            if walk.path.indicator.is_none()
+                && !zero.clear
+                && !certain(walk, zero.watch, &at, (&before, length))
+            {
+                continue;
+            }
             if met(walk, &before, Met::Zero(zero.watch, &at)).is_break() {
-                return End::Told;
+                return Ok(End::Told);
             }
         }
         let pace = walk.pace.clone();
         if met(walk, &before, Met::Orbit(&pace)).is_break() {
-            return End::Told;
+            return Ok(End::Told);
         }
-        if walk.mesh().is_none() {
-            return End::Stuck;
+        if let Err(stop) = walk.mesh() {
+            return Ok(End::Stuck(stop));
         }
     }
-    End::Count
+    Ok(End::Count(most))
 }

@@ -1,6 +1,6 @@
 //! One way along a curve of bifurcations.
 
-use super::branch::ROUGH;
+use super::branch::{ROUGH, walker};
 use super::chart::{Chart, middle};
 use super::detect::Watch;
 use super::follow::{End, Met, follow};
@@ -13,7 +13,7 @@ use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Corrector, Indicator, OverLoadings, Pace, Regular, Site, Walk};
+use crate::orbit::{Indicator, OverLoadings, Pace, Regular, Site, Walk};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -189,21 +189,22 @@ impl<'r, 's> Leg<'r, 's> {
                 lost = family.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
             }
-        });
+        })?;
         if end == End::Told && !lost || self.told {
             return Ok(());
         }
         let site = &walk.pace.here.site;
-        let (family, path, length) = (*walk.corrector.family, walk.path.clone(), walk.length);
+        let (family, path) = (*walk.corrector.family, walk.path.clone());
+        let length = (walk.length, walk.travelled());
         if let Some((parted, there)) = family.keeping(site) {
             let afar = walk.afar();
-            let mut corrector = Corrector::<_, 3>::new(&parted, ROUGH)?;
+            let mut corrector = walker::<_, 3>(&parted)?;
             if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
                 return self.go(&mut walk);
             }
         }
         let mut special = rough(Label::Mx, &family.usual(site));
-        special.note = Some(end.words().into());
+        special.note = Some(end.words());
         let _ = self.tell(Event::Special(special));
         Ok(())
     }

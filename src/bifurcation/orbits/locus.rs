@@ -143,12 +143,15 @@ fn symmetries(request: &LocusRequest) -> Result<Vec<Symmetry>> {
 const LONGEST: f64 = 0.3;
 /// Below this K no branch is followed for seeds, unless the range ends there: the curves that there are come down from above.
 const LOWEST: f64 = 0.03;
+/// Above this K there is none.
+const HIGHEST: f64 = 1e3;
 /// From one such branch to the next K is divided by this.
 const APART: f64 = 2.0;
 
 /// The values of K at which bifurcations are looked for.
 fn scanned((from, to): (f64, f64)) -> Vec<f64> {
-    let least = from.max(LOWEST.min(to));
+    let to = to.min(HIGHEST);
+    let least = from.min(to).max(LOWEST.min(to));
     let halves = std::iter::successors(Some(to), |k| Some(k / APART));
     // The least one too: a curve whose top is below the last but one would not be met.
     halves.take_while(|&k| k > least).chain([least]).collect()

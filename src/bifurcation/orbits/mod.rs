@@ -1,6 +1,7 @@
 //! Branches of periodic orbits and the curves of their bifurcations.
 
 mod branch;
+mod certain;
 mod chart;
 mod course;
 mod crosscheck;
@@ -14,6 +15,7 @@ mod rows;
 mod scan;
 mod sharp;
 mod top;
+mod vertical;
 mod way;
 
 pub use branch::branch;

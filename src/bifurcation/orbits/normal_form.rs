@@ -8,13 +8,20 @@
 //!
 //! Kuznetsov, Y. A. (2004). Elements of Applied Bifurcation Theory, 3rd edition, (5.40) period doubling, (5.45) torus;
 //!
-//! that of the pitchfork is (5.40) with the multiplier 1. Every order is a cyclic linear system; the cubic coefficient is the
+//! that of the pitchfork is (5.40) with the multiplier 1. The coefficients depend on the length of the eigenvector q. As in
+//!
+//! Kuznetsov, Y. A., Govaerts, W., Doedel, E. J. and Dhooge, A. (2005). Numerical periodic normalization for codim 1
+//! bifurcations of limit cycles. SIAM J. Numer. Anal. 43, 1407-1435,
+//!
+//! it is measured all along the orbit, by the integral of |q|^2 over the period T, and not at a section or at nodes that were
+//! chosen: here, where a map is normalised and no flow, that integral is T. |q| is the length across the flow, in (tau, ln psi_1,
+//! ln psi_2). Every order is a cyclic linear system; the cubic coefficient is the
 //! condition that the last one can be solved. So no map around the whole orbit is needed, whose derivatives a canard makes
 //! huge. The same with twice as many nodes and another tolerance shows what a coefficient errs by.
 
 use crate::bifurcation::Criticality;
 use crate::number::Uncertain;
-use crate::orbit::{Axes, Family, Jet, Site, cut_into, cyclic, finely_cut, jets};
+use crate::orbit::{Axes, Family, Jet, Site, cut_into, cyclic, finely_cut, jets, squares};
 use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector2, Vector4};
 
 type C = Complex<f64>;
@@ -33,12 +40,12 @@ pub enum Form {
 
 /// Tolerances of the maps, and into how many parts the arcs are cut for each.
 const SOLUTIONS: [(f64, usize); 2] = [(1e-16, 1), (1e-15, 2)];
-/// The difference of both times this, and what is always left.
+/// The difference of both times this, and what is always left: the orbit itself is off by rounding.
 const SAFETY: f64 = 10.0;
-const LEAST: f64 = 1e-6;
+const LEAST: f64 = 1e-8;
 
-/// The cubic coefficient of an orbit that bifurcates, for the eigenvector whose greatest length in any of the nodes' planes is
-/// 1, and which way that is.
+/// The cubic coefficient of an orbit that bifurcates, and which way that is: b of (5.40) or Re d of (5.45) of the return map,
+/// for an eigenvector whose length across the flow, in (tau, ln psi_1, ln psi_2), has the mean square 1 over the period.
 pub fn normal_form<F: Family<3>>(
     family: &F,
     site: &Site<3>,
@@ -68,9 +75,11 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
         _ => Axes::Any,
     };
     let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
+        let cut = cut_into(parts, family, &site)?;
         let circle = Circle {
-            jets: jets(family, &cut_into(parts, family, &site)?, axes, tolerance)?,
-            parts,
+            jets: jets(family, &cut, axes, tolerance)?,
+            squares: squares(family, &cut, axes)?,
+            period: cut.polygon.period(),
         }
         .begun_at_the_top(axes);
         let coefficient = match form {
@@ -88,20 +97,21 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
 /// The maps around an orbit.
 struct Circle {
     jets: Vec<Jet>,
-    /// Eigenvectors are measured at every so many-th node.
-    parts: usize,
+    /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
+    squares: Vec<Matrix2<f64>>,
+    period: f64,
 }
 
 impl Circle {
-    /// The same from another of the nodes where eigenvectors are measured: from the one to which most has grown. All nodes are
-    /// found from the first; from the small end of what grows by many decades nothing is found.
+    /// The same from the node to which most has grown. All nodes are found from the first; from the small end of what grows by
+    /// many decades nothing is found.
     fn begun_at_the_top(mut self, axes: Axes) -> Self {
         let mut top = (0, 0.0);
         let (mut log, mut moved) = (0.0, Vector2::new(1.0, 1.0));
         // Once around for what is there at the beginning to die out.
         for turn in 0..2 {
             for (k, jet) in self.jets.iter().enumerate() {
-                if turn == 1 && k % self.parts == 0 && (k == 0 || log > top.1) {
+                if turn == 1 && (k == 0 || log > top.1) {
                     top = (k, log);
                 }
                 moved = match axes {
@@ -115,6 +125,7 @@ impl Circle {
             }
         }
         self.jets.rotate_left(top.0);
+        self.squares.rotate_left(top.0);
         self
     }
 
@@ -126,7 +137,7 @@ impl Circle {
         let cube = self.each(|k, jet| {
             jet.third(&q[k], &q[k], &q[k]) + jet.second(&q[k], &h[k]) * C::from(3.0)
         });
-        Some((mu * self.solvability(mu, &p, &q, &cube)).re / 6.0)
+        Some((mu * self.solvability(mu, &p, &q, &cube)).re / 6.0 / self.mean_square(&q))
     }
 
     /// c = <p, C(q,q,q) + 3 B(q, h)> / 6, with q antisymmetric and h symmetric: each is one number in every plane. As products
@@ -140,7 +151,7 @@ impl Circle {
         for jet in &self.jets {
             q.push(q[q.len() - 1] * jet.linear()[(0, 0)]);
         }
-        let longest = q.iter().step_by(self.parts).copied().fold(0.0, f64::max);
+        let longest = q.iter().copied().fold(0.0, f64::max);
         q.iter_mut().for_each(|q| *q /= longest);
         let in_plane: Vec<_> = self
             .jets
@@ -157,7 +168,18 @@ impl Circle {
             let mixed = jet.second(&across, &along)[0].re * h[k][0];
             sum += (third + 3.0 * mixed) * (q[k] / q[k + 1]);
         }
-        Some(sum / 6.0)
+        let q: Vec<C2> = q.iter().map(|&q| across * C::from(q)).collect();
+        Some(sum / 6.0 / self.mean_square(&q))
+    }
+
+    /// The mean over the period of |q|^2.
+    fn mean_square(&self, q: &[C2]) -> f64 {
+        let of = |(q, square): (&C2, &Matrix2<f64>)| {
+            let (re, im) = (q.map(|x| x.re), q.map(|x| x.im));
+            re.dot(&(square * re)) + im.dot(&(square * im))
+        };
+        let sum: f64 = q.iter().zip(&self.squares).map(of).sum();
+        sum / self.period
     }
 
     /// d = Re e^(-i theta) <p, C(q,q,q*) + 2 B(q, h11) + B(q*, h20)> / 2  (5.45)
@@ -173,7 +195,7 @@ impl Circle {
                 + jet.second(&q[k], &h11[k]) * C::from(2.0)
                 + jet.second(&conjugate[k], &h20[k])
         });
-        Some(self.solvability(mu, &p, &q, &cube).re / 2.0)
+        Some(self.solvability(mu, &p, &q, &cube).re / 2.0 / self.mean_square(&q))
     }
 
     fn each(&self, of: impl Fn(usize, &Jet) -> C2) -> Vec<C2> {
@@ -202,7 +224,7 @@ impl Circle {
         around(&maps, mu.inv(), &right)
     }
 
-    /// q_{k+1} = P_k q_k, q_m = mu q_0, of greatest length 1; and the same of the transposed maps, p_k for the k-th map. By
+    /// q_{k+1} = P_k q_k, q_m = mu q_0; and the same of the transposed maps, p_k for the k-th map. By
     /// inverse iteration a little beside the multiplier.
     fn eigenvectors(&self, mu: C) -> Option<(Vec<C2>, Vec<C2>)> {
         const ITERATIONS: usize = 3;
@@ -221,8 +243,7 @@ impl Circle {
                 let mut right = vec![C2::zeros(); maps.len()];
                 right[last] = v[0];
                 v = around(maps, factor, &right)?;
-                let measured = v.iter().step_by(self.parts);
-                let longest = measured.map(|v| v.norm()).fold(0.0, f64::max);
+                let longest = v.iter().map(|v| v.norm()).fold(0.0, f64::max);
                 v.iter_mut().for_each(|v| *v /= C::from(longest));
             }
             Some(v)

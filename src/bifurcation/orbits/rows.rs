@@ -33,7 +33,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
     } = profile(&here, &family.usual(&orbit.site).polygon)?;
     let spectrum = &orbit.spectrum;
     let logs = if N == 3 {
-        spectrum.log_multipliers().map(Some)
+        spectrum.log_multipliers()?.map(Some)
     } else {
         // Within the plane, and across it.
         let mut both = vec![spectrum.volume];

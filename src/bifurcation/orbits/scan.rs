@@ -8,7 +8,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
 use crate::orbit::{
-    Corrector, HopfPoint, Indicator, OverLoadings, Path, Site, Slab, Walk, hopf_points,
+    Corrector, HopfPoint, Indicator, OverLoadings, Path, Site, Slab, Tracer, Walk, hopf_points,
 };
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -16,6 +16,8 @@ use std::ops::ControlFlow::{Break, Continue};
 const LONGEST: f64 = 0.7;
 /// Steps on it.
 const STEPS: usize = 2000;
+/// Steps of the integrator along it, at most.
+const WORK: usize = 5_000_000;
 /// Its tolerance: what is found is corrected with that of the curves.
 const TOLERANCE: f64 = 1e-8;
 
@@ -89,9 +91,10 @@ where
         let inside = |site: &Site<N>| (from..=to).contains(&site.at[0]);
         // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
         let last_one = i + 1 == hopfs.len();
-        let mut corrector = Corrector::<_, N>::new(&family, TOLERANCE)?;
+        let tracer = Tracer::limited(TOLERANCE, WORK, WORK)?;
+        let mut corrector = Corrector::<_, N>::by(&family, tracer);
         let path = Path::branch(0, LONGEST);
-        let Some(mut walk) = Walk::from_hopf(&mut corrector, path, &hopfs[i]) else {
+        let Ok(mut walk) = Walk::from_hopf(&mut corrector, path, &hopfs[i]) else {
             return Ok(());
         };
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
@@ -128,7 +131,7 @@ where
                     }
                 }
             },
-        );
+        )?;
         Ok(())
     }
 }

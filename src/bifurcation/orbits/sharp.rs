@@ -1,12 +1,13 @@
 //! A special orbit to the last digits, with its error budget.
 //!
-//! It is solved several times, with other nodes and other tolerances: what the solutions differ by, and what the last
-//! corrections still were, bounds what rounding and the method do. What can't be solved more than once claims nothing.
+//! It is solved several times, with other nodes and other tolerances. What the solutions differ by shows what the method does;
+//! but few solutions may agree by chance, so the noise of the flow, as the equations carry it to the point, counts as well.
+//! What can't be solved more than once claims nothing.
 
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Regular, Site};
+use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Noise, Regular, Site};
 
 /// What a special orbit meets, by itself: no plane of a walk.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -63,12 +64,13 @@ pub struct Sharp<const N: usize> {
 
 /// Tolerances of the solutions, and the part of their arcs by which the nodes of all but the first are moved.
 const SOLUTIONS: [(f64, f64); 3] = [(1e-16, 0.0), (1e-15, 0.37), (4e-15, 0.71)];
-/// The solutions' largest difference, and the last corrections, times this.
-const SAFETY: f64 = 10.0;
+/// The solutions' largest difference, and standard deviations of the noise, count so many times.
+const SPREAD: f64 = 2.0;
+const DEVIATIONS: f64 = 3.0;
 /// A relative uncertainty of V_H with which no other variables are tried.
 const ENOUGH: f64 = 1e-11;
-/// Rounding, in units of the value.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+/// Rounding, in units of the value: of the sum of durations, and of a parameter beside that of its logarithm.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The orbit near a site that meets the conditions, in the last digits.
 pub fn sharpened<F: Family<N>, const N: usize>(
@@ -96,18 +98,20 @@ pub fn sharpened<F: Family<N>, const N: usize>(
             at: begin.at,
         };
         match corrector.correct(site, free, &conditions, Goal::SHARP) {
-            Some(solution) => solutions.push(solution),
-            None if solutions.is_empty() => return None,
-            None => {}
+            Ok(solution) => solutions.push(solution),
+            Err(_) if solutions.is_empty() => return None,
+            Err(_) => {}
         }
     }
     let alone = solutions.len() < SOLUTIONS.len();
-    let all = |of: &dyn Fn(&Regular<N>) -> f64, last: &dyn Fn(&Regular<N>) -> f64| {
+    let mut corrector = Corrector::new(family, SOLUTIONS[0].0).ok()?;
+    let noise = corrector.noise(&solutions[0], free, &conditions);
+    let noise = noise.unwrap_or(Noise::UNKNOWN);
+    let all = |of: &dyn Fn(&Regular<N>) -> f64, noise: f64, rounding: f64| {
         let first = of(&solutions[0]);
         let spread = solutions.iter().map(|s| (of(s) - first).abs());
         let spread = spread.fold(0.0, f64::max);
-        let last = solutions.iter().map(last).fold(0.0, f64::max);
-        let uncertainty = SAFETY * spread + (last + ROUNDING) * first.abs();
+        let uncertainty = SPREAD * spread + (DEVIATIONS * noise + rounding) * first.abs();
         Uncertain::new(first, if alone { f64::INFINITY } else { uncertainty })
     };
     let fixed = |i: usize| {
@@ -118,16 +122,17 @@ pub fn sharpened<F: Family<N>, const N: usize>(
     };
     let parameter = |i: usize| {
         let of = |s: &Regular<N>| family.parameters(s.site.at)[i];
+        let rounding = ROUNDING + f64::EPSILON * solutions[0].site.at[i].abs();
         if fixed(i) {
             let given = of(&solutions[0]);
-            return Uncertain::new(given, ROUNDING * given.abs());
+            return Uncertain::new(given, rounding * given.abs());
         }
         let scale = family.scale(solutions[0].site.at)[i] / of(&solutions[0]);
-        all(&of, &|s| s.of_parameters * scale.abs())
+        all(&of, noise.parameters[i] * scale.abs(), rounding)
     };
     Some(Sharp {
         at: [parameter(0), parameter(1)],
-        period: all(&|s| s.site.polygon.period(), &|s| s.residual),
+        period: all(&|s| s.site.polygon.period(), noise.period, ROUNDING),
         meets: meets.to_vec(),
         free: free.to_vec(),
         orbit: solutions.swap_remove(0),

@@ -34,7 +34,7 @@ pub fn top<F: Family<N>, const N: usize>(
     let mut corrector = Corrector::new(family, FINE).ok()?;
     let path = Path::locus(indicator, 1.0);
     let own = [Condition::Indicator(indicator)];
-    let here = corrector.look(near.clone(), &path.free, &own)?;
+    let here = corrector.look(near.clone(), &path.free, &own).ok()?;
     let any = here.along[0].clone();
     let direction = path.direction(&here, &any)?;
     let mut found = Vec::new();
@@ -50,7 +50,9 @@ pub fn top<F: Family<N>, const N: usize>(
     let [first, second] = [&found[0], &found[1]];
     let at = near.moved(&direction, second.s);
     let conditions = path.and(Condition::Plane(&direction, &at));
-    let orbit = corrector.correct(at.clone(), &path.free, &conditions, Goal::SHARP)?;
+    let orbit = corrector
+        .correct(at.clone(), &path.free, &conditions, Goal::SHARP)
+        .ok()?;
     let (parameters, scale) = (family.parameters(second.at), family.scale(second.at));
     // The value at a stationary point is known far better than its place.
     let uncertain = |i: usize| {
@@ -93,7 +95,9 @@ fn stationary<F: Family<N>, const N: usize>(
             Condition::Indicator(indicator),
             Condition::Plane(direction, &at),
         ];
-        let orbit = corrector.correct(at.clone(), &[0, 1], &conditions, Goal::SHARP)?;
+        let orbit = corrector
+            .correct(at.clone(), &[0, 1], &conditions, Goal::SHARP)
+            .ok()?;
         [v[i], k[i]] = orbit.site.at;
         t[i] = orbit.site.polygon.period();
     }

@@ -46,6 +46,7 @@ impl Special {
         self.criticality = way.map(|way| way.criticality);
         let sure = way.filter(|way| way.coefficient.uncertainty.is_finite());
         self.coefficient = sure.map(|way| way.coefficient.value);
+        self.coefficient_uncertainty = sure.map(|way| way.coefficient.uncertainty);
     }
 }
 
@@ -81,7 +82,9 @@ impl<const N: usize> Decided<N> {
         let mut corrector = Corrector::new(family, FINE).ok()?;
         let held = Condition::Parameter(1, log_stiffness);
         let conditions = [Condition::Indicator(indicator), held];
-        let here = corrector.correct(site.clone(), &[0, 1], &conditions, Goal::SHARP)?;
+        let here = corrector
+            .correct(site.clone(), &[0, 1], &conditions, Goal::SHARP)
+            .ok()?;
         let way = Way::along(family, &here.site, indicator)?;
         Some(Decided {
             volume: here.spectrum.volume,

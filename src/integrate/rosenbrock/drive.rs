@@ -16,6 +16,8 @@ pub(super) trait Motion<const N: usize> {
     fn state(&self) -> &State<N>;
     /// Tries a step; the norm of its error, or `None` if something was not finite.
     fn attempt(&mut self, h: f64) -> Option<f64>;
+    /// |J| where it is, and where the tried step ends, which must have been looked at.
+    fn fastest(&self) -> (f64, f64);
     /// Evaluates at the end of the tried step what the next one needs; false if something is not finite.
     fn look_ahead(&mut self) -> bool;
     /// Moves to the end of the tried step.
@@ -49,7 +51,13 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
         }
         let error = motion.attempt(step);
         let accepted = error.is_some_and(|error| error <= 1.0);
-        if accepted && (next == end || motion.look_ahead()) {
+        let first = motion.work().steps == 0;
+        let seen_to_end = accepted && (next == end && !first || motion.look_ahead());
+        if seen_to_end && first && outgrown(step, motion.fastest()) {
+            h = controller.refused(step, None);
+            refused = Some(step);
+            motion.work().rejected += 1;
+        } else if seen_to_end {
             h = controller.accepted(step, error.unwrap_or(0.0));
             refused = None;
             motion.work().steps += 1;
@@ -66,6 +74,17 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
         }
     }
     Ok(())
+}
+
+/// Whether the rates have grown within a step beyond what one without a history can be trusted with. All stages stand on the
+/// Jacobian at its beginning, and so does the error estimate, which a growth by e^30 can escape: a stress that is loaded from
+/// -50 to -20 at once. Later steps are as long as the errors of those before have let them.
+fn outgrown(h: f64, (before, after): (f64, f64)) -> bool {
+    /// Growth of |J|.
+    const MUCH: f64 = 10.0;
+    /// |h J| below which J does nothing yet.
+    const NOTICEABLE: f64 = 0.01;
+    after > MUCH * before && h.abs() * after > NOTICEABLE
 }
 
 /// Where a step of about h ends: at the end exactly if that is near, and never so close to it that a sliver remains.

@@ -196,6 +196,11 @@ impl<S: Scheme, const N: usize> Motion<N> for Bundle<'_, S, N> {
         Some(norm)
     }
 
+    fn fastest(&self) -> (f64, f64) {
+        let [here, ahead] = [&self.here, &self.ahead].map(|at| at.linear.jacobian.amax());
+        (here, ahead)
+    }
+
     #[inline]
     fn look_ahead(&mut self) -> bool {
         let y = &self.next.0;

@@ -132,6 +132,10 @@ impl<S: Scheme, const N: usize> Motion<N> for Trajectory<'_, S, N> {
         error_norm(self.tolerances, &error, &self.y, &self.next)
     }
 
+    fn fastest(&self) -> (f64, f64) {
+        (self.here.jacobian.amax(), self.ahead.jacobian.amax())
+    }
+
     #[inline]
     fn look_ahead(&mut self) -> bool {
         let f = if S::TABLEAU.ends_at_last_stage {

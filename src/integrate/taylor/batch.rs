@@ -221,6 +221,7 @@ impl Batch {
         let before = seat.clock.now.hi();
         if !seat.clock.tick(h.into(), seat.remaining) {
             let h = if h.is_finite() { h } else { 0.0 };
+            let h = h.copysign(seat.remaining.hi());
             let here = State::from(convoy.state(lane));
             let field = two_interfaces(self.law, runs[seat.run].loading);
             return Fate::Failed(step_underflow(&*field, before, h, &here));

@@ -255,6 +255,7 @@ impl Taylor {
             let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
+                let h = h.copysign(remaining.hi());
                 let here = State::from(solution.state());
                 return Err(step_underflow(field, before, h, &here));
             }

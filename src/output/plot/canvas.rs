@@ -1,13 +1,12 @@
 //! What is drawn, in pixels with fractions: lines, areas and words. Only this file knows which crate writes the SVG, and what
 //! that crate cannot write.
 
-use super::text::FAMILY;
+use super::text::{self, FAMILY};
 use super::unrendered;
 use crate::error::Result;
 use plotters::coord::Shift;
 use plotters::element::{Drawable, PointCollection};
 use plotters::prelude::*;
-use plotters::style::text_anchor::{HPos, Pos, VPos};
 use std::cell::RefCell;
 use std::fmt::Write;
 
@@ -38,6 +37,8 @@ const COLOURS: [Colour; 8] = [
 ];
 /// plotters counts whole pixels: drawn this much larger and shown at normal size, curves are smooth.
 const FINE: f64 = 10.0;
+/// Letters are centred by half of their height without ascenders, as a part of the size.
+const MIDDLE: f64 = 0.273;
 /// What plotters calls the size of a font is so much larger than the one that is written.
 pub const BACKEND: f64 = 1.24;
 
@@ -136,6 +137,12 @@ fn outline(path: &mut String, corners: &[Pixel]) {
     path.push('z');
 }
 
+/// In the language of SVG.
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
+}
+
 fn fine((x, y): Pixel) -> (i32, i32) {
     ((x * FINE).round() as i32, (y * FINE).round() as i32)
 }
@@ -167,12 +174,27 @@ impl<'s> Canvas<'s> {
         let mut path = format!("<path fill=\"#{r:02X}{g:02X}{b:02X}\"{edges} d=\"");
         areas.iter().for_each(|area| outline(&mut path, area));
         path.push_str("\"/>\n");
+        self.element(path)
+    }
+
+    /// An area through which what lies behind is seen.
+    pub fn veil(&self, corners: &[Pixel], colour: Colour, opacity: f64) -> Result<()> {
+        let RGBColor(r, g, b) = colour;
+        let mut path =
+            format!("<path fill=\"#{r:02X}{g:02X}{b:02X}\" fill-opacity=\"{opacity}\" d=\"");
+        outline(&mut path, corners);
+        path.push_str("\"/>\n");
+        self.element(path)
+    }
+
+    /// What plotters doesn't write.
+    fn element(&self, text: String) -> Result<()> {
         let place = {
             let mut own = self.own.borrow_mut();
-            own.push(path);
+            own.push(text);
             holder(own.len() - 1)
         };
-        self.put(&Polygon::new([place; 3], colour.filled()))
+        self.put(&Polygon::new([place; 3], PAPER.filled()))
     }
 
     /// A full circle.
@@ -194,18 +216,43 @@ impl<'s> Canvas<'s> {
         colour: Colour,
     ) -> Result<()> {
         let anchor = match align {
-            Align::Left => HPos::Left,
-            Align::Right => HPos::Right,
-            Align::Middle | Align::Upwards => HPos::Center,
+            Align::Left => "start",
+            Align::Right => "end",
+            Align::Middle | Align::Upwards => "middle",
         };
-        let font = (FAMILY, size * FINE * BACKEND).into_font();
-        let font = if align == Align::Upwards {
-            font.transform(FontTransform::Rotate270)
+        let (x, y) = fine(at);
+        let turned = if align == Align::Upwards {
+            format!(" transform=\"rotate(270, {x}, {y})\"")
         } else {
-            font
+            String::new()
         };
-        let style = font.color(&colour).pos(Pos::new(anchor, VPos::Center));
-        self.put(&Text::new(text.to_owned(), fine(at), style))
+        let RGBColor(r, g, b) = colour;
+        let size = size * FINE;
+        let mut element = format!(
+            "<text x=\"{x}\" y=\"{y}\" dy=\"{:.0}\" text-anchor=\"{anchor}\" font-family=\"{FAMILY}\" font-size=\"{size}\" \
+fill=\"#{r:02X}{g:02X}{b:02X}\"{turned}>",
+            MIDDLE * size
+        );
+        // How far below the line the part before ended.
+        let mut low = 0.0;
+        for (part, subscript) in text::parts(text) {
+            let now = if subscript { text::LOWER * size } else { 0.0 };
+            let part = escaped(&part);
+            let step = now - low;
+            low = now;
+            let written = match (subscript, step == 0.0) {
+                (true, _) => write!(
+                    element,
+                    "<tspan dy=\"{step:.0}\" font-size=\"{:.0}\">{part}</tspan>",
+                    text::SUBSCRIPT * size
+                ),
+                (false, true) => write!(element, "{part}"),
+                (false, false) => write!(element, "<tspan dy=\"{step:.0}\">{part}</tspan>"),
+            };
+            written.expect("a string takes all");
+        }
+        element.push_str("</text>\n");
+        self.element(element)
     }
 
     fn put<E>(&self, element: &E) -> Result<()>

@@ -1,18 +1,25 @@
 //! The curves of a panel in its frame.
 
+use super::bands::{self, Part};
 use super::canvas::{Canvas, Colour, PAPER, Pixel, colour};
 use super::frame::Frame;
+use super::smooth::smooth;
 use super::thin::thinned;
 use super::{Panel, Series, Stroke, names, strokes, symbols};
 use crate::error::Result;
-use std::collections::HashSet;
+use std::collections::{HashMap, HashSet};
 
-/// Breadths of lines.
-const LINE: f64 = 1.1;
-const USUAL: f64 = 1.9;
-/// Of lines that are broken or beside broader ones, and of those.
-const NARROW: f64 = 1.4;
+/// Breadths of lines: of one, of one of several, of one beside broader ones, and of those.
+const LINE: f64 = 1.3;
+const USUAL: f64 = 1.7;
+const NARROW: f64 = 1.2;
 const WIDE: f64 = 2.7;
+/// A path that covers more than this part of a square of that side, in pixels, is drawn finer, down to the finest.
+const COVERED: f64 = 0.35;
+const SQUARE: f64 = 16.0;
+const FINEST: f64 = 0.4;
+/// How dense the area between the envelopes of oscillations is.
+const VEIL: f64 = 0.3;
 /// Room between a curve and the map that it lies on.
 const CASING: f64 = 1.0;
 /// Distance of the points along curves that names avoid.
@@ -29,12 +36,10 @@ pub fn line_width(panel: &Panel, number: usize) -> f64 {
     if panel.series.iter().any(|series| series.wide) {
         return if series.wide { WIDE } else { NARROW };
     }
-    // The curve below is wider where another one follows, so that both are seen where they coincide.
-    let last = number + 1 == panel.series.len();
-    match series.stroke {
-        _ if series.dots || !last || series.colour.is_some() => USUAL,
-        Stroke::Solid => LINE,
-        _ => NARROW,
+    if panel.series.len() == 1 && series.colour.is_none() {
+        LINE
+    } else {
+        USUAL
     }
 }
 
@@ -76,22 +81,61 @@ fn line(
 ) -> Result<Vec<Pixel>> {
     let (x, y) = (&series.x, &series.y);
     let points = x.iter().zip(y).map(|(&a, &b)| frame.coordinates(a, b));
+    let points = smooth(
+        &points.collect::<Vec<_>>(),
+        frame.per_pixel(),
+        &series.left_out,
+    );
+    let grows = x.is_sorted();
     let (mut seen, mut been) = (Vec::new(), strokes::Been::default());
-    for curve in thinned(points, frame.per_pixel(), x.is_sorted()) {
-        for piece in frame.window().line(&curve) {
-            let piece: Vec<Pixel> = piece.into_iter().map(|at| frame.pixel(at)).collect();
-            seen.extend(names::along(&piece, SAMPLES));
-            let stretches = if series.stroke == Stroke::Solid || x.is_sorted() {
-                vec![piece]
-            } else {
-                strokes::first_times(&piece, &mut been)
-            };
-            for stretch in stretches {
-                strokes::draw(canvas, &stretch, series.stroke, width, colour)?;
+    let curves = thinned(points.into_iter(), frame.per_pixel(), grows);
+    let pieces = curves.iter().flat_map(|curve| frame.window().line(curve));
+    let pieces: Vec<Vec<Pixel>> = pieces
+        .map(|piece| piece.into_iter().map(|at| frame.pixel(at)).collect())
+        .collect();
+    let width = if grows { width } else { finer(width, &pieces) };
+    for piece in pieces {
+        seen.extend(names::along(&piece, SAMPLES));
+        let stretches = if grows {
+            bands::parts(&piece)
+        } else if series.stroke == Stroke::Solid {
+            vec![Part::Line(piece)]
+        } else {
+            let stretches = strokes::first_times(&piece, &mut been).into_iter();
+            stretches.map(Part::Line).collect()
+        };
+        for stretch in stretches {
+            match stretch {
+                Part::Line(line) => strokes::draw(canvas, &line, series.stroke, width, colour)?,
+                Part::Band(lower, upper) => {
+                    let mut area = lower.clone();
+                    area.extend(upper.iter().rev());
+                    canvas.veil(&area, colour, VEIL)?;
+                    for side in [lower, upper] {
+                        strokes::draw(canvas, &side, series.stroke, width, colour)?;
+                    }
+                }
             }
         }
     }
     Ok(seen)
+}
+
+/// The breadth of a path that goes around again and again: so fine that its turns stand apart, if they can.
+fn finer(width: f64, pieces: &[Vec<Pixel>]) -> f64 {
+    let mut lengths: HashMap<(i64, i64), f64> = HashMap::new();
+    let places = pieces.iter().map(|piece| names::along(piece, SAMPLES));
+    for place in places {
+        for pair in place.windows(2) {
+            let (a, b) = (pair[0], pair[1]);
+            let square = |x: f64| (x / SQUARE).floor() as i64;
+            let length = lengths.entry((square(a.0), square(a.1)));
+            *length.or_default() += (b.0 - a.0).hypot(b.1 - a.1);
+        }
+    }
+    let longest = lengths.into_values().fold(0.0, f64::max);
+    let covered = longest * width / (SQUARE * SQUARE);
+    (width * (COVERED / covered).min(1.0)).max(FINEST)
 }
 
 fn dots(

@@ -4,7 +4,7 @@ use super::canvas::{Align, Canvas, INK, picture};
 use super::cells::cells;
 use super::curves::curves;
 use super::layout::{Placed, page};
-use super::marks::{marks, notes};
+use super::marks::{behind, marks, notes};
 use super::text::{self, TITLE};
 use super::{Block, unrendered};
 use crate::error::Result;
@@ -37,8 +37,9 @@ fn draw(canvas: &Canvas<'_>, placed: &Placed<'_>) -> Result<()> {
     if let Some(map) = &panel.cells {
         cells(canvas, map, frame)?;
     }
+    behind(canvas, panel, frame)?;
     let seen = curves(canvas, panel, frame)?;
-    let words = notes(canvas, panel, frame)?;
+    let words = notes(canvas, panel, frame, &seen)?;
     marks(canvas, panel, frame, &seen, &words)?;
     // Last, as the white edges of symbols would cover it.
     frame.draw_border(canvas)

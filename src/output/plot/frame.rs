@@ -17,9 +17,9 @@ const BESIDE: f64 = 10.0;
 /// Least distance of labels one below the other.
 const BELOW: f64 = 18.0;
 /// Middle of the horizontal labels below the frame.
-const LABELS: f64 = 15.0;
+const LABELS: f64 = 16.5;
 /// Where the name of the horizontal axis begins below the frame.
-const NAME: f64 = 27.0;
+const NAME: f64 = 28.0;
 /// Breadths of the frame, of grid lines and of the line at zero.
 const BORDER: f64 = 0.9;
 const GRID_LINE: f64 = 0.8;
@@ -70,15 +70,22 @@ pub fn below(lines: usize) -> f64 {
 }
 
 impl Frame {
-    /// With the ticks that have room; vertical labels not wider than `limit`.
-    pub fn new(inside: Window, (x, y): (Scale, Scale), limit: f64) -> Self {
+    /// With the ticks that have room; vertical labels not wider than `limit`. An axis without a name has none.
+    pub fn new(inside: Window, (x, y): (Scale, Scale), named: (bool, bool), limit: f64) -> Self {
         let width = inside.x.1 - inside.x.0;
         let height = inside.y.1 - inside.y.0;
         Frame {
             inside,
             x,
             y,
-            ticks: (horizontal(&x, width), vertical(&y, height, limit)),
+            ticks: (
+                Some(horizontal(&x, width))
+                    .filter(|_| named.0)
+                    .unwrap_or_default(),
+                Some(vertical(&y, height, limit))
+                    .filter(|_| named.1)
+                    .unwrap_or_default(),
+            ),
         }
     }
 

@@ -10,18 +10,20 @@ use super::text::{self, TEXT, TITLE};
 use super::{Block, Panel};
 use crate::error::Result;
 
-/// Width of one column of panels, of one or two; and where there are more.
+/// Width of a picture with one column of panels, and of each of several: so narrow that words stay legible where the picture is shown
+/// smaller.
 const COLUMN: f64 = 560.0;
-const NARROW: f64 = 400.0;
+const NARROW: f64 = 390.0;
 /// Height of a block per panel of its highest column, and at least, if it is all the picture.
 const ROW: f64 = 215.0;
 const LEAST: f64 = 470.0;
-/// The same of one that is narrow, or one of several.
-const LOW_ROW: f64 = 200.0;
-const LOW_LEAST: f64 = 330.0;
+/// Of one or two panels one below the other across the whole picture.
+const HIGH_ROW: f64 = 360.0;
+/// Least height of one that is narrow, or one of several.
+const LOW_LEAST: f64 = 300.0;
 /// Room at the left and the right of a column; more where the labels need it.
-const LEFT: f64 = 84.0;
-const RIGHT: f64 = 22.0;
+const LEFT: f64 = 70.0;
+const RIGHT: f64 = 18.0;
 /// Room between the edge of the picture and words.
 const EDGE: f64 = 8.0;
 /// Room between the name of the vertical axis and the labels of its ticks.
@@ -62,8 +64,7 @@ pub struct Placed<'a> {
 pub fn page(blocks: &[Block]) -> Result<Page<'_>> {
     let most = blocks.iter().map(|block| block.columns.len()).max();
     let most = most.unwrap_or(0).max(1);
-    let low = most > 2 || blocks.len() > 1;
-    let column = if most > 2 { NARROW } else { COLUMN };
+    let column = if most > 1 { NARROW } else { COLUMN };
     let mut page = Page {
         size: (column * most as f64, 0.0),
         titles: Vec::new(),
@@ -72,12 +73,19 @@ pub fn page(blocks: &[Block]) -> Result<Page<'_>> {
     for block in blocks {
         page.add_title(&block.title)?;
         let rows = block.columns.iter().map(Vec::len).max().unwrap_or(0);
-        let height = if low {
-            (LOW_ROW * rows as f64).max(LOW_LEAST)
+        let row = if most == 1 && rows <= 2 {
+            HIGH_ROW
         } else {
-            (ROW * rows as f64).max(LEAST)
+            ROW
         };
-        page.add_columns(&block.columns, column, height)?;
+        let least = if most > 1 || blocks.len() > 1 {
+            LOW_LEAST
+        } else {
+            LEAST
+        };
+        // A block of fewer columns has wider ones.
+        let width = page.size.0 / block.columns.len().max(1) as f64;
+        page.add_columns(&block.columns, width, (row * rows as f64).max(least))?;
     }
     Ok(page)
 }
@@ -218,10 +226,11 @@ impl<'a> Column<'a> {
             let labels = self.x.0 - self.left - before_labels(&draft.names.1) - frame::AIR;
             // The widest label may be just as wide, up to rounding.
             let labels = labels + 0.1;
+            let named = (!draft.names.0.is_empty(), !draft.names.1.is_empty());
             Placed {
                 panel: draft.panel,
                 heading: draft.heading,
-                frame: Frame::new(inside, draft.scales, labels),
+                frame: Frame::new(inside, draft.scales, named, labels),
                 names: draft.names,
                 left: self.left + EDGE,
             }

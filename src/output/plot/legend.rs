@@ -91,6 +91,9 @@ impl Heading {
             };
             flow.add(sample, &series.label, colour, AFTER_ENTRY)?;
         }
+        for (stroke, words) in &panel.strokes {
+            flow.add(Sample::Line(*stroke, FINEST), words, INK, AFTER_ENTRY)?;
+        }
         for key in &panel.keys {
             let look = Look {
                 symbol: key.symbol,

@@ -14,10 +14,13 @@ const AIR: f64 = 4.0;
 const BACKING: f64 = 2.0;
 /// A name that begins farther than this from its point is tied to it.
 const TIED: f64 = 12.0;
+/// Points nearer than this look like one: they share a name.
+const ONE: f64 = 3.0;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
-/// Writes the notes that lie in the frame, and gives their middles and sizes.
+/// Writes the notes that lie in the frame, each where it covers neither a curve nor another one, as near to its place as that
+/// allows, and gives their middles and sizes.
 ///
 /// # Errors
 /// Those of the canvas.
@@ -25,8 +28,13 @@ pub fn notes(
     canvas: &Canvas<'_>,
     panel: &Panel,
     frame: &Frame,
+    curves: &[Pixel],
 ) -> Result<Vec<(Pixel, (f64, f64))>> {
-    let mut written = Vec::new();
+    let marks = panel.marks.iter();
+    let points: Vec<Pixel> = marks
+        .filter_map(|mark| frame.place(mark.x, mark.y))
+        .collect();
+    let mut written: Vec<(Pixel, (f64, f64))> = Vec::new();
     for note in &panel.notes {
         let Some(at) = frame.place(note.x, note.y) else {
             continue;
@@ -38,6 +46,7 @@ pub fn notes(
         let half = (0.5 * size.0, 0.5 * size.1);
         // Near a side, words move inwards.
         let at = frame.inside().without(half).nearest(at);
+        let at = names::beside(at, size, (curves, &points, &written), frame.inside());
         backed(canvas, frame, at, size)?;
         let ink = note.colour.map_or(INK, colour);
         canvas.words(&note.text, at, Align::Middle, TEXT, ink)?;
@@ -72,49 +81,89 @@ pub fn marks(
     words: &[(Pixel, (f64, f64))],
 ) -> Result<()> {
     let shown = shown(panel, frame)?;
-    let named: Vec<names::Named> = shown.iter().map(|(_, named)| *named).collect();
+    let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
     let centres = names::placed(&named, curves, words, frame.inside());
-    for ((mark, named), centre) in shown.iter().zip(&centres) {
-        tie(canvas, named, *centre, mark_colour(mark))?;
+    for (one, centre) in shown.iter().zip(&centres) {
+        tie(canvas, &one.named, *centre, mark_colour(one.mark))?;
     }
-    for (mark, named) in &shown {
-        let look = Look {
-            symbol: mark.symbol,
-            filled: mark.filled,
-            colour: mark_colour(mark),
-        };
-        symbols::draw(canvas, look, named.at, frame.inside())?;
+    for one in shown.iter().filter(|one| !one.mark.behind) {
+        symbols::draw(canvas, look(one.mark), one.named.at, frame.inside())?;
     }
-    for ((mark, named), centre) in shown.iter().zip(&centres) {
-        if !mark.label.is_empty() {
+    for (one, centre) in shown.iter().zip(&centres) {
+        let Shown { mark, name, named } = one;
+        if !name.is_empty() {
             // Dark red is hard to read on a map.
             if panel.cells.is_some() {
                 backed(canvas, frame, *centre, named.size)?;
             }
-            canvas.words(&mark.label, *centre, Align::Middle, TEXT, mark_colour(mark))?;
+            canvas.words(name, *centre, Align::Middle, TEXT, mark_colour(mark))?;
         }
     }
     Ok(())
+}
+
+/// Draws the points that the curves go over.
+///
+/// # Errors
+/// Those of the canvas.
+pub fn behind(canvas: &Canvas<'_>, panel: &Panel, frame: &Frame) -> Result<()> {
+    let mut marks = panel.marks.iter().filter(|mark| mark.behind);
+    marks.try_for_each(|mark| match frame.place(mark.x, mark.y) {
+        Some(at) => symbols::draw(canvas, look(mark), at, frame.inside()),
+        None => Ok(()),
+    })
+}
+
+fn look(mark: &Mark) -> Look {
+    Look {
+        symbol: mark.symbol,
+        filled: mark.filled,
+        colour: mark_colour(mark),
+    }
 }
 
 fn mark_colour(mark: &Mark) -> Colour {
     mark.colour.map_or(MARK, colour)
 }
 
+/// A point within the frame.
+struct Shown<'a> {
+    mark: &'a Mark,
+    /// Its name, with those of other points that look like the same one.
+    name: String,
+    named: names::Named,
+}
+
 /// The points within the frame, with the sizes of their names.
-fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<(&'a Mark, names::Named)>> {
-    let mut shown = Vec::new();
+fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Result<Vec<Shown<'a>>> {
+    let mut shown: Vec<Shown<'a>> = Vec::new();
     for mark in &panel.marks {
         let Some(at) = frame.place(mark.x, mark.y) else {
             continue;
         };
-        let size = if mark.label.is_empty() {
-            (0.0, 0.0)
-        } else {
-            (text::width(&mark.label, TEXT)? + AIR, TEXT + AIR)
+        let near = |one: &&mut Shown<'_>| {
+            let (x, y) = one.named.at;
+            let named = !one.name.is_empty() && !mark.label.is_empty();
+            named && (x - at.0).hypot(y - at.1) < ONE
         };
-        let side = mark.side;
-        shown.push((mark, names::Named { at, size, side }));
+        let name = match shown.iter_mut().find(near) {
+            Some(one) => {
+                if one.name.split(", ").all(|name| name != mark.label) {
+                    one.name = format!("{}, {}", one.name, mark.label);
+                }
+                String::new()
+            }
+            None => mark.label.clone(),
+        };
+        let (size, side) = ((0.0, 0.0), mark.side);
+        shown.push(Shown {
+            mark,
+            name,
+            named: names::Named { at, size, side },
+        });
+    }
+    for one in shown.iter_mut().filter(|one| !one.name.is_empty()) {
+        one.named.size = (text::width(&one.name, TEXT)? + AIR, TEXT + AIR);
     }
     Ok(shown)
 }

@@ -1,6 +1,7 @@
 //! Pictures: panels of curves and maps, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
 //! a machine without fonts.
 
+mod bands;
 mod canvas;
 mod cells;
 mod clip;
@@ -14,6 +15,7 @@ mod names;
 mod panel;
 mod reach;
 mod scale;
+mod smooth;
 mod strokes;
 mod symbols;
 mod text;

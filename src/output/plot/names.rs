@@ -18,7 +18,7 @@ pub struct Named {
 /// Gaps between a point and its name that are tried.
 const GAPS: [f64; 6] = [6.0, 16.0, 28.0, 42.0, 60.0, 82.0];
 /// Directions that are tried, the most usual first.
-const DIRECTIONS: [(f64, f64); 8] = [
+const DIRECTIONS: [(f64, f64); 16] = [
     (0.0, -1.0),
     (0.0, 1.0),
     (0.7, -0.7),
@@ -27,6 +27,14 @@ const DIRECTIONS: [(f64, f64); 8] = [
     (-0.7, 0.7),
     (1.0, 0.0),
     (-1.0, 0.0),
+    (0.4, -0.9),
+    (-0.4, -0.9),
+    (0.4, 0.9),
+    (-0.4, 0.9),
+    (0.9, -0.4),
+    (-0.9, -0.4),
+    (0.9, 0.4),
+    (-0.9, 0.4),
 ];
 /// Price of standing below though it should stand above, or the other way round; less than that of leaving the frame.
 const WRONG: f64 = 500.0;
@@ -34,8 +42,11 @@ const WRONG: f64 = 500.0;
 const NAME: f64 = 1000.0;
 /// Of leaving the frame.
 const FRAME: f64 = 1000.0;
-/// Of covering another point.
-const POINT: f64 = 60.0;
+/// Of covering another point, or a part of its symbol, half as large as this.
+const POINT: f64 = 200.0;
+const SYMBOL: f64 = 5.0;
+/// Of a tie across a name, or of ties that cross.
+const TIE: f64 = 400.0;
 /// Of covering a stretch of curve.
 const CURVE: f64 = 12.0;
 /// Price of a pixel of distance.
@@ -56,12 +67,14 @@ pub fn placed(
         half: half(size),
     };
     let mut taken: Vec<Area> = words.iter().map(area).collect();
+    let mut ties: Vec<(Pixel, Pixel)> = Vec::new();
     let mut centres = Vec::new();
     for (i, name) in names.iter().enumerate() {
         let other = |&(j, _): &(usize, &Named)| j != i;
         let points = names.iter().enumerate().filter(other);
         let around = Around {
             taken: &taken,
+            ties: &ties,
             points: points.map(|(_, other)| other.at).collect(),
             curves,
             frame,
@@ -76,6 +89,7 @@ pub fn placed(
             Some((_, mut place)) => {
                 place.centre = frame.without(place.half).nearest(place.centre);
                 centres.push(place.centre);
+                ties.push((name.at, place.centre));
                 taken.push(place);
             }
             None => centres.push(name.at),
@@ -87,6 +101,8 @@ pub fn placed(
 /// What a name should not cover.
 struct Around<'a> {
     taken: &'a [Area],
+    /// From the points to the middles of their names.
+    ties: &'a [(Pixel, Pixel)],
     points: Vec<Pixel>,
     curves: &'a [Pixel],
     frame: &'a Window,
@@ -96,6 +112,19 @@ impl Around<'_> {
     /// What the candidate of that number costs.
     fn price(&self, name: &Named, number: usize, place: &Area) -> f64 {
         let on = |places: &[Pixel]| places.iter().filter(|&&at| place.holds(at)).count() as f64;
+        let symbols: Vec<Area> = self.points.iter().map(|&at| Area::symbol(at)).collect();
+        let met = symbols.iter().filter(|other| place.meets(other)).count();
+        let tie = (name.at, place.centre);
+        // Symbols upon that of the name are in the way of every tie.
+        let apart = symbols
+            .iter()
+            .filter(|other| !other.meets(&Area::symbol(name.at)));
+        let others = self.taken.iter().chain(apart);
+        let ties = self.ties.iter();
+        let crossed = others.filter(|other| other.crossed(tie)).count()
+            + ties
+                .filter(|&&other| place.crossed(other) || cross(other, tie))
+                .count();
         let covered = self.taken.iter().filter(|other| place.meets(other)).count() as f64;
         let outside = f64::from(u8::from(!place.within(self.frame)));
         let (dx, dy) = (place.centre.0 - name.at.0, place.centre.1 - name.at.1);
@@ -106,7 +135,8 @@ impl Around<'_> {
         };
         NAME * covered
             + FRAME * outside
-            + POINT * on(&self.points)
+            + POINT * met as f64
+            + TIE * crossed as f64
             + CURVE * on(self.curves)
             + FAR * dx.hypot(dy)
             + UNUSUAL * number as f64
@@ -148,6 +178,13 @@ struct Area {
 }
 
 impl Area {
+    fn symbol(centre: Pixel) -> Self {
+        Area {
+            centre,
+            half: (SYMBOL, SYMBOL),
+        }
+    }
+
     fn meets(&self, other: &Area) -> bool {
         (self.centre.0 - other.centre.0).abs() < self.half.0 + other.half.0
             && (self.centre.1 - other.centre.1).abs() < self.half.1 + other.half.1
@@ -157,9 +194,75 @@ impl Area {
         (self.centre.0 - at.0).abs() < self.half.0 && (self.centre.1 - at.1).abs() < self.half.1
     }
 
+    /// By a line.
+    fn crossed(&self, (a, b): (Pixel, Pixel)) -> bool {
+        let inside = Window {
+            x: (self.centre.0 - self.half.0, self.centre.0 + self.half.0),
+            y: (self.centre.1 - self.half.1, self.centre.1 + self.half.1),
+        };
+        inside.segment(a, b).is_some()
+    }
+
     fn within(&self, frame: &Window) -> bool {
         frame.without(self.half).holds(self.centre)
     }
+}
+
+/// Whether two lines cross.
+fn cross((a, b): (Pixel, Pixel), (c, d): (Pixel, Pixel)) -> bool {
+    let side = |a: Pixel, b: Pixel, p: Pixel| (b.0 - a.0) * (p.1 - a.1) - (b.1 - a.1) * (p.0 - a.0);
+    side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
+}
+
+/// Where words of that size with their middle at a place cover neither curves nor points nor other words, as near as that allows.
+pub fn beside(
+    at: Pixel,
+    size: (f64, f64),
+    (curves, points, words): (&[Pixel], &[Pixel], &[(Pixel, (f64, f64))]),
+    frame: &Window,
+) -> Pixel {
+    /// Distances that are tried.
+    const STEP: f64 = 6.0;
+    const RINGS: usize = 14;
+    /// Price of standing beyond a curve, and how near a point of it is to the way there.
+    const BEYOND: f64 = 400.0;
+    const NEAR: f64 = 2.0;
+    let half = half(size);
+    let taken: Vec<Area> = words
+        .iter()
+        .map(|&(centre, (width, height))| Area {
+            centre,
+            half: (0.5 * width, 0.5 * height),
+        })
+        .collect();
+    let ring = |ring: usize| {
+        let around = DIRECTIONS.iter().filter(move |_| ring > 0);
+        let far = STEP * ring as f64;
+        around.map(move |(dx, dy)| (at.0 + far * dx, at.1 + far * dy))
+    };
+    let near = |&(x, y): &Pixel| {
+        let mut seen = curves.iter();
+        seen.any(|&(a, b)| (a - x).abs() < NEAR && (b - y).abs() < NEAR)
+    };
+    // What is named on a curve may stand on either side of it.
+    let crossed = |from: Pixel, to: Pixel| {
+        let way = along(&[from, to], NEAR);
+        way.iter().skip_while(|&at| near(at)).any(near)
+    };
+    let places = std::iter::once(at).chain((1..=RINGS).flat_map(ring));
+    let priced = places.map(|centre| {
+        let place = Area { centre, half };
+        let on = |places: &[Pixel]| places.iter().filter(|&&at| place.holds(at)).count() as f64;
+        let covered = taken.iter().filter(|other| place.meets(other)).count() as f64;
+        let outside = f64::from(u8::from(!place.within(frame)));
+        let far = (centre.0 - at.0).hypot(centre.1 - at.1);
+        // Beyond a curve the words would name another region.
+        let crosses = f64::from(u8::from(far > 0.0 && crossed(at, centre)));
+        let price = NAME * covered + FRAME * outside + POINT * on(points) + CURVE * on(curves);
+        (price + BEYOND * crosses + FAR * far, centre)
+    });
+    let best = priced.min_by(|a, b| a.0.total_cmp(&b.0));
+    best.map_or(at, |(_, centre)| centre)
 }
 
 /// Where the line from a point to the middle of its name, `off` away, meets the name; the point itself if it lies inside.

@@ -54,7 +54,7 @@ pub enum Stroke {
     Dotted,
 }
 
-/// One curve, or points.
+/// One curve, drawn smoothly through its points, or points alone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
     /// Its name in the legend; empty for none.
@@ -71,6 +71,9 @@ pub struct Series {
     pub wide: bool,
     /// Which of the colours; the next one without.
     pub colour: Option<usize>,
+    /// Stretches that are not drawn, by the number of the point at which they begin; the others are drawn as parts of the whole curve.
+    /// None if it is empty.
+    pub left_out: Vec<bool>,
 }
 
 impl Series {
@@ -84,6 +87,7 @@ impl Series {
             stroke: Stroke::Solid,
             wide: false,
             colour: None,
+            left_out: Vec::new(),
         }
     }
 
@@ -146,6 +150,8 @@ pub enum Symbol {
     Cross,
     /// ★
     Star,
+    /// A small ●, to tie a name to a place
+    Dot,
 }
 
 /// A point that is pointed out.
@@ -165,6 +171,8 @@ pub struct Mark {
     pub filled: bool,
     /// Which of the colours; dark red without.
     pub colour: Option<usize>,
+    /// Whether the curves are drawn over it.
+    pub behind: bool,
 }
 
 impl Mark {
@@ -178,6 +186,7 @@ impl Mark {
             symbol: Symbol::Circle,
             filled: true,
             colour: None,
+            behind: false,
         }
     }
 
@@ -192,6 +201,13 @@ impl Mark {
     #[must_use]
     pub fn open(mut self) -> Self {
         self.filled = false;
+        self
+    }
+
+    /// Below the curves.
+    #[must_use]
+    pub fn behind(mut self) -> Self {
+        self.behind = true;
         self
     }
 
@@ -223,7 +239,7 @@ pub struct Key {
     pub label: String,
 }
 
-/// Words at a place, as the name of a region.
+/// Words at a place, as the name of a region; near it, if there they would cover a curve.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Note {
     /// Abscissa of their middle.
@@ -315,6 +331,8 @@ pub struct Panel {
     pub notes: Vec<Note>,
     /// Entries of the legend after those of the curves.
     pub keys: Vec<Key>,
+    /// Entries of the legend for what several curves have in common, as a stroke: in the colour of the axes.
+    pub strokes: Vec<(Stroke, String)>,
     /// Whether zero on the vertical axis deserves a line.
     pub zero_line: bool,
 }
@@ -331,6 +349,7 @@ impl Panel {
             marks: Vec::new(),
             notes: Vec::new(),
             keys: Vec::new(),
+            strokes: Vec::new(),
             zero_line: false,
         }
     }

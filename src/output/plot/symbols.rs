@@ -8,6 +8,8 @@ use std::f64::consts::TAU;
 
 /// Radius of a circle.
 const RADIUS: f64 = 3.9;
+/// That of a dot.
+const DOT: f64 = 1.2;
 /// Breadth of outlines, and of the arms of crosses.
 const OUTLINE: f64 = 1.5;
 const ARM: f64 = 2.0;
@@ -85,6 +87,7 @@ fn corners(symbol: Symbol, at: Pixel) -> Vec<Pixel> {
         (0..corners).map(|i| around(at, radius, turns(i))).collect()
     };
     match symbol {
+        Symbol::Dot => regular(ROUND, DOT, 0.0),
         Symbol::Square => regular(4, 1.25 * RADIUS, 0.125),
         Symbol::Diamond => regular(4, 1.35 * RADIUS, 0.0),
         Symbol::Triangle => regular(3, 1.4 * RADIUS, 0.0),

@@ -8,7 +8,7 @@ use plotters::prelude::*;
 /// The names by which a viewer of the SVG finds a font like ours.
 pub const FAMILY: &str = "DejaVu Sans, Verdana, Arial, sans-serif";
 /// Size of words.
-pub const TEXT: f64 = 12.0;
+pub const TEXT: f64 = 13.0;
 /// Of the titles of blocks.
 pub const TITLE: f64 = 15.5;
 /// From line to line, as a part of the size.
@@ -30,12 +30,48 @@ pub fn height(lines: usize, size: f64) -> f64 {
     lines as f64 * LINE * size
 }
 
+/// Subscripts are so much smaller, and so much lower as a part of the size.
+pub const SUBSCRIPT: f64 = 0.74;
+pub const LOWER: f64 = 0.22;
+
+/// The text in parts, each with whether it is a subscript: what follows a single letter and an underscore, as in `V_H` and `μ_ss`.
+pub fn parts(text: &str) -> Vec<(String, bool)> {
+    let letters: Vec<char> = text.chars().collect();
+    let mut parts = vec![(String::new(), false)];
+    let mut i = 0;
+    while i < letters.len() {
+        let symbol = |i: usize| i >= 1 && letters[i - 1].is_alphabetic();
+        let alone = i < 2 || !(letters[i - 2].is_alphanumeric() || letters[i - 2] == '_');
+        let ends = letters[i + 1..]
+            .iter()
+            .take_while(|c| c.is_alphanumeric())
+            .count();
+        if letters[i] == '_' && symbol(i) && alone && ends > 0 {
+            parts.push((letters[i + 1..=i + ends].iter().collect(), true));
+            parts.push((String::new(), false));
+            i += ends + 1;
+        } else {
+            if let Some((last, _)) = parts.last_mut() {
+                last.push(letters[i]);
+            }
+            i += 1;
+        }
+    }
+    parts.retain(|(part, _)| !part.is_empty());
+    parts
+}
+
 /// Width of words on one line, in pixels. plotters takes the size for the height of the font, not of its em, and gives 1.065
 /// times of what ours is; that leaves room for others.
 pub fn width(text: &str, size: f64) -> Result<f64> {
     let font = (FAMILY, MEASURED * BACKEND).into_font();
-    let (wide, _) = font.box_size(text).map_err(unrendered)?;
-    Ok(f64::from(wide) * size / MEASURED)
+    let mut all = 0.0;
+    for (part, subscript) in parts(text) {
+        let (wide, _) = font.box_size(&part).map_err(unrendered)?;
+        let size = if subscript { SUBSCRIPT * size } else { size };
+        all += f64::from(wide) * size / MEASURED;
+    }
+    Ok(all)
 }
 
 /// The lines of a text none of which is wider than `limit`: broken between words, and within one that is too long alone.
@@ -70,6 +106,21 @@ pub fn wrapped(text: &str, size: f64, limit: f64) -> Result<Vec<String>> {
 #[cfg(test)]
 mod test {
     use super::*;
+
+    #[test]
+    fn one_letter_has_a_subscript_and_a_word_has_none() {
+        let shown = |text| -> Vec<String> {
+            let part =
+                |(part, lower): (String, bool)| if lower { format!("[{part}]") } else { part };
+            parts(text).into_iter().map(part).collect()
+        };
+        assert_eq!(shown("2 V_M = 0.05"), ["2 V", "[M]", " = 0.05"]);
+        assert_eq!(shown("τ_ss(V_H/2)"), ["τ", "[ss]", "(V", "[H]", "/2)"]);
+        assert_eq!(shown("Q₃, K = k_c*"), ["Q₃, K = k", "[c]", "*"]);
+        for plain in ["slip_rate_1", "_a", "V_", "V_ x", "plain"] {
+            assert_eq!(shown(plain), [plain]);
+        }
+    }
 
     #[test]
     fn long_texts_are_broken_and_nothing_is_lost() {

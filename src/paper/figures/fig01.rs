@@ -66,7 +66,7 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     }
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![vec![friction], vec![stiffness]])),
+        drawing: Some(Drawing::columns(vec![vec![friction, stiffness]])),
         method: "closed formulas (4), (6), (7) and (16), derivatives exact".into(),
     })
 }
@@ -105,7 +105,7 @@ fn stiffness_panel() -> Panel {
     panel.notes = vec![
         Note::new(3e-6, 7e3, "unstable: stick-slip"),
         Note::new(3e-6, 1.8e4, "stable"),
-        Note::new(1.6e-9, 6e3, "law (6): stable for any k"),
+        Note::new(1.2e-9, 4.5e3, "law (6): stable for any k"),
     ];
     panel
 }

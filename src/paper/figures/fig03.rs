@@ -1,6 +1,6 @@
 //! Fig. 3: the Dieterich-Ruina law localises slip on the weaker interface, which oscillates where K < K_c.
 
-use super::runs::{column, combined, in_time, method};
+use super::runs::{column, combined, in_time, method, title as title_of};
 use crate::error::Result;
 use crate::friction::steady_stress;
 use crate::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, Series, Symbol};
@@ -12,7 +12,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig03",
     title: "Slip localises on the weaker of two Dieterich-Ruina interfaces",
-    caption: "Two interfaces that obey the Dieterich-Ruina law, driven at V_H = V*. From beside the symmetric steady state (open square, under the circle of the start), where both share the driving velocity, the interface that begins with the smaller state takes over; the other one all but stops and heals without end.
+    caption: "Two interfaces that obey the Dieterich-Ruina law, driven at V_H = V*. From beside the symmetric steady state (open square, with the dot of the start in it), where both share the driving velocity, the interface that begins with the smaller state takes over; the other one all but stops and heals without end.
 
 (a) Stiffer than the single interface needs (K = 0.45): slip settles on steady sliding of one interface (star). (b) A little softer than K_c = (b - a)/a = 0.401 (K = 0.395): the interface that slides alone starts to oscillate, with slowly growing amplitude. The stars lie at (±1, 10.573); the 10.7 of the printed caption is not the steady stress of this law.",
     alt: "Two rows of panels: stress against the difference of the slip rates, and stress, states and slip rates in time. In both rows one interface takes over the whole slip; in the lower row stress and slip rate then oscillate with growing amplitude.",
@@ -28,19 +28,21 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     Ok(Made {
         sheet,
         drawing: Some(Drawing::blocks(vec![
-            block("(a) K = 0.45: localisation", &a),
-            block("(b) K = 0.395: localisation, then oscillation", &b),
+            block("(a) localisation: ", &a),
+            block("(b) localisation, then oscillation: ", &b),
         ])),
         method: format!("(a) {}; (b) {}", method(&a), method(&b)),
     })
 }
 
 fn block(title: &str, run: &Run) -> Block {
-    let mut columns = vec![vec![differences(run)]];
-    columns.extend(in_time(run, &run.rows).into_iter().map(|panel| vec![panel]));
+    let mut left = vec![differences(run)];
+    let mut right = in_time(run, &run.rows);
+    // Stress against the difference of the slip rates has stress in time beside it.
+    left.extend(right.pop());
     Block {
-        title: title.into(),
-        columns,
+        title: title_of(title, run),
+        columns: vec![left, right],
     }
 }
 
@@ -55,25 +57,25 @@ fn differences(run: &Run) -> Panel {
         Mark::new(0.0, steady_stress(&law, 0.5 * driving), "")
             .symbol(Symbol::Square)
             .open(),
-        Mark::new(driving, alone, "").symbol(Symbol::Star),
-        Mark::new(-driving, alone, "").symbol(Symbol::Star),
+        Mark::new(driving, alone, "").symbol(Symbol::Star).behind(),
+        Mark::new(-driving, alone, "").symbol(Symbol::Star).behind(),
     ];
     if let (Some(&x), Some(&y)) = (apart.first(), stress.first()) {
-        marks.push(Mark::new(x, y, "").open());
+        marks.push(Mark::new(x, y, "").symbol(Symbol::Dot).colour(1));
     }
-    let key = |symbol, filled, label: &str| Key {
+    let key = |symbol, filled, colour, label: &str| Key {
         symbol,
         filled,
-        colour: None,
+        colour,
         label: label.into(),
     };
     Panel {
-        series: vec![Series::new("", apart, stress)],
+        series: vec![Series::new("", apart, stress).colour(0)],
         marks,
         keys: vec![
-            key(Symbol::Circle, false, "start"),
-            key(Symbol::Square, false, "both"),
-            key(Symbol::Star, true, "one alone"),
+            key(Symbol::Dot, true, Some(1), "start"),
+            key(Symbol::Square, false, None, "both slide"),
+            key(Symbol::Star, true, None, "one alone"),
         ],
         ..Panel::new(
             "",

@@ -55,7 +55,7 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     );
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![vec![friction], vec![stability]])),
+        drawing: Some(Drawing::columns(vec![vec![friction, stability]])),
         method: "closed formulas (36), (4) and (16); extrema in closed form and enclosed by interval arithmetic, the maximum of \
 k_c by a bracketed zero of its exact derivative"
             .into(),

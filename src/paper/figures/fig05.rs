@@ -4,11 +4,11 @@ use super::plane::{keys, labels, marks};
 use crate::bifurcation::BranchRow;
 use crate::error::Result;
 use crate::friction::steady_stress;
-use crate::output::plot::{Axis, Drawing, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Panel, Series, Stroke};
 use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
-use crate::views::branch_lines;
+use crate::views::{branch_lines, named_strokes};
 
 /// The figure.
 pub const FIGURE: Product = Product {
@@ -16,14 +16,15 @@ pub const FIGURE: Product = Product {
     title: "Steady states at K = 0.45",
     caption: "All steady states of the two interfaces: stable solid, unstable dashed. Both share the slip (blue) but between the pitchforks at V_H = 2 V_M and 2 V_m, where this state is unstable and an asymmetric one (vermillion) exists with a slow and a fast interface. It comes into being supercritically at 2 V_M and ends at the saddle-node V_sn = 4.298e4 V*, from where an unstable branch leads back to the subcritical pitchfork at 2 V_m.
 
-(a) The stress follows τ_ss(V_H/2) (thin dashed) where both slide, and τ_ss(V_H) (thin dotted) where one slides alone. (b) The same about 2 V_M. (c) The states, (d) the slip rates: the slow interface creeps below V_M, and all but stops where V_H is large.",
-    alt: "Four panels of steady states against driving velocity: stress, stress enlarged near the first pitchfork, states, and slip rates. The symmetric branch is unstable between two pitchforks; an asymmetric branch connects the first pitchfork with a saddle-node and the second pitchfork.",
+(a) The stress follows τ_ss(V_H/2) (thin dashed) where both slide, and τ_ss(V_H) (thin dotted) where one slides alone. (b) The same about 2 V_M and (c) about 2 V_m, where the unstable asymmetric state, whose stress is nearly that of the stable one further on, parts from it. (d) The states, (e) the slip rates: the slow interface creeps below V_M, and all but stops where V_H is large.",
+    alt: "Five panels of steady states against driving velocity: stress, stress enlarged near both pitchforks, states, and slip rates. The symmetric branch is unstable between two pitchforks; an asymmetric branch connects the first pitchfork with a saddle-node and the second pitchfork.",
     scenes: &["fig05"],
     make: Make::Figure(make),
 };
 
-/// The frame about the first pitchfork: V_H and stress.
-const NEAR: [(f64, f64); 2] = [(0.03, 0.2), (11.3, 11.62)];
+/// The frames about the pitchforks: V_H and stress.
+const FIRST: [(f64, f64); 2] = [(0.03, 0.2), (11.3, 11.62)];
+const SECOND: [(f64, f64); 2] = [(500.0, 3000.0), (8.62, 9.1)];
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let branches = pieces.branches("fig05")?;
@@ -31,24 +32,44 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     sheet.add_branches("steady states", &branches);
     let rates = panel(
         &branches,
-        "(d) slip rates",
+        "(e) slip rates",
         Axis::log("slip rates V₁, V₂ [V*]"),
         &[&|row| row.slip_rate[0], &|row| row.slip_rate[1]],
     );
     let states = panel(
         &branches,
-        "(c) states",
+        "(d) states",
         Axis::log("states ψ₁, ψ₂"),
         &[&|row| row.state[0], &|row| row.state[1]],
     );
-    let mut stress = stress(&branches, "(a) stress");
-    stress.keys = keys(labels([&*branches]));
-    let mut near = self::stress(&branches, "(b) the same near 2 V_M");
-    near.x = near.x.within(NEAR[0].0, NEAR[0].1);
-    near.y = near.y.within(NEAR[1].0, NEAR[1].1);
+    let mut all = stress(&branches, "(a) stress, K = 0.45");
+    all.keys = keys(labels([&*branches]));
+    all.strokes = named_strokes(&all.series[2..]);
+    let near = |title: &str, [x, y]: [(f64, f64); 2]| {
+        let mut panel = stress(&branches, title);
+        panel.x = panel.x.within(x.0, x.1);
+        panel.y = panel.y.within(y.0, y.1);
+        panel.marks.retain(|mark| (x.0..=x.1).contains(&mark.x));
+        for series in &mut panel.series {
+            series.label.clear();
+        }
+        panel
+    };
+    let block = |columns| Block {
+        title: String::new(),
+        columns,
+    };
+    let (first, second) = (
+        near("(b) near 2 V_M", FIRST),
+        near("(c) near 2 V_m", SECOND),
+    );
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![vec![stress, states], vec![near, rates]])),
+        drawing: Some(Drawing::blocks(vec![
+            block(vec![vec![all]]),
+            block(vec![vec![first], vec![second]]),
+            block(vec![vec![states], vec![rates]]),
+        ])),
         method: "Steady states in closed form or from certain brackets, stability by interval arithmetic on the characteristic polynomials, special points to 1e-11".into(),
     })
 }

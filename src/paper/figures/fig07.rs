@@ -1,19 +1,19 @@
 //! Fig. 7: periodic orbits and equilibria at K = 0.14.
 
-use super::plane::{keys, labels, marks, method};
-use crate::bifurcation::BranchRow;
+use super::plane::{keys, labels, mark, marks, method};
+use crate::bifurcation::{BranchRow, Label};
 use crate::error::Result;
 use crate::output::plot::{Axis, Drawing, Panel};
 use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
-use crate::views::branch_lines;
+use crate::views::{branch_lines, named_strokes};
 
 /// The figure.
 pub const FIGURE: Product = Product {
     id: "fig07",
     title: "Bifurcation diagram at K = 0.14",
-    caption: "(a) Stress of the equilibria, and greatest and least stress of the periodic orbits; stable solid, unstable dashed. Symmetric ones are blue, asymmetric ones vermillion. The asymmetric orbits come from the Hopf points of the asymmetric equilibrium, lose stability at a torus bifurcation (TR) at V_H = 0.07674, and are stable again, but for a narrow gap, from a period doubling and a second torus point about 0.1 on. The symmetric orbits are unstable against asymmetry for all V_H at this stiffness, and hardly differ from the others in stress.
+    caption: "(a) Stress of the equilibria, thin, and greatest and least stress of the periodic orbits, broad; stable solid, unstable dashed. Symmetric ones are blue, asymmetric ones vermillion. The asymmetric orbits come from the Hopf points of the asymmetric equilibrium, lose stability at a torus bifurcation (TR) at V_H = 0.07674, and are stable again, but for a narrow gap, from a period doubling and a second torus point about 0.1 on. The symmetric orbits are unstable against asymmetry for all V_H at this stiffness, and hardly differ from the others in stress.
 
 (b) Periods: they fall as 1/V_H and are nearly the same for both kinds.",
     alt: "Two panels against driving velocity: the extremes of stress over periodic orbits with the equilibria, and the periods. The asymmetric branch is stable but for an interval near 0.08 between torus and period-doubling points; the symmetric branch is unstable.",
@@ -22,7 +22,8 @@ pub const FIGURE: Product = Product {
 };
 
 /// V_H in the frames.
-const DRIVING: (f64, f64) = (0.03, 1000.0);
+const DRIVING: (f64, f64) = (0.03, 1e5);
+const OSCILLATING: (f64, f64) = (0.05, 300.0);
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let (orbits, rest) = (
@@ -35,15 +36,10 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let tolerance = orbits.plan.following.tolerance;
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![
-            vec![amplitudes(
-                "(a) extremes of stress",
-                &orbits,
-                &rest,
-                DRIVING,
-            )],
-            vec![periods("(b) periods", &orbits, DRIVING)],
-        ])),
+        drawing: Some(Drawing::columns(vec![vec![
+            amplitudes("(a) extremes of stress, K = 0.14", &orbits, &rest, DRIVING),
+            periods("(b) periods", &orbits, OSCILLATING),
+        ]])),
         method: method(tolerance),
     })
 }
@@ -58,6 +54,7 @@ pub fn amplitudes(title: &str, orbits: &Branches, rest: &Branches, driving: (f64
     let least = |row: &BranchRow| row.stress_range.0;
     let mut series = branch_lines(&orbits.rows, &x, &most, true);
     series.extend(branch_lines(&orbits.rows, &x, &least, false));
+    series.iter_mut().for_each(|orbits| orbits.wide = true);
     series.extend(branch_lines(&rest.rows, &x, &most, false));
     let mut points = marks(&rest.rows, x, most);
     points.extend(marks(&orbits.rows, x, most));
@@ -65,6 +62,7 @@ pub fn amplitudes(title: &str, orbits: &Branches, rest: &Branches, driving: (f64
     let (lo, hi) = driving;
     points.retain(|mark| (lo..=hi).contains(&mark.x));
     Panel {
+        strokes: named_strokes(&series),
         series,
         marks: points,
         keys: keys(labels([orbits, rest])),
@@ -79,9 +77,16 @@ pub fn amplitudes(title: &str, orbits: &Branches, rest: &Branches, driving: (f64
 /// Periods of orbits.
 pub fn periods(title: &str, orbits: &Branches, driving: (f64, f64)) -> Panel {
     let period = |row: &BranchRow| row.period.unwrap_or(f64::NAN);
+    let hopf = orbits.special.iter().filter(|one| one.label == Label::Hb);
+    let hopf = hopf.filter_map(|one| mark(one.label, one.driving.value, one.period?.value));
+    let mut series = branch_lines(&orbits.rows, &x, &period, false);
+    series.iter_mut().for_each(|orbits| orbits.wide = true);
     Panel {
-        series: branch_lines(&orbits.rows, &x, &period, false),
-        marks: marks(&orbits.rows, x, period),
+        series,
+        marks: marks(&orbits.rows, x, period)
+            .into_iter()
+            .chain(hopf)
+            .collect(),
         ..Panel::new(
             title,
             Axis::log("driving velocity V_H [V*]").within(driving.0, driving.1),

@@ -1,6 +1,6 @@
 //! Fig. 11: at K = 0.01 an asymmetric start ends on the symmetric orbit.
 
-use super::runs::{method, with_phase_space};
+use super::runs::{method, title, with_phase_space};
 use crate::error::Result;
 use crate::output::plot::Drawing;
 use crate::paper::pieces::Pieces;
@@ -11,7 +11,7 @@ use crate::paper::sheet::Sheet;
 pub const FIGURE: Product = Product {
     id: "fig11",
     title: "An asymmetric start ends on the symmetric orbit, K = 0.01, V_H = 0.2",
-    caption: "Where the slab is soft enough, the interfaces synchronise. A start with unequal states is attracted by the symmetric orbit; the dashes of both interfaces soon coincide, and w₁ − w₂ goes to zero in the phase space. The orbit is a relaxation oscillation whose slow part follows the steady-state law (dotted).",
+    caption: "Where the slab is soft enough, the interfaces synchronise. A start with unequal states is attracted by the symmetric orbit; the fast interface (solid) and the slow one (dashed) soon coincide, and w₁ − w₂ goes to zero in the phase space. The orbit is a relaxation oscillation whose slow part follows the steady-state law (dotted).",
     alt: "Stress, states and slip rates in time, the phase plane with the steady-state law, and three projections of the phase space, in which the asymmetry decays.",
     scenes: &["fig11"],
     make: Make::Figure(make),
@@ -23,7 +23,11 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     sheet.add_run("run", &run);
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::blocks(vec![with_phase_space("", &run, &run.rows)])),
+        drawing: Some(Drawing::blocks(with_phase_space(
+            &title("", &run),
+            &run,
+            &run.rows,
+        ))),
         method: method(&run),
     })
 }

@@ -52,17 +52,17 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     };
     let mut whole = panel("(a)", WHOLE);
     whole.notes = vec![
-        Note::new(0.0835, 0.1, "unstable"),
+        Note::new(0.088, 0.12, "unstable"),
         Note::new(0.0634, 0.14, "H_a"),
         Note::new(0.1235, 0.118, "H_s"),
-        Note::new(0.0498, 0.225, "2 V_M"),
+        Note::new(0.0545, 0.225, "2 V_M"),
     ];
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![
-            vec![whole],
-            vec![panel("(b) near 1:2", NEAR)],
-        ])),
+        drawing: Some(Drawing::columns(vec![vec![
+            whole,
+            panel("(b) near 1:2", NEAR),
+        ]])),
         method: method(torus.plan.following.tolerance),
     })
 }

@@ -29,20 +29,15 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let stiffness = |row: &LocusRow| row.stiffness.value;
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![
-            vec![panel(
+        drawing: Some(Drawing::columns(vec![vec![
+            panel(
                 &torus,
                 "(a)",
                 Axis::linear("driving velocity V_H [V*]"),
                 driving,
-            )],
-            vec![panel(
-                &torus,
-                "(b)",
-                Axis::linear("stiffness K [aσ/L]"),
-                stiffness,
-            )],
-        ])),
+            ),
+            panel(&torus, "(b)", Axis::linear("stiffness K [aσ/L]"), stiffness),
+        ]])),
         method: method(torus.plan.following.tolerance),
     })
 }

@@ -6,7 +6,7 @@ use crate::bifurcation::strong_resonance::{Around, Homoclinic, ResonanceCycle};
 use crate::error::Result;
 use crate::model::normal_form::StrongResonance;
 use crate::output::Cell;
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Mark, Note, Panel, Series, Stroke, Symbol};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -36,12 +36,17 @@ const L_2: f64 = -0.5;
 const ALONG_1: (f64, f64) = (-0.3, 0.15);
 const ALONG_2: (f64, f64) = (-0.58, -0.32);
 
+/// Colours as in the other figures: of tori and of what period doubling leads to; and of tori of the doubled orbit.
+const TORUS: usize = 2;
+const DOUBLING: usize = 3;
+const SECOND_TORUS: usize = 0;
+
 const NAMES: [(&str, usize, Stroke); 5] = [
-    ("TR", 0, Stroke::Solid),
-    ("PD", 1, Stroke::Dashed),
-    ("TR2", 2, Stroke::Solid),
-    ("global", 3, Stroke::DashDot),
-    ("sn", 5, Stroke::DashDotDot),
+    ("TR", TORUS, Stroke::Solid),
+    ("PD", DOUBLING, Stroke::Dotted),
+    ("TR2", SECOND_TORUS, Stroke::Solid),
+    ("global", 1, Stroke::DashDot),
+    ("sn", 7, Stroke::DashDotDot),
 ];
 
 fn make(_: &Pieces<'_>) -> Result<Made> {
@@ -50,15 +55,15 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     for ((name, _, _), points) in NAMES.iter().zip(&curves) {
         sheet.add(*name, &["mu_1", "mu_2"], cells(points.iter().copied()));
     }
-    let left = vec![plane(&curves)];
-    let right = vec![
-        enlarged(&curves),
-        first_path(&mut sheet)?,
-        second_path(&mut sheet)?,
-    ];
+    let block = |left, right| Block {
+        title: String::new(),
+        columns: vec![vec![left], vec![right]],
+    };
+    let planes = block(plane(&curves), enlarged(&curves));
+    let paths = block(first_path(&mut sheet)?, second_path(&mut sheet)?);
     Ok(Made {
         sheet,
-        drawing: Some(Drawing::columns(vec![left, right])),
+        drawing: Some(Drawing::blocks(vec![planes, paths])),
         method: "global: the manifolds of the origin, from series of order 19, meet on w = 0. sn and all cycles: the return map \
 of w = 0 by a Taylor integrator at a relative tolerance of 1e-15 in each step, zeros by bracketed secants; stability by the \
 integral of the divergence. TR, PD, TR2 in closed form"
@@ -107,11 +112,14 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         panel.series.push(path.stroke(Stroke::Dotted).colour(7));
     }
     panel.marks.push(Mark::new(0.0, 0.0, "1:2"));
+    // Region 5 is narrower than its name.
+    let five = Mark::new(-0.525, -0.67, "5").symbol(Symbol::Dot);
+    panel.marks.push(five.colour(7));
     panel.notes = vec![
         Note::new(0.5, 0.55, "1: orbit"),
         Note::new(-0.45, 0.55, "2: torus"),
         Note::new(-0.6, -0.25, "3: torus"),
-        Note::new(-0.69, -0.75, "4"),
+        Note::new(-0.64, -0.72, "4"),
         Note::new(0.2, -0.4, "6: doubled orbit"),
         Note::new(ALONG_1.1 + 0.05, L_1, "l₁"),
         Note::new(ALONG_2.1 + 0.05, L_2, "l₂"),
@@ -121,7 +129,7 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
 
 /// mu_1 over |mu_2|: what starts at the resonance with different slopes stands apart.
 fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
-    let range = (-1.06, -0.7);
+    let range = (-1.06, -0.66);
     let mut panel = Panel::new(
         "(a) enlarged",
         Axis::linear("μ₁/|μ₂|").within(range.0, range.1),
@@ -143,7 +151,7 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         StrongResonance::fold_of_cycles(-1.0),
     ] {
         let line = Series::new("", vec![limit; 2], vec![0.0, -REACH]);
-        panel.series.push(line.stroke(Stroke::Dotted).colour(7));
+        panel.series.push(line.stroke(Stroke::Dotted).colour(6));
     }
     let path = Series::new("", vec![range.0, range.1], vec![L_2; 2]);
     panel.series.push(path.stroke(Stroke::Dotted).colour(7));
@@ -151,10 +159,10 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         Note::new(-1.03, -0.2, "3"),
         Note::new(-0.9, -0.2, "4"),
         Note::new(-0.777, -0.2, "5"),
-        Note::new(-0.725, -0.2, "6"),
-        Note::new(-0.712, L_2 + 0.07, "l₂"),
-        Note::new(-0.785, -0.7, "−4/5"),
-        Note::new(-0.731, -0.7, "−0.752"),
+        Note::new(-0.71, -0.2, "6"),
+        Note::new(-0.68, L_2 + 0.07, "l₂"),
+        Note::new(-0.84, -0.7, "−4/5"),
+        Note::new(-0.705, -0.7, "−0.752"),
     ];
     panel
 }
@@ -239,7 +247,7 @@ fn first_path(sheet: &mut Sheet) -> Result<Panel> {
     let mut tori = cycles(Around::Origin, L_1, &amplitudes, "l1-cycles", sheet)?;
     (tori.x[0], tori.y[0]) = (torus, 0.0);
     panel.series = origin.series(["orbit", ""], 7);
-    panel.series.extend(tori.series(["torus", ""], 0));
+    panel.series.extend(tori.series(["torus", ""], TORUS));
     panel.marks.push(Mark::new(torus, 0.0, "TR"));
     Ok(panel)
 }
@@ -284,11 +292,11 @@ fn second_path(sheet: &mut Sheet) -> Result<Panel> {
     panel.series = origin.series(["", "orbit"], 7);
     panel
         .series
-        .extend(doubled.series(["doubled orbit", ""], 1));
+        .extend(doubled.series(["doubled orbit", ""], DOUBLING));
     panel
         .series
-        .extend(small.series(["", "tori of the doubled orbit"], 2));
-    panel.series.extend(large.series(["torus", ""], 0));
+        .extend(small.series(["", "tori of the doubled orbit"], SECOND_TORUS));
+    panel.series.extend(large.series(["torus", ""], TORUS));
     for (x, y, name) in [
         (second, beside, "TR2"),
         (global.mu[0], global.amplitude, "global"),

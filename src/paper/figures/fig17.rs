@@ -62,7 +62,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         &roots,
         (0.1, 10.0),
         (-250.0, 100.0),
-        "(b) up to the second tangency",
+        "(c) up to the second tangency",
     );
     Ok(Made {
         sheet,
@@ -114,7 +114,7 @@ impl Setting {
         let height = line[1] - line[0];
         let ends = [SHOWN.0 * THOUSANDTHS, SHOWN.1 * THOUSANDTHS];
         let mut panel = Panel::new(
-            "(a) Q₃(s) and L(s)",
+            "(a) Q₃(s) and L(s), V_H = 0.06",
             Axis::linear("s [10⁻³ V*/L]").within(ends[0], ends[1]),
             Axis::linear("Q₃, L [10⁻⁶]").within(line[0] - 0.05 * height, line[1] + 0.1 * height),
         );

@@ -3,7 +3,7 @@
 use crate::error::Result;
 use crate::friction::steady_stress;
 use crate::output::Rows;
-use crate::output::plot::{Axis, Block, Drawing, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Note, Panel, Series, Stroke};
 use crate::paper::pieces::{Map, Pieces, Run};
 use crate::paper::product::Made;
 use crate::paper::sheet::Sheet;
@@ -52,7 +52,18 @@ pub fn combined(rows: &Rows, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> 
 
 /// Stress, states and slip rates in time.
 pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
-    views::panels_in_time(&run.plan, rows)
+    let mut panels = views::panels_in_time(&run.plan, rows);
+    // The parameters stand above all panels.
+    panels[0].title = "stress".into();
+    panels
+}
+
+/// The title of a run: what is special of it, and its parameters.
+pub fn title(words: &str, run: &Run) -> String {
+    let plan = &run.plan;
+    let (driving, stiffness) = (plan.loading.driving, plan.loading.stiffness);
+    let parameters = views::parameters(driving, stiffness, &plan.system.units);
+    format!("{words}{parameters}")
 }
 
 /// The phase plane with the steady-state law as a dotted line.
@@ -89,15 +100,20 @@ fn asymmetry(rows: &Rows) -> Panel {
     }
 }
 
-/// A figure of runs with their return maps, from scenes NAME and NAME-map, each under its title; so much time of the end is
-/// shown.
+/// A figure of runs with their return maps, from scenes NAME and NAME-map, each under its parameters after its name; so much time
+/// of the end is shown.
 pub fn of_runs(pieces: &Pieces<'_>, scenes: &[(&str, &str)], shown: f64) -> Result<Made> {
     let (mut sheet, mut blocks, mut methods) = (Sheet::new(), Vec::new(), Vec::new());
     for (scene, title) in scenes {
         let (run, map) = (pieces.run(scene)?, pieces.map(&format!("{scene}-map"))?);
         sheet.add_run(*scene, &run);
         sheet.add_map(format!("{scene} returns"), &map);
-        blocks.push(with_returns(title, &run, &last(&run, shown), &map));
+        blocks.extend(with_returns(
+            &self::title(title, &run),
+            &run,
+            &last(&run, shown),
+            &map,
+        ));
         methods.push(format!(
             "{scene}: {}; {} returns after {}, each landed on",
             method(&run),
@@ -113,28 +129,97 @@ pub fn of_runs(pieces: &Pieces<'_>, scenes: &[(&str, &str)], shown: f64) -> Resu
 }
 
 /// A run with its return map: in time, in the phase plane and the asymmetric subspace, and at the section.
-fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> Block {
-    Block {
+fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> [Block; 2] {
+    let block = |title: &str, columns| Block {
         title: title.into(),
-        columns: vec![
-            in_time(run, rows),
-            vec![plane_with_law(run, rows), asymmetry(rows)],
-            vec![return_map(map), views::states_at_returns(&map.rows)],
-        ],
-    }
+        columns,
+    };
+    let planes = vec![plane_with_law(run, rows), asymmetry(rows)];
+    let returns = vec![
+        vec![return_map(map)],
+        vec![views::states_at_returns(&map.rows)],
+    ];
+    [
+        block(title, vec![in_time(run, rows), planes]),
+        block("", returns),
+    ]
 }
 
 /// A run with its path in the phase plane and in the phase space.
-pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Block {
+pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Vec<Block> {
     let [front, side, above] = phase_space(rows);
-    let mut columns = vec![in_time(run, rows), vec![plane_with_law(run, rows), front]];
-    // Equal interfaces leave nothing to be seen across.
-    if run.plan.dimension == Dimension::Full {
-        columns.push(vec![side, above]);
-    }
-    Block {
+    let block = |title: &str, columns| Block {
         title: title.into(),
         columns,
+    };
+    let law = plane_with_law(run, rows);
+    // Equal interfaces leave nothing to be seen across.
+    if run.plan.dimension != Dimension::Full {
+        return vec![block(title, vec![in_time(run, rows), vec![law, front]])];
+    }
+    vec![
+        block(title, vec![in_time(run, rows), vec![law, front]]),
+        block("", vec![vec![side, above], vec![in_space(rows)]]),
+    ]
+}
+
+/// The phase space in oblique projection, in a box whose sides are the ranges of what it shows.
+fn in_space(rows: &Rows) -> Panel {
+    /// Where what is behind is drawn, as parts of the sides of the box.
+    const BACK: (f64, f64) = (0.45, 0.35);
+    let part = |values: Vec<f64>| -> Vec<f64> {
+        let lo = values.iter().copied().fold(f64::INFINITY, f64::min);
+        let hi = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        values.into_iter().map(|x| (x - lo) / (hi - lo)).collect()
+    };
+    let at = |[x, y, z]: [f64; 3]| (x + BACK.0 * y, z + BACK.1 * y);
+    let across = part(combined(rows, ["state_1", "state_2"], |a, b| {
+        (a * b).log10()
+    }));
+    let back = part(combined(rows, ["state_1", "state_2"], |a, b| {
+        (a / b).log10()
+    }));
+    let up = part(column(rows, "stress"));
+    let path = (0..up.len()).map(|i| at([across[i], back[i], up[i]]));
+    let (x, y): (Vec<f64>, Vec<f64>) = path.unzip();
+    // The edges that meet in the corner behind, and those of the floor and the left side.
+    let edges = [
+        ([0.0, 0.0, 0.0], [1.0, 0.0, 0.0]),
+        ([0.0, 0.0, 0.0], [0.0, 1.0, 0.0]),
+        ([0.0, 0.0, 0.0], [0.0, 0.0, 1.0]),
+        ([1.0, 0.0, 0.0], [1.0, 1.0, 0.0]),
+        ([0.0, 1.0, 0.0], [1.0, 1.0, 0.0]),
+        ([0.0, 1.0, 0.0], [0.0, 1.0, 1.0]),
+        ([0.0, 0.0, 1.0], [0.0, 1.0, 1.0]),
+        ([1.0, 1.0, 0.0], [1.0, 1.0, 1.0]),
+        ([0.0, 1.0, 1.0], [1.0, 1.0, 1.0]),
+    ];
+    let (mut box_x, mut box_y) = (Vec::new(), Vec::new());
+    for (from, to) in edges {
+        let (from, to) = (at(from), at(to));
+        box_x.extend([from.0, to.0, f64::NAN]);
+        box_y.extend([from.1, to.1, f64::NAN]);
+    }
+    let frame = Series::new("", box_x, box_y);
+    let name = |place, text: &str| {
+        let (x, y) = at(place);
+        Note::new(x, y, text)
+    };
+    Panel {
+        series: vec![
+            frame.stroke(Stroke::Dotted).colour(GREY),
+            Series::new("", x, y).colour(0),
+        ],
+        notes: vec![
+            name([0.5, -0.2, 0.0], "w₁ + w₂"),
+            name([1.12, 0.5, 0.0], "w₁ − w₂"),
+            name([-0.1, 0.0, 0.5], "τ"),
+        ],
+        ..Panel::new(
+            "phase space",
+            Axis::linear("").within(-0.25, 1.75),
+            Axis::linear("").within(-0.12, 1.42),
+        )
     }
 }
 
@@ -149,7 +234,7 @@ fn phase_space(rows: &Rows) -> [Panel; 3] {
     let (tau, stress) = ("stress τ [aσ]", || column(rows, "stress"));
     let (both, difference) = ("w₁ + w₂, w = log₁₀ ψ", "w₁ − w₂");
     [
-        panel("phase space", [both, tau], sum(), stress()),
+        panel("from the front", [both, tau], sum(), stress()),
         panel("from the side", [difference, tau], apart(), stress()),
         panel("from above", [both, difference], sum(), apart()),
     ]

@@ -300,6 +300,7 @@ fn whether(it_is: bool, then: &'static str, otherwise: &'static str) -> &'static
 fn missing(what: impl Into<String>) -> Error {
     Error::NoOrbit {
         what: what.into(),
+        period: None,
         hint: "the scenes of the paper must be as they were shipped",
     }
 }

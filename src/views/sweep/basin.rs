@@ -4,11 +4,10 @@ use super::attractors::attractors;
 use super::tints::Kind;
 use super::{Outcome, Side};
 use crate::equilibrium::Symmetry;
-use crate::output::plot::{Cells, Drawing, Panel, Shade, Swatch};
-use crate::output::seven_digits;
+use crate::output::plot::{Cells, Drawing, Panel, Series, Shade, Stroke, Swatch};
 use crate::scene::{Quantity, Units};
 use crate::section::Regime;
-use crate::views::axis_label;
+use crate::views::{axis_label, parameters};
 
 /// Colours of attractors, the largest basin first, far apart in lightness and hue where there are few.
 const ORDER: [Kind; 9] = [
@@ -23,8 +22,13 @@ const ORDER: [Kind; 9] = [
     Kind::Chaotic,
 ];
 
-/// The attractor that each start goes to, numbered by the size of their basins. Points that are missing stay white; all beyond
-/// the eighth attractor share a colour. V_H and K are for the title.
+/// Starts with equal states stay symmetric for ever: a line, which has no area however large the cells of a grid are.
+const DIAGONAL: &str = "ψ₁ = ψ₂ stays symmetric: not counted, its cells show what is beside them";
+/// Of that line.
+const BLACK: usize = 7;
+
+/// The attractor that each start goes to, numbered by the size of their basins, of which equal states are no part. Points that
+/// are missing stay white; all beyond the eighth attractor share a colour. V_H and K are for the title.
 pub fn basin_map(
     outcomes: &[Outcome],
     (state_1, state_2): (&Side, &Side),
@@ -35,28 +39,28 @@ pub fn basin_map(
     let outward = |x| units.outward(Quantity::State, x);
     let (x, x_edges) = state_1.axis(label("ψ₁ at the start"), outward);
     let (y, y_edges) = state_2.axis(label("ψ₂ at the start"), outward);
-    let (all, of) = attractors(outcomes);
-    let mut fills = vec![Vec::new(); state_1.values.len() * state_2.values.len()];
-    for (outcome, attractor) in outcomes.iter().zip(&of) {
+    let columns = state_1.values.len();
+    let equal = |number: usize| {
+        let start = state_1.values.get(number % columns.max(1));
+        start.is_some() && start == state_2.values.get(number / columns.max(1))
+    };
+    let (symmetric, beside): (Vec<Outcome>, Vec<Outcome>) = outcomes
+        .iter()
+        .copied()
+        .partition(|outcome| equal(outcome.number));
+    let (all, of) = attractors(&beside);
+    let mut fills = vec![Vec::new(); columns * state_2.values.len()];
+    for (outcome, attractor) in beside.iter().zip(&of) {
         if let Some(cell) = fills.get_mut(outcome.number) {
             *cell = vec![attractor.map_or(Kind::Undecided.shade(), tint)];
         }
     }
-    let short = |quantity, x: f64| {
-        let digits = seven_digits(units.outward(quantity, x));
-        match digits.contains(['e', 'E']) || !digits.contains('.') {
-            true => digits,
-            false => digits
-                .trim_end_matches('0')
-                .trim_end_matches('.')
-                .to_owned(),
+    for outcome in &symmetric {
+        if let Some(fill) = around(&fills, outcome.number, columns) {
+            fills[outcome.number] = fill;
         }
-    };
-    let title = format!(
-        "basins at V_H = {}, K = {}",
-        short(Quantity::SlipRate, driving),
-        short(Quantity::Stiffness, stiffness)
-    );
+    }
+    let title = format!("basins at {}", parameters(driving, stiffness, units));
     let map = Cells {
         x_edges,
         y_edges,
@@ -64,10 +68,42 @@ pub fn basin_map(
         swatches: swatches(&all, &of, units),
     };
     let panel = Panel {
+        series: if symmetric.is_empty() {
+            Vec::new()
+        } else {
+            vec![diagonal(&map)]
+        },
         cells: Some(map),
         ..Panel::new(title, x, y)
     };
     Drawing::columns(vec![vec![panel]])
+}
+
+/// The line of equal states across a map.
+fn diagonal(map: &Cells) -> Series {
+    let (x, y) = (&map.x_edges, &map.y_edges);
+    let common = |of: fn(f64, f64) -> f64, a: Option<&f64>, b: Option<&f64>| {
+        a.zip(b).map_or(f64::NAN, |(a, b)| of(*a, *b))
+    };
+    let from = common(f64::max, x.first(), y.first());
+    let to = common(f64::min, x.last(), y.last());
+    let line = Series::new(DIAGONAL, vec![from, to], vec![from, to]);
+    line.stroke(Stroke::Dotted).colour(BLACK)
+}
+
+/// What all cells beside that one show: nothing where they differ.
+fn around(fills: &[Vec<Shade>], number: usize, columns: usize) -> Option<Vec<Shade>> {
+    let (i, j) = (number % columns, number / columns);
+    let left = i.checked_sub(1).map(|i| (i, j));
+    let below = j.checked_sub(1).map(|j| (i, j));
+    let right = (i + 1 < columns).then_some((i + 1, j));
+    let beside = [left, below, right, Some((i, j + 1))];
+    let mut shown = beside
+        .into_iter()
+        .flatten()
+        .filter_map(|(i, j)| fills.get(j * columns + i));
+    let first = shown.next()?;
+    shown.all(|fill| fill == first).then(|| first.clone())
 }
 
 fn tint(attractor: usize) -> Shade {

@@ -1,5 +1,6 @@
 //! The colours of regimes. Steps of lightness tell them apart in grey and for the colour-blind, hues for all others: in CIE
-//! L*a*b* no two are nearer in L* than 5, from the cream of the symmetric steady state to the dark red of chaos.
+//! L*a*b* no two are nearer in L* than 5, from the pale green of the symmetric steady state to the dark red of chaos, nor nearer to one
+//! another than 16, whether all cones see them or one kind is missing.
 
 use super::Outcome;
 use crate::equilibrium::Symmetry;
@@ -77,16 +78,16 @@ impl Kind {
     /// Its colour.
     pub const fn shade(self) -> Shade {
         Shade::new(match self {
-            Kind::SteadySymmetric => [248, 245, 217],
+            Kind::SteadySymmetric => [211, 255, 208],
             Kind::Undecided => [226, 226, 226],
             Kind::SteadyAsymmetric => [234, 206, 122],
-            Kind::PeriodicSymmetric => [94, 204, 220],
-            Kind::PeriodicAsymmetric => [255, 138, 85],
-            Kind::Period2 => [14, 169, 160],
-            Kind::Period3 => [219, 88, 121],
-            Kind::Period4 => [7, 120, 189],
-            Kind::PeriodHigher => [2, 113, 56],
-            Kind::Torus => [95, 79, 7],
+            Kind::PeriodicSymmetric => [93, 204, 221],
+            Kind::PeriodicAsymmetric => [236, 123, 64],
+            Kind::Period2 => [95, 135, 104],
+            Kind::Period3 => [182, 71, 132],
+            Kind::Period4 => [61, 144, 215],
+            Kind::PeriodHigher => [0, 110, 52],
+            Kind::Torus => [182, 168, 113],
             Kind::Chaotic => [69, 8, 32],
         })
     }
@@ -181,7 +182,8 @@ mod test {
             let z = f((0.0193 * r + 0.1192 * g + 0.9505 * b) / 1.08883);
             [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
         };
-        for seen in SEEN {
+        const ALL_CONES: [[f64; 3]; 3] = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        for seen in SEEN.into_iter().chain([ALL_CONES]) {
             let all = ALL.map(|kind| {
                 let rgb = light(kind.shade());
                 lab(seen.map(|row| {
@@ -191,7 +193,7 @@ mod test {
             for (i, a) in all.iter().enumerate() {
                 for (j, b) in all[..i].iter().enumerate() {
                     let apart = (0..3).map(|k| (a[k] - b[k]).powi(2)).sum::<f64>().sqrt();
-                    assert!(apart > 7.0, "{:?} and {:?}: {apart}", ALL[i], ALL[j]);
+                    assert!(apart > 16.0, "{:?} and {:?}: {apart}", ALL[i], ALL[j]);
                 }
             }
         }

@@ -1,0 +1,193 @@
+//! What the errors of the flow make of an orbit: its linear equations with random errors of the size of those of the arcs.
+//!
+//! Rounding errors of the steps add up like a random walk, with the square root of their number; a bound that adds up all of
+//! them is a hundred times too wide. So the standard deviation of what is solved for is taken over a few such probes, whatever
+//! the conditions are that the orbit meets. Of the truncation error, which is no noise, this knows nothing: the tolerance must
+//! be of the order of rounding, or a second solution must tell.
+
+use super::correct::{Condition, Corrector, Regular, combination};
+use super::family::Family;
+use super::indicator::{Indicator, Spectrum};
+use super::linear::Linear;
+use super::motion::Motion;
+use super::polygon::Polygon;
+use super::shooting::relative;
+use crate::field::State;
+use rand_chacha::ChaCha8Rng;
+use rand_chacha::rand_core::{Rng, SeedableRng};
+
+/// Standard deviations of what an orbit's equations determine.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Noise {
+    /// Of the coordinates of both parameters.
+    pub parameters: [f64; 2],
+    /// Of the period, relative.
+    pub period: f64,
+    /// Of the worst node, in units of 1 + |x|.
+    pub nodes: f64,
+}
+
+impl Noise {
+    /// Nothing is known.
+    pub const UNKNOWN: Noise = Noise {
+        parameters: [f64::INFINITY; 2],
+        period: f64::INFINITY,
+        nodes: f64::INFINITY,
+    };
+}
+
+/// Random errors that are tried: enough for a standard deviation to a third of itself.
+pub(super) const PROBES: usize = 8;
+
+/// Errors of either sign, the same ones each time.
+pub(super) struct Signs(ChaCha8Rng);
+
+impl Signs {
+    pub fn new() -> Self {
+        Signs(ChaCha8Rng::seed_from_u64(1))
+    }
+
+    fn next(&mut self) -> f64 {
+        if self.0.next_u32() & 1 == 0 {
+            1.0
+        } else {
+            -1.0
+        }
+    }
+}
+
+impl<const N: usize> Linear<N> {
+    /// The same with errors of random sign: of the ends of all arcs in place of the gaps, and of their derivatives.
+    pub(super) fn noisy(&self, polygon: &Polygon<N>, signs: &mut Signs) -> Self {
+        let mut noisy = self.clone();
+        let count = self.arcs.len();
+        for k in 0..count {
+            let arc = &mut noisy.arcs[k];
+            let size = arc.noise();
+            let next = &polygon.nodes[(k + 1) % count];
+            noisy.gaps[k] = State::from_fn(|i, _| size * (1.0 + next[i].abs()) * signs.next());
+            let of_map = size * self.maps[k].norm();
+            for i in 1..N {
+                for j in 1..N {
+                    noisy.maps[k][(i, j)] += of_map * signs.next();
+                }
+            }
+            if let Some(log) = &mut arc.log_determinant {
+                *log += size * (1.0 + log.abs()) * signs.next();
+            }
+            if let Some(log) = &mut arc.log_across {
+                *log += size * (1.0 + log.abs()) * signs.next();
+            }
+        }
+        noisy
+    }
+}
+
+impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {
+    /// What the errors of the flow make of an orbit that meets these conditions, which it was corrected to. `None` where they do
+    /// not determine it.
+    pub fn noise(
+        &mut self,
+        orbit: &Regular<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+    ) -> Option<Noise> {
+        let polygon = &orbit.site.polygon;
+        let mut squares = Noise::default();
+        let mut nodes = vec![0.0; polygon.nodes.len()];
+        let mut signs = Signs::new();
+        for _ in 0..PROBES {
+            let noisy = orbit.linear.noisy(polygon, &mut signs);
+            let motion = self.answer(orbit, &noisy, free, conditions)?;
+            for i in 0..2 {
+                squares.parameters[i] += motion.parameters[i].powi(2);
+            }
+            let [_, _, of_period] = motion.seen_from_afar(polygon);
+            squares.period += of_period * of_period;
+            let moved = motion.nodes.iter().zip(&polygon.nodes);
+            for (sum, (dx, x)) in nodes.iter_mut().zip(moved) {
+                *sum += relative(dx, x).powi(2);
+            }
+        }
+        Some(Noise {
+            parameters: squares.parameters.map(deviation),
+            period: deviation(squares.period),
+            nodes: deviation(nodes.into_iter().fold(0.0, f64::max)),
+        })
+    }
+
+    /// The same of an indicator at an orbit in this plane.
+    pub fn noise_of(
+        &mut self,
+        indicator: Indicator,
+        orbit: &Regular<N>,
+        free: &[usize],
+        plane: Condition<'_, N>,
+    ) -> Option<f64> {
+        let (mut sum, mut signs) = (0.0, Signs::new());
+        for _ in 0..PROBES {
+            let noisy = orbit.linear.noisy(&orbit.site.polygon, &mut signs);
+            let motion = self.answer(orbit, &noisy, free, &[plane])?;
+            let changes = [orbit.direct(&noisy), self.by_motion(orbit, &motion)?];
+            let change = changes.map(|by| indicator.change_along::<N>(&orbit.spectrum, &by));
+            sum += (change[0] + change[1]).powi(2);
+        }
+        Some(deviation(sum))
+    }
+
+    /// How an orbit moves where the flow errs so and the conditions still hold.
+    fn answer(
+        &mut self,
+        orbit: &Regular<N>,
+        noisy: &Linear<N>,
+        free: &[usize],
+        conditions: &[Condition<'_, N>],
+    ) -> Option<Motion<N>> {
+        // The directions are those without errors.
+        let mut linear = orbit.linear.clone();
+        linear.gaps.clone_from(&noisy.gaps);
+        let (closing, along) = linear.solutions(free, self.family.scale(orbit.site.at))?;
+        let indicators = conditions
+            .iter()
+            .any(|condition| matches!(condition, Condition::Indicator(_)));
+        let of_spectrum = if indicators {
+            vec![orbit.direct(noisy), self.by_motion(orbit, &closing)?]
+        } else {
+            Vec::new()
+        };
+        let mut gradients = orbit.gradients.iter();
+        let mut rows = Vec::with_capacity(conditions.len());
+        for condition in conditions {
+            let slopes = |of: &dyn Fn(&Motion<N>) -> f64| along.iter().map(of).collect();
+            rows.push(match condition {
+                Condition::Plane(across, _) => (slopes(&|t| across.dot(t)), -across.dot(&closing)),
+                Condition::Parameter(i, _) => {
+                    (slopes(&|t| t.parameters[*i]), -closing.parameters[*i])
+                }
+                Condition::Indicator(indicator) => {
+                    let gradient = gradients.next()?;
+                    let change = |by| indicator.change_along::<N>(&orbit.spectrum, by);
+                    let change: f64 = of_spectrum.iter().map(change).sum();
+                    (slopes(&|t| gradient.dot(t)), -change)
+                }
+            });
+        }
+        let weights = combination(&rows)?;
+        let mut motion = closing;
+        for (weight, direction) in weights.iter().zip(&along) {
+            motion = motion.plus(*weight, direction);
+        }
+        Some(motion)
+    }
+}
+
+impl<const N: usize> Regular<N> {
+    /// What errors of the derivatives make of the spectrum, the orbit as it is.
+    fn direct(&self, noisy: &Linear<N>) -> Spectrum {
+        Spectrum::change(&self.linear, &self.spectrum, noisy, 1.0)
+    }
+}
+
+fn deviation(squares: f64) -> f64 {
+    (squares / PROBES as f64).sqrt()
+}
