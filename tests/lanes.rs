@@ -1,5 +1,7 @@
 //! The functions of whole registers: against 31 digits, against the library where numbers are not ordinary, and all widths
-//! against each other.
+//! against each other. Plain numbers, which are all that a processor without AVX2 has, are held to the same on every one; which
+//! registers are held to it stands in what [`the_registers_of_this_processor`] prints and, where `TWINSLIP_REGISTERS` names those
+//! that must be there, is asserted.
 #![cfg(target_arch = "x86_64")]
 #![allow(missing_docs)]
 
@@ -21,15 +23,25 @@ fn in_all_widths(x: [f64; 8], f: Function) -> Vec<[f64; 8]> {
             y.copy_from_slice(&f.of(Four::new(simd, x.try_into().unwrap())).lanes());
         }
         all.push(y);
-    } else {
-        eprintln!("skipped: this processor has no AVX2");
     }
     if let Some(simd) = V4::try_new() {
         all.push(f.of(Eight::new(simd, x)).lanes());
-    } else {
-        eprintln!("skipped: this processor has no AVX-512");
     }
     all
+}
+
+/// The registers that the other tests are about here. A machine that is to test them says so: there it is a failure if it has none.
+#[test]
+fn the_registers_of_this_processor() {
+    let there = match (V3::try_new(), V4::try_new()) {
+        (_, Some(_)) => "avx512",
+        (Some(_), None) => "avx2",
+        (None, None) => "none",
+    };
+    println!("registers that are tested here: {there}; plain numbers are everywhere");
+    if let Ok(wanted) = std::env::var("TWINSLIP_REGISTERS") {
+        assert_eq!(there, wanted, "TWINSLIP_REGISTERS asks for others");
+    }
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -103,18 +115,20 @@ impl Function {
                 );
             }
         }
-        let Some(y) = all.first() else { return 0.0 };
-        for i in 0..8 {
-            let exact = self.exactly(x[i]);
-            let unit = exact.hi().abs().next_up() - exact.hi().abs();
-            let error = ((exact - y[i]).hi() / unit).abs();
-            assert!(
-                error <= self.bound(exact),
-                "{self:?} of {:e} is {:e}, off by {error} units",
-                x[i],
-                y[i]
-            );
-            largest = f64::max(largest, error);
+        let plain = x.map(|x| self.of(x));
+        for y in all.first().into_iter().chain([&plain]) {
+            for i in 0..8 {
+                let exact = self.exactly(x[i]);
+                let unit = exact.hi().abs().next_up() - exact.hi().abs();
+                let error = ((exact - y[i]).hi() / unit).abs();
+                assert!(
+                    error <= self.bound(exact),
+                    "{self:?} of {:e} is {:e}, off by {error} units",
+                    x[i],
+                    y[i]
+                );
+                largest = f64::max(largest, error);
+            }
         }
         largest
     }
@@ -208,6 +222,10 @@ fn special_values_are_those_of_the_library() {
         Power(f64::NAN),
     ] {
         for x in special {
+            let (plain, library) = (f.of(x), f.of_library(x));
+            let near = (plain - library).abs() <= 4.0 * f64::EPSILON * library.abs();
+            let same = plain == library || (plain.is_nan() && library.is_nan()) || near;
+            assert!(same, "{f:?} of {x:e} is {plain:e} and not {library:e}");
             for place in 0..8 {
                 let mut beside: [f64; 8] = std::array::from_fn(|i| 0.3 + i as f64);
                 let without = in_all_widths(beside, f);
@@ -240,9 +258,11 @@ fn sinh_does_not_cancel_near_zero() {
         1e-300, 1e-30, 1e-9, 1e-3, 0.1, 0.5, 0.999_999, 1.0, 1.000_001,
     ] {
         for sign in [1.0, -1.0] {
-            for y in in_all_widths([sign * x; 8], Sinh) {
-                let exact = Sinh.exactly(sign * x);
-                let relative = ((exact - y[0]) / exact).hi().abs();
+            let x = sign * x;
+            let all = in_all_widths([x; 8], Sinh).into_iter().map(|y| y[0]);
+            for y in all.chain([Sinh.of(x)]) {
+                let exact = Sinh.exactly(x);
+                let relative = ((exact - y) / exact).hi().abs();
                 assert!(relative < 4e-16, "sinh {x:e} errs by {relative:e}");
             }
         }
@@ -252,9 +272,20 @@ fn sinh_does_not_cancel_near_zero() {
 /// Choices and bits: what the step sizes are made of.
 #[test]
 fn the_small_operations_do_what_they_say() {
-    let (Some(v3), four) = (V3::try_new(), [-2.0, 0.0, f64::INFINITY, f64::NAN]) else {
-        return eprintln!("skipped: this processor has no AVX2");
-    };
+    let four = [-2.0, 0.0, f64::INFINITY, f64::NAN];
+    for (x, sign) in four.into_iter().zip([-1.0, 1.0, 1.0]) {
+        assert_eq!(x.if_positive(1.0, 2.0), 2.0, "{x}");
+        assert_eq!(x.if_negative(1.0, 2.0), if x < 0.0 { 1.0 } else { 2.0 });
+        assert_eq!(Element::sign(x), sign);
+    }
+    assert!(!four.into_iter().any(Element::all_positive));
+    assert_eq!(four.map(Element::all_finite), [true, true, false, false]);
+    for y in [1e-300, 3.0, 1e300, 0.7] {
+        assert_eq!(y.if_positive(1.0, 2.0), 1.0);
+        assert!((y.rough_log2() - y.log2()).abs() < 0.01);
+        assert!((y.rough_log2().rough_exp2() / y - 1.0).abs() < 0.02);
+    }
+    let Some(v3) = V3::try_new() else { return };
     let x = Four::new(v3, four);
     let chosen = x.if_positive(x.like(1.0), x.like(2.0)).lanes();
     assert_eq!(chosen, [2.0; 4]);

@@ -21,10 +21,16 @@ folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 # Ranks may be more than cores, and of root in a container.
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
+# 3: all is done, but points are undecided, as two of these grids are.
+done_with() {
+    local code=0
+    "$@" || code=$?
+    [ "$code" = 0 ] || [ "$code" = 3 ]
+}
 ranks() {
     local n=$1
     shift
-    mpirun --oversubscribe -n "$n" "$program" sweep -q "$@"
+    done_with mpirun --oversubscribe -n "$n" "$program" sweep -q "$@"
 }
 same() {
     cmp "$1" "$2" || {
@@ -36,7 +42,7 @@ same() {
 
 for grid in "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20" "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20 --follow --starts 2"; do
     read -ra words <<<"$grid"
-    "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
+    done_with "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
     for n in 1 2 4; do
         ranks "$n" "${words[@]}" -o "$folder/ranks.csv"
         same "$folder/alone.csv" "$folder/ranks.csv" "$n ranks, $grid"
@@ -44,10 +50,10 @@ for grid in "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20" "--driving 0.14:0.5:
 done
 
 words=(--driving 0.14:0.5:20 --stiffness 0.34:0.5:20)
-"$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
+done_with "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
 
 # The object too, which takes rows and not lines.
-"$program" sweep -q "${words[@]}" --format json | sed 's/"command":\[[^]]*\]//' >"$folder/alone.json"
+done_with "$program" sweep -q "${words[@]}" --format json | sed 's/"command":\[[^]]*\]//' >"$folder/alone.json"
 ranks 3 "${words[@]}" --format json | sed 's/"command":\[[^]]*\]//' >"$folder/ranks.json"
 same "$folder/alone.json" "$folder/ranks.json" "3 ranks, JSON"
 
@@ -56,10 +62,10 @@ for part in 1 2 3; do
     if [ "$part" = 2 ]; then
         ranks 2 "${words[@]}" --shard 2/3 -o "$folder/2.csv"
     else
-        "$program" sweep -q "${words[@]}" --shard "$part/3" -o "$folder/$part.csv"
+        done_with "$program" sweep -q "${words[@]}" --shard "$part/3" -o "$folder/$part.csv"
     fi
 done
-"$program" merge -q "$folder"/[123].csv -o "$folder/merged.csv"
+done_with "$program" merge -q "$folder"/[123].csv -o "$folder/merged.csv"
 same "$folder/alone.csv" "$folder/merged.csv" "a part by ranks, merged"
 
 # What one rank refuses is said once, and nobody waits.
@@ -75,7 +81,7 @@ echo "ok: a wrong grid is refused once"
 
 # A rank that computes is killed as soon as there are rows.
 words=(--driving 1:10:20 --stiffness 0.3:0.5:10)
-"$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
+done_with "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
 ranks 3 "${words[@]}" -o "$folder/killed.csv" >"$folder/told" 2>&1 &
 run=$!
 lines() {

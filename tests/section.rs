@@ -502,3 +502,179 @@ fn a_slow_passage_is_not_chaos() {
     assert!(largest > bound, "{largest} +- {bound}");
     assert_eq!(made["result"]["regime"], "undecided");
 }
+
+fn exponents(found: &serde_json::Value) -> Vec<(f64, f64)> {
+    let all = found["result"]["lyapunov"].as_array().expect("exponents");
+    let pair = |x: &serde_json::Value| {
+        let number = |name: &str| x[name].as_f64().expect("a number");
+        (number("value"), number("uncertainty"))
+    };
+    all.iter().map(pair).collect()
+}
+
+/// Methods and tolerances whose errors differ by orders.
+fn numerics() -> Vec<&'static str> {
+    let mut all = vec!["", "--rtol 1e-4", "--method rodas5p --rtol 1e-6"];
+    if cfg!(feature = "sundials") {
+        all.push("--method cvode-bdf");
+    }
+    all
+}
+
+/// ln |mu| / T by the multipliers of an independent computation, whatever the run was made with.
+#[test]
+fn exponents_of_periodic_orbits_are_those_of_their_multipliers() {
+    let data = shared::data("multipliers.json");
+    for orbit in data["orbits"].as_array().unwrap() {
+        let at = |name: &str| shared::number(&orbit[name]);
+        let text = |name: &str| orbit[name].as_str().unwrap().to_owned();
+        let period = at("period");
+        for numerics in numerics() {
+            let words = format!(
+                "section --driving {} --stiffness {} --start {},{},{} --skip 20 --returns 60 --lyapunov {numerics}",
+                text("V_H"),
+                text("K"),
+                text("section tau_s"),
+                text("psi1"),
+                text("psi2")
+            );
+            let found = command::object(&words);
+            assert_eq!(found["result"]["regime"], "periodic", "{words}");
+            let all = exponents(&found);
+            assert_eq!(all[0], (0.0, 0.0), "{words}");
+            for (i, (value, uncertainty)) in all[1..].iter().enumerate() {
+                let (re, im) = shared::complex(&orbit["mu"][i]);
+                let off = (value - re.hypot(im).ln() / period).abs();
+                assert!(off <= *uncertainty, "{words}: {value} is off by {off:e}");
+                assert!(uncertainty * period < 1e-7, "{words}: {uncertainty:e}");
+            }
+        }
+    }
+    // An orbit of three returns; the third exponent by multiple shooting at 31 digits.
+    for numerics in numerics() {
+        let words = format!("section --driving 0.08433 --stiffness 0.14617 --lyapunov {numerics}");
+        let (value, uncertainty) = exponents(&command::object(&words))[2];
+        let off = (value + 0.002_595_534_446_2).abs();
+        assert!(off < uncertainty + 5e-14, "{words}: {value}");
+        assert!(uncertainty < 1e-11, "{words}: {uncertainty:e}");
+    }
+}
+
+/// The error of the method would be a bias, the same at every return: two exponents of a torus vanish, and the third is that of
+/// a long and accurate run.
+#[test]
+fn the_exponents_of_a_torus_have_no_bias() {
+    for (v, k) in [(0.11, 0.185), (0.104, 0.2)] {
+        let run =
+            format!("section --driving {v} --stiffness {k} --start near-symmetric:0.3 --lyapunov");
+        let long = exponents(&command::object(&format!(
+            "{run} --returns 5000 --rtol 1e-12"
+        )))[2];
+        for numerics in numerics() {
+            let words = format!("{run} --returns 1200 {numerics}");
+            let found = command::object(&words);
+            assert_eq!(found["result"]["regime"], "torus", "{words}: {found}");
+            let all = exponents(&found);
+            for (value, uncertainty) in &all[..2] {
+                assert!(value.abs() <= *uncertainty, "{words}: {all:?}");
+            }
+            let (value, uncertainty) = all[2];
+            let off = (value - long.0).abs();
+            assert!(off <= uncertainty + long.1, "{words}: {all:?}, {long:?}");
+            assert!(uncertainty < 0.05 * value.abs(), "{words}: {all:?}");
+        }
+    }
+}
+
+/// Along a record that is made coarsely the bias is seen in the direction of the flow, and counted.
+#[test]
+fn the_bias_of_a_coarse_record_is_counted() {
+    let case = Case::paper(0.2, 0.102);
+    let start = case.near_symmetric(0.3);
+    let of = |rtol: f64| {
+        let record = case.record("taylor", rtol, start, (3000, 2000));
+        spectrum(&*case.field, &record).unwrap()
+    };
+    let (coarse, fine) = (of(1e-4), of(1e-12));
+    for (coarse, fine) in coarse.exponents.iter().zip(&fine.exponents) {
+        let off = (coarse.value - fine.value).abs();
+        assert!(
+            off <= coarse.uncertainty + fine.uncertainty,
+            "{coarse:?} {fine:?}"
+        );
+    }
+    let flow = coarse
+        .exponents
+        .iter()
+        .find(|x| x.value == coarse.along_flow);
+    assert!(flow.is_some_and(|x| x.value.abs() <= x.uncertainty));
+}
+
+/// Returns that are made up, about the orbit inside a torus: each so far from it, at the angle of its number.
+fn made_up(accuracy: f64, at: impl Fn(f64) -> [f64; 2]) -> (Case, Record<3>) {
+    let case = Case::paper(0.2, 0.102);
+    let settled = case.record("auto", 1e-10, case.near_symmetric(0.3), (1000, 300));
+    let centre = case.fixed_point(mean(&settled)).0;
+    let returns = (0..600).map(|n| {
+        let [x, y] = at(f64::from(n));
+        twinslip::section::Return {
+            time: 60.0 * f64::from(n),
+            state: centre + State::<3>::new(0.0, x, y),
+        }
+    });
+    let record = Record {
+        returns: returns.collect(),
+        waypoints: Vec::new(),
+        ended: Ended::Complete,
+        accuracy,
+    };
+    (case, record)
+}
+
+/// Five points in turn that drift by less than the error of the run are no torus, though they never repeat to the last digit.
+#[test]
+fn returns_that_repeat_to_the_error_of_the_run_are_no_torus() {
+    let turning = |rotation: f64| {
+        move |n: f64| {
+            let (sin, cos) = (TAU * rotation * n).sin_cos();
+            [1e-2 * cos, 1e-2 * sin]
+        }
+    };
+    let (case, drifting) = made_up(1e-8, turning(0.2 + 1e-9));
+    let made = case.verdict(&drifting);
+    assert_eq!(made.regime, Regime::Undecided, "{made:?}");
+    assert!(
+        made.why.is_some_and(|why| why.contains("repeat")),
+        "{made:?}"
+    );
+    // The same circle is one where they don't.
+    let (case, winding) = made_up(1e-8, turning(0.2 + 1e-3 * 2.0_f64.sqrt()));
+    let made = case.verdict(&winding);
+    assert_eq!(made.regime, Regime::Torus, "{made:?}");
+}
+
+/// A figure of eight has no order that could be seen: there only exponents that are known to vanish tell a torus.
+#[test]
+fn exponents_that_are_hardly_known_make_no_torus() {
+    use twinslip::number::Uncertain;
+    use twinslip::section::Exponents;
+    let eight = |n: f64| {
+        let angle = TAU * 0.381_966_011_250_105 * n;
+        [1e-2 * angle.cos(), 1e-2 * (2.0 * angle).sin()]
+    };
+    let (case, record) = made_up(1e-10, eight);
+    assert_eq!(case.verdict(&record).regime, Regime::Undecided);
+    let duration = record.returns[599].time;
+    let with = |uncertainty: f64| {
+        let zero = Uncertain::new(0.0, uncertainty);
+        let values = [zero, zero, Uncertain::new(-1e-3, 1e-6)];
+        let known = Exponents {
+            values: &values,
+            converged: true,
+        };
+        let made = verdict(&*case.field, &case.surface, &record, Some(known)).unwrap();
+        made.regime
+    };
+    assert_eq!(with(0.05 / duration), Regime::Torus);
+    assert_eq!(with(1.0 / duration), Regime::Undecided);
+}

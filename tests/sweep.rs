@@ -143,9 +143,26 @@ fn at(driving: f64, stiffness: f64, start: usize) -> Row {
     rows(&settings).swap_remove(start)
 }
 
-/// Runs that leave an unstable steady state or come to a cycle so slowly that their returns drift all the while.
+/// With more returns than usual.
+fn at_length(driving: f64, stiffness: f64, start: usize) -> Row {
+    let settings = Settings {
+        rtol: 1e-8,
+        max_returns: 4000,
+        ..settings(
+            &format!("{driving}:{driving}:1"),
+            &format!("{stiffness}:{stiffness}:1"),
+            2,
+        )
+    };
+    rows(&settings).swap_remove(start)
+}
+
+/// Runs that leave an unstable steady state or come to a cycle so slowly that their returns drift all the while. After twice the
+/// usual returns those on three points have come to the cycle that multiple shooting finds there; on the last, with a multiplier of
+/// exp(-1.6e-4), they may not.
 #[test]
 fn slow_runs_are_neither_tori_nor_chaos() {
+    let mut settled = Vec::new();
     for (driving, stiffness, start) in [
         (0.104_615_384_615_384_61, 0.104_827_586_206_896_56, 1),
         (0.109_230_769_230_769_21, 0.109_655_172_413_793_1, 1),
@@ -153,27 +170,50 @@ fn slow_runs_are_neither_tori_nor_chaos() {
         (0.086_153_846_153_846_15, 0.235_172_413_793_103_44, 0),
         (0.086_153_846_153_846_15, 0.235_172_413_793_103_44, 1),
     ] {
-        let row = at(driving, stiffness, start);
-        assert!(
-            !matches!(row.regime, Regime::Torus | Regime::Chaotic),
-            "{row:?}"
-        );
+        for row in [
+            at(driving, stiffness, start),
+            at_length(driving, stiffness, start),
+        ] {
+            match row.regime {
+                Regime::Periodic => {
+                    let period = orbit(driving, stiffness, Symmetry::Asymmetric).period.value;
+                    let off = row.period.unwrap() / period - 1.0;
+                    assert!(off.abs() < 1e-8, "{row:?}: {period}");
+                    settled.push(driving);
+                }
+                Regime::Undecided => {}
+                _ => panic!("{row:?}"),
+            }
+        }
     }
+    settled.dedup();
+    assert!(settled.len() >= 3, "{settled:?}");
 }
 
 /// Along a cycle of stick-slip tangents grow by nine orders and shrink again: what the multipliers of the return map keep of that
 /// is compared with those of multiple shooting, which the sweep knows nothing of.
 #[test]
 fn exponents_are_those_of_the_multipliers() {
-    for (driving, stiffness) in [(0.158_974, 0.051_724), (0.167_179, 0.059_655), (0.16, 0.07)] {
+    for (driving, stiffness) in [
+        (0.158_974, 0.051_724),
+        (0.167_179, 0.059_655),
+        (0.16, 0.07),
+        // The run comes to this one with a step of Newton's method that is large for how the map bends.
+        (0.094_868_329_805_051_39, 0.085_714_285_714_285_71),
+        (0.168_702_397_557_104_76, 0.118_571_428_571_428_57),
+        (0.533_483_823_011_676_9, 0.184_285_714_285_714_3),
+        (3.0, 0.25),
+    ] {
         let row = at(driving, stiffness, 0);
         let orbit = orbit(driving, stiffness, Symmetry::Asymmetric);
+        let period = orbit.period.value;
         let largest = orbit.floquet.multipliers[0].ln_abs.value;
-        let expected = largest / orbit.period.value;
         let found = row.lyapunov_max.expect("an exponent");
-        let off = (found.value - expected).abs();
-        assert!(off < found.uncertainty, "{found:?}: {expected}");
-        assert!(found.uncertainty < 1e-3 * expected.abs(), "{found:?}");
+        let off = (found.value * period - largest).abs();
+        let claimed = found.uncertainty * period;
+        println!("{driving} {stiffness}: off by {off:e} of {claimed:e}");
+        assert!(off < claimed, "{found:?}: {}", largest / period);
+        assert!(claimed < 1e-5, "{found:?}");
     }
 }
 
@@ -296,8 +336,11 @@ fn lanes_find_what_single_runs_find() {
     let mut alone = Vec::new();
     let mut sweeper = Sweeper::one_by_one(&plane).unwrap();
     sweeper.rows(0..plane.units(), &mut alone);
+    let (mut compared, mut of_one_cycle) = (0, 0);
     for (row, alone) in rows(&plane).iter().zip(&alone) {
         if matches!(row.regime, Regime::Steady | Regime::Periodic) {
+            compared += 1;
+            of_one_cycle += usize::from(row.returns_per_period == alone.returns_per_period);
             assert_eq!((row.regime, row.symmetry), (alone.regime, alone.symmetry));
             if row.returns_per_period == alone.returns_per_period {
                 let near = |x: f64, y: f64| (x - y).abs() < 1e-7 * x.abs();
@@ -310,6 +353,9 @@ fn lanes_find_what_single_runs_find() {
             }
         }
     }
+    // Of 35 points: one has no verdict, and where cycles coexist rounding may choose.
+    assert!(compared >= 32, "{compared}");
+    assert!(of_one_cycle >= 30, "{of_one_cycle}");
 }
 
 #[test]

@@ -6,6 +6,9 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::section::Regime;
 use twinslip::sweep::{Grid, Range, Settings, Sweeper};
 
+/// Allocations of a look for what a run creeps to.
+const SEARCH: u64 = 400;
+
 #[test]
 fn no_step_allocates() {
     // Just below the Hopf point of the asymmetric steady state runs return for long.
@@ -23,23 +26,31 @@ fn no_step_allocates() {
         max_returns: 4000,
         max_steps: 10_000_000,
     };
-    let mut counts = Vec::new();
-    for text in ["0.06:0.06:1", "0.063:0.063:1"] {
+    let allocated = |text: &str| {
         let settings = at(text);
         let mut sweeper = Sweeper::new(&settings).unwrap();
         let mut rows = Vec::with_capacity(1);
         let counted = measure(|| sweeper.rows(0..1, &mut rows));
         assert_eq!(rows[0].regime, Regime::Steady);
-        counts.push((rows[0].returns, counted.count_total));
-    }
-    let [(few, short), (many, long)] = counts[..] else {
-        unreachable!();
+        println!(
+            "{text}: {} returns, {}",
+            rows[0].returns, counted.count_total
+        );
+        (rows[0].returns, counted.count_total)
     };
-    assert!(many > few + 500, "{few} and {many} returns");
-    // Some for each time that the run is judged, some hundred where it may creep to an orbit; none for its ten thousands of steps,
-    // dozens of which lie between two returns.
+    // Both are judged at 64 and at 128 returns, and then no more: what lies between them is steps alone, dozens from one return to
+    // the next.
+    let [(few, short), (more, long)] = ["0.06292:0.06292:1", "0.06293:0.06293:1"].map(allocated);
+    assert!((128..256).contains(&few) && (few + 20..256).contains(&more));
     assert!(
-        long - short < (many - few) as u64,
-        "{short} and {long} allocations, {few} and {many} returns"
+        long.abs_diff(short) < 8,
+        "{short} and {long} allocations, {few} and {more} returns"
+    );
+    // At 256 and at 512 it may creep to an orbit, which is looked for by Newton's method.
+    let (many, longest) = allocated("0.063:0.063:1");
+    assert!((512..1024).contains(&many), "{many}");
+    assert!(
+        longest - long < 2 * SEARCH,
+        "{long} and {longest} allocations, {more} and {many} returns"
     );
 }

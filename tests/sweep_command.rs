@@ -202,7 +202,9 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
     let grid = "sweep -q --driving 0.14:0.5:20 --stiffness 0.34:0.5:20";
     let whole = place.join("whole.csv");
     let begun = std::time::Instant::now();
-    assert_eq!(twinslip(&format!("{grid} -o {}", whole.display())).code, 0);
+    // Two of its points are undecided.
+    let code = twinslip(&format!("{grid} -o {}", whole.display())).code;
+    assert_eq!(code, 3);
     // Where a kill falls is chance, and depends on the machine: what must hold does not.
     let span = begun.elapsed().as_micros() as u64;
     let path = place.join("killed.csv");
@@ -226,7 +228,7 @@ fn a_killed_sweep_ends_in_the_same_bytes() {
         lengths.push(fs::metadata(&path).map_or(0, |data| data.len()));
     }
     let ended = twinslip(&resume);
-    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    assert_eq!((ended.code, ended.err.as_str()), (code, ""));
     let [whole, killed] = [whole, path].map(|path| fs::read(path).expect("written"));
     assert!(
         whole == killed,
@@ -433,14 +435,155 @@ fn a_basin_has_a_row_for_each_start() {
     }
 }
 
+/// One undecided row of many is enough, in one run or in parts, in all formats, and however the file came to be.
 #[test]
-fn nothing_decided_has_its_own_exit_code() {
+fn an_undecided_row_has_its_own_exit_code() {
     // A step is no run: each point is a row with its reason.
     let ended = sweep("--max-steps 1 --format csv");
     assert_eq!(ended.code, 3, "{}", ended.err);
     let table = csv(&ended.out);
     assert!(table[1..].iter().all(|row| row[2] == "undecided"));
     assert!(table[1..].iter().all(|row| !row[14].is_empty()));
+    // Points at rest are told without many steps, cycles are not.
+    let place = folder("sweep-undecided");
+    let path = place.join("some.csv").display().to_string();
+    let some = format!("{GRID} -q --max-steps 300");
+    let ended = twinslip(&format!("{some} -o {path}"));
+    assert_eq!((ended.code, ended.err.as_str()), (3, ""));
+    let text = fs::read_to_string(&path).expect("rows");
+    let undecided = csv(&text)[1..]
+        .iter()
+        .filter(|row| row[2] == "undecided")
+        .count();
+    assert!(undecided > 0 && undecided < 24, "{text}");
+    assert_eq!(twinslip(&format!("{some} --format json")).code, 3);
+    assert_eq!(twinslip(&format!("{some} --format table")).code, 3);
+    // There is nothing left to do, and it still is so.
+    assert_eq!(twinslip(&format!("{some} --resume {path}")).code, 3);
+    let parts = [1, 2].map(|n| place.join(format!("{n}.csv")).display().to_string());
+    for (n, part) in parts.iter().enumerate() {
+        twinslip(&format!("{some} --shard {}/2 -o {part}", n + 1));
+    }
+    let merged = place.join("merged.csv").display().to_string();
+    let ended = run(&["merge", &parts[0], &parts[1], "-o", &merged]);
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    let said = format!("24 rows of 2 parts, {undecided} of them undecided");
+    assert!(ended.err.contains(&said), "{}", ended.err);
+    assert_eq!(fs::read_to_string(&merged).expect("merged"), text);
+}
+
+/// No more threads are started than there are points, and none that no machine has.
+#[test]
+fn threads_are_bounded() {
+    let few = "sweep -q --driving 0.4:0.5:2 --stiffness 0.4:0.5:2 --format csv";
+    let one = twinslip(&format!("{few} --threads 1"));
+    let many = twinslip(&format!("{few} --threads 1000"));
+    assert_eq!((one.code, &one.out), (many.code, &many.out));
+    refused(
+        &format!("{few} --threads 2000"),
+        "threads is 2000, but must be at least 1 and at most 1024",
+    );
+}
+
+/// What a file says of itself is checked before anything is made of it.
+#[test]
+fn parts_that_a_file_makes_up_are_refused() {
+    let place = folder("sweep-made-up");
+    let whole = whole(&place, "");
+    let path = place.join("part.csv").display().to_string();
+    let out = place.join("out.csv").display().to_string();
+    let told = |shard: &str| {
+        let text = whole.replacen("\ndriving,", &format!("\n# shard: {shard}\ndriving,"), 1);
+        fs::write(&path, text).expect("written");
+        format!("merge {path} -o {out}")
+    };
+    refused(&told("1/1000000000"), "N at most 1000000");
+    refused(&told("1/18446744073709551615"), "N at most 1000000");
+    refused(
+        &told("1/1000000"),
+        "10/1000000, 11/1000000 and 999989 others are missing",
+    );
+    fs::write(&path, "# x\n".repeat(100_000)).expect("written");
+    refused(&format!("merge {path} -o {out}"), "too many remarks");
+    refused(&format!("{GRID} --shard 1/1000000000"), "N at most 1000000");
+    assert!(!Path::new(&out).exists());
+}
+
+/// Curves over a map are kept, and computed again where what is kept is not whole.
+#[test]
+fn curves_over_a_map_are_kept_and_never_trusted_blindly() {
+    let place = folder("sweep-curves");
+    let cache = place.join("cache");
+    let picture = place.join("map.svg");
+    let draw = |cache: &str, grid: &str| {
+        let output = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+            .args(format!("sweep {grid} --curves pitchfork,hopf").split(' '))
+            .args(["-o".as_ref(), place.join("map.csv").as_os_str()])
+            .args(["--plot".as_ref(), picture.as_os_str()])
+            .env("TWINSLIP_CACHE", cache)
+            .output()
+            .expect("the program starts");
+        let said = String::from_utf8(output.stderr).expect("UTF-8");
+        assert_eq!(output.status.code(), Some(0), "{said}");
+        fs::remove_file(place.join("map.csv")).expect("rows");
+        (said, fs::read_to_string(&picture).expect("a picture"))
+    };
+    const WINDOW: &str = "--driving 0.04:0.07:2 --stiffness 0.13:0.15:2";
+    let folder = cache.display().to_string();
+    let kept = |n: usize| format!("{n} of them kept from before");
+    let (said, first) = draw(&folder, WINDOW);
+    assert!(
+        said.contains("2 curves") && !said.contains("kept"),
+        "{said}"
+    );
+    let files = || {
+        let mut names = command::contents(&cache);
+        names.sort();
+        names.into_iter().map(|name| cache.join(name))
+    };
+    let whole: Vec<(_, String)> = files()
+        .map(|path| (path.clone(), fs::read_to_string(path).expect("text")))
+        .collect();
+    assert_eq!(whole.len(), 2);
+    let (said, again) = draw(&folder, WINDOW);
+    assert!(said.contains(&kept(2)) && again == first, "{said}");
+    // Another window has other curves.
+    let (said, _) = draw(&folder, "--driving 0.03:0.07:2 --stiffness 0.13:0.15:2");
+    assert!(!said.contains("kept"), "{said}");
+    let (path, text) = &whole[0];
+    let last = text.rfind(|c: char| c.is_ascii_digit()).expect("a digit");
+    let digit = if text.as_bytes()[last] == b'7' {
+        "3"
+    } else {
+        "7"
+    };
+    let changed = format!("{}{digit}{}", &text[..last], &text[last + 1..]);
+    let other = whole[1].1.as_str();
+    for damaged in [&changed, &text[..text.len() / 2], "", "\u{0}", other] {
+        fs::write(path, damaged).expect("written");
+        let (said, again) = draw(&folder, WINDOW);
+        assert!(said.contains(&kept(1)) && again == first, "{said}");
+        assert_eq!(&fs::read_to_string(path).expect("text"), text);
+    }
+    // Where there is no place for them, or none that can be written, they are computed.
+    let before = command::contents(&place).len();
+    for nowhere in ["", "/dev/null/none"] {
+        let (said, again) = draw(nowhere, WINDOW);
+        assert!(!said.contains("kept") && again == first, "{said}");
+    }
+    assert_eq!(command::contents(&place).len(), before);
+    let explained = twinslip(&format!(
+        "sweep {WINDOW} --curves pitchfork,hopf --plot {} -o {} --explain",
+        picture.display(),
+        place.join("other.csv").display()
+    ));
+    assert!(
+        explained
+            .err
+            .contains("pitchfork, hopf, over the window of the map"),
+        "{}",
+        explained.err
+    );
 }
 
 /// A limit on the size of files stands for a full disk.

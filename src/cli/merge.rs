@@ -5,11 +5,15 @@ use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::output::{Format, Place, Status, write_whole_by};
 use crate::scene::{Shard, SweepPlan};
+use crate::section::Regime;
 use crate::views;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+
+/// Parts that are missing are named, up to so many.
+const NAMED: usize = 10;
 
 pub const EXAMPLE: &str = "Example, a sweep in three parts, which may run on three machines:
   twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 --shard 1/3 -o part1.csv
@@ -55,8 +59,12 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     let status = Status::Complete(Some(plan.settings.points()));
     let beginning = file::beginning(plan, None, &columns, place.path().map(|_| status));
     let mut sources = Vec::new();
+    let mut undecided = 0;
     for (plan, path) in &parts {
-        let standing = file::read(path, plan, &columns, &mut |_, _| {})?;
+        let mut count = |_: usize, cells: &[String]| {
+            undecided += usize::from(file::regime(cells) == Regime::Undecided.name());
+        };
+        let standing = file::read(path, plan, &columns, &mut count)?;
         let all = plan.part().units(plan.settings.units());
         if standing.units < all {
             let per_unit = plan.rows_per_unit();
@@ -81,13 +89,21 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     };
     let ending = written(merged, &place)?;
     if !options.quiet {
+        let open = match undecided {
+            0 => String::new(),
+            n => format!(", {n} of them undecided"),
+        };
         say(format_args!(
-            "{} rows of {} parts",
+            "{} rows of {} parts{open}",
             plan.settings.points(),
             parts.len()
         ));
     }
-    Ok(ending)
+    // As the sweep in one run would have ended.
+    Ok(match ending {
+        Ending::Done if undecided > 0 => Ending::Undecided,
+        ending => ending,
+    })
 }
 
 /// Whether two paths are one file.
@@ -126,14 +142,19 @@ fn parts(files: &[PathBuf]) -> Result<Vec<(SweepPlan, &Path)>> {
         }
     }
     let of = first.map_or(0, |(_, shard, _)| shard.of);
-    let missing: Vec<String> = (1..=of)
-        .filter(|index| !parts.contains_key(index))
-        .map(|index| format!("{index}/{of}"))
-        .collect();
-    if !missing.is_empty() {
+    if parts.len() < of {
+        let missing = (1..=of).filter(|index| !parts.contains_key(index));
+        let named: Vec<String> = missing
+            .take(NAMED)
+            .map(|index| format!("{index}/{of}"))
+            .collect();
+        let others = match of - parts.len() - named.len() {
+            0 => String::new(),
+            n => format!(" and {n} others"),
+        };
         return Err(Error::Input(format!(
-            "the parts {} are missing",
-            missing.join(", ")
+            "the parts {}{others} are missing",
+            named.join(", ")
         )));
     }
     Ok(parts.into_values().collect())

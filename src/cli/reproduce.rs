@@ -7,6 +7,7 @@ use super::{Ending, say};
 use crate::error::{Error, Result};
 use crate::integrate::used_vectors;
 use crate::paper::{Done, Going, Order, PRODUCTS, Product, Reached, Told, hash, reproduce};
+use crate::sweep::threads_checked;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
 use std::io::IsTerminal;
@@ -101,9 +102,7 @@ fn make(
     making: &Making,
     kept: Kept,
 ) -> Result<Ending> {
-    if making.threads == Some(0) {
-        return Err(Error::parameter("threads", 0, "at least 1"));
-    }
+    threads_checked(making.threads)?;
     let machine = machine();
     let order = Order {
         out: out.to_owned(),

@@ -223,7 +223,8 @@ pub struct SectionOptions {
     /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H)]
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub patience: Option<f64>,
-    /// Lyapunov exponents along the recorded returns; without them chaos is not recognised
+    /// Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns of a run of their own; without them
+    /// chaos is not recognised
     #[arg(long, help_heading = "Run")]
     pub lyapunov: bool,
     /// By which method.

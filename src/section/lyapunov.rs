@@ -4,18 +4,24 @@
 //! 1980). The direction of the flow itself is kept as the first of them: in its own direction nothing grows on a bounded run,
 //! which checks the tangents, and the others are measured across it, where a small exponent is not drowned by that zero.
 //!
+//! The points of a run err by its tolerance, all in the same way, and so would the exponents along them: a bias that no number of
+//! returns averages away. So they are taken along a run of their own, as accurate as the tangents ([`record_finely`]), whatever
+//! the first one was; what is left of the bias shows in the direction of the flow, where the truth is known.
+//!
 //! Benettin, G., Galgani, L., Giorgilli, A. and Strelcyn, J.-M. (1980). Lyapunov characteristic exponents for smooth dynamical
 //! systems and for Hamiltonian systems; a method for computing all of them. Meccanica 15, 9-20 and 21-30.
 
 use super::curve::weighted_mean;
-use super::returns::{Record, Return};
+use super::rest::newton_step;
+use super::returns::{Record, Return, See, Watching, record};
+use super::surface::Surface;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
+use crate::integrate::{Control, MAX_STEPS, Taylor, Tolerances};
 use crate::number::Uncertain;
-use nalgebra::DMatrix;
+use nalgebra::{Complex, DMatrix};
 
-/// The tolerance of the tangents.
+/// The tolerance of the tangents, and of the run that they are taken along.
 const TOLERANCE: f64 = 1e-13;
 /// Blocks whose means the interval is made of, and Student's factor for 99 % with one degree of freedom less.
 const BLOCKS: usize = 20;
@@ -29,12 +35,16 @@ const DRIFT: f64 = 1.5;
 /// The error of exponents relative to the largest: that of the tangents, and that of the points of the run, in tolerances.
 const SYSTEMATIC: f64 = 3e-9;
 const PER_ACCURACY: f64 = 100.0;
+/// How many times larger the bias of an exponent may be than what is seen of it along the flow.
+const BIAS: f64 = 10.0;
+/// What the eigenvalues of a matrix err by, in units of its norm and of the rounding.
+const EIGENVALUES: f64 = 8.0 * f64::EPSILON;
 
 /// The Lyapunov exponents of a run, in descending order.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum<const N: usize> {
-    /// Exponents in one over time, each with an interval of 99 % confidence from block averages. That of the flow's own
-    /// direction is zero; its interval is what the run and the tangents can tell of that.
+    /// Exponents in one over time, each with an interval of 99 % confidence from block averages and the bias of the run. That of
+    /// the flow's own direction is zero; its interval is what the run and the tangents can tell of that.
     pub exponents: [Uncertain; N],
     /// Whether the two halves of the run agree on all of them within these intervals. If not, there is no saying where the
     /// exponents end.
@@ -58,6 +68,12 @@ pub struct Exponents<'a> {
 }
 
 impl<const N: usize> Spectrum<N> {
+    /// The largest exponent but that along the flow; `None` where there is no other.
+    pub fn across_flow(&self) -> Option<Uncertain> {
+        let mut others = self.exponents.iter();
+        others.find(|x| x.value != self.along_flow).copied()
+    }
+
     /// As a verdict needs them.
     pub fn known(&self) -> Exponents<'_> {
         Exponents {
@@ -89,6 +105,39 @@ pub fn spectrum<const N: usize>(
     field: &dyn VectorField<N>,
     record: &Record<N>,
 ) -> Result<Spectrum<N>> {
+    let found = spectrum_watched(field, record, &mut |_| Control::Continue)?;
+    Ok(found.expect("nobody stops it"))
+}
+
+/// The returns of a run from `start`, accurate enough for [`spectrum`], with waypoints. None are let pass; the accuracy that
+/// `watching` tells is not used.
+///
+/// # Errors
+/// [`Error::Parameter`] for no steps.
+pub fn record_finely<const N: usize>(
+    field: &dyn VectorField<N>,
+    start: &State<N>,
+    surface: &Surface<N>,
+    watching: &Watching,
+    max_steps: usize,
+    see: See<'_, N>,
+) -> Result<Record<N>> {
+    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, max_steps)?;
+    let watching = Watching {
+        skip: 0,
+        accuracy: TOLERANCE,
+        waypoints: true,
+        ..*watching
+    };
+    Ok(record(&mut taylor, field, start, surface, &watching, see))
+}
+
+/// As [`spectrum`]; `see` is told how far it has come, after each return, and may stop it: then there is none.
+pub(crate) fn spectrum_watched<const N: usize>(
+    field: &dyn VectorField<N>,
+    record: &Record<N>,
+    see: &mut dyn FnMut(f64) -> Control,
+) -> Result<Option<Spectrum<N>>> {
     if record.returns.len() < FEWEST_FOR_EXPONENTS {
         return Err(Error::parameter(
             "returns",
@@ -96,34 +145,69 @@ pub fn spectrum<const N: usize>(
             "at least 60 for exponents, which are means with an uncertainty",
         ));
     }
-    let legs = legs(field, record)?;
+    let Some(legs) = legs(field, record, see)? else {
+        return Ok(None);
+    };
     let aligned = (ALIGNMENT * legs.len() as f64) as usize;
     let relative = SYSTEMATIC.max(PER_ACCURACY * record.accuracy);
     // The flow's own growth is that of |f|, which the ends of the run alone decide.
     let speed = |point: &Return<N>| field.f(&point.state).norm().ln();
     let returns = &record.returns[aligned..];
     let gained = speed(&returns[returns.len() - 1]) - speed(&returns[0]);
-    Ok(summary(&legs[aligned..], relative, gained))
+    Ok(Some(summary(&legs[aligned..], relative, gained)))
 }
 
-/// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order.
+/// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order. They err by
+/// what another step of Newton's method to the equilibrium changes, and by the rounding of the eigenvalues, each as far as its
+/// condition lets it.
 pub fn at_equilibrium<const N: usize>(
     field: &dyn VectorField<N>,
     equilibrium: &State<N>,
 ) -> [Uncertain; N] {
-    let jacobian = DMatrix::from_iterator(N, N, field.jacobian(equilibrium).iter().copied());
-    let size = jacobian.norm();
-    let mut parts: Vec<f64> = jacobian
-        .complex_eigenvalues()
-        .iter()
-        .map(|z| z.re)
-        .collect();
-    parts.sort_by(|a, b| b.total_cmp(a));
-    std::array::from_fn(|i| Uncertain::new(parts[i], SYSTEMATIC * size))
+    let before = eigenvalues(&field.jacobian(equilibrium));
+    let step = newton_step(field, equilibrium).unwrap_or_else(State::zeros);
+    let jacobian = field.jacobian(&(equilibrium - step));
+    let values = eigenvalues(&jacobian);
+    std::array::from_fn(|i| {
+        let moved = (values[i].re - before[i].re).abs();
+        Uncertain::new(values[i].re, moved + rounding(&jacobian, &values, i))
+    })
 }
 
-/// From each return to the next.
-fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Result<Vec<Leg<N>>> {
+/// The eigenvalues, those with the largest real part first.
+fn eigenvalues<const N: usize>(matrix: &Jacobian<N>) -> Vec<Complex<f64>> {
+    let matrix = DMatrix::from_iterator(N, N, matrix.iter().copied());
+    let mut values: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();
+    values.sort_by(|a, b| b.re.total_cmp(&a.re));
+    values
+}
+
+/// What an eigenvalue errs by: the product of the other factors J - lambda_j is what the adjugate of J - lambda_i is, and over
+/// the derivative of the characteristic polynomial the condition of lambda_i. Where they coincide they err by a root.
+fn rounding<const N: usize>(matrix: &Jacobian<N>, values: &[Complex<f64>], i: usize) -> f64 {
+    let size = matrix.norm();
+    let matrix = matrix.map(|x| Complex::new(x, 0.0));
+    let identity = nalgebra::SMatrix::<Complex<f64>, N, N>::identity();
+    let (mut adjugate, mut slope) = (identity, 1.0);
+    for (_, other) in values.iter().enumerate().filter(|(j, _)| *j != i) {
+        adjugate *= matrix - identity * *other;
+        slope *= (values[i] - other).norm();
+    }
+    let worst = size * EIGENVALUES.powf(1.0 / N as f64);
+    let simple = EIGENVALUES * size * adjugate.norm() / slope;
+    if simple.is_finite() {
+        simple.min(worst)
+    } else {
+        worst
+    }
+}
+
+/// From each return to the next; `None` if it was stopped.
+fn legs<const N: usize>(
+    field: &dyn VectorField<N>,
+    record: &Record<N>,
+    see: &mut dyn FnMut(f64) -> Control,
+) -> Result<Option<Vec<Leg<N>>>> {
     let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let start = record.returns[0];
     let mut frame = beginning(&field.f(&start.state));
@@ -146,8 +230,11 @@ fn legs<const N: usize>(field: &dyn VectorField<N>, record: &Record<N>) -> Resul
             }
         }
         legs.push(leg);
+        if see(legs.len() as f64 / record.returns.len() as f64) == Control::Stop {
+            return Ok(None);
+        }
     }
-    Ok(legs)
+    Ok(Some(legs))
 }
 
 /// The flow's direction, and others that lie in no subspace that a symmetry might keep.
@@ -208,16 +295,18 @@ fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[
     Ok(lengths)
 }
 
-/// The exponents, with what these growths err by in terms of the largest of them, and what |f| gained, in the logarithm.
+/// The exponents, with what these growths err by in terms of the largest of them, and what |f| gained, in the logarithm: what
+/// the growth along the flow differs from that by is the bias of the run.
 pub(crate) fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
     let time: f64 = legs.iter().map(|leg| leg.time).sum();
     let growth = |leg: &Leg<N>| leg.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
     let size = legs.iter().map(growth).sum::<f64>() / time;
     let along_flow = legs.iter().map(|leg| leg.growth[0]).sum::<f64>() / time;
+    let systematic = relative * size + BIAS * (along_flow - gained / time).abs();
     let mut converged = true;
     let mut exponents: [Uncertain; N] = std::array::from_fn(|i| {
         if i == 0 && N > 1 {
-            return Uncertain::new(along_flow, gained.abs() / time + relative * size);
+            return Uncertain::new(along_flow, gained.abs() / time + systematic);
         }
         let of = |leg: &Leg<N>| {
             if i + 1 == N {
@@ -230,7 +319,7 @@ pub(crate) fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f6
         let (value, interval) = mean_with_interval(&blocks);
         // Blocks as long as a beat of a torus all err alike; the plain mean errs otherwise.
         let plain = legs.iter().map(of).sum::<f64>() / time;
-        let uncertainty = interval + (plain - value).abs() + relative * size;
+        let uncertainty = interval + (plain - value).abs() + systematic;
         let (first, second) = blocks.split_at(BLOCKS / 2);
         let drift = (mean_with_interval(first).0 - mean_with_interval(second).0).abs();
         // Each half has an interval wider by the root of two, and so has their difference again.

@@ -10,13 +10,16 @@ mod returns;
 mod surface;
 
 pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
-pub(crate) use lyapunov::{ALIGNMENT, Leg, summary};
-pub use lyapunov::{Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, spectrum};
-pub(crate) use periodicity::Search;
+pub(crate) use lyapunov::{ALIGNMENT, Leg, spectrum_watched, summary};
+pub use lyapunov::{
+    Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, record_finely, spectrum,
+};
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
+pub(crate) use periodicity::{Search, reduce};
 pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
 pub(crate) use regime::{IRREGULAR, REGULAR, aperiodic, points};
 pub(crate) use rest::{equilibrium_near, growth, newton_step};
 pub(crate) use returns::{AT_START, Recorder, Watched};
-pub use returns::{Ended, Record, Return, Watching, record, usual_patience};
+pub use returns::{Ended, Record, Return, See, Watching, record, usual_patience};
 pub use surface::{Chart, Landing, Surface, half_driving_stress, return_map};
+pub(crate) use surface::{STEPS_OF_PIECE, derivative_along};

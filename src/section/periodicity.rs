@@ -49,6 +49,8 @@ pub struct Periodic<const N: usize> {
     pub multiplier: f64,
     /// How far, in the largest component, the last return was from the point.
     pub distance: f64,
+    /// The last step of Newton's method to the point: from where the multiplier was taken.
+    pub last_step: f64,
 }
 
 /// The smallest q for which the returns close in on an attracting q-periodic point; `None` if there is none up to
@@ -200,6 +202,7 @@ impl<'a, const N: usize> Search<'a, N> {
             period: Uncertain::new(time, rounding),
             multiplier,
             distance: distance(n - 1),
+            last_step: error,
         })
     }
 
@@ -229,7 +232,10 @@ impl<'a, const N: usize> Search<'a, N> {
 }
 
 /// The part of a derivative within the section.
-fn reduce<const N: usize>(derivative: &Jacobian<N>, inside: &DMatrix<f64>) -> DMatrix<f64> {
+pub(crate) fn reduce<const N: usize>(
+    derivative: &Jacobian<N>,
+    inside: &DMatrix<f64>,
+) -> DMatrix<f64> {
     let full = DMatrix::from_iterator(N, N, derivative.iter().copied());
     inside.transpose() * full * inside
 }

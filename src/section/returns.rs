@@ -99,7 +99,7 @@ pub fn record<const N: usize>(
     start: &State<N>,
     surface: &Surface<N>,
     watching: &Watching,
-    see: &mut dyn FnMut(usize, Option<&Return<N>>) -> Control,
+    see: See<'_, N>,
 ) -> Record<N> {
     if let Some((equilibrium, stable)) = equilibrium_near(field, start, AT_START) {
         return Record {
@@ -150,7 +150,7 @@ pub(crate) struct Watched<'a, const N: usize> {
 }
 
 /// Told of every return, with the number of those before it, and of the end of every step, where it is told of none.
-pub(crate) type See<'a, const N: usize> = &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control;
+pub type See<'a, const N: usize> = &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control;
 
 /// Sees the steps of a run.
 pub(crate) struct Recorder<const N: usize> {

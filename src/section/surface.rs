@@ -155,7 +155,7 @@ pub struct Landing<const N: usize> {
 }
 
 /// Steps of a piece of the way over which a derivative is taken at once.
-const STEPS_OF_PIECE: usize = 6;
+pub(crate) const STEPS_OF_PIECE: usize = 6;
 
 /// The return map from a point of the section: the next crossing in the surface's direction, after at most `patience`.
 ///
@@ -230,13 +230,31 @@ pub fn return_map<const N: usize>(
             highest: surface.offset + highest,
         });
     };
-    let state = State::from(passage.state);
+    let (_, derivative) = derivative_along(field, surface, taylor, &points, now)?;
+    Ok(Landing {
+        time: now.hi(),
+        state: State::from(passage.state),
+        derivative,
+    })
+}
+
+/// The derivative of the map that leads from the first of these points, through the others, to the surface at the time `now`,
+/// after the last of them; and the state there.
+pub(crate) fn derivative_along<const N: usize>(
+    field: &dyn VectorField<N>,
+    surface: &Surface<N>,
+    taylor: &mut Taylor,
+    points: &[(DoubleDouble, State<N>)],
+    now: DoubleDouble,
+) -> Result<(State<N>, Jacobian<N>)> {
     let mut derivative = Jacobian::<N>::identity();
+    let mut state = State::zeros();
     for (k, (begin, y)) in points.iter().enumerate() {
         let next = points.get(k + 1);
-        let (end, to) = next.copied().unwrap_or((now, state));
+        let end = next.map_or(now, |(end, _)| *end);
         let span = (0.0, (end - *begin).hi());
-        let (_, tangent) = taylor.derivatives(field, span, y, false)?;
+        let (to, tangent) = taylor.derivatives(field, span, y, false)?;
+        state = to;
         let f = field.f(&to);
         // Between, the section that the flow crosses at a right angle.
         let gradient = next.map_or_else(|| surface.gradient(&to), |_| f);
@@ -244,9 +262,5 @@ pub fn return_map<const N: usize>(
         // A perturbation arrives earlier or later: what it moves across the section is taken back along the flow.
         derivative -= f * (gradient.transpose() * derivative) / gradient.dot(&f);
     }
-    Ok(Landing {
-        time: now.hi(),
-        state,
-        derivative,
-    })
+    Ok((state, derivative))
 }

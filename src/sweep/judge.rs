@@ -5,10 +5,13 @@ use super::watch::{Run, see, turn};
 use super::{Row, Settings, creep};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::State;
+use crate::field::{Jacobian, State};
 use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
-use crate::number::Uncertain;
-use crate::section::{Ended, Periodic, Regime, Search, at_equilibrium};
+use crate::number::{DoubleDouble, Uncertain};
+use crate::section::{
+    Ended, Periodic, Regime, STEPS_OF_PIECE, Search, at_equilibrium, derivative_along, reduce,
+};
+use nalgebra::DMatrix;
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
@@ -22,8 +25,12 @@ pub(super) const FIRST_STAGE: usize = 64;
 const FEWEST_TO_CREEP: usize = 256;
 /// A candidate that is none is not looked at again before this part more returns.
 const LATER: f64 = 1.3;
-/// The relative error of multipliers, in tolerances.
+/// The error of the multipliers by which it is told whether a point attracts, in tolerances.
 const MULTIPLIER_PER_RTOL: f64 = 1e4;
+/// The relative error of the derivative once around, in tolerances; and what the change of a multiplier from one point to the next,
+/// which tells how it changes from there, is taken times.
+const DERIVATIVE_PER_RTOL: f64 = 10.0;
+const CHANGE: f64 = 3.0;
 /// A run this close to an unstable orbit is held on it.
 const ON_ORBIT: f64 = 1e-5;
 
@@ -149,39 +156,76 @@ impl Judge {
     fn orbit(&mut self, run: &Run, found: &Periodic<3>) -> Option<Told> {
         let mut stress = (found.point[0], found.point[0]);
         let mut unlike = 0.0_f64;
+        let mut points = vec![(DoubleDouble::ZERO, found.point)];
+        let mut steps = 0;
         let mut observer = |step: &Step<'_, 3>| {
             see(&mut stress, step.y1[0]);
-            if let Some(turn) = step.series().and_then(turn) {
+            let series = step.series().ok_or(Error::NotAnalytic)?;
+            if let Some(turn) = turn(series) {
                 see(&mut stress, turn);
             }
             unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
+            steps += 1;
+            if steps % STEPS_OF_PIECE == 0 {
+                points.push((series.begin + series.length, *step.y1));
+            }
             Ok(Control::Continue)
         };
         let time = (0.0, found.period.value);
+        let field = &*run.field;
         let flown = self
             .fine
-            .flow(&*run.field, time, &found.point, Some(&mut observer));
+            .flow(field, time, &found.point, Some(&mut observer));
         let end = flown.ok()?;
         // The point is known better than the time: to the first order it ends on the section.
-        let rate = run.field.f(&end)[0];
+        let rate = field.f(&end)[0];
         let period = found.period.value - run.surface.height(&end) / rate;
+        points.retain(|(begin, _)| begin.hi() < period);
+        let now = DoubleDouble::from(period);
+        let around = derivative_along(field, &run.surface, &mut self.fine, &points, now).ok()?;
         let mut told = begun(run, Regime::Periodic);
         told.attractor = Some(found.point);
         told.row.symmetry = Some(symmetry(unlike));
         told.row.returns_per_period = Some(found.returns);
         told.row.period = Some(period);
         told.row.stress_range = Some(stress);
-        told.row.lyapunov_max = multiplier_exponent(found, self.settings.rtol);
+        told.row.lyapunov_max = largest_multiplier(run, found, &around)
+            .map(|ln| Uncertain::new(ln.value / period, ln.uncertainty / period));
         Some(told)
     }
 }
 
-/// ln |mu| / T; where mu is large enough to be told from rounding.
-fn multiplier_exponent(found: &Periodic<3>, rtol: f64) -> Option<Uncertain> {
+/// ln |mu| of the larger multiplier, by the derivative once around from the point, and where that ends; `None` where mu is too
+/// small to be told from rounding.
+///
+/// The point errs by what Newton's method with this derivative would still correct. How much mu changes by that is told by how
+/// much it has changed over the last step to the point.
+fn largest_multiplier(
+    run: &Run,
+    found: &Periodic<3>,
+    (end, derivative): &(State<3>, Jacobian<3>),
+) -> Option<Uncertain> {
     const LEAST: f64 = 1e-6;
-    let value = found.multiplier.ln() / found.period.value;
-    let error = MULTIPLIER_PER_RTOL * rtol / found.period.value;
-    (value.is_finite() && found.multiplier > LEAST).then(|| Uncertain::new(value, error))
+    let inside = run.surface.directions(&found.point);
+    let reduced = reduce(derivative, &inside);
+    let values = reduced.complex_eigenvalues();
+    let mu = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    if !(mu > LEAST && mu.is_finite() && found.multiplier > 0.0) {
+        return None;
+    }
+    let residual = DMatrix::from_fn(3, 1, |i, _| end[i] - found.point[i]);
+    let identity = DMatrix::identity(2, 2);
+    let left = (identity - &reduced)
+        .lu()
+        .solve(&(inside.transpose() * residual))?;
+    let part = (left.amax() / found.last_step).min(1.0);
+    let changed = CHANGE * (mu / found.multiplier).ln().abs() * part;
+    // A double multiplier errs by the root of what the derivative does.
+    let error = DERIVATIVE_PER_RTOL * TOLERANCE;
+    let (size, apart) = (reduced.norm(), (values[0] - values[1]).norm());
+    let double = size / apart.max(error.sqrt() * size);
+    let computed = error * size / mu * double.max(1.0);
+    Some(Uncertain::new(mu.ln(), changed + computed))
 }
 
 pub(super) fn alike(y: &State<3>) -> bool {

@@ -20,7 +20,7 @@ mod wander;
 mod watch;
 
 pub use range::{Range, fields};
-pub use run::{Units, run};
+pub use run::{Units, run, threads_checked};
 pub use sweeper::Sweeper;
 
 use crate::equilibrium::Symmetry;

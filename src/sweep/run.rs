@@ -3,6 +3,7 @@
 use super::{Row, Settings, Sweeper};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
+use std::num::NonZero;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, mpsc};
@@ -11,6 +12,8 @@ use std::sync::{Mutex, mpsc};
 const CHUNK: usize = 512;
 /// Chunks that may be done before one that they must wait for, for each thread.
 const AHEAD: usize = 8;
+/// More threads than this are a slip of the pen.
+const MOST_THREADS: usize = 1024;
 
 /// Which units: `first`, and then every `every`-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -41,12 +44,27 @@ impl Units {
     }
 }
 
-/// Computes these units over so many threads, as many as there are cores if `None`. Rows are given to `seen` in the order of their
+/// Whether there may be so many threads: `None` is as many as there are cores.
+///
+/// # Errors
+/// [`Error::Parameter`] for none, and for more than any machine has use for.
+pub fn threads_checked(threads: Option<usize>) -> Result<()> {
+    match threads {
+        Some(n) if !(1..=MOST_THREADS).contains(&n) => Err(Error::parameter(
+            "threads",
+            n,
+            "at least 1 and at most 1024",
+        )),
+        _ => Ok(()),
+    }
+}
+
+/// Computes these units over so many threads, as many as there are cores if `None`, but no more than units. Rows are given to `seen` in the order of their
 /// units as soon as all before them are there, on the thread that calls; it may end the sweep, and so may `stop`, after the rows
 /// that are on their way. Rows held back for their order are bounded in number.
 ///
 /// # Errors
-/// Those of [`Settings::checked`]. What fails at a point is in its row.
+/// Those of [`Settings::checked`] and [`threads_checked`]. What fails at a point is in its row.
 pub fn run(
     settings: &Settings,
     units: Units,
@@ -58,12 +76,14 @@ pub fn run(
     if units.every == 0 {
         return Err(Error::parameter("every", 0, "at least 1"));
     }
+    threads_checked(threads)?;
+    let all = units.count(settings.units());
+    let cores = || std::thread::available_parallelism().map_or(1, NonZero::get);
     let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(threads.unwrap_or(0))
+        .num_threads(threads.unwrap_or_else(cores).min(all).max(1))
         .build()
         .map_err(|error| Error::Input(format!("no threads to compute with: {error}")))?;
     let threads = pool.current_num_threads();
-    let all = units.count(settings.units());
     let size = chunk(settings, all, threads);
     let chunks = all.div_ceil(size);
     // One for each thread that is at work at the same time.

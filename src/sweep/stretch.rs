@@ -54,7 +54,9 @@ pub(super) fn stretching(
         return None;
     }
     let aligned = (ALIGNMENT * legs.len() as f64) as usize;
-    let mut spectrum = summary(&legs[aligned..], 0.0, 0.0);
+    // Along the flow it is the speed itself that is counted: there is no bias to be seen in it.
+    let gained = legs[aligned..].iter().map(|leg| leg.growth[0]).sum();
+    let mut spectrum = summary(&legs[aligned..], 0.0, gained);
     let error = bends / legs.iter().map(|leg| leg.time).sum::<f64>();
     for exponent in &mut spectrum.exponents {
         exponent.uncertainty += error;

@@ -5,10 +5,9 @@ use super::judge::{Judge, Told, alike, begun, steady};
 use super::stretch::stretching;
 use super::watch::{Run, see};
 use crate::integrate::Control;
-use crate::number::Uncertain;
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Spectrum,
-    Watching, aperiodic, points, record, regularity, spectrum,
+    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
+    aperiodic, points, record_finely, regularity, spectrum,
 };
 
 /// Returns without which neither torus nor chaos is told: those before are let pass.
@@ -21,8 +20,8 @@ const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 impl Judge {
     /// A torus or chaos, or why nothing can be said.
     pub(super) fn wandering(
-        &mut self,
-        run: &mut Run,
+        &self,
+        run: &Run,
         flows: &mut Flows,
     ) -> std::result::Result<Told, &'static str> {
         let n = run.returns().len();
@@ -83,7 +82,7 @@ impl Judge {
             let made = aperiodic(&run.surface, late, self.settings.rtol, Some(found.known()));
             if made.regime == Regime::Chaotic {
                 let mut told = told(run, Regime::Chaotic, run.stress);
-                told.row.lyapunov_max = across(&found);
+                told.row.lyapunov_max = found.across_flow();
                 return Some(Ok(told));
             }
             if count == settled || count == *FOR_EXPONENTS.end() {
@@ -93,20 +92,20 @@ impl Judge {
         }
     }
 
-    /// Records anew from where the run is, now with its tangents, which tell an exponent that vanishes.
-    fn with_tangents(&mut self, run: &mut Run) -> std::result::Result<Told, &'static str> {
+    /// Records anew from where the run is, so finely that its tangents tell an exponent that vanishes.
+    fn with_tangents(&self, run: &Run) -> std::result::Result<Told, &'static str> {
         let returns = run.recorder.returns.len() / 4;
         let watching = Watching {
-            skip: 0,
             returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
-            waypoints: true,
             ..run.watching
         };
         let mut stress = run.stress;
         let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
         let start = run.recorder.returns.last().map_or(run.state, |at| at.state);
         let (field, surface) = (&*run.field, &run.surface);
-        let recorded = record(&mut self.coarse, field, &start, surface, &watching, see_all);
+        let max_steps = self.settings.max_steps;
+        let recorded = record_finely(field, &start, surface, &watching, max_steps, see_all)
+            .map_err(|_| "its tangents fail")?;
         for point in &recorded.waypoints {
             see(&mut stress, point.state[0]);
         }
@@ -115,13 +114,13 @@ impl Judge {
         }
         let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
         let known = Some(found.known());
-        let made = aperiodic(surface, &recorded.returns, self.settings.rtol, known);
+        let made = aperiodic(surface, &recorded.returns, recorded.accuracy, known);
         match made.regime {
             Regime::Torus | Regime::Chaotic => {
                 let mut told = told(run, made.regime, stress);
                 told.row.returns += recorded.returns.len();
                 told.attractor = recorded.returns.last().map(|at| at.state);
-                told.row.lyapunov_max = across(&found);
+                told.row.lyapunov_max = found.across_flow();
                 Ok(told)
             }
             _ => Err(made.why.unwrap_or("its returns do not tell")),
@@ -133,10 +132,4 @@ fn told(run: &Run, regime: Regime, stress: (f64, f64)) -> Told {
     let mut told = begun(run, regime);
     told.row.stress_range = Some(stress);
     told
-}
-
-/// The largest exponent but that along the flow.
-fn across(found: &Spectrum<3>) -> Option<Uncertain> {
-    let mut all = found.exponents.iter();
-    all.find(|x| x.value != found.along_flow).copied()
 }

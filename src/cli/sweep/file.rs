@@ -221,6 +221,11 @@ pub fn row(
     views::sweep_row(number, &cell, &plan.system.units)
 }
 
+/// The regime that the cells of a row tell.
+pub fn regime(cells: &[String]) -> &str {
+    cells.get(2).map_or("", String::as_str)
+}
+
 /// The remarks of a sweep's file, without `# `.
 pub fn remarks_of(path: &Path) -> Result<Vec<String>> {
     let mut file = BufReader::new(File::open(path).map_err(|error| unreadable(path, error))?);

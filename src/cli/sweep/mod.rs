@@ -1,5 +1,6 @@
 //! `twinslip sweep`: rows in the order of the grid, written as soon as all before them are done.
 
+mod curves;
 pub(super) mod file;
 mod out;
 mod parquet;
@@ -48,6 +49,9 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     let report = Report::resuming(&options.output, words, (resume, plot))?;
     if options.output.explain {
         say(plan.explain());
+        if let Some(text) = curves::explain(&plan.curves) {
+            say(text);
+        }
     }
     let columns = views::sweep_columns();
     let mut out = Out::new(&plan, &report, &columns, plot.is_some());
@@ -83,7 +87,7 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     report.say(out.summary(seconds));
     Ok(match ending {
         _ if interrupt::asked() => Ending::Interrupted,
-        Ending::Done if out.nothing_decided() => Ending::Undecided,
+        Ending::Done if out.undecided() > 0 => Ending::Undecided,
         ending => ending,
     })
 }

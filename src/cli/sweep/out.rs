@@ -8,6 +8,7 @@ use super::file;
 use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
 use crate::scene::SweepPlan;
+use crate::section::Regime;
 use crate::sweep::Row;
 use crate::views::{self, Column, REGIMES};
 use std::io::{self, IsTerminal, Write};
@@ -70,7 +71,7 @@ impl<'a> Out<'a> {
         let plan = self.plan;
         let mut unreadable = None;
         let standing = file::read(path, plan, columns, &mut |number, cells| {
-            let name = cells.get(2).map_or("", String::as_str);
+            let name = file::regime(cells);
             let regime = REGIMES.iter().position(|regime| regime.name() == name);
             let row = self.keeps.then(|| file::row(plan, columns, number, cells));
             match (regime, row) {
@@ -164,10 +165,13 @@ impl<'a> Out<'a> {
         names.zip(self.counts)
     }
 
-    /// Whether there are rows and all are undecided.
-    pub fn nothing_decided(&self) -> bool {
-        let decided = self.regimes().any(|(name, n)| n > 0 && name != "undecided");
-        !decided && self.counts.iter().any(|&n| n > 0)
+    /// How many rows are undecided, those of an earlier run included.
+    pub fn undecided(&self) -> usize {
+        let undecided = REGIMES.iter().zip(self.counts);
+        undecided
+            .filter(|(regime, _)| **regime == Regime::Undecided)
+            .map(|(_, count)| count)
+            .sum()
     }
 
     /// One line.

@@ -2,13 +2,13 @@
 
 use super::super::interrupt;
 use super::super::report::Report;
-use crate::bifurcation::{Event, LocusRow};
+use super::curves::curves;
+use crate::bifurcation::LocusRow;
 use crate::error::Result;
 use crate::output::plot;
-use crate::scene::{LocusPlan, SweepPlan};
+use crate::scene::SweepPlan;
 use crate::sweep::{Grid, Range, Row};
 use crate::views::{self, Outcome, Side};
-use std::ops::ControlFlow;
 use std::path::Path;
 
 /// Draws what there is: points that are missing stay white.
@@ -35,11 +35,11 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[Row], path: &Path) ->
             units,
         ),
         Grid::Plane { driving, stiffness } => {
-            let curves: Vec<(&str, Vec<LocusRow>)> = plan
-                .curves
-                .iter()
-                .map(|locus| (locus.curve.title, points(locus, report)))
-                .collect();
+            // Who has ended the sweep does not wait for them.
+            let curves = match interrupt::asked() {
+                true => Vec::new(),
+                false => curves(&plan.curves, report),
+            };
             let curves: Vec<(&str, &[LocusRow])> = curves
                 .iter()
                 .map(|(title, points)| (*title, &points[..]))
@@ -49,28 +49,4 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[Row], path: &Path) ->
         }
     };
     plot::write(path, &drawing)
-}
-
-/// The points of a curve; a map without all of it is better than none.
-fn points(locus: &LocusPlan, report: &Report<'_>) -> Vec<LocusRow> {
-    let mut points = Vec::new();
-    if interrupt::asked() {
-        return points;
-    }
-    let followed = locus.follow(&[], &mut |event| {
-        if let Event::Locus(row) = event {
-            points.push(row);
-        }
-        match interrupt::asked() {
-            true => ControlFlow::Break(()),
-            false => ControlFlow::Continue(()),
-        }
-    });
-    if let Err(error) = followed {
-        report.say(format!(
-            "of the {} over the map: {error}",
-            locus.curve.title
-        ));
-    }
-    points
 }

@@ -1,10 +1,12 @@
 //! A return map from options: the section, the run and what is asked of its returns.
 
 mod explain;
+mod exponents;
 mod run;
 
 pub use explain::explain_section;
-pub use run::{Lyapunov, SectionColumn, SectionOutcome, run_section};
+pub use exponents::Lyapunov;
+pub use run::{SectionColumn, SectionOutcome, run_section};
 
 use super::options::SectionOptions;
 use super::plan::{Dimension, numerics, start};

@@ -4,15 +4,20 @@ use super::super::plan::Dimension;
 use super::super::run::Sink;
 use super::super::units::Quantity;
 use super::SectionPlan;
+use super::exponents::{Lyapunov, Seen, embedded, of_orbit, of_record};
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Work};
 use crate::model::{self, Driven};
 use crate::number::Uncertain;
 use crate::section::{
-    Ended, Exponents, FEWEST_FOR_EXPONENTS, Record, Regime, Return, Surface, Verdict, Watching,
-    at_equilibrium, record, spectrum, verdict,
+    Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Record, Regime, Return, Surface,
+    Verdict, Watching, aperiodic, record, record_finely, verdict,
 };
+
+/// Where exponents are asked for, the run takes this part of the time, and has come to this part when their own run is done.
+const RUN: f64 = 0.2;
+const OWN_RUN: f64 = 0.4;
 
 /// One column of a return map.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -64,19 +69,6 @@ impl SectionColumn {
     }
 }
 
-/// The Lyapunov exponents of a run, dimensionless, with what checks them.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Lyapunov {
-    /// In descending order.
-    pub exponents: Vec<Uncertain>,
-    /// Whether both halves of the returns agree on them.
-    pub converged: bool,
-    /// The growth rate along the flow itself, which is zero but for errors; `None` at rest, where there is none.
-    pub along_flow: Option<f64>,
-    /// The sum of the exponents less the mean of the trace, of which that sum knows nothing; `None` at rest.
-    pub liouville_defect: Option<f64>,
-}
-
 /// What a return map came to, dimensionless.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SectionOutcome {
@@ -116,82 +108,37 @@ pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOut
     match plan.dimension {
         Dimension::Single => {
             let field = model::single_interface(law, loading);
-            follow(plan, &*field, y, sink, |record| exponents(&*field, record))
+            follow(plan, &*field, y, sink, &|record, see| {
+                of_record(&*field, record, see)
+            })
         }
         Dimension::Symmetric => {
             let field = model::symmetric(law, loading);
             // The third exponent is that of the perturbations across the subspace.
             let whole = model::two_interfaces(law, loading);
-            follow(plan, &*field, y, sink, |record| {
-                exponents(&*whole, &embedded(record))
+            follow(plan, &*field, y, sink, &|record, see| {
+                of_record(&*whole, &embedded(record), see)
             })
         }
         Dimension::Full => {
             let field = model::two_interfaces(law, loading);
             let y = State::<3>::new(tau, first, second);
-            follow(plan, &*field, y, sink, |record| exponents(&*field, record))
+            follow(plan, &*field, y, sink, &|record, see| {
+                of_record(&*field, record, see)
+            })
         }
     }
 }
 
-fn exponents<const N: usize>(
-    field: &dyn Driven<N>,
-    record: &Record<N>,
-) -> Result<Option<Lyapunov>> {
-    if let Ended::Steady { equilibrium, .. } = &record.ended {
-        return Ok(Some(Lyapunov {
-            exponents: at_equilibrium(field, equilibrium).into(),
-            converged: true,
-            along_flow: None,
-            liouville_defect: None,
-        }));
-    }
-    if record.returns.len() < FEWEST_FOR_EXPONENTS {
-        return Ok(None);
-    }
-    let found = spectrum(field, record)?;
-    Ok(Some(Lyapunov {
-        exponents: found.exponents.into(),
-        converged: found.converged,
-        along_flow: Some(found.along_flow),
-        liouville_defect: Some(found.liouville_defect),
-    }))
-}
-
-/// A record of the symmetric subspace in all three dimensions.
-fn embedded(record: &Record<2>) -> Record<3> {
-    let state = |y: &State<2>| State::<3>::new(y[0], y[1], y[1]);
-    let point = |at: &Return<2>| Return {
-        time: at.time,
-        state: state(&at.state),
-    };
-    Record {
-        returns: record.returns.iter().map(point).collect(),
-        waypoints: record.waypoints.iter().map(point).collect(),
-        ended: match &record.ended {
-            Ended::Complete => Ended::Complete,
-            Ended::Steady {
-                time,
-                equilibrium,
-                stable,
-            } => Ended::Steady {
-                time: *time,
-                equilibrium: state(equilibrium),
-                stable: *stable,
-            },
-            Ended::Stopped => Ended::Stopped,
-            Ended::Failed(error) => Ended::Failed(error.clone()),
-        },
-        accuracy: record.accuracy,
-    }
-}
+/// The exponents by means along a record.
+type Means<'a, const N: usize> = &'a dyn Fn(&Record<N>, Seen<'_>) -> Result<Option<Lyapunov>>;
 
 fn follow<const N: usize>(
     plan: &SectionPlan,
     field: &dyn Driven<N>,
     start: State<N>,
     sink: &mut dyn Sink,
-    exponents: impl Fn(&Record<N>) -> Result<Option<Lyapunov>>,
+    means: Means<'_, N>,
 ) -> Result<SectionOutcome> {
     let mut integrator = plan
         .method
@@ -204,10 +151,10 @@ fn follow<const N: usize>(
         returns,
         patience: plan.patience,
         accuracy: plan.tolerances.rtol,
-        waypoints: plan.lyapunov,
+        waypoints: false,
     };
     let mut rows = RowMaker::new(plan, field);
-    let all = (plan.skip + returns) as f64;
+    let all = (plan.skip + returns) as f64 / if plan.lyapunov { RUN } else { 1.0 };
     let mut see = |passed: usize, at: Option<&Return<N>>| match at {
         Some(at) if passed >= plan.skip => rows.next(at, sink),
         Some(_) => Control::Continue,
@@ -241,40 +188,21 @@ fn follow<const N: usize>(
     if outcome.stopped {
         return Ok(outcome);
     }
+    let mut made = verdict(field, &surface, &record, None)?;
     if plan.lyapunov {
-        match exponents(&record) {
-            Ok(found) => outcome.lyapunov = found,
-            Err(error) => {
-                outcome.failure = Some(error);
-                return Ok(outcome);
-            }
+        let at = (field, &surface, &watching);
+        let found = exponents(plan, at, (&record, &mut made), sink, means);
+        match found {
+            Ok(Some(found)) => outcome.lyapunov = Some(found),
+            Ok(None) => outcome.stopped = record.returns.len() >= FEWEST_FOR_EXPONENTS,
+            Err(error) => outcome.failure = Some(error),
         }
     }
-    judge(&mut outcome, field, &surface, &record)?;
-    Ok(outcome)
-}
-
-fn judge<const N: usize>(
-    outcome: &mut SectionOutcome,
-    field: &dyn Driven<N>,
-    surface: &Surface<N>,
-    record: &Record<N>,
-) -> Result<()> {
-    let known = outcome.lyapunov.as_ref().map(|found| Exponents {
-        values: &found.exponents,
-        converged: found.converged,
-    });
-    let Verdict {
-        regime,
-        periodic,
-        curve,
-        why,
-    } = verdict(field, surface, record, known)?;
-    outcome.regime = regime;
-    outcome.rotation_number = curve.map(|curve| curve.rotation);
-    outcome.curves = curve.map(|curve| curve.curves);
-    outcome.note = why.map(str::to_owned);
-    if let Some(periodic) = periodic {
+    outcome.regime = made.regime;
+    outcome.rotation_number = made.curve.map(|curve| curve.rotation);
+    outcome.curves = made.curve.map(|curve| curve.curves);
+    outcome.note = made.why.map(str::to_owned);
+    if let Some(periodic) = made.periodic {
         outcome.period_of_orbit = Some(periodic.returns);
         outcome.period = Some(periodic.period);
     }
@@ -283,7 +211,56 @@ fn judge<const N: usize>(
             "the run begins at an unstable equilibrium, which it leaves only by rounding; start elsewhere".into(),
         );
     }
-    Ok(())
+    Ok(outcome)
+}
+
+/// The exponents of what a run has settled on, and with them the verdict on a run in three dimensions that is not periodic.
+/// `None` if it is stopped, and of too few returns.
+///
+/// Means along the run itself would have the error of its tolerance as a bias: they are taken along one of their own.
+fn exponents<const N: usize>(
+    plan: &SectionPlan,
+    (field, surface, watching): (&dyn Driven<N>, &Surface<N>, &Watching),
+    (record, made): (&Record<N>, &mut Verdict<N>),
+    sink: &mut dyn Sink,
+    means: Means<'_, N>,
+) -> Result<Option<Lyapunov>> {
+    if let Ended::Steady { .. } = record.ended {
+        return means(record, &mut |_| Control::Continue);
+    }
+    if let Some(periodic) = &mut made.periodic
+        && let Some((period, found)) = of_orbit(plan, periodic)
+    {
+        periodic.period = period;
+        return Ok(Some(found));
+    }
+    let Some(first) = record.returns.first() else {
+        return Ok(None);
+    };
+    let all = watching.returns as f64;
+    let see = &mut |passed: usize, at: Option<&Return<N>>| match at {
+        Some(_) => Control::Continue,
+        None => sink.reached(RUN + (OWN_RUN - RUN) * passed as f64 / all),
+    };
+    let own = record_finely(field, &first.state, surface, watching, plan.max_steps, see)?;
+    match &own.ended {
+        Ended::Stopped => return Ok(None),
+        Ended::Failed(error) => return Err(error.clone()),
+        Ended::Complete | Ended::Steady { .. } => {}
+    }
+    let see = &mut |part: f64| sink.reached(OWN_RUN + (1.0 - OWN_RUN) * part);
+    let Some(found) = means(&own, see)? else {
+        return Ok(None);
+    };
+    let complete = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
+    if N == 3 && complete && made.periodic.is_none() {
+        let known = Exponents {
+            values: &found.exponents,
+            converged: found.converged,
+        };
+        *made = aperiodic(surface, &own.returns, own.accuracy, Some(known));
+    }
+    Ok(Some(found))
 }
 
 /// Makes a row of each return and the next.

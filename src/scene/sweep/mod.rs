@@ -14,7 +14,7 @@ use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result, count};
 use crate::model::Loading;
-use crate::sweep::{Grid, Settings};
+use crate::sweep::{Grid, Settings, threads_checked};
 use clap::Parser;
 use grain::Grain;
 use options::Line;
@@ -52,9 +52,7 @@ impl SweepPlan {
                     .into(),
             ));
         }
-        if options.threads == Some(0) {
-            return Err(Error::parameter("threads", 0, "at least 1"));
-        }
+        threads_checked(options.threads)?;
         let needed = |name: &str, text: &Option<String>| {
             let missing = || Error::Input(format!("--{name} A:B:N is missing, and has no default"));
             Grain::parse(name, text.as_deref().ok_or_else(missing)?)

@@ -2,6 +2,9 @@
 
 use crate::error::{Error, Result};
 
+/// More parts than this are a slip of the pen.
+const MOST_PARTS: usize = 1_000_000;
+
 /// A part of a grid: of its units those whose numbers leave the remainder `index` - 1 after division by `of`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
@@ -18,15 +21,17 @@ impl Shard {
     /// From `I/N`.
     ///
     /// # Errors
-    /// [`Error::Input`] for anything else.
+    /// [`Error::Input`] for anything else, and for more parts than a million.
     pub fn parse(text: &str) -> Result<Self> {
         let numbers = text
             .split_once('/')
             .and_then(|(index, of)| Some((index.parse().ok()?, of.parse().ok()?)));
         match numbers {
-            Some((index, of)) if (1..=of).contains(&index) => Ok(Shard { index, of }),
+            Some((index, of)) if of <= MOST_PARTS && (1..=of).contains(&index) => {
+                Ok(Shard { index, of })
+            }
             _ => Err(Error::Input(format!(
-                "shard is {text}, but must be I/N with I from 1 to N"
+                "shard is {text}, but must be I/N with I from 1 to N, and N at most {MOST_PARTS}"
             ))),
         }
     }

@@ -1,0 +1,176 @@
+//! The curves of bifurcations over a map. They take seconds where the points of a small map take none, and they depend on the
+//! model and the window alone: so they are kept in a file, in a folder of the user's for such files.
+//!
+//! A file is trusted only if it tells the hash of what it holds, and the key of the curve that is asked for: the version and the
+//! file of the program, and all of the plan. A damaged one is computed again.
+
+use super::super::interrupt;
+use super::super::progress::Progress;
+use super::super::report::Report;
+use crate::bifurcation::{Event, LocusRow};
+use crate::equilibrium::Symmetry;
+use crate::number::Uncertain;
+use crate::output::{shortest, write_whole};
+use crate::paper::hash;
+use crate::scene::LocusPlan;
+use std::fmt::Write;
+use std::fs::{self, File};
+use std::io::Read;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+use std::time::UNIX_EPOCH;
+
+/// The folder, instead of the usual one; curves are not kept where it is empty.
+const FOLDER: &str = "TWINSLIP_CACHE";
+/// A larger file is none of ours.
+const LARGEST: u64 = 1 << 26;
+
+/// The curves of these plans, with their titles.
+pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, Vec<LocusRow>)> {
+    let mut progress = Progress::new(report.quiet);
+    let (mut computed, all) = (0, plans.len());
+    let curves: Vec<(&str, Vec<LocusRow>)> = plans
+        .iter()
+        .enumerate()
+        .map(|(i, locus)| {
+            let title = locus.curve.title;
+            let kept = Kept::of(locus);
+            if let Some(points) = kept.as_ref().and_then(Kept::read) {
+                return (title, points);
+            }
+            let told = |place: &str| format!("over the map: {title}, {} of {all}{place}", i + 1);
+            progress.reached_at(|| told(""));
+            let mut points = Vec::new();
+            let followed = locus.follow(&[], &mut |event| {
+                if let Event::Locus(row) = event {
+                    let place = (row.driving.value, row.stiffness.value);
+                    progress.reached_at(|| {
+                        told(&format!(", V_H = {:.3e}, K = {:.3e}", place.0, place.1))
+                    });
+                    points.push(row);
+                }
+                match interrupt::asked() {
+                    true => ControlFlow::Break(()),
+                    false => ControlFlow::Continue(()),
+                }
+            });
+            computed += 1;
+            match (followed, kept) {
+                // A map without all of a curve is better than none.
+                (Err(error), _) => report.say(format!("of the {title} over the map: {error}")),
+                (Ok(()), Some(kept)) if !interrupt::asked() => kept.write(&points),
+                (Ok(()), _) => {}
+            }
+            (title, points)
+        })
+        .collect();
+    let seconds = progress.finish().as_secs_f64();
+    if all > 0 {
+        let kept = match all - computed {
+            0 => String::new(),
+            n => format!(", {n} of them kept from before"),
+        };
+        report.say(format!(
+            "{all} curves of bifurcations over the map in {seconds:.3} s{kept}"
+        ));
+    }
+    curves
+}
+
+/// What they cost, in words; `None` where there are none.
+pub fn explain(plans: &[LocusPlan]) -> Option<String> {
+    let names: Vec<&str> = plans.iter().map(|locus| locus.curve.name).collect();
+    let kept = match folder() {
+        Some(folder) => format!("then kept in {}", folder.display()),
+        None => "and again each time: there is no folder to keep them in".to_owned(),
+    };
+    let text = format!(
+        "  curves            {}, over the window of the map: some seconds each the first time, {kept}; --curves none leaves them out",
+        names.join(", ")
+    );
+    (!plans.is_empty()).then_some(text)
+}
+
+/// Where curves are kept; `None` where they are not.
+fn folder() -> Option<PathBuf> {
+    let named = |name: &str| std::env::var_os(name).map(PathBuf::from);
+    if let Some(folder) = named(FOLDER) {
+        return (!folder.as_os_str().is_empty()).then_some(folder);
+    }
+    let caches = match cfg!(windows) {
+        true => named("LOCALAPPDATA"),
+        false => named("XDG_CACHE_HOME").or_else(|| Some(named("HOME")?.join(".cache"))),
+    };
+    // A relative path would be another one in each folder.
+    let caches = caches.filter(|caches| caches.is_absolute())?;
+    Some(caches.join("twinslip"))
+}
+
+/// A curve that may be kept.
+struct Kept {
+    path: PathBuf,
+    key: String,
+}
+
+impl Kept {
+    fn of(locus: &LocusPlan) -> Option<Self> {
+        let program = std::env::current_exe().and_then(fs::metadata).ok()?;
+        let made = program.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
+        let key = format!(
+            "twinslip {} of {} bytes made at {}: {locus:?}",
+            env!("CARGO_PKG_VERSION"),
+            program.len(),
+            made.as_nanos()
+        )
+        .replace('\n', " ");
+        let name = format!("curve-{}.csv", &hash(key.as_bytes())[..16]);
+        let path = folder()?.join(name);
+        Some(Kept { path, key })
+    }
+
+    /// The points, if they are there and whole.
+    fn read(&self) -> Option<Vec<LocusRow>> {
+        let mut text = String::new();
+        let file = File::open(&self.path).ok()?;
+        file.take(LARGEST).read_to_string(&mut text).ok()?;
+        let (told, rest) = text.split_once('\n')?;
+        let (key, rows) = rest.split_once('\n')?;
+        let whole = told == hash(rest.as_bytes()) && key == self.key;
+        whole.then(|| rows.lines().map(point).collect())?
+    }
+
+    /// That they can't be kept is no reason to complain: they are computed again.
+    fn write(&self, points: &[LocusRow]) {
+        let mut rest = format!("{}\n", self.key);
+        for row in points {
+            let [v, k] = [row.driving.value, row.stiffness.value].map(shortest);
+            let symmetry = row.symmetry.name();
+            writeln!(rest, "{},{symmetry},{v},{k}", row.curve).expect("writing to a string");
+        }
+        let text = format!("{}\n{rest}", hash(rest.as_bytes()));
+        if let Some(folder) = self.path.parent()
+            && fs::create_dir_all(folder).is_ok()
+        {
+            let _ = write_whole(&self.path, text.as_bytes());
+        }
+    }
+}
+
+/// A point from its line, as far as a picture shows it.
+fn point(line: &str) -> Option<LocusRow> {
+    let mut cells = line.split(',');
+    let curve = cells.next()?.parse().ok()?;
+    let symmetry = Symmetry::named(cells.next()?)?;
+    let mut number = || -> Option<f64> { cells.next()?.parse().ok() };
+    let (driving, stiffness) = (number()?, number()?);
+    Some(LocusRow {
+        curve,
+        symmetry,
+        driving: Uncertain::new(driving, 0.0),
+        stiffness: Uncertain::new(stiffness, 0.0),
+        period: None,
+        angle_over_pi: None,
+        criticality: None,
+        label: None,
+    })
+}

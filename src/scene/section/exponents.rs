@@ -1,0 +1,152 @@
+//! Lyapunov exponents of what a return map has settled on: of a periodic orbit by its multipliers, of anything else by means
+//! along a run.
+
+use super::super::plan::Dimension;
+use super::SectionPlan;
+use crate::equilibrium::Symmetry;
+use crate::error::Result;
+use crate::field::State;
+use crate::integrate::{Choice, Control};
+use crate::model::Driven;
+use crate::number::Uncertain;
+use crate::orbit::{Accuracy, Begin, Kind, Orbit, Query, Slab, find};
+use crate::section::{
+    Ended, FEWEST_FOR_EXPONENTS, Periodic, Record, Return, at_equilibrium, spectrum_watched,
+};
+
+/// Periods that differ by less, relatively, are of one orbit.
+const SAME_PERIOD: f64 = 1e-6;
+
+/// The Lyapunov exponents of a run, dimensionless, with what checks them.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Lyapunov {
+    /// In descending order.
+    pub exponents: Vec<Uncertain>,
+    /// The largest of those across the flow; at rest, of all.
+    pub across_flow: Option<Uncertain>,
+    /// Whether both halves of the returns agree on them.
+    pub converged: bool,
+    /// The growth rate along the flow itself, which is zero but for errors; `None` at rest, where there is none.
+    pub along_flow: Option<f64>,
+    /// The sum of the exponents less the mean of the trace, of which that sum knows nothing; `None` at rest.
+    pub liouville_defect: Option<f64>,
+}
+
+/// Told how far it has come; it may stop it.
+pub(super) type Seen<'a> = &'a mut dyn FnMut(f64) -> Control;
+
+/// The exponents by means along a record with waypoints, or of the equilibrium that it ends at; `None` of too few returns, and
+/// if it is stopped.
+pub(super) fn of_record<const N: usize>(
+    field: &dyn Driven<N>,
+    record: &Record<N>,
+    see: Seen<'_>,
+) -> Result<Option<Lyapunov>> {
+    if let Ended::Steady { equilibrium, .. } = &record.ended {
+        let exponents = at_equilibrium(field, equilibrium);
+        return Ok(Some(Lyapunov {
+            across_flow: exponents.first().copied(),
+            exponents: exponents.into(),
+            converged: true,
+            along_flow: None,
+            liouville_defect: None,
+        }));
+    }
+    if record.returns.len() < FEWEST_FOR_EXPONENTS {
+        return Ok(None);
+    }
+    let found = spectrum_watched(field, record, see)?;
+    Ok(found.map(|found| Lyapunov {
+        across_flow: found.across_flow(),
+        exponents: found.exponents.into(),
+        converged: found.converged,
+        along_flow: Some(found.along_flow),
+        liouville_defect: Some(found.liouville_defect),
+    }))
+}
+
+/// ln |mu| / T of the periodic orbit through a point, with its period; `None` where that orbit or one of its multipliers is not
+/// known.
+pub(super) fn of_orbit<const N: usize>(
+    plan: &SectionPlan,
+    periodic: &Periodic<N>,
+) -> Option<(Uncertain, Lyapunov)> {
+    let slab = Slab {
+        law: plan.system.law,
+        interfaces: plan.system.interfaces,
+        loading: plan.loading,
+    };
+    let y = &periodic.point;
+    let begin = Begin::At {
+        start: (y[0], [y[1], y[N - 1]]),
+        period: Some(periodic.period.value),
+    };
+    let accuracy = Accuracy::of(Choice::Taylor);
+    let closed = |symmetry| {
+        let found = find(&slab, &Query { symmetry, begin }, &accuracy).ok()?;
+        let apart = found.orbit.period.value / periodic.period.value - 1.0;
+        (apart.abs() < SAME_PERIOD).then_some(found.orbit)
+    };
+    // A run in all dimensions may have settled on a symmetric orbit.
+    let asymmetric = (plan.dimension == Dimension::Full).then_some(Symmetry::Asymmetric);
+    let orbit = asymmetric
+        .and_then(closed)
+        .or_else(|| closed(Symmetry::Symmetric))?;
+    Some((orbit.period, of_multipliers(&orbit)?))
+}
+
+fn of_multipliers(orbit: &Orbit) -> Option<Lyapunov> {
+    let Uncertain {
+        value: period,
+        uncertainty,
+    } = orbit.period;
+    // That along the flow is zero: an orbit comes back to itself.
+    let mut exponents = vec![Uncertain::new(0.0, 0.0)];
+    for multiplier in &orbit.floquet.multipliers {
+        if multiplier.kind == Kind::BelowFloor {
+            return None;
+        }
+        let rate = multiplier.ln_abs.value / period;
+        let error = (multiplier.ln_abs.uncertainty + rate.abs() * uncertainty) / period;
+        let error = error + f64::EPSILON * rate.abs();
+        exponents.push(Uncertain::new(rate, error));
+    }
+    let known = exponents.iter().all(|x| x.uncertainty.is_finite());
+    let across_flow = exponents.get(1).copied();
+    exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
+    known.then(|| Lyapunov {
+        across_flow,
+        exponents,
+        converged: true,
+        along_flow: Some(orbit.floquet.trivial_defect.ln_1p() / period),
+        liouville_defect: orbit.floquet.liouville_defect.map(|x| x / period),
+    })
+}
+
+/// A record of the symmetric subspace in all three dimensions.
+pub(super) fn embedded(record: &Record<2>) -> Record<3> {
+    let state = |y: &State<2>| State::<3>::new(y[0], y[1], y[1]);
+    let point = |at: &Return<2>| Return {
+        time: at.time,
+        state: state(&at.state),
+    };
+    Record {
+        returns: record.returns.iter().map(point).collect(),
+        waypoints: record.waypoints.iter().map(point).collect(),
+        ended: match &record.ended {
+            Ended::Complete => Ended::Complete,
+            Ended::Steady {
+                time,
+                equilibrium,
+                stable,
+            } => Ended::Steady {
+                time: *time,
+                equilibrium: state(equilibrium),
+                stable: *stable,
+            },
+            Ended::Stopped => Ended::Stopped,
+            Ended::Failed(error) => Ended::Failed(error.clone()),
+        },
+        accuracy: record.accuracy,
+    }
+}
