@@ -571,7 +571,7 @@ fn the_exponents_of_a_torus_have_no_bias() {
             "{run} --returns 5000 --rtol 1e-12"
         )))[2];
         for numerics in numerics() {
-            let words = format!("{run} --returns 1200 {numerics}");
+            let words = format!("{run} --skip 2000 --returns 2000 {numerics}");
             let found = command::object(&words);
             assert_eq!(found["result"]["regime"], "torus", "{words}: {found}");
             let all = exponents(&found);

@@ -28,8 +28,10 @@ const LATER: f64 = 1.3;
 /// The error of the multipliers by which it is told whether a point attracts, in tolerances.
 const MULTIPLIER_PER_RTOL: f64 = 1e4;
 /// The relative error of the derivative once around, in tolerances; and what the change of a multiplier from one point to the next,
-/// which tells how it changes from there, is taken times.
-const DERIVATIVE_PER_RTOL: f64 = 10.0;
+/// which tells how it changes from there, is taken times. An orbit is gone round until these changes are below that error, and so
+/// often: the first point is off by the tolerance of the runs, which may matter more than all else.
+const DERIVATIVE_PER_RTOL: f64 = 30.0;
+const ROUNDS: usize = 3;
 const CHANGE: f64 = 3.0;
 /// A run this close to an unstable orbit is held on it.
 const ON_ORBIT: f64 = 1e-5;
@@ -156,76 +158,99 @@ impl Judge {
     fn orbit(&mut self, run: &Run, found: &Periodic<3>) -> Option<Told> {
         let mut stress = (found.point[0], found.point[0]);
         let mut unlike = 0.0_f64;
-        let mut points = vec![(DoubleDouble::ZERO, found.point)];
-        let mut steps = 0;
-        let mut observer = |step: &Step<'_, 3>| {
-            see(&mut stress, step.y1[0]);
-            let series = step.series().ok_or(Error::NotAnalytic)?;
-            if let Some(turn) = turn(series) {
-                see(&mut stress, turn);
+        let (mut point, mut period) = (found.point, found.period.value);
+        let (mut before, mut step) = (found.multiplier, found.last_step);
+        let mut largest = None;
+        for _ in 0..ROUNDS {
+            let mut points = vec![(DoubleDouble::ZERO, point)];
+            let mut steps = 0;
+            let mut observer = |step: &Step<'_, 3>| {
+                see(&mut stress, step.y1[0]);
+                let series = step.series().ok_or(Error::NotAnalytic)?;
+                if let Some(turn) = turn(series) {
+                    see(&mut stress, turn);
+                }
+                unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
+                steps += 1;
+                if steps % STEPS_OF_PIECE == 0 {
+                    points.push((series.begin + series.length, *step.y1));
+                }
+                Ok(Control::Continue)
+            };
+            let (field, time) = (&*run.field, (0.0, period));
+            let flown = self.fine.flow(field, time, &point, Some(&mut observer));
+            let end = flown.ok()?;
+            // The point is known better than the time: to the first order it ends on the section.
+            let rate = field.f(&end)[0];
+            period -= run.surface.height(&end) / rate;
+            points.retain(|(begin, _)| begin.hi() < period);
+            let now = DoubleDouble::from(period);
+            let around = derivative_along(field, &run.surface, &mut self.fine, &points, now);
+            let around = largest_multiplier(run, &point, &around.ok()?);
+            let Some(Around { mu, error, left }) = around.filter(|_| before > 0.0) else {
+                break;
+            };
+            // What mu still changes by, by how much it has changed over the last step to the point.
+            let part = (left.amax() / step).min(1.0);
+            let changes = CHANGE * (mu / before).ln().abs() * part;
+            largest = Some(Uncertain::new(mu.ln(), changes + error));
+            if changes <= error {
+                break;
             }
-            unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
-            steps += 1;
-            if steps % STEPS_OF_PIECE == 0 {
-                points.push((series.begin + series.length, *step.y1));
-            }
-            Ok(Control::Continue)
-        };
-        let time = (0.0, found.period.value);
-        let field = &*run.field;
-        let flown = self
-            .fine
-            .flow(field, time, &found.point, Some(&mut observer));
-        let end = flown.ok()?;
-        // The point is known better than the time: to the first order it ends on the section.
-        let rate = field.f(&end)[0];
-        let period = found.period.value - run.surface.height(&end) / rate;
-        points.retain(|(begin, _)| begin.hi() < period);
-        let now = DoubleDouble::from(period);
-        let around = derivative_along(field, &run.surface, &mut self.fine, &points, now).ok()?;
+            point = run.surface.nearest(&(point + left));
+            (before, step) = (mu, left.amax());
+        }
         let mut told = begun(run, Regime::Periodic);
-        told.attractor = Some(found.point);
+        told.attractor = Some(point);
         told.row.symmetry = Some(symmetry(unlike));
         told.row.returns_per_period = Some(found.returns);
         told.row.period = Some(period);
         told.row.stress_range = Some(stress);
-        told.row.lyapunov_max = largest_multiplier(run, found, &around)
-            .map(|ln| Uncertain::new(ln.value / period, ln.uncertainty / period));
+        told.row.lyapunov_max =
+            largest.map(|ln| Uncertain::new(ln.value / period, ln.uncertainty / period));
         Some(told)
     }
 }
 
-/// ln |mu| of the larger multiplier, by the derivative once around from the point, and where that ends; `None` where mu is too
-/// small to be told from rounding.
-///
-/// The point errs by what Newton's method with this derivative would still correct. How much mu changes by that is told by how
-/// much it has changed over the last step to the point.
+/// Once around from a point.
+struct Around {
+    /// The larger multiplier, its modulus.
+    mu: f64,
+    /// What its logarithm errs by.
+    error: f64,
+    /// What Newton's method would move the point by.
+    left: State<3>,
+}
+
+/// The larger multiplier by where the way around ends and its derivative; `None` where mu is too small to be told from rounding.
 fn largest_multiplier(
     run: &Run,
-    found: &Periodic<3>,
+    point: &State<3>,
     (end, derivative): &(State<3>, Jacobian<3>),
-) -> Option<Uncertain> {
+) -> Option<Around> {
     const LEAST: f64 = 1e-6;
-    let inside = run.surface.directions(&found.point);
+    let inside = run.surface.directions(point);
     let reduced = reduce(derivative, &inside);
     let values = reduced.complex_eigenvalues();
     let mu = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
-    if !(mu > LEAST && mu.is_finite() && found.multiplier > 0.0) {
+    if !(mu > LEAST && mu.is_finite()) {
         return None;
     }
-    let residual = DMatrix::from_fn(3, 1, |i, _| end[i] - found.point[i]);
+    let residual = DMatrix::from_fn(3, 1, |i, _| end[i] - point[i]);
     let identity = DMatrix::identity(2, 2);
     let left = (identity - &reduced)
         .lu()
         .solve(&(inside.transpose() * residual))?;
-    let part = (left.amax() / found.last_step).min(1.0);
-    let changed = CHANGE * (mu / found.multiplier).ln().abs() * part;
+    let left = inside * left;
     // A double multiplier errs by the root of what the derivative does.
     let error = DERIVATIVE_PER_RTOL * TOLERANCE;
     let (size, apart) = (reduced.norm(), (values[0] - values[1]).norm());
     let double = size / apart.max(error.sqrt() * size);
-    let computed = error * size / mu * double.max(1.0);
-    Some(Uncertain::new(mu.ln(), changed + computed))
+    Some(Around {
+        mu,
+        error: error * size / mu * double.max(1.0),
+        left: State::from_fn(|i, _| left[i]),
+    })
 }
 
 pub(super) fn alike(y: &State<3>) -> bool {

@@ -228,10 +228,7 @@ fn exponents<const N: usize>(
     if let Ended::Steady { .. } = record.ended {
         return means(record, &mut |_| Control::Continue);
     }
-    if let Some(periodic) = &mut made.periodic
-        && let Some((period, found)) = of_orbit(plan, periodic)
-    {
-        periodic.period = period;
+    if let Some(found) = by_orbit(plan, made) {
         return Ok(Some(found));
     }
     let Some(first) = record.returns.first() else {
@@ -248,19 +245,40 @@ fn exponents<const N: usize>(
         Ended::Failed(error) => return Err(error.clone()),
         Ended::Complete | Ended::Steady { .. } => {}
     }
+    // What the error of the first run has hidden may show now.
+    let open = made.periodic.is_none();
+    if open && own.ended == Ended::Complete {
+        *made = verdict(field, surface, &own, None)?;
+        if let Some(found) = by_orbit(plan, made) {
+            return Ok(Some(found));
+        }
+    }
     let see = &mut |part: f64| sink.reached(OWN_RUN + (1.0 - OWN_RUN) * part);
     let Some(found) = means(&own, see)? else {
         return Ok(None);
     };
-    let complete = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
-    if N == 3 && complete && made.periodic.is_none() {
+    let many = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
+    if N == 3 && many && made.periodic.is_none() {
         let known = Exponents {
             values: &found.exponents,
             converged: found.converged,
         };
-        *made = aperiodic(surface, &own.returns, own.accuracy, Some(known));
+        // Either run may be the one whose returns tell.
+        let by = |run: &Record<N>| aperiodic(surface, &run.returns, run.accuracy, Some(known));
+        *made = by(record);
+        if made.regime == Regime::Undecided {
+            *made = by(&own);
+        }
     }
     Ok(Some(found))
+}
+
+/// The exponents of the orbit that a verdict names, with its period then.
+fn by_orbit<const N: usize>(plan: &SectionPlan, made: &mut Verdict<N>) -> Option<Lyapunov> {
+    let periodic = made.periodic.as_mut()?;
+    let (period, found) = of_orbit(plan, periodic)?;
+    periodic.period = period;
+    Some(found)
 }
 
 /// Makes a row of each return and the next.
