@@ -333,7 +333,7 @@ fn points_are_bounded() {
             30,
         ),
         (
-            "branch orbits --stiffness 0.14 --from 10 --to 20 --step-limit 1e-3",
+            "branch orbits --stiffness 0.14 --symmetry symmetric --from 150 --to 300",
             5,
         ),
     ] {
