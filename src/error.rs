@@ -220,7 +220,7 @@ impl Error {
     ) -> Self {
         Error::Parameter {
             name: name.into(),
-            value: shortest(echoed(value.to_string())),
+            value: echoed(shortest(value.to_string())),
             must: must.into(),
         }
     }

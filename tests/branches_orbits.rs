@@ -413,6 +413,6 @@ fn coefficients_do_not_depend_on_nodes() {
         let (a, b) = (known(one), known(other));
         let off = (a.value - b.value).abs();
         assert!(off <= a.uncertainty + b.uncertainty, "{a:?}, {b:?}");
-        assert!(a.uncertainty < 1e-6 * a.value.abs(), "{a:?}");
+        assert!(a.uncertainty < 1e-4 * a.value.abs(), "{a:?}");
     }
 }

@@ -73,18 +73,18 @@ fn parameters_outside_their_domain_are_refused() {
         &model("--rtol 1"),
         "rtol is 1, but must be at least 1e-16 and less than 1",
     );
-    for atol in ["0", "1", "1e300"] {
+    for atol in ["0", "1", "1e20"] {
         refused(
             &model(&format!("--atol {atol}")),
             &format!("atol is {atol}, but must be greater than 0 and less than 1"),
         );
     }
     for command in [
-        "section --driving 10 --stiffness 0.14 --atol 1e300",
-        "orbit --driving 10 --stiffness 0.14 --atol 1e300",
-        "orbit --driving 10 --stiffness 0.14 --rtol 1e-8 --atol 1e300",
+        "section --driving 10 --stiffness 0.14 --atol 1e20",
+        "orbit --driving 10 --stiffness 0.14 --atol 1e20",
+        "orbit --driving 10 --stiffness 0.14 --rtol 1e-8 --atol 1e20",
     ] {
-        refused(command, "atol is 1e300, but must be");
+        refused(command, "atol is 1e20, but must be");
     }
     refused(
         &model("--law byerlee"),

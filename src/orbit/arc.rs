@@ -30,6 +30,18 @@ impl<const N: usize> Arc<N> {
         self.error / (self.steps.max(1) as f64).sqrt()
     }
 
+    /// The same where the tolerance leaves little but rounding: half a unit in the last place of the sum with which a step ends.
+    pub fn rounding(&self) -> f64 {
+        /// In units of 1 + |y|; and the nominal errors of steps of which truncation is the lesser part.
+        const UNIT: f64 = 0.5 * f64::EPSILON;
+        const NOMINAL: f64 = 20.0 * f64::EPSILON;
+        let steps = self.steps.max(1) as f64;
+        if self.error > NOMINAL * steps {
+            return self.noise();
+        }
+        UNIT * steps.sqrt()
+    }
+
     /// ln |det| of the tangent: by the trace if the method has it, else by the tangent.
     pub fn volume(&self) -> f64 {
         self.log_determinant

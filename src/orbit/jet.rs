@@ -82,15 +82,21 @@ pub fn squares<F: Family<3>>(family: &F, site: &Site<3>, axes: Axes) -> Option<V
         (0.830_604_693_233_132_2, 0.180_380_786_524_069_3),
         (0.966_234_757_101_576, 0.085_662_246_189_585_17),
     ];
+    /// Into so many parts every arc is cut.
+    const PARTS: usize = 4;
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
+    let points: Vec<(f64, f64)> = (0..PARTS)
+        .flat_map(|i| POINTS.map(|(at, weight)| (i as f64 + at, weight)))
+        .map(|(at, weight)| (at / PARTS as f64, weight / PARTS as f64))
+        .collect();
     let mut arc = |(node, &duration): (&State<3>, &f64)| {
         let mut moved = plane(family, &field.f(node), axes)
             .fixed_columns::<2>(1)
             .into_owned();
         let (mut x, mut at) = (*node, 0.0);
         let mut sum = Matrix2::zeros();
-        for (point, weight) in POINTS {
+        for &(point, weight) in &points {
             let part = tracer
                 .arc(&*field, &x, (point - at) * duration, false)
                 .ok()?;

@@ -36,6 +36,8 @@ impl Noise {
     };
 }
 
+/// Relative errors of derivatives in units of that of the state.
+const TANGENT: f64 = 3.0;
 /// Random errors that are tried: enough for a standard deviation to a third of itself.
 pub(super) const PROBES: usize = 8;
 
@@ -63,20 +65,20 @@ impl<const N: usize> Linear<N> {
         let count = self.arcs.len();
         for k in 0..count {
             let arc = &mut noisy.arcs[k];
-            let size = arc.noise();
+            let size = arc.rounding();
             let next = &polygon.nodes[(k + 1) % count];
             noisy.gaps[k] = State::from_fn(|i, _| size * (1.0 + next[i].abs()) * signs.next());
-            let of_map = size * self.maps[k].norm();
+            let of_map = TANGENT * size * self.maps[k].norm();
             for i in 1..N {
                 for j in 1..N {
                     noisy.maps[k][(i, j)] += of_map * signs.next();
                 }
             }
             if let Some(log) = &mut arc.log_determinant {
-                *log += size * (1.0 + log.abs()) * signs.next();
+                *log += TANGENT * size * log.abs() * signs.next();
             }
             if let Some(log) = &mut arc.log_across {
-                *log += size * (1.0 + log.abs()) * signs.next();
+                *log += TANGENT * size * log.abs() * signs.next();
             }
         }
         noisy

@@ -38,7 +38,7 @@ impl<const N: usize> Closed<N> {
     pub fn budget(&self, one_sign: bool) -> (Uncertain, f64) {
         /// Standard deviations that are claimed.
         const DEVIATIONS: f64 = 3.0;
-        const ROUNDING: f64 = 2.0 * f64::EPSILON;
+        const ROUNDING: f64 = 4.0 * f64::EPSILON;
         let (mut of_period, mut of_nodes) = (0.0, vec![0.0; self.polygon.nodes.len()]);
         let period = self.polygon.period();
         let mut signs = Signs::new();

@@ -208,21 +208,26 @@ impl<const N: usize> ZeroProblem for Family<'_, N> {
     }
 }
 
-/// Below this a component of the unit tangent is rounding: that of the difference in p.
-const SLOPE: f64 = 1e-12;
-/// Below this part of its bound a determinant is rounding.
-const DETERMINANT: f64 = 1e-14;
-
 /// Zero where nothing but rounding is left: of a function that is zero throughout, as the sums of eigenvalues of a conservative
 /// system or the slope of a branch at one parameter, rounding has signs that mean nothing.
 fn certain(x: f64, rounding: f64) -> f64 {
     if x.abs() < rounding { 0.0 } else { x }
 }
 
-/// A determinant over Hadamard's bound, the product of the lengths of the rows.
-fn determinant(matrix: &DMatrix<f64>) -> f64 {
-    let bound: f64 = matrix.row_iter().map(|row| row.norm()).product();
-    certain(matrix.determinant() / bound, DETERMINANT)
+/// The product of all sums of two eigenvalues.
+fn sums(jacobian: &DMatrix<f64>) -> f64 {
+    /// Of the entries, relative, with which the product is computed again to see what rounding makes of it.
+    const ROUNDING: f64 = 32.0 * f64::EPSILON;
+    /// So often, with other signs.
+    const TIMES: usize = 4;
+    let product = bialternate(jacobian).determinant();
+    let moved = |time: usize| {
+        let sign = |i: usize, j: usize| ((i + 1) * (j + 1) * (7 + 2 * time) / 2) % 2;
+        let entry = |i, j, x: f64| x * (1.0 + ROUNDING * (1.0 - 2.0 * sign(i, j) as f64));
+        let other = jacobian.map_with_location(entry);
+        (bialternate(&other).determinant() - product).abs()
+    };
+    certain(product, (0..TIMES).map(moved).sum())
 }
 
 /// The test functions' order.
@@ -239,11 +244,12 @@ impl<const N: usize> Watch for Look<'_, '_, N> {
         let extended = self.family.jacobian(&point.u, point.lambda)?;
         let mut square = extended.insert_row(N, 0.0);
         square.row_mut(N).copy_from(&point.tangent.transpose());
-        let pairs = bialternate(&self.family.dense(&y, point.lambda));
+        /// Below this a component of the unit tangent is rounding: that of the difference in p.
+        const SLOPE: f64 = 1e-12;
         Ok(vec![
             certain(point.lambda_slope(), SLOPE),
-            determinant(&square),
-            determinant(&pairs),
+            square.determinant(),
+            sums(&self.family.dense(&y, point.lambda)),
         ])
     }
 

@@ -10,8 +10,8 @@ use crate::orbit::{Condition, Corrector, Family, Goal, Pace, Path, Regular, Walk
 const PARTS: [f64; 3] = [0.125, 0.5, 1.0];
 /// Standard deviations of what is noise.
 const DEVIATIONS: f64 = 5.0;
-/// Tolerance with which the sides are looked at.
-const FINE: f64 = 1e-15;
+/// Tolerance with which the sides are looked at, as what steps may err by.
+const FINE: f64 = 2e-15;
 
 /// Whether the zero of what is watched, which was landed on at `orbit` on a step of the walk from `before` over `length`, is one.
 pub(super) fn certain<F: Family<N>, const N: usize>(

@@ -25,6 +25,8 @@ pub(super) struct Vertical {
     /// The least and the greatest coordinate of the parameter, and the largest standard deviation of one.
     coordinates: (f64, f64),
     noise: f64,
+    /// The smallest one.
+    least: f64,
     /// The least and the greatest extent and period.
     extents: (f64, f64),
     periods: (f64, f64),
@@ -53,6 +55,7 @@ impl Vertical {
             orbits: self.orbits + 1,
             coordinates: widened(self.coordinates, site.at[free], first),
             noise: self.noise.max(noise.parameters[free]),
+            least: widened((self.least, self.least), noise.parameters[free], first).0,
             extents: widened(self.extents, site.polygon.extent(), first),
             periods: widened(self.periods, site.polygon.period(), first),
         };
@@ -88,7 +91,7 @@ impl Vertical {
         given[free] = None;
         special.given(given);
         let place = [&mut special.driving, &mut special.stiffness];
-        let uncertainty = self.range() + DEVIATIONS * self.noise;
+        let uncertainty = self.range() + DEVIATIONS * self.least;
         for (_, place) in place.into_iter().enumerate().filter(|(i, _)| *i == free) {
             *place = Uncertain::new(place.value, uncertainty * place.value);
         }
