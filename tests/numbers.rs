@@ -172,3 +172,22 @@ fn enclosing_radius_is_infinite_where_nothing_changes_sign() {
     let radius = enclosing_radius(2.0, |x| x * x - 4.0);
     assert!(radius < 1e-14, "{radius:e}");
 }
+
+/// An end of a bracket at 0 has no logarithm to be half-way to: where the first step of Newton's method leaves the bracket, and the
+/// function falls from 0 or rises from it, the root is found and not the end.
+#[test]
+fn a_bracket_that_ends_at_zero_is_halved() {
+    for sign in [1.0, -1.0] {
+        for end in [2.0, -2.0] {
+            let falling = |t: f64| {
+                let t = t / end;
+                let value = (-5.0 * t).exp() - (-0.5_f64).exp();
+                (sign * value, -5.0 * sign * (-5.0 * t).exp() / end)
+            };
+            for (a, b) in [(0.0, end), (end, 0.0), (-0.0, end)] {
+                let root = bracketed_root("a test", a, b, falling).expect("bracketed");
+                assert!((root / end - 0.1).abs() < 1e-15, "{a} {b}: {root}");
+            }
+        }
+    }
+}

@@ -78,11 +78,12 @@ pub fn bracketed_root(
     })
 }
 
-/// Half-way between the ends of a bracket: by their logarithms where one is a million times the other.
+/// Half-way between the ends of a bracket: by their logarithms where one is a million times the other. 0 has none.
 fn middle(a: f64, b: f64) -> f64 {
     /// Beyond this ratio.
     const FAR: f64 = 1e6;
-    if a * b.signum() > 0.0 && (a / b > FAR || b / a > FAR) {
+    let alike = a != 0.0 && b != 0.0 && a.signum() == b.signum();
+    if alike && (a / b > FAR || b / a > FAR) {
         (a.abs().sqrt() * b.abs().sqrt()).copysign(a)
     } else {
         0.5 * a + 0.5 * b
