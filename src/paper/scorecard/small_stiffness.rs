@@ -142,19 +142,20 @@ fn last(label: Label, special: &[Special]) -> f64 {
 fn doublings_at_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let at_005 = pieces.branches("fig09")?;
     let curves = pieces.curves("fig12-period-doubling")?;
-    // Of its two ends, the one beside the pitchforks.
-    let ends = curves.special.iter().filter(|s| s.label == Label::Ep);
-    let end = ends.max_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
-    let end = end.ok_or_else(|| missing("the period doublings have no end"))?;
-    let k = end.stiffness.value;
     let forks = pieces.curves("fig06-orbit-pitchforks")?;
     let mut landed = forks.special.iter();
-    let fork =
-        landed.find(|s| s.label == Label::Uz && s.stiffness.value == k && s.driving.value < 1.0);
-    let fork = fork.ok_or_else(|| missing("the pitchforks of orbits have no landing there"))?;
+    let fork = landed.find(|s| s.label == Label::Uz && s.driving.value < 1.0);
+    let fork = fork.ok_or_else(|| missing("the pitchforks of orbits have no landing"))?;
+    let k = fork.stiffness.value;
+    // Of the two there, the one beside the pitchforks.
+    let landed = curves.special.iter();
+    let landed = landed.filter(|s| s.label == Label::Uz && s.stiffness.value == k);
+    let doubling = landed.max_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
+    let doubling =
+        doubling.ok_or_else(|| missing("the period doublings have no landing at the same K"))?;
     let distances = [
         last(Label::Pf, &at_005.special) / last(Label::Pd, &at_005.special) - 1.0,
-        fork.driving.value / end.driving.value - 1.0,
+        fork.driving.value / doubling.driving.value - 1.0,
     ];
     // The distance falls much faster than K.
     let falls = distances[1] > 0.0 && distances[1] < 0.1 * distances[0];
