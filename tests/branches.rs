@@ -212,8 +212,8 @@ fn rows_and_special_points_go_where_they_belong() {
         "equilibria at K = 0.14",
         "asymmetric",
         "unstable",
-        ">\nBP",
-        ">\nHB",
+        ">BP<",
+        ">HB<",
     ] {
         assert!(svg.contains(word), "{word}");
     }
@@ -345,7 +345,13 @@ fn points_are_bounded() {
         assert_eq!(ended.code, 1, "{arguments}: {}", ended.err);
         let named = format!("stopped after {limit} points");
         assert!(ended.err.contains(&named), "{arguments}: {}", ended.err);
-        assert_eq!(csv(&ended.out).len(), limit + 1, "{arguments}");
+        // Points before the range count, but are no rows.
+        let rows = csv(&ended.out).len().saturating_sub(1);
+        assert!(rows <= limit, "{arguments}: {rows}");
+        assert!(
+            rows == limit || arguments.starts_with("locus hopf"),
+            "{arguments}: {rows}"
+        );
     }
     let wide = twinslip("locus pitchfork --stiffness-range 1e-300,1e300 --format csv");
     assert_eq!(wide.code, 0, "{}", wide.err);
@@ -384,8 +390,14 @@ fn refused(arguments: &str, sentence: &str) {
 fn wrong_branches_are_refused() {
     let orbits = |change: &str| format!("branch orbits --stiffness 0.14 {change}");
     for (arguments, sentence) in [
-        ("branch", "branch equilibria or branch orbits"),
-        ("branch cycles", "there are no branches of \"cycles\""),
+        (
+            "branch",
+            "twinslip branch equilibria, or twinslip branch orbits",
+        ),
+        (
+            "branch cycles",
+            "branch is cycles, but must be equilibria or orbits",
+        ),
         ("branch orbits", "--stiffness K is missing"),
         (
             "branch orbits --along stiffness",
@@ -522,5 +534,9 @@ fn a_scene_is_the_same_as_its_words() {
     std::fs::write(&path, other).expect("written");
     let ended = run(&["run", path.to_str().expect("UTF-8")]);
     assert_eq!(ended.code, 2);
-    assert!(ended.err.contains("one.toml") && ended.err.contains("no curve of"));
+    assert!(
+        ended
+            .err
+            .contains("one.toml: bifurcation is fold, but must be one of pitchfork,")
+    );
 }

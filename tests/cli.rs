@@ -485,7 +485,7 @@ fn counts_may_be_written_short_and_are_whole() {
 
 #[test]
 fn messages_write_numbers_as_people_do() {
-    let ended = twinslip("integrate --driving 10 --stiffness 0.14 --until 60 -o -");
+    let ended = twinslip("integrate --driving 10 --stiffness 0.14 --until 200 -o -");
     let (count, _) = ended.err.split_once(" steps").expect("steps");
     let (thousands, rest) = count.split_once(',').expect("more than a thousand steps");
     assert!(thousands.len() <= 3 && rest.len() == 3, "{}", ended.err);
@@ -558,14 +558,12 @@ fn shells_complete_commands_options_and_names() {
     }
     for shell in ["bash", "zsh", "fish"] {
         let script = run(&["completions", shell]).out;
-        for name in [
-            "dieterich-ruina",
-            "cvode-bdf",
-            "orbit-pitchfork",
-            "asymmetric",
-        ] {
+        for name in ["dieterich-ruina", "cvode-bdf", "asymmetric"] {
             assert!(script.contains(name), "{shell}: {name}");
         }
+        // fish completes the names of options alone.
+        let words = script.contains("orbit-pitchfork");
+        assert_eq!(words, shell != "fish", "{shell}");
     }
     assert_eq!(run(&["completions", "tcsh"]).code, 2);
 }

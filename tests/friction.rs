@@ -303,9 +303,9 @@ fn sinh_laws_are_odd_in_the_stress() {
 
 /// tau_ss(1e-3), the slip rate of the largest k_c and that k_c, for b = 10.
 const STEEP: [f64; 3] = [
-    1298.743_026_402_031,
-    0.187_783_936_135_283_42,
-    285.423_599_073_890_37,
+    1_298.743_026_402_031,
+    0.187_783_936_135_283_4,
+    285.423_599_073_890_4,
 ];
 
 /// Of laws whose strength or stress leaves the range of doubles nothing comes out as no number, and what has a double is right:

@@ -74,6 +74,9 @@ pub struct Expected<'a> {
 /// What the check of a row may have been made with.
 type Keys = Box<dyn Iterator<Item = String>>;
 
+/// Makes a row of its cells by name, and of which of its keys the check was made with.
+type MakeRow<'a, R> = &'a mut dyn FnMut(&dyn Fn(&str) -> String, usize) -> Option<R>;
+
 /// The rows of a file, each with where it ends.
 struct Table<R> {
     head: Head,
@@ -87,7 +90,7 @@ impl<R> Table<R> {
         path: &Path,
         expected: &Expected<'_>,
         keys: &dyn Fn(usize) -> Keys,
-        row: &mut dyn FnMut(&dyn Fn(&str) -> String, usize) -> Option<R>,
+        row: MakeRow<'_, R>,
     ) -> Result<Option<Self>> {
         let unreadable = |error: std::io::Error| Error::File {
             action: "read",

@@ -232,7 +232,7 @@ fn radius(p: &Coefficients, all: &[Complex<f64>], i: usize) -> f64 {
     let mut radius = n * errors / product;
     // Two discs that overlap hold both roots. Discs about two places as far apart as the square root of the error are smaller,
     // and seven times that distance reaches from either root across both.
-    if !(radius < nearest / 3.0) {
+    if radius.is_nan() || radius >= nearest / 3.0 {
         let without = product / nearest;
         let product = if without.is_finite() {
             without

@@ -214,11 +214,14 @@ fn cross((a, b): (Pixel, Pixel), (c, d): (Pixel, Pixel)) -> bool {
     side(a, b, c) * side(a, b, d) < 0.0 && side(c, d, a) * side(c, d, b) < 0.0
 }
 
+/// What words stand beside: the points of curves, other points, and the middles and sizes of words.
+type Surroundings<'a> = (&'a [Pixel], &'a [Pixel], &'a [(Pixel, (f64, f64))]);
+
 /// Where words of that size with their middle at a place cover neither curves nor points nor other words, as near as that allows.
 pub fn beside(
     at: Pixel,
     size: (f64, f64),
-    (curves, points, words): (&[Pixel], &[Pixel], &[(Pixel, (f64, f64))]),
+    (curves, points, words): Surroundings<'_>,
     frame: &Window,
 ) -> Pixel {
     /// Distances that are tried.
