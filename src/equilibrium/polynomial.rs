@@ -48,7 +48,7 @@ pub(super) type Root = (Complex<f64>, f64);
 
 type Digits = DoubleDouble;
 
-/// All roots of p[0] + p[1] z + ...; a root that has no double is left out, and all are where a coefficient has none.
+/// All roots of the polynomial with coefficients p, the constant first; a root that has no double is left out, and all are where a coefficient has none.
 pub(super) fn roots(p: &Coefficients) -> Vec<Root> {
     let values = &p.values;
     let degree = values.iter().rposition(|c| c.to_f64() != 0.0);

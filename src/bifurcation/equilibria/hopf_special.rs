@@ -149,15 +149,13 @@ pub(super) fn hopf_point(
     const CLOSE: f64 = 1e-6;
     [Root::Larger, Root::Smaller].into_iter().find_map(|root| {
         let points = HopfPoints { law, curve, root };
-        let near = |driving: f64, rates: [f64; 2]| match along {
+        let found = match along {
             Parameter::Driving => points.at_stiffness(stiffness, driving, rates),
             Parameter::Stiffness => points.at_driving(driving, rates),
         };
-        // Once more from where it is: the last digits, and so the budgets, do not depend on where the search began.
-        let found = near(driving, rates).and_then(|at| near(at.driving.value, at.rates));
-        let close = |a: f64, b: f64| (a / b).ln().abs() < CLOSE;
+        let near = |a: f64, b: f64| (a / b).ln().abs() < CLOSE;
         let point = found.filter(|point| {
-            close(point.driving.value, driving) && close(point.stiffness.value, stiffness)
+            near(point.driving.value, driving) && near(point.stiffness.value, stiffness)
         })?;
         let point = points.crosschecked(point);
         let special = Special {
