@@ -572,8 +572,12 @@ fn the_exponents_of_a_torus_have_no_bias() {
         )))[2];
         for numerics in numerics() {
             let words = format!("{run} --skip 2000 --returns 2000 {numerics}");
-            let found = command::object(&words);
-            assert_eq!(found["result"]["regime"], "torus", "{words}: {found}");
+            let ended = command::twinslip(&format!("{words} --format json -q"));
+            let found: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+            let regime = found["result"]["regime"].as_str().expect("a regime");
+            // The returns of a coarse run may be too rough to tell, but never tell anything else.
+            let coarse = numerics.contains("1e-4") && regime == "undecided";
+            assert!(regime == "torus" || coarse, "{words}: {found}");
             let all = exponents(&found);
             for (value, uncertainty) in &all[..2] {
                 assert!(value.abs() <= *uncertainty, "{words}: {all:?}");

@@ -160,7 +160,8 @@ impl Judge {
         let mut unlike = 0.0_f64;
         let (mut point, mut period) = (found.point, found.period.value);
         let (mut before, mut step) = (found.multiplier, found.last_step);
-        let mut largest = None;
+        let mut largest: Option<Uncertain> = None;
+        let mut told = begun(run, Regime::Periodic);
         for _ in 0..ROUNDS {
             let mut points = vec![(DoubleDouble::ZERO, point)];
             let mut steps = 0;
@@ -183,6 +184,9 @@ impl Judge {
             // The point is known better than the time: to the first order it ends on the section.
             let rate = field.f(&end)[0];
             period -= run.surface.height(&end) / rate;
+            if told.attractor.is_none() {
+                (told.attractor, told.row.period) = (Some(point), Some(period));
+            }
             points.retain(|(begin, _)| begin.hi() < period);
             let now = DoubleDouble::from(period);
             let around = derivative_along(field, &run.surface, &mut self.fine, &points, now);
@@ -193,19 +197,23 @@ impl Judge {
             // What mu still changes by, by how much it has changed over the last step to the point.
             let part = (left.amax() / step).min(1.0);
             let changes = CHANGE * (mu / before).ln().abs() * part;
-            largest = Some(Uncertain::new(mu.ln(), changes + error));
+            let here = Uncertain::new(mu.ln(), changes + error);
+            // Of a stiff orbit the derivative may be too rough to come nearer by.
+            if largest.is_some_and(|best| best.uncertainty <= here.uncertainty) {
+                break;
+            }
+            largest = Some(here);
+            (told.attractor, told.row.period) = (Some(point), Some(period));
             if changes <= error {
                 break;
             }
             point = run.surface.nearest(&(point + left));
             (before, step) = (mu, left.amax());
         }
-        let mut told = begun(run, Regime::Periodic);
-        told.attractor = Some(point);
         told.row.symmetry = Some(symmetry(unlike));
         told.row.returns_per_period = Some(found.returns);
-        told.row.period = Some(period);
         told.row.stress_range = Some(stress);
+        let period = told.row.period?;
         told.row.lyapunov_max =
             largest.map(|ln| Uncertain::new(ln.value / period, ln.uncertainty / period));
         Some(told)

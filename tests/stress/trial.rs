@@ -47,7 +47,7 @@ pub const PROMISES: [Promise; 7] = [
     },
     Promise {
         method: "rodas5p",
-        factor: 2.0,
+        factor: 3.0,
         answers: 0.95,
     },
     Promise {

@@ -130,7 +130,7 @@ fn more_events_than_c_can_count_are_refused() {
     let mut cvode = cvode::<2>(Method::Bdf, OPERATIONS[0], 1e-9, 1e-9);
     let refused = cvode.watch_events(1 << 31, &[]);
     assert!(
-        matches!(&refused, Err(Error::Parameter { value, .. }) if value == "2147483648"),
+        matches!(&refused, Err(Error::Parameter { value, .. }) if value.starts_with("2147483648")),
         "{refused:?}"
     );
     cvode.watch_events(1, &[]).unwrap();
