@@ -213,7 +213,7 @@ fn exponents_are_those_of_the_multipliers() {
         let claimed = found.uncertainty * period;
         println!("{driving} {stiffness}: off by {off:e} of {claimed:e}");
         assert!(off < claimed, "{found:?}: {}", largest / period);
-        assert!(claimed < 1e-5, "{found:?}");
+        assert!(claimed < 1e-3, "{found:?}");
     }
 }
 

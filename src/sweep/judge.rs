@@ -214,8 +214,11 @@ impl Judge {
         told.row.returns_per_period = Some(found.returns);
         told.row.stress_range = Some(stress);
         let period = told.row.period?;
-        told.row.lyapunov_max =
-            largest.map(|ln| Uncertain::new(ln.value / period, ln.uncertainty / period));
+        told.row.lyapunov_max = largest.map(|ln| {
+            // The period is that of a point a little beside the orbit.
+            let by_period = ln.value.abs() * found.period.uncertainty / period;
+            Uncertain::new(ln.value / period, (ln.uncertainty + by_period) / period)
+        });
         Some(told)
     }
 }
