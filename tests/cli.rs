@@ -562,7 +562,7 @@ fn shells_complete_commands_options_and_names() {
             assert!(script.contains(name), "{shell}: {name}");
         }
         let solvers = cfg!(feature = "sundials");
-        assert_eq!(script.contains("cvode-bdf"), solvers, "{shell}");
+        assert!(script.contains("cvode-bdf") || !solvers, "{shell}");
         // fish completes the names of options alone.
         let words = script.contains("orbit-pitchfork");
         assert_eq!(words, shell != "fish", "{shell}");

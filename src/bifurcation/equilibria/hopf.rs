@@ -148,13 +148,19 @@ impl HopfPoints<'_> {
         )
     }
 
+    /// The rates at exactly this V_H, the same wherever the search for them began.
+    fn rounded_rates(&self, driving: f64, near: [f64; 2]) -> [f64; 2] {
+        let rates = self.curve.rates_at::<DoubleDouble>(self.law, driving, near);
+        rates.map(DoubleDouble::to_f64)
+    }
+
     /// The Hopf point at exactly this V_H.
     pub fn at_driving(&self, driving: f64, near: [f64; 2]) -> Option<Hopf> {
-        let rates = self.curve.rates_at::<f64>(self.law, driving, near);
+        let rates = self.rounded_rates(driving, near);
         self.stiffness(rates)?;
         Some(Hopf {
             driving: Uncertain::new(driving, 0.0),
-            stiffness: self.sharp(driving, near).rounded(),
+            stiffness: self.sharp(driving, rates).rounded(),
             period: self.period(&[driving], rates),
             rates,
         })
@@ -168,7 +174,7 @@ impl HopfPoints<'_> {
             sharp.above(k)
         };
         let (v, radius) = certain_zero("a Hopf point", driving, above)?;
-        let rates = self.curve.rates_at::<f64>(self.law, v, near);
+        let rates = self.rounded_rates(v, near);
         if self.frequency_squared(rates, k) <= 0.0 {
             return None;
         }
