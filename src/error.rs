@@ -338,7 +338,7 @@ fn shortest(plain: String) -> String {
         return "\"\"".into();
     }
     match plain.parse::<f64>() {
-        Ok(x) if plain.len() > 8 => format!("{x:?}"),
+        Ok(x) if format!("{x:?}").len() < plain.len() => format!("{x:?}"),
         _ => plain,
     }
 }
@@ -425,9 +425,16 @@ fn too_fast(
 }
 
 fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f64) -> String {
-    let (t, end) = (measured(t, units.time), measured(end, units.time));
+    // A run that goes on until it meets something has no end.
+    let before = if end.is_finite() {
+        format!(", before t = {}", measured(end, units.time))
+    } else {
+        String::new()
+    };
     format!(
-        "{limit} steps were used up at t = {t}, before t = {end}; raise --max-steps, loosen the tolerance or shorten the run"
+        "{} steps were used up at t = {}{before}; raise --max-steps, loosen the tolerance or shorten the run",
+        count(limit),
+        measured(t, units.time)
     )
 }
 

@@ -440,7 +440,7 @@ fn wrong_branches_are_refused() {
         ("--step-limit 0", "step-limit is 0, but must be positive"),
         (
             "--crosscheck=euler",
-            "method is euler, but must be one of auto",
+            "crosscheck is euler, but must be one of auto",
         ),
         ("--plot x.pdf", "must end in .svg or .png"),
     ] {

@@ -667,4 +667,11 @@ fn a_search_for_an_orbit_ends() {
     // One step in an arc leads nowhere, at once.
     let ended = twinslip("orbit --driving 1.831e-38 --stiffness 0.56 --max-steps 1");
     assert_eq!(ended.code, 1, "{}", ended.err);
+    // Where the time to search in is beyond doubles, the message names none.
+    let ended = twinslip(
+        "orbit --driving 5e-324 --stiffness 0.022 --law bounded --method rodas5p --max-steps 99",
+    );
+    assert_eq!(ended.code, 1, "{}", ended.err);
+    let said = ended.err.contains("99 steps were used up at t = ");
+    assert!(said && !ended.err.contains("inf"), "{}", ended.err);
 }

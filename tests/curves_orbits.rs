@@ -8,7 +8,7 @@ mod heard;
 mod returns;
 
 use common::{data, number};
-use heard::{Heard, assert_known, two};
+use heard::{Heard, assert_known, assert_sharp_claims, two};
 use returns::returns;
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::{Criticality, Event, Label, LocusKind, LocusRequest, Special, orbits};
@@ -79,6 +79,7 @@ fn curves_go_down_to_small_stiffness() {
         (LocusKind::OrbitPitchfork, "PF"),
         (LocusKind::OrbitSaddleNode, "SN"),
     ];
+    let mut ratios = Vec::new();
     for (kind, name) in kinds {
         let request = LocusRequest {
             at_stiffness: vec![0.1, 0.05, 0.02],
@@ -99,16 +100,17 @@ fn curves_go_down_to_small_stiffness() {
             };
             let found = heard.special.iter().find(here);
             let found = found.unwrap_or_else(|| panic!("{what} is missing"));
-            assert_known(&what, found.driving, exact, BAR);
+            ratios.push(assert_known(&what, found.driving, exact, BAR));
             let period = number(&point["period"]);
-            assert_known(
+            ratios.push(assert_known(
                 &what,
                 found.period.expect("a period"),
                 period,
                 BAR_OF_PERIOD,
-            );
+            ));
         }
     }
+    assert_sharp_claims(ratios);
 }
 
 /// Points at which the cubic coefficient is zero: the same from longer and shorter steps, and as many as there are.

@@ -152,7 +152,7 @@ fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
         None if method_name(first) == DEFAULT => Choice::Taylor.name(),
         None => DEFAULT,
     };
-    let method = Choice::named(name)?;
+    let method = Choice::named_by("crosscheck", name)?;
     if method_name(method) == method_name(first) {
         return Err(Error::Input(format!(
             "--crosscheck {name} is the method of the orbit itself; choose another, or none"

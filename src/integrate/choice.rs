@@ -59,6 +59,11 @@ impl Choice {
     /// # Errors
     /// [`Error::Parameter`] for a method that does not exist, [`Error::Input`] for one that is not in this build.
     pub fn named(name: &str) -> Result<Self> {
+        Self::named_by("method", name)
+    }
+
+    /// The same where another option names it: what it is called in messages.
+    pub(crate) fn named_by(option: &'static str, name: &str) -> Result<Self> {
         match name {
             "auto" => Ok(Choice::Auto),
             "taylor" => Ok(Choice::Taylor),
@@ -72,7 +77,7 @@ impl Choice {
             ))),
             _ => RosenbrockMethod::named(name)
                 .map(Choice::Rosenbrock)
-                .map_err(|_| Error::unknown("method", name, &Choice::names())),
+                .map_err(|_| Error::unknown(option, name, &Choice::names())),
         }
     }
 

@@ -41,8 +41,6 @@ pub struct Regular<const N: usize> {
     pub first: f64,
     /// The last correction: the largest of a node, a duration and a parameter's coordinate.
     pub residual: f64,
-    /// The last correction of the parameters' coordinates.
-    pub of_parameters: f64,
     pub(super) linear: Linear<N>,
 }
 
@@ -206,10 +204,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             }
             let size = size.max(stretch);
             let done = size < goal.done || (size < NOISE && size > 0.3 * last);
-            let of_parameters = correction
-                .parameters
-                .iter()
-                .fold(0.0, |a: f64, p| a.max(p.abs()));
             site = site.moved(&correction, 1.0);
             if site.polygon.durations.iter().any(|&t| t <= 0.0) {
                 return None;
@@ -223,7 +217,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                     iterations,
                     first,
                     residual: size,
-                    of_parameters,
                     linear,
                 });
             }
@@ -275,7 +268,6 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         Some(Regular {
             first: site.size(&closing).0,
             residual: site.size(&closing).0,
-            of_parameters: 0.0,
             site,
             along,
             spectrum,

@@ -12,7 +12,7 @@ use super::linear::Linear;
 use super::motion::Motion;
 use super::polygon::Polygon;
 use super::shooting::relative;
-use crate::field::State;
+use crate::field::{Jacobian, State};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -68,10 +68,10 @@ impl<const N: usize> Linear<N> {
             let size = arc.rounding();
             let next = &polygon.nodes[(k + 1) % count];
             noisy.gaps[k] = State::from_fn(|i, _| size * (1.0 + next[i].abs()) * signs.next());
-            let of_map = TANGENT * size * self.maps[k].norm();
+            let sizes = graded(&self.maps[k]);
             for i in 1..N {
                 for j in 1..N {
-                    noisy.maps[k][(i, j)] += of_map * signs.next();
+                    noisy.maps[k][(i, j)] += TANGENT * size * sizes[(i, j)] * signs.next();
                 }
             }
             if let Some(log) = &mut arc.log_determinant {
@@ -83,6 +83,14 @@ impl<const N: usize> Linear<N> {
         }
         noisy
     }
+}
+
+/// What the rounding of each entry of a map is relative to: what two maps like it make of their entries without their signs. Where
+/// one variable hardly feels another all the way, rounding doesn't couple them, as errors relative to the whole map would.
+fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
+    let sizes = map.abs();
+    let passed = sizes * sizes / map.norm().max(f64::MIN_POSITIVE);
+    passed.sup(&sizes)
 }
 
 impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {

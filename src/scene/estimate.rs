@@ -4,7 +4,7 @@ use super::plan::Plan;
 use super::run::{Outcome, Sink};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{Choice, Control, Integrator, Step, Taylor, Tolerances};
+use crate::integrate::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances};
 
 /// How much tighter the second run is: its own error then hardly counts.
 const TIGHTER: f64 = 100.0;
@@ -66,18 +66,15 @@ pub(super) fn estimate<const N: usize>(
     let mut integrator = companion.integrator::<N>(plan.max_steps)?;
     let span = (0.0, plan.until);
     let mut stopped = false;
-    // The reference takes long enough that one wants to see it move, and to stop it.
-    let slow = companion == Companion::Reference;
-    let second = if plan.observed() || slow {
-        let mut observer = |step: &Step<'_, N>| {
-            let control = sink.reached(step.t1 / plan.until);
-            stopped = control == Control::Stop;
-            Ok(control)
-        };
-        integrator.flow(field, span, y0, Some(&mut observer))
-    } else {
-        integrator.flow(field, span, y0, None)
+    let mut observer = |step: &Step<'_, N>| {
+        let control = sink.reached(step.t1 / plan.until);
+        stopped = control == Control::Stop;
+        Ok(control)
     };
+    // The reference takes long enough that one wants to see it move, and to stop it.
+    let watched = plan.observed() || companion == Companion::Reference;
+    let observer: Option<Observer<'_, N>> = if watched { Some(&mut observer) } else { None };
+    let second = integrator.flow(field, span, y0, observer);
     outcome.work += integrator.work();
     let second = match second {
         Ok(second) if !stopped => second,

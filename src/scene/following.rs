@@ -52,7 +52,9 @@ impl Following {
                 0 => return Err(Error::parameter("max-points", 0, "at least 1")),
                 points => points,
             },
-            second: second.map(Choice::named).transpose()?,
+            second: second
+                .map(|name| Choice::named_by("crosscheck", name))
+                .transpose()?,
         })
     }
 }

@@ -71,15 +71,25 @@ impl Heard {
     }
 }
 
-/// Within the bar, and within what is claimed.
+/// Within the bar, and within what is claimed; how many times the error that is, the rounding of a double being one at least.
 #[track_caller]
-pub fn assert_known(what: &str, found: Uncertain, exact: f64, bar: f64) {
+pub fn assert_known(what: &str, found: Uncertain, exact: f64, bar: f64) -> f64 {
     let error = (found.value - exact).abs();
     assert!(error <= bar * exact.abs(), "{what}: {found:?}, not {exact}");
     assert!(
         error <= found.uncertainty + f64::EPSILON * exact.abs(),
         "{what}: {found:?} claims too much, {exact}"
     );
+    found.uncertainty / error.max(0.5 * f64::EPSILON * exact.abs())
+}
+
+/// Of claims that are this many times the errors: a typical one is sharp, and none is useless.
+#[track_caller]
+pub fn assert_sharp_claims(mut ratios: Vec<f64>) {
+    ratios.sort_by(f64::total_cmp);
+    let (median, worst) = (ratios[ratios.len() / 2], ratios[ratios.len() - 1]);
+    assert!(median <= 30.0, "median {median:.0} of {ratios:.1?}");
+    assert!(worst <= 1e3, "{ratios:.1?}");
 }
 
 /// Within 1e-12, and within the budget, up to the rounding of the reference to a double; and the budget is small.

@@ -20,7 +20,7 @@ pub struct Top<const N: usize> {
 }
 
 /// Points of the interpolation, and the half widths of its two intervals.
-const POINTS: usize = 9;
+const POINTS: usize = 13;
 const WIDTHS: [f64; 2] = [0.04, 0.027];
 /// Tolerance of the points.
 const FINE: f64 = 1e-16;
@@ -56,8 +56,7 @@ pub fn top<F: Family<N>, const N: usize>(
     let (parameters, scale) = (family.parameters(second.at), family.scale(second.at));
     // The value at a stationary point is known far better than its place.
     let uncertain = |i: usize| {
-        let apart =
-            3.0 * (first.at[i] - second.at[i]).abs() + second.errors[i] + orbit.of_parameters;
+        let apart = 3.0 * (first.at[i] - second.at[i]).abs() + second.errors[i];
         let rounding = 8.0 * f64::EPSILON * parameters[i].abs();
         Uncertain::new(parameters[i], scale[i].abs() * apart + rounding)
     };
@@ -113,14 +112,14 @@ fn stationary<F: Family<N>, const N: usize>(
     }
     let (top, _, bend) = value(&k, x);
     let inside = x.abs() < 1.0 && top.is_finite();
-    // The last coefficients are noise, or what is left of the curve: so much every one of them may err by, and the slope by n^2
-    // of it.
+    // The last coefficients are noise, or what is left of the curve: so much every one of them may err by, and the slope of T_n by
+    // n times that, over the root of 1 - x^2.
     let noise = |c: &[f64; POINTS]| {
         let last = c[POINTS - 1].abs().max(c[POINTS - 2].abs());
         last.max(f64::EPSILON * c[0].abs())
     };
-    let powers = (POINTS * POINTS) as f64;
-    let off = powers * noise(&k) / bend.abs();
+    let orders = (POINTS * (POINTS - 1) / 2) as f64;
+    let off = orders * noise(&k) / (bend.abs() * (1.0 - x * x).sqrt());
     let (_, slope_of_v, _) = value(&v, x);
     let errors = [
         slope_of_v.abs() * off + POINTS as f64 * noise(&v),

@@ -7,6 +7,7 @@
 use super::super::interrupt;
 use super::super::progress::Progress;
 use super::super::report::Report;
+use super::super::words::time;
 use crate::bifurcation::{Event, LocusRow};
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;
@@ -71,7 +72,8 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
             n => format!(", {n} of them kept from before"),
         };
         report.say(format!(
-            "{all} curves of bifurcations over the map in {seconds:.3} s{kept}"
+            "{all} curves of bifurcations over the map in {}{kept}",
+            time(seconds)
         ));
     }
     curves

@@ -113,7 +113,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         Note::new(4.0, 0.27, "asymmetric stick-slip"),
         Note::new(6e3, 0.2, "one or both"),
         Note::new(7e5, 0.33, "both slide"),
-        Note::new(5.0, 0.065, "symmetric stick-slip too"),
+        Note::new(25.0, 0.075, "symmetric too"),
         Note::new(0.022, 0.4, "2 V_M"),
         Note::new(2000.0, 0.4, "2 V_m"),
         Note::new(1.4e5, 0.4, "V_sn"),
