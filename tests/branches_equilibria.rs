@@ -341,3 +341,23 @@ fn what_makes_no_sense_is_bad_input() {
         assert!(error.is_input(), "{error}");
     }
 }
+
+/// At tiny stiffness omega is lost in rounding: a Hopf point has no period then, and no number that is none.
+#[test]
+fn a_frequency_below_rounding_gives_no_period() {
+    let of = |stiffness: f64| {
+        let heard = branches(&along_driving(stiffness));
+        let periods: Vec<_> = heard.of(Label::Hb).iter().map(|hb| hb.period).collect();
+        assert!(!periods.is_empty());
+        periods
+    };
+    assert!(of(0.14).iter().all(Option::is_some));
+    let periods = of(9.054e-56);
+    assert!(
+        periods
+            .iter()
+            .flatten()
+            .all(|period| period.value.is_finite())
+    );
+    assert!(periods.iter().any(Option::is_none), "{periods:?}");
+}

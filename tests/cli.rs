@@ -262,6 +262,7 @@ fn paths_are_tried_before_computing_and_nothing_is_left() {
     let place = folder("paths");
     let missing = place.join("no").join("run.csv");
     refused(&format!("{RUN} -o {}", missing.display()), "cannot write");
+    refused(&format!("{RUN} --plot x.png/"), "cannot write x.png/");
     refused(
         &format!("{RUN} --plot {}/no/run.svg", place.display()),
         "cannot write",
@@ -652,6 +653,34 @@ fn help_shows_an_example_that_runs() {
             assert!(status.success(), "{line}");
         }
     }
+}
+
+/// A time to wait that is beyond doubles is the longest one; that the run doesn't end is no wrong input.
+#[test]
+fn patience_is_finite() {
+    let ended = twinslip(
+        "section --driving 1.7 --stiffness 2.2250738585072014e-308 --returns 2 --max-steps 1934 --start near-symmetric:0.0085 --format csv -q",
+    );
+    assert!(
+        ended.code != 2 && !ended.err.contains("inf"),
+        "{}",
+        ended.err
+    );
+}
+
+/// Nothing is heard of this branch for long; whoever looks at a terminal sees that it is at work.
+#[test]
+fn a_run_that_is_silent_for_long_shows_that_it_goes_on() {
+    let branch = "branch orbits --stiffness 0.1379 --direct-effect 0.00593264152131 --symmetry asymmetric --from 1.49311502447 --to 1.675";
+    let command = format!("timeout 4 {} {branch}", env!("CARGO_BIN_EXE_twinslip"));
+    let seen = Command::new("script")
+        .args(["-qec", &command, "/dev/null"])
+        .env("TERM", "xterm")
+        .stdin(Stdio::null())
+        .output()
+        .expect("a terminal by script(1)");
+    let seen = String::from_utf8_lossy(&seen.stdout);
+    assert!(seen.contains("looking for the first point"), "{seen}");
 }
 
 /// No orbit is looked for without end: the message names the bound.

@@ -1,6 +1,6 @@
 //! What `branch` and `locus` share: rows on their way out, special points, how a run ends.
 
-use super::progress::Progress;
+use super::progress::{Progress, during};
 use super::report::{Report, unit_names};
 use super::resume::{Expected, Kept, beside, row_key, special_key};
 use super::rows::Row;
@@ -20,6 +20,7 @@ use std::fs::File;
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::PathBuf;
+use std::time::Instant;
 
 /// Everything that a run needs.
 pub struct Task<'a, R> {
@@ -64,6 +65,7 @@ impl<'a, R: Row> Task<'a, R> {
         let mut out = Out::new(self, report)?;
         interrupt::watch();
         let skipped = std::mem::take(&mut out.skipped);
+        out.progress.begin("looking for the first point");
         let computed = match out.complete {
             true => Ok(()),
             false => compute(&skipped, &mut |event| out.take(event)),
@@ -80,9 +82,11 @@ impl<'a, R: Row> Task<'a, R> {
             return written(Err(error), &report.place);
         }
         out.end(failure.is_some())?;
+        let seconds = out.progress.finish();
+        let begun = Instant::now();
         let checks = self.recheck(report, &out.special, failure.is_some());
         interrupt::unwatch();
-        let seconds = out.progress.finish().as_secs_f64();
+        let seconds = (seconds + begun.elapsed()).as_secs_f64();
         let ending = self.write(report, &out, &checks, failure.as_ref())?;
         match self.plot {
             Some(path) if !out.rows.is_empty() => {
@@ -107,19 +111,24 @@ impl<'a, R: Row> Task<'a, R> {
             return checks;
         };
         checks.method = Some(method.name());
-        for one in special {
-            if interrupt::asked() {
-                break;
+        let words = format!("computing the special points by {}", method.name());
+        let mut unchecked = Vec::new();
+        during(report.quiet, &words, || {
+            for one in special.iter().take_while(|_| !interrupt::asked()) {
+                let difference = orbits::crosscheck(self.slab, one, method);
+                let difference = difference.unwrap_or_else(|error| {
+                    unchecked.push((one, error));
+                    None
+                });
+                checks.differences.push(difference);
             }
-            let difference = orbits::crosscheck(self.slab, one, method).unwrap_or_else(|error| {
-                let (label, driving) = (one.label.name(), one.driving.value);
-                report.say(format!(
-                    "the crosscheck of {label} at V_H = {driving} by {} failed: {error}",
-                    method.name()
-                ));
-                None
-            });
-            checks.differences.push(difference);
+        });
+        for (one, error) in unchecked {
+            let (label, driving) = (one.label.name(), one.driving.value);
+            report.say(format!(
+                "the crosscheck of {label} at V_H = {driving} by {} failed: {error}",
+                method.name()
+            ));
         }
         checks
     }
@@ -188,6 +197,8 @@ struct Out<'a, R> {
     new: usize,
     special: Vec<Special>,
     progress: Progress,
+    /// Rows scroll by on the terminal: progress enough, once the first one is there.
+    scrolling: bool,
 }
 
 impl<'a, R: Row> Out<'a, R> {
@@ -222,7 +233,6 @@ impl<'a, R: Row> Out<'a, R> {
                 &task.system.units,
             )?;
         }
-        // Rows that scroll by on the terminal are progress enough.
         let scrolling = report.format != Format::Json
             && report.place.path().is_none()
             && io::stdout().is_terminal();
@@ -241,7 +251,8 @@ impl<'a, R: Row> Out<'a, R> {
             skipped: kept.numbers,
             rows: kept.rows,
             new: 0,
-            progress: Progress::new(report.quiet || scrolling),
+            progress: Progress::new(report.quiet),
+            scrolling,
         })
     }
 
@@ -340,6 +351,9 @@ impl<'a, R: Row> Out<'a, R> {
                 return ControlFlow::Break(());
             }
             self.new += 1;
+            if self.scrolling {
+                self.progress.finish();
+            }
             let (points, units) = (self.new, &self.task.system.units);
             let (driving, stiffness) = row.loading();
             self.progress.reached_at(|| {

@@ -2,8 +2,9 @@
 
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::thread;
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant};
 
 /// Runs shorter than this show nothing.
@@ -19,6 +20,7 @@ pub struct Progress {
     wanted: bool,
     calls: u32,
     bar: Option<ProgressBar>,
+    spinner: Option<Spinner>,
 }
 
 impl Progress {
@@ -29,6 +31,7 @@ impl Progress {
             wanted: !quiet && std::io::stderr().is_terminal(),
             calls: 0,
             bar: None,
+            spinner: None,
         }
     }
 
@@ -54,22 +57,21 @@ impl Progress {
         bar.set_position((fraction * TICKS as f64) as u64);
     }
 
-    /// A run whose end can't be foreseen has come so far; each call stands for much work.
-    pub fn reached_at(&mut self, place: impl FnOnce() -> String) {
-        if !self.wanted || self.begun.elapsed() < PATIENCE {
-            return;
-        }
-        let bar = self.bar.get_or_insert_with(|| {
-            let style = ProgressStyle::with_template("{spinner} {msg}  {elapsed}")
-                .expect("the template is valid");
-            ProgressBar::new_spinner().with_style(style)
-        });
-        bar.set_message(place());
-        bar.tick();
+    /// A run whose end can't be foreseen has begun with this, and nothing may be heard of it for long.
+    pub fn begin(&mut self, words: &str) {
+        self.spinner = self.wanted.then(|| Spinner::new(words));
     }
 
-    /// Removes the bar.
+    /// It has come so far.
+    pub fn reached_at(&self, place: impl FnOnce() -> String) {
+        if let Some(spinner) = &self.spinner {
+            spinner.say(place());
+        }
+    }
+
+    /// Removes bar and spinner.
     pub fn finish(&mut self) -> Duration {
+        self.spinner = None;
         if let Some(bar) = self.bar.take() {
             bar.finish_and_clear();
         }
@@ -79,29 +81,61 @@ impl Progress {
 
 /// Shows these words while something runs of which nothing is known but that it has not ended.
 pub fn during<T>(quiet: bool, words: &str, run: impl FnOnce() -> T) -> T {
+    let mut progress = Progress::new(quiet);
+    progress.begin(words);
+    run()
+}
+
+/// Words with a spinner that turns by itself, on a thread of its own, after a moment of patience.
+struct Spinner {
+    words: Arc<Mutex<String>>,
+    ended: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Spinner {
+    fn new(words: &str) -> Self {
+        let shared = Arc::new(Mutex::new(words.to_owned()));
+        let (ended, end) = mpsc::channel();
+        let words = Arc::clone(&shared);
+        let thread = thread::Builder::new().spawn(move || turn(&words, &end));
+        Spinner {
+            words: shared,
+            ended: Some(ended),
+            // Without a thread the run goes on unseen.
+            thread: thread.ok(),
+        }
+    }
+
+    fn say(&self, words: String) {
+        *self.words.lock().unwrap_or_else(PoisonError::into_inner) = words;
+    }
+}
+
+impl Drop for Spinner {
+    fn drop(&mut self) {
+        drop(self.ended.take());
+        if let Some(thread) = self.thread.take() {
+            // It only draws: what goes wrong there is nobody's concern.
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Until the other end of the channel is gone.
+fn turn(words: &Mutex<String>, end: &Receiver<()>) {
     /// Between two turns of the spinner.
     const TURN: Duration = Duration::from_millis(120);
-    if quiet || !std::io::stderr().is_terminal() {
-        return run();
+    if end.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
+        return;
     }
-    let (done, end) = mpsc::channel::<()>();
-    thread::scope(|scope| {
-        scope.spawn(move || {
-            if end.recv_timeout(PATIENCE) != Err(RecvTimeoutError::Timeout) {
-                return;
-            }
-            let style = ProgressStyle::with_template("{spinner} {msg}  {elapsed}")
-                .expect("the template is valid");
-            let bar = ProgressBar::new_spinner()
-                .with_style(style)
-                .with_message(words.to_owned());
-            while end.recv_timeout(TURN) == Err(RecvTimeoutError::Timeout) {
-                bar.tick();
-            }
-            bar.finish_and_clear();
-        });
-        let made = run();
-        drop(done);
-        made
-    })
+    let style =
+        ProgressStyle::with_template("{spinner} {msg}  {elapsed}").expect("the template is valid");
+    let bar = ProgressBar::new_spinner().with_style(style);
+    while end.recv_timeout(TURN) == Err(RecvTimeoutError::Timeout) {
+        let words = words.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        bar.set_message(words);
+        bar.tick();
+    }
+    bar.finish_and_clear();
 }

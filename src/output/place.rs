@@ -44,6 +44,9 @@ impl Place {
         if path.is_dir() {
             return Err(wrong(path, "it is a directory"));
         }
+        if path.as_os_str().as_encoded_bytes().ends_with(b"/") {
+            return Err(wrong(path, "it ends in /, as names of directories do"));
+        }
         if special(path) {
             return OpenOptions::new()
                 .write(true)

@@ -52,7 +52,7 @@ impl Watching {
 pub fn usual_patience(driving: f64, stiffness: f64) -> f64 {
     const HEALING: f64 = 1e4;
     const LOADINGS: f64 = 1e3;
-    HEALING + LOADINGS / (stiffness * driving)
+    (HEALING + LOADINGS / (stiffness * driving)).min(f64::MAX)
 }
 
 /// How a recording ended.
@@ -121,7 +121,7 @@ pub fn record<const N: usize>(
     };
     let all = (watching.skip + watching.returns) as f64;
     // The patience ends a run before this, but a flow needs an end.
-    let span = (0.0, 2.0 * (all + 1.0) * watching.patience);
+    let span = (0.0, (2.0 * (all + 1.0) * watching.patience).min(f64::MAX));
     let mut observer = |step: &Step<'_, N>| recorder.step(&watched, step, see);
     let flowed = integrator.flow(field, span, start, Some(&mut observer));
     let ended = match (flowed, recorder.ended.take()) {

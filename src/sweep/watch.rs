@@ -106,7 +106,7 @@ impl Run {
     /// A time that the run ends before.
     pub fn end(&self) -> f64 {
         let all = (self.watching.skip + self.watching.returns + 1) as f64;
-        2.0 * all * self.watching.patience
+        (2.0 * all * self.watching.patience).min(f64::MAX)
     }
 
     /// Sees a step; the run stops where it is to be judged.

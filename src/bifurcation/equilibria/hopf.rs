@@ -18,7 +18,7 @@ use std::f64::consts::TAU;
 pub(super) struct Hopf {
     pub driving: Uncertain,
     pub stiffness: Uncertain,
-    pub period: Uncertain,
+    pub period: Option<Uncertain>,
     pub rates: [f64; 2],
 }
 
@@ -122,8 +122,8 @@ impl HopfPoints<'_> {
         rounding(self.law, |law| Some(at(law, driving))) + of_driving
     }
 
-    /// The period 2 pi / omega, where V_H lies between the first and the last of these.
-    pub fn period(&self, driving: &[f64], near: [f64; 2]) -> Uncertain {
+    /// The period 2 pi / omega, where V_H lies between the first and the last of these. None where omega is lost in rounding.
+    pub fn period(&self, driving: &[f64], near: [f64; 2]) -> Option<Uncertain> {
         let all: Vec<_> = driving
             .iter()
             .map(|&v| self.sharp_frequency(v, near))
@@ -137,15 +137,14 @@ impl HopfPoints<'_> {
         // d ln T = -d omega^2 / (2 omega^2); twice that, as omega^2 is not quite linear
         let relative = reach.fold(0.0, f64::max) / (omega * omega);
         let value = TAU / omega;
-        let bounded = relative < 0.1;
-        Uncertain::new(
-            value,
-            if bounded {
-                value * (relative + 4.0 * f64::EPSILON)
-            } else {
-                f64::INFINITY
-            },
-        )
+        let uncertainty = if relative < 0.1 {
+            value * (relative + 4.0 * f64::EPSILON)
+        } else {
+            f64::INFINITY
+        };
+        value
+            .is_finite()
+            .then(|| Uncertain::new(value, uncertainty))
     }
 
     /// The rates at exactly this V_H, the same wherever the search for them began.

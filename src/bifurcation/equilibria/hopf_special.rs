@@ -159,7 +159,7 @@ pub(super) fn hopf_point(
         })?;
         let point = points.crosschecked(point);
         let special = Special {
-            period: Some(point.period),
+            period: point.period,
             criticality: Some(points.criticality(&point)),
             coefficient: Some(points.lyapunov(point.driving.value, point.rates).value),
             ..Special::new(Label::Hb, point.driving, point.stiffness)

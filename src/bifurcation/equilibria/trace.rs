@@ -119,7 +119,7 @@ impl Trace<'_, '_> {
             symmetry: self.points.curve.symmetry(),
             driving: point.driving,
             stiffness: point.stiffness,
-            period: Some(point.period.value),
+            period: point.period.map(|period| period.value),
             angle_over_pi: None,
             criticality,
             label,
@@ -132,7 +132,7 @@ impl Trace<'_, '_> {
         let l_1 = self.points.lyapunov(point.driving.value, point.rates);
         let asked = self.request.criticality && label != Label::Gh;
         self.teller.special(Special {
-            period: Some(point.period),
+            period: point.period,
             criticality: asked.then(|| self.points.criticality(&point)),
             coefficient: Some(l_1.value),
             ..Special::new(label, point.driving, point.stiffness)

@@ -29,6 +29,7 @@ const LARGEST: u64 = 1 << 26;
 /// The curves of these plans, with their titles.
 pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, Vec<LocusRow>)> {
     let mut progress = Progress::new(report.quiet);
+    progress.begin("over the map");
     let (mut computed, all) = (0, plans.len());
     let curves: Vec<(&str, Vec<LocusRow>)> = plans
         .iter()
@@ -58,7 +59,11 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
             computed += 1;
             match (followed, kept) {
                 // A map without all of a curve is better than none.
-                (Err(error), _) => report.say(format!("of the {title} over the map: {error}")),
+                (Err(error), _) => {
+                    progress.finish();
+                    report.say(format!("of the {title} over the map: {error}"));
+                    progress.begin("over the map");
+                }
                 (Ok(()), Some(kept)) if !interrupt::asked() => kept.write(&points),
                 (Ok(()), _) => {}
             }
