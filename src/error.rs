@@ -449,6 +449,11 @@ fn no_return(
     (lowest, highest): (f64, f64),
 ) -> String {
     let [since, t] = [since, t].map(|t| measured(t, units.time));
+    if lowest > highest {
+        return format!(
+            "no return to the section from t = {since} to t = {t}, which is less than a step; wait longer"
+        );
+    }
     let [section, lowest, highest] =
         [section, lowest, highest].map(|stress| measured(stress, units.stress));
     format!(

@@ -515,6 +515,25 @@ fn a_file_that_grows_too_large_leaves_nothing_beside_it() {
         "{err}"
     );
     assert_eq!(contents(&place), [""; 0]);
+    // Rows that were written stay, and no part of one.
+    for command in [
+        &format!("{RUN} --points 200"),
+        "law --law slip",
+        "branch equilibria --stiffness 0.1 --from 0.05 --to 1",
+    ] {
+        let path = place.join("rows.csv");
+        let script = format!(
+            "ulimit -f 4; exec {program} {command} -o {}",
+            path.display()
+        );
+        let ended = Command::new("bash").args(["-c", &script]).output();
+        assert_eq!(ended.expect("bash").status.code(), Some(2), "{command}");
+        for name in contents(&place) {
+            let text = fs::read_to_string(place.join(&name)).expect("rows");
+            assert!(text.ends_with('\n'), "{command}: {name}: {text}");
+            fs::remove_file(place.join(name)).expect("removed");
+        }
+    }
 }
 
 /// Nobody reads what is said: the run goes on.

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// What the remark on rows begins with.
 const REMARK: &str = "rows: ";
@@ -86,6 +87,8 @@ pub struct RowFile {
     file: File,
     /// Whether it was not there before.
     new: bool,
+    /// Whether rows have been written.
+    written: AtomicBool,
 }
 
 impl RowFile {
@@ -117,6 +120,7 @@ impl RowFile {
             path: path.to_owned(),
             file,
             new,
+            written: AtomicBool::new(false),
         };
         // Where the file system knows no locks, there is none.
         if let Err(TryLockError::WouldBlock) = claimed.file.try_lock() {
@@ -150,6 +154,7 @@ impl RowFile {
     /// # Errors
     /// The system's.
     pub fn after(&self, bytes: u64) -> io::Result<File> {
+        self.written.store(true, Ordering::Relaxed);
         self.file.set_len(bytes)?;
         self.mark(Status::Unfinished)?;
         let mut to = self.file.try_clone()?;
@@ -210,10 +215,32 @@ impl RowFile {
     }
 }
 
+impl RowFile {
+    /// Cuts what stands behind the end of the last line.
+    fn cut(&self) -> io::Result<()> {
+        const LONGEST: u64 = 1 << 16;
+        let begin = self.file.metadata()?.len().saturating_sub(LONGEST);
+        let (mut last, mut file) = (Vec::new(), &self.file);
+        file.seek(SeekFrom::Start(begin))?;
+        file.take(LONGEST).read_to_end(&mut last)?;
+        match last.iter().rposition(|&byte| byte == b'\n') {
+            Some(at) if at + 1 < last.len() => self.file.set_len(begin + at as u64 + 1),
+            _ => Ok(()),
+        }
+    }
+}
+
 impl Drop for RowFile {
-    /// A run that was refused leaves no file.
+    /// A run that was refused leaves no file, and one that could write no more no part of a row.
     fn drop(&mut self) {
-        if self.new && !self.gone() && self.file.metadata().is_ok_and(|data| data.len() == 0) {
+        if self.gone() {
+            return;
+        }
+        if self.written.load(Ordering::Relaxed) {
+            // What can't be read or cut now stays as it is: the row's check tells.
+            let _ = self.cut();
+        }
+        if self.new && self.file.metadata().is_ok_and(|data| data.len() == 0) {
             let _ = fs::remove_file(&self.path);
         }
     }

@@ -1,5 +1,5 @@
 //! Lanes of any number one after the other, in loops: for references, and for processors without vector instructions. Inlined
-//! nowhere on purpose: the code of 31 digits in eight lanes is long.
+//! nowhere: the code of 31 digits in eight lanes is long, and formulas of it inlined take most of the time of a build.
 
 use super::element::Element;
 use crate::number::DoubleDouble;
@@ -31,6 +31,7 @@ macro_rules! operators {
         $(
             impl<T: Element, const M: usize> $trait for Array<T, M> {
                 type Output = Self;
+                #[inline(never)]
                 fn $method(self, o: Self) -> Self {
                     self.zip(o, T::$method)
                 }
@@ -42,6 +43,7 @@ operators!(Add add Sub sub Mul mul Div div);
 
 impl<T: Element, const M: usize> Neg for Array<T, M> {
     type Output = Self;
+    #[inline(never)]
     fn neg(self) -> Self {
         self.map(T::neg)
     }
@@ -51,6 +53,7 @@ impl<T: Element, const M: usize> Neg for Array<T, M> {
 macro_rules! functions {
     ($($name:ident)*) => {
         $(
+            #[inline(never)]
             fn $name(self) -> Self {
                 self.map(|x| x.$name())
             }
@@ -72,30 +75,37 @@ impl<T: Element, const M: usize> Element for Array<T, M> {
     fn like_exact(self, x: DoubleDouble) -> Self {
         Array([self.0[0].like_exact(x); M])
     }
+    #[inline(never)]
     fn powf(self, p: f64) -> Self {
         self.map(|x| x.powf(p))
     }
+    #[inline(never)]
     fn sinh_cosh(self) -> (Self, Self) {
         (self.map(|x| x.sinh_cosh().0), self.map(|x| x.sinh_cosh().1))
     }
+    #[inline(never)]
     fn mul_add(mut self, a: Self, b: Self) -> Self {
         for (x, (a, b)) in self.0.iter_mut().zip(a.0.into_iter().zip(b.0)) {
             *x = x.mul_add(a, b);
         }
         self
     }
+    #[inline(never)]
     fn max(self, o: Self) -> Self {
         self.zip(o, T::max)
     }
+    #[inline(never)]
     fn min(self, o: Self) -> Self {
         self.zip(o, T::min)
     }
+    #[inline(never)]
     fn if_negative(mut self, a: Self, b: Self) -> Self {
         for (x, (a, b)) in self.0.iter_mut().zip(a.0.into_iter().zip(b.0)) {
             *x = x.if_negative(a, b);
         }
         self
     }
+    #[inline(never)]
     fn if_zero(mut self, a: Self, b: Self) -> Self {
         for (x, (a, b)) in self.0.iter_mut().zip(a.0.into_iter().zip(b.0)) {
             *x = x.if_zero(a, b);

@@ -1,4 +1,5 @@
-//! Polynomials of the third degree in two variations: what a flow map is to third order around a solution.
+//! Polynomials of the third degree in two variations: what a flow map is to third order around a solution. Their operations are
+//! called, not inlined: formulas of them would take minutes to compile.
 
 use super::element::{Element, rough_exp2, rough_log2};
 use crate::number::{DoubleDouble, Real};
@@ -47,6 +48,7 @@ impl Cubic {
     }
 
     /// g(self), from g, g', g''/2 and g'''/6 at the value.
+    #[inline(never)]
     fn composed(self, [g, first, second, third]: [f64; 4]) -> Self {
         let mut change = self;
         change.0[0] = 0.0;
@@ -64,6 +66,7 @@ impl Cubic {
 
 impl Neg for Cubic {
     type Output = Self;
+    #[inline(never)]
     fn neg(self) -> Self {
         self.scaled(-1.0)
     }
@@ -71,6 +74,7 @@ impl Neg for Cubic {
 
 impl Add for Cubic {
     type Output = Self;
+    #[inline(never)]
     fn add(self, o: Self) -> Self {
         self.zip(o, |x, y| x + y)
     }
@@ -78,6 +82,7 @@ impl Add for Cubic {
 
 impl Sub for Cubic {
     type Output = Self;
+    #[inline(never)]
     fn sub(self, o: Self) -> Self {
         self.zip(o, |x, y| x - y)
     }
@@ -85,6 +90,7 @@ impl Sub for Cubic {
 
 impl Mul for Cubic {
     type Output = Self;
+    #[inline(never)]
     fn mul(self, o: Self) -> Self {
         let (a, b) = (self.0, o.0);
         let mut c = [a[0] * b[0]; 10];
@@ -107,6 +113,7 @@ impl Mul for Cubic {
 impl Div for Cubic {
     type Output = Self;
     #[allow(clippy::suspicious_arithmetic_impl)]
+    #[inline(never)]
     fn div(self, o: Self) -> Self {
         let r = 1.0 / o.0[0];
         // Of a constant near 0 the powers overflow.
@@ -154,22 +161,27 @@ impl Element for Cubic {
     fn rough_exp2(self) -> Self {
         Self::constant(rough_exp2(self.0[0]))
     }
+    #[inline(never)]
     fn exp(self) -> Self {
         let e = self.0[0].exp();
         self.composed([e, e, e / 2.0, e / 6.0])
     }
+    #[inline(never)]
     fn exp_m1(self) -> Self {
         let e = self.0[0].exp();
         self.composed([self.0[0].exp_m1(), e, e / 2.0, e / 6.0])
     }
+    #[inline(never)]
     fn ln(self) -> Self {
         let r = 1.0 / self.0[0];
         self.composed([self.0[0].ln(), r, -r * r / 2.0, r * r * r / 3.0])
     }
+    #[inline(never)]
     fn ln_1p(self) -> Self {
         let r = 1.0 / (1.0 + self.0[0]);
         self.composed([self.0[0].ln_1p(), r, -r * r / 2.0, r * r * r / 3.0])
     }
+    #[inline(never)]
     fn powf(self, p: f64) -> Self {
         let r = 1.0 / self.0[0];
         let power = self.0[0].powf(p);
@@ -177,6 +189,7 @@ impl Element for Cubic {
         let second = (p - 1.0) * first * r / 2.0;
         self.composed([power, first, second, (p - 2.0) * second * r / 3.0])
     }
+    #[inline(never)]
     fn sinh_cosh(self) -> (Self, Self) {
         let (s, c) = Real::sinh_cosh(self.0[0]);
         (
