@@ -1,5 +1,4 @@
 //! Many runs in lanes are the same runs: against one after the other, whatever shares the batch, and where some fail.
-#![allow(missing_docs)]
 
 use twinslip::Error;
 use twinslip::field::State;

@@ -1,8 +1,6 @@
 //! `branch` and `locus` as a user meets them: reference points in the output, formats, resumption, refusals.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{csv, folder, number, object, run, twinslip};
 use serde_json::Value;
 #[cfg(unix)]

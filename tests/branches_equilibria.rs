@@ -1,10 +1,7 @@
 //! Branches of equilibria, against references of 20 and more digits.
-#![allow(missing_docs)]
 
-mod common;
-#[path = "common/heard.rs"]
-mod heard;
-
+use crate::common;
+use crate::common::heard;
 use common::{assert_close, data, number, relative};
 use heard::{Heard, assert_same, assert_sharp, slab, spinodal, two};
 use std::ops::ControlFlow;

@@ -1,12 +1,8 @@
 //! Branches of periodic orbits, against points known to twenty digits.
-#![allow(missing_docs)]
 
-mod common;
-#[path = "common/heard.rs"]
-mod heard;
-#[path = "common/returns.rs"]
-mod returns;
-
+use crate::common;
+use crate::common::heard;
+use crate::common::returns;
 use common::{data, number};
 use heard::{Heard, assert_known, slab, two};
 use returns::returns;

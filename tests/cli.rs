@@ -1,8 +1,6 @@
 //! The command line as a user meets it: exit codes, messages, files.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{contents, csv, folder, object, run, twinslip};
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};

@@ -1,5 +1,4 @@
 //! Curves of zeros with known shapes: circle, cusp, pitchfork, and what lies on them.
-#![allow(missing_docs)]
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;

@@ -1,12 +1,8 @@
 //! Curves of bifurcations of periodic orbits, against points known to twenty digits.
-#![allow(missing_docs)]
 
-mod common;
-#[path = "common/heard.rs"]
-mod heard;
-#[path = "common/returns.rs"]
-mod returns;
-
+use crate::common;
+use crate::common::heard;
+use crate::common::returns;
 use common::{data, number};
 use heard::{Heard, assert_known, assert_sharp_claims, two};
 use returns::returns;

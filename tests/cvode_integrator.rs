@@ -1,9 +1,6 @@
 //! CVODES as an integrator of the paper's systems: reference end states, blow-up, observers, tangents, and extremes.
-#![cfg(feature = "sundials")]
 
-#[path = "common/trajectories.rs"]
-mod trajectories;
-
+use crate::common::trajectories;
 use serde_json::Value;
 use trajectories::Run;
 use twinslip::error::Error;

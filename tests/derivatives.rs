@@ -1,5 +1,4 @@
 //! Every law in every system: Jacobian, second derivatives and parameter derivatives against differences of the field.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use twinslip::field::{Jacobian, State};

@@ -1,5 +1,4 @@
 //! Sums of two doubles: against values of 48 digits, exactness, symmetry, identities, and the ends of the range.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use serde_json::Value;

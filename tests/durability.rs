@@ -1,9 +1,6 @@
 //! What is written is not lost, doubled or mixed: kills at random moments, two writers at once, damaged and foreign files.
-#![allow(missing_docs)]
-#![cfg(unix)]
 
-mod command;
-
+use crate::command;
 use command::{Ended, contents, csv, folder, object, twinslip};
 use std::fs;
 use std::path::{Path, PathBuf};

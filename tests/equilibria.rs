@@ -1,8 +1,6 @@
 //! Steady states and eigenvalues against references of 20 and more digits.
-#![allow(missing_docs)]
 
-mod common;
-
+use crate::common;
 use common::{assert_close, complex, data, number, relative};
 use nalgebra::Complex;
 use twinslip::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};

@@ -1,5 +1,4 @@
 //! Equilibria of textbook systems along a parameter: known pitchforks, folds and Hopf points.
-#![allow(missing_docs)]
 
 use nalgebra::Complex;
 use std::ops::ControlFlow;

@@ -1,6 +1,5 @@
 //! Steady states of laws with any parameters: both solvers agree within their error budgets, and a brute-force scan finds
 //! no state that they missed.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use twinslip::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};

@@ -1,5 +1,4 @@
 //! `--estimate-error` over a hundred scenes: neither below the true error nor more than ten times above it.
-#![allow(missing_docs)]
 
 use twinslip::field::State;
 use twinslip::integrate::{Control, Integrator, Taylor};

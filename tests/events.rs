@@ -1,5 +1,4 @@
 //! Zeros along series, and the slips and stick-slip events that follow: across joints of steps, and against other methods.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use twinslip::field::State;

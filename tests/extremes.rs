@@ -1,9 +1,7 @@
 //! Extremes on the command line end in a right answer or a typed error: never a panic, a hang or a number that isn't one.
 //! "Right" is what two unlike methods agree on.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::twinslip;
 use serde_json::Value;
 

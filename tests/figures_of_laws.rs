@@ -1,5 +1,4 @@
 //! Figures 1, 2, 4, 15 and 17: what their sheets have against values of the paper, its errata and independent methods.
-#![allow(missing_docs)]
 
 use nalgebra::Complex;
 use std::sync::atomic::AtomicBool;

@@ -1,8 +1,6 @@
 //! The friction laws: their formulas against one another, and their steady states against references of 20 and more digits.
-#![allow(missing_docs)]
 
-mod common;
-
+use crate::common;
 use common::{assert_close, data, number};
 use proptest::prelude::*;
 use twinslip::friction::{

@@ -1,8 +1,6 @@
 //! Every command of the guide and of the README runs as it stands, and what documents point to is there.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{folder, twinslip};
 use std::path::Path;
 use std::process::Command;

@@ -2,8 +2,6 @@
 //! against each other. Plain numbers, which are all that a processor without AVX2 has, are held to the same on every one; which
 //! registers are held to it stands in what [`the_registers_of_this_processor`] prints and, where `TWINSLIP_REGISTERS` names those
 //! that must be there, is asserted.
-#![cfg(target_arch = "x86_64")]
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use pulp::x86::{V3, V4};

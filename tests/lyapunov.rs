@@ -1,11 +1,7 @@
 //! Lyapunov exponents: systems where they are known, periodic orbits whose multipliers are, and what checks them.
-#![allow(missing_docs)]
 
-#[path = "common/lorenz.rs"]
-mod lorenz;
-#[path = "common/mod.rs"]
-mod shared;
-
+use crate::common as shared;
+use crate::common::lorenz;
 use lorenz::{Field, Lorenz, Rotation};
 use nalgebra::SVector;
 use twinslip::Error;

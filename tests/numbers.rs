@@ -1,5 +1,4 @@
 //! The number types: differences keep relative accuracy, intervals contain the truth, jets differentiate exactly.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use twinslip::number::{

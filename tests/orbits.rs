@@ -1,8 +1,6 @@
 //! Periodic orbits and their multipliers against references of twenty digits, against other methods, and against each other.
-#![allow(missing_docs)]
 
-mod common;
-
+use crate::common;
 use common::{assert_close, complex, data, number, relative};
 use serde_json::Value;
 use twinslip::equilibrium::{Symmetry, Verdict};

@@ -1,5 +1,4 @@
 //! Periodic orbits of systems that have nothing to do with friction, by the same continuation.
-#![allow(missing_docs)]
 
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;

@@ -1,9 +1,6 @@
 //! The report as text: complete, escaped, in order, and the same each time. How it looks is the matter of `tests/browser`.
-#![allow(missing_docs)]
 
-#[path = "common/pages.rs"]
-mod pages;
-
+use crate::common::pages;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use twinslip::output::page::{Figure, Page, Score};

@@ -1,6 +1,4 @@
 //! What is written as Parquet is read back, by the same library and by another implementation.
-#![cfg(feature = "parquet")]
-#![allow(missing_docs)]
 
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;

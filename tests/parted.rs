@@ -1,10 +1,7 @@
 //! Two interfaces in the variables that keep their asymmetry: against published end states, against the linearised
 //! antisymmetric mode, against 31 digits and against the tangent in the other variables.
-#![allow(missing_docs)]
 
-#[path = "common/trajectories.rs"]
-mod trajectories;
-
+use crate::common::trajectories;
 use trajectories::Run;
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::{AnyLaw, Law, Parameters, Spinodal};

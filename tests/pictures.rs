@@ -1,12 +1,6 @@
 //! What pictures show and where: read from the SVG as a viewer would, with the font that is built in.
-#![allow(missing_docs)]
 
-mod drawn;
-#[path = "drawn/looks.rs"]
-mod looks;
-#[path = "drawn/sweeps.rs"]
-mod sweeps;
-
+use crate::drawn;
 use drawn::{BLUE, GRID, INK, PAPER, Shape, alone, numbers, seen, unit};
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Rect;

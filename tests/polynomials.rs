@@ -1,5 +1,4 @@
 //! Real roots on an interval: against polynomials made from known roots, in clusters, multiple, at the ends, at any scale.
-#![allow(missing_docs)]
 
 use proptest::prelude::*;
 use twinslip::number::DoubleDouble;

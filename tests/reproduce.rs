@@ -1,8 +1,6 @@
 //! The whole paper by one command: what is made, what is left, and what is kept when a run ends early.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{contents, csv, folder, run};
 use serde_json::Value;
 use std::collections::BTreeMap;

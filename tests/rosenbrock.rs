@@ -1,8 +1,6 @@
 //! The Rosenbrock integrators: order, reference trajectories, landing, observers, failures.
 
-#[path = "common/trajectories.rs"]
-mod trajectories;
-
+use crate::common::trajectories;
 use trajectories::Run;
 use twinslip::error::{Error, Result};
 use twinslip::field::{Jacobian, State, VectorField};

@@ -1,8 +1,6 @@
 //! The Rosenbrock methods on the classics of the stiff test sets, against their published digits.
 
-#[path = "common/stiff_classics.rs"]
-mod stiff_classics;
-
+use crate::common::stiff_classics;
 use nalgebra::SVector;
 use stiff_classics::*;
 use twinslip::field::{Jacobian, State, VectorField};

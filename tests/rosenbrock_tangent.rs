@@ -1,9 +1,7 @@
 //! The tangent flow of the Rosenbrock integrators: against the same method on the extended system, against differences,
 //! and against the identities that tangent flows obey.
 
-#[path = "common/trajectories.rs"]
-mod trajectories;
-
+use crate::common::trajectories;
 use trajectories::Run;
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::{

@@ -1,9 +1,7 @@
 //! What a run computes: slips, events, error estimates, the symmetric subspace, failures that keep their rows.
-#![allow(missing_docs)]
 
-mod command;
-mod common;
-
+use crate::command;
+use crate::common;
 use command::{csv, folder, number, object, twinslip};
 use serde_json::Value;
 use std::process::{Command, Stdio};

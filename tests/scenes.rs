@@ -1,8 +1,6 @@
 //! Scene files: those that the repository ships, and what is wrong in others.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{folder, run, twinslip};
 use serde_json::Value;
 use std::path::{Path, PathBuf};

@@ -1,8 +1,6 @@
 //! The fields that scripts read, by name and type.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{csv, number, object, twinslip};
 use serde_json::Value;
 

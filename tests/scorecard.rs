@@ -1,8 +1,6 @@
 //! The scorecard: its rule, and its numbers against references of twenty and more digits.
-#![allow(missing_docs)]
 
-mod common;
-
+use crate::common;
 use common::{data, number, relative};
 use serde_json::Value;
 use std::collections::BTreeSet;

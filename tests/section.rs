@@ -1,11 +1,7 @@
 //! Return maps: landings, regimes of the paper's runs, rotation numbers against Floquet theory, what is never said wrongly.
-#![allow(missing_docs)]
 
-#[path = "common/mod.rs"]
-mod shared;
-
-mod command;
-
+use crate::command;
+use crate::common as shared;
 use nalgebra::{Complex, DMatrix};
 use std::f64::consts::TAU;
 use twinslip::Error;

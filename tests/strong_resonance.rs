@@ -1,6 +1,5 @@
 //! The global bifurcations of the normal form (39)-(40) at finite mu, which figure 15 shows: limits at the resonance, and other
 //! methods.
-#![allow(missing_docs)]
 
 use std::f64::consts::TAU;
 use twinslip::bifurcation::strong_resonance::{Around, Homoclinic, ResonanceCycle};

@@ -1,8 +1,6 @@
 //! Maps of regimes: against the bifurcations of `tests/data/`, against orbits and multipliers found otherwise, and against themselves.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use twinslip::equilibrium::{Symmetry, Verdict};

@@ -1,8 +1,6 @@
 //! `sweep` and `merge` as a user meets them: the same bytes however a sweep is run, killed, gone on with or shared out.
-#![allow(missing_docs)]
 
-mod command;
-
+use crate::command;
 use command::{csv, folder, object, run, twinslip};
 use std::fs;
 use std::path::Path;

@@ -1,6 +1,5 @@
 //! Any small system written once: the classics and the normal form of the 1:2 resonance. Derivatives against differences,
 //! flows and tangents against 31 digits and an unlike method, special points against their closed forms.
-#![allow(missing_docs)]
 
 use std::f64::consts::PI;
 use twinslip::field::{Jacobian, State, VectorField};

@@ -1,12 +1,8 @@
 //! The Taylor method: end states, convergence, tangents, parameters, Liouville, both arithmetics, the switching method.
-#![allow(missing_docs)]
 
 #[allow(dead_code, reason = "one classic serves here")]
-#[path = "common/stiff_classics.rs"]
-mod stiff_classics;
-#[path = "common/trajectories.rs"]
-mod trajectories;
-
+use crate::common::stiff_classics;
+use crate::common::trajectories;
 use stiff_classics::Robertson;
 use trajectories::Run;
 use twinslip::Error;

@@ -1,5 +1,4 @@
 //! Flow maps to third order: against maps in closed form, and against the flow itself at finite variations.
-#![allow(missing_docs)]
 
 use std::f64::consts::PI;
 use twinslip::Error;

@@ -1,5 +1,4 @@
 //! How the benchmarks interpolate: what their tables say must follow from what was measured.
-#![allow(missing_docs)]
 
 #[path = "../benches/common/reach.rs"]
 mod reach;

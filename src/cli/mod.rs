@@ -19,8 +19,8 @@ mod section;
 mod shell;
 mod special;
 mod stream;
-mod sweep;
-mod words;
+pub(crate) mod sweep;
+pub(crate) mod words;
 
 use crate::error::Error;
 use crate::integrate::{VECTORS, allowed_vectors, used_vectors};
@@ -69,7 +69,7 @@ enum Command {
 }
 
 /// The whole command line, with all that `--version` tells.
-fn program() -> clap::Command {
+pub fn program() -> clap::Command {
     static VERSION: OnceLock<String> = OnceLock::new();
     let text = VERSION.get_or_init(|| {
         let sundials = report::sundials().unwrap_or_else(|| "not built in".into());
@@ -222,13 +222,5 @@ fn written(result: std::io::Result<()>, place: &crate::output::Place) -> Result<
                 .to_owned(),
             reason: error.to_string(),
         }),
-    }
-}
-
-#[cfg(test)]
-mod test {
-    #[test]
-    fn arguments_are_consistent() {
-        super::program().debug_assert();
     }
 }

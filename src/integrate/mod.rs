@@ -7,8 +7,8 @@ mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
-mod rosenbrock;
-mod singularity;
+pub(crate) mod rosenbrock;
+pub(crate) mod singularity;
 mod tableau;
 mod taylor;
 

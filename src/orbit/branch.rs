@@ -9,7 +9,7 @@ use super::motion::{Motion, Site};
 use super::polygon::Polygon;
 use super::shooting::close;
 use super::slab::Slab;
-use super::space::Space;
+use super::space::{Plane, Space, Whole};
 use super::walk::{Path, Walk};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
@@ -141,50 +141,24 @@ where
     Ok(())
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::friction::{AnyLaw, Parameters};
-    use crate::model::Loading;
-    use crate::orbit::space::{Plane, Whole};
-
-    fn slab(driving: f64) -> Slab {
-        Slab {
-            law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
-            interfaces: 2,
-            loading: Loading::new(driving, 0.14).unwrap(),
-        }
-    }
-
-    #[test]
-    fn hopf_points_are_where_they_are_known_to_be() {
-        let fast =
-            |symmetry| hopf_points(&slab(200.0), symmetry, Parameter::Driving).unwrap()[0].driving;
-        assert!((fast(Symmetry::Asymmetric) - 231.309).abs() < 5e-4);
-        assert!((fast(Symmetry::Symmetric) - 190.983).abs() < 5e-4);
-    }
-
-    #[test]
-    fn branches_lead_from_there_to_the_orbits_known() {
-        let mut tracer = Tracer::taylor(1e-10).unwrap();
-        let (whole, plane) = (slab(200.0).whole(), slab(100.0).plane());
-        let asymmetric = Whole(&*whole);
-        let orbits = from_hopf(&slab(200.0), Symmetry::Asymmetric, &asymmetric, &mut tracer);
-        let period = orbits.unwrap()[0].period();
-        assert!(
-            (period / 0.087_116_411_866_969_16 - 1.0).abs() < 1e-7,
-            "{period}"
-        );
-        let mut tracer = Tracer::taylor(1e-10).unwrap();
-        let symmetric = Plane {
+/// The period of the first orbit found at the slab's V_H on branches from Hopf points.
+pub fn period_from_hopf(slab: &Slab, symmetry: Symmetry) -> Result<Option<f64>> {
+    const TOLERANCE: f64 = 1e-10;
+    let (whole, plane) = (slab.whole(), slab.plane());
+    Ok(if symmetry == Symmetry::Symmetric {
+        let space = Plane {
             plane: &*plane,
             whole: None,
         };
-        let orbits = from_hopf(&slab(100.0), Symmetry::Symmetric, &symmetric, &mut tracer);
-        let period = orbits.unwrap()[0].period();
-        assert!(
-            (period / 0.269_687_217_909_473_3 - 1.0).abs() < 1e-7,
-            "{period}"
-        );
-    }
+        let orbits = from_hopf(slab, symmetry, &space, &mut Tracer::taylor(TOLERANCE)?)?;
+        orbits.first().map(|orbit| orbit.period())
+    } else {
+        let orbits = from_hopf(
+            slab,
+            symmetry,
+            &Whole(&*whole),
+            &mut Tracer::taylor(TOLERANCE)?,
+        )?;
+        orbits.first().map(|orbit| orbit.period())
+    })
 }

@@ -253,7 +253,7 @@ impl<const N: usize> Scaled<N> {
 }
 
 /// Both multipliers of the planes' maps, whose relative errors are given, with the logarithm of their product known.
-fn pair<const N: usize>(
+pub fn pair<const N: usize>(
     maps: &[Jacobian<N>],
     errors: &[f64],
     volume: Uncertain,
@@ -380,86 +380,4 @@ fn along_direction<const N: usize>(
         Multiplier::real(log, error, sign < 0.0),
         Multiplier::real(smaller, error + volume.uncertainty, sign < 0.0),
     ]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Maps between planes in turning frames, each of which multiplies one direction by e^a and the other by e^b.
-    fn maps(of: &[(f64, f64)]) -> Vec<Jacobian<3>> {
-        let frame = |k: usize| {
-            let (sin, cos) = (0.4 + 0.7 * (k % of.len()) as f64).sin_cos();
-            // Not at right angles.
-            Jacobian::<3>::new(
-                1.0,
-                0.0,
-                0.0,
-                0.0,
-                cos,
-                -0.6 * sin,
-                0.0,
-                sin,
-                0.8 * cos + 0.3,
-            )
-        };
-        let each = of.iter().enumerate().map(|(k, &(a, b))| {
-            let inner = Jacobian::<3>::from_diagonal(&State::<3>::new(0.0, a.exp(), b.exp()));
-            frame(k + 1) * inner * frame(k).try_inverse().unwrap()
-        });
-        each.collect()
-    }
-
-    fn multipliers(of: &[(f64, f64)]) -> Vec<Multiplier> {
-        let volume = of.iter().map(|(a, b)| a + b).sum();
-        pair(
-            &maps(of),
-            &vec![1e-15; of.len()],
-            Uncertain::new(volume, 1e-12),
-        )
-    }
-
-    fn assert_within(multiplier: &Multiplier, ln_abs: f64) {
-        let off = (multiplier.ln_abs.value - ln_abs).abs();
-        assert!(
-            off <= multiplier.ln_abs.uncertainty,
-            "{multiplier:?}, {ln_abs}"
-        );
-        assert!(multiplier.ln_abs.uncertainty < 1e-6, "{multiplier:?}");
-        assert_eq!(multiplier.kind, Kind::Real);
-    }
-
-    #[test]
-    fn multipliers_a_hundred_decades_apart_are_both_known() {
-        let found = multipliers(&[(-0.1, -7.0); 32]);
-        assert_within(&found[0], -3.2);
-        assert_within(&found[1], -224.0);
-    }
-
-    #[test]
-    fn what_grows_by_thirty_decades_and_shrinks_again_is_still_known() {
-        // Of the trace of the product nothing would be left.
-        let mut of = vec![(4.0, -1.0); 16];
-        of.extend([(-4.1, -1.0); 16]);
-        let found = multipliers(&of);
-        assert_within(&found[0], -1.6);
-        assert_within(&found[1], -32.0);
-    }
-
-    #[test]
-    fn noise_is_not_taken_for_a_pair() {
-        // The direction that grows is not the one that dominates at last: neither can be told.
-        let mut of = vec![(20.0, -20.0); 8];
-        of.extend([(-20.5, 19.6); 8]);
-        for multiplier in multipliers(&of) {
-            let known = multiplier.ln_abs.uncertainty < 1e-3;
-            let right = [-4.0, -3.2]
-                .iter()
-                .any(|x| (multiplier.ln_abs.value - x).abs() < 1e-3);
-            assert!(
-                multiplier.kind == Kind::BelowFloor || (known && right),
-                "{multiplier:?}"
-            );
-        }
-    }
 }

@@ -1,14 +1,14 @@
 //! Periodic orbits: Newton shooting on many nodes, and Floquet multipliers that can be trusted.
 
 mod arc;
-mod branch;
+pub(crate) mod branch;
 mod correct;
 mod crosscheck;
 pub mod cyclic;
 mod extremes;
 mod family;
 mod find;
-mod floquet;
+pub(crate) mod floquet;
 mod hopf;
 mod indicator;
 mod jet;

@@ -3,7 +3,7 @@
 //! A [`Product`] is made of [`Pieces`], what the scene files compute; a piece that several products show is computed once. What
 //! lies complete in the directory from an earlier run, made of the same scenes by the same program, is not made again.
 
-mod clock;
+pub(crate) mod clock;
 mod figures;
 mod pieces;
 mod product;

@@ -202,7 +202,7 @@ pub fn version() -> &'static str {
 }
 
 /// A number of things as C counts them.
-fn counted(what: &str, count: usize) -> Result<c_int> {
+pub fn counted(what: &str, count: usize) -> Result<c_int> {
     c_int::try_from(count).map_err(|_| Error::parameter(what, count, "at most 2147483647"))
 }
 
@@ -230,25 +230,6 @@ fn linked_version() -> Result<()> {
 }
 
 /// Whether a library of this version does what headers of that one say.
-fn compatible(linked: [i32; 3], headers: [i32; 3]) -> bool {
+pub fn compatible(linked: [i32; 3], headers: [i32; 3]) -> bool {
     linked[..2] == headers[..2]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_point_update_is_the_same_library() {
-        assert!(compatible([6, 4, 1], [6, 4, 1]));
-        assert!(compatible([6, 4, 2], [6, 4, 1]));
-        assert!(!compatible([6, 5, 0], [6, 4, 1]));
-        assert!(!compatible([7, 4, 1], [6, 4, 1]));
-    }
-
-    #[test]
-    fn what_c_cannot_count_is_refused() {
-        assert_eq!(counted("x", 3), Ok(3));
-        assert!(counted("x", 1 << 31).is_err_and(|error| error.is_input()));
-    }
 }

@@ -10,7 +10,7 @@ mod diagram;
 mod map;
 mod points;
 mod run;
-mod sweep;
+pub(crate) mod sweep;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};

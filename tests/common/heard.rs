@@ -1,5 +1,4 @@
 //! What branches and curves hand on, kept; and how it is held against what is known.
-#![allow(dead_code, missing_docs)]
 
 use std::ops::ControlFlow::{self, Continue};
 use twinslip::Result;

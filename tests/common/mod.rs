@@ -1,5 +1,11 @@
 //! Reference data and small comparisons, shared by the tests.
-#![allow(dead_code, missing_docs)]
+
+pub mod heard;
+pub mod lorenz;
+pub mod pages;
+pub mod returns;
+pub mod stiff_classics;
+pub mod trajectories;
 
 use serde_json::Value;
 

@@ -1,5 +1,4 @@
 //! Reports to try the page with: a small one as it is meant, and one with contents that break pages.
-#![allow(dead_code, missing_docs)]
 
 use twinslip::output::page::{Figure, FileRow, Page, Score, Table};
 

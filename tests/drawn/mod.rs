@@ -1,5 +1,7 @@
 //! What a viewer of a picture sees: the words and shapes of its SVG with their places, in the font that is built in.
-#![allow(missing_docs)]
+
+pub mod looks;
+pub mod sweeps;
 
 use resvg::usvg::{
     Group, Node, Options, Paint, Rect, Text, TextChunk, TextSpan, Tree, fontdb::Database,

@@ -1,8 +1,8 @@
 //! The edges: the kink of |v|, starts at the end of the numbers, runs of no length and back in time, the last tolerance.
 
-use crate::scene::Scene;
-use crate::trial::{Outcome, Trial, methods, promised, run};
-use crate::truth::Rule;
+use super::scene::Scene;
+use super::trial::{Outcome, Trial, methods, promised, run};
+use super::truth::Rule;
 use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{MAX_STEPS, Step, Tolerances};

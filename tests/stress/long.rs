@@ -1,6 +1,6 @@
 //! Ten thousand cycles: a stable orbit keeps its period and its amplitude, and a symmetric run its symmetry.
 
-use crate::trial::methods;
+use super::trial::methods;
 use twinslip::field::{State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Choice, Control, MAX_STEPS, Step, Tolerances};

@@ -1,8 +1,8 @@
 //! Random scenes. The seed is fixed, so that every run of the tests sees the same scenes; what has ever failed is kept in
 //! `regressions.txt` and run first.
 
-use crate::scene::random;
-use crate::trial::{Outcome, Trial, methods, promised, run};
+use super::scene::random;
+use super::trial::{Outcome, Trial, methods, promised, run};
 use proptest::prelude::*;
 use proptest::test_runner::{Config, FileFailurePersistence, RngAlgorithm, TestRng, TestRunner};
 

@@ -1,7 +1,7 @@
 //! Counts of what came out, and the table they are written to.
 
-use crate::trial::{Outcome, promised};
-use crate::truth::Rule;
+use super::trial::{Outcome, promised};
+use super::truth::Rule;
 use std::collections::BTreeMap;
 use std::fmt::Write;
 

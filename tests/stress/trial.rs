@@ -1,7 +1,7 @@
 //! One method on one scene at one tolerance: what came out, and whether it is as good as it has to be.
 
-use crate::scene::Scene;
-use crate::truth::{Rule, Truth, error};
+use super::scene::Scene;
+use super::truth::{Rule, Truth, error};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use twinslip::error::{Error, Result};
 use twinslip::field::{State, VectorField};

@@ -1,6 +1,6 @@
 //! Where a scene ends, how well that is known, and how much of an error on the way arrives there.
 
-use crate::scene::Scene;
+use super::scene::Scene;
 use nalgebra::SVector;
 use twinslip::error::Error;
 use twinslip::field::{Jacobian, State, VectorField};

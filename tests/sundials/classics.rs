@@ -4,8 +4,7 @@ use super::*;
 use stiff_classics::*;
 use twinslip::sundials::{Mode, Problem, Reason};
 
-#[path = "../common/stiff_classics.rs"]
-mod stiff_classics;
+use crate::common::stiff_classics;
 
 fn check<const N: usize>(
     field: &dyn VectorField<N>,

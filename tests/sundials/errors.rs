@@ -204,7 +204,11 @@ fn nothing_is_printed() {
         return;
     }
     let child = Command::new(std::env::current_exe().unwrap())
-        .args(["--exact", "errors::nothing_is_printed", "--nocapture"])
+        .args([
+            "--exact",
+            "sundials::errors::nothing_is_printed",
+            "--nocapture",
+        ])
         .env(CHILD, "1")
         .output()
         .unwrap();

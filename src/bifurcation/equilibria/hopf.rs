@@ -229,7 +229,7 @@ impl Sharp {
 }
 
 /// The zero near x > 0 of a function that knows whether its sign is certain, and the radius within which it certainly changes.
-pub(super) fn certain_zero(
+pub fn certain_zero(
     what: &'static str,
     x: f64,
     g: impl Fn(f64) -> (f64, bool),

@@ -7,11 +7,11 @@ use super::crossing::Root;
 use super::curves::Curve;
 use super::hopf::{Hopf, HopfPoints, certain_zero, straddling};
 use super::lyapunov::{Lyapunov, first_lyapunov};
-use crate::bifurcation::{Criticality, Label, Parameter, Special};
+use crate::bifurcation::{Criticality, Label, Parameter, Special, Symmetry};
 use crate::field::State;
 use crate::friction::{AnyLaw, Law, steady_stress};
 use crate::model::{Loading, single_interface, two_interfaces};
-use crate::number::{DoubleDouble, Real, bracketed_root};
+use crate::number::{DoubleDouble, Real, Uncertain, bracketed_root};
 use nalgebra::DMatrix;
 
 impl HopfPoints<'_> {
@@ -168,55 +168,24 @@ pub(super) fn hopf_point(
     })
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::equilibrium::{Solver, Symmetry, steady_states};
-    use crate::friction::Parameters;
-
-    /// (29) and (34) against the Jacobian of the vector field, over the whole curves.
-    #[test]
-    fn closed_forms_and_the_jacobian_agree() {
-        let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-        let mut compared = 0;
-        for i in 0..60 {
-            let v = 0.0505 * (403.0_f64 / 0.0505).powf(f64::from(i) / 59.0);
-            for state in steady_states(&law, v, 2, Solver::Newton)
-                .unwrap()
-                .equilibria
-            {
-                let curve = match state.symmetry {
-                    Symmetry::Symmetric => Curve::Symmetric { interfaces: 2 },
-                    Symmetry::Asymmetric => Curve::Asymmetric,
-                };
-                let points = HopfPoints {
-                    law: &law,
-                    curve,
-                    root: Root::Larger,
-                };
-                let rates = [state.slip_rate[0], state.slip_rate[1]];
-                let point = points.at_driving(v, rates).expect("a Hopf point");
-                let closed = point.stiffness.value;
-                let numerical = points.numerical(point.rates, closed).expect("another one");
-                let apart = (numerical / closed - 1.0).abs();
-                assert!(apart < 1e-11, "V_H = {v}, {curve:?}: {apart:e}");
-                let widened = points.crosschecked(point).stiffness;
-                assert!((numerical - closed).abs() <= widened.uncertainty);
-                compared += 1;
-            }
-        }
-        assert_eq!(compared, 120);
-    }
-
-    #[test]
-    fn a_zero_is_as_certain_as_its_signs() {
-        let found = certain_zero("test", 1.414, |x| {
-            (x * x - 2.0, (x * x - 2.0).abs() > 1e-12)
-        });
-        let (zero, radius) = found.unwrap();
-        let off = (zero - std::f64::consts::SQRT_2).abs();
-        assert!(off <= radius && radius < 2e-12, "{off:e} {radius:e}");
-        assert!(certain_zero("test", 1.0, |x| (x * x + 1.0, true)).is_none());
-        assert!(certain_zero("test", 1.0, |x| (x - 1.001, false)).is_none());
-    }
+/// K of a Hopf point by its closed form, by the Jacobian of the vector field, and what the comparison leaves certain of it.
+pub fn by_both(
+    law: &AnyLaw,
+    driving: f64,
+    rates: [f64; 2],
+    symmetry: Symmetry,
+) -> Option<(Uncertain, f64, Uncertain)> {
+    let curve = match symmetry {
+        Symmetry::Symmetric => Curve::Symmetric { interfaces: 2 },
+        Symmetry::Asymmetric => Curve::Asymmetric,
+    };
+    let points = HopfPoints {
+        law,
+        curve,
+        root: Root::Larger,
+    };
+    let point = points.at_driving(driving, rates)?;
+    let closed = point.stiffness;
+    let numerical = points.numerical(point.rates, closed.value)?;
+    Some((closed, numerical, points.crosschecked(point).stiffness))
 }

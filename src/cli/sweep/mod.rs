@@ -7,8 +7,8 @@ mod parquet;
 mod picture;
 #[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
 mod ranks;
-#[cfg(any(feature = "mpi", test))]
-mod wire;
+#[cfg(feature = "mpi")]
+pub(crate) mod wire;
 
 use super::report::Report;
 use super::{Ending, interrupt, say, written};

@@ -14,9 +14,9 @@
 //! below that rounding, as by twelve decades in E5 of the stiff test set, its end is what rounding has made of the invariant.
 //! Such a variable is better eliminated by it.
 
-mod control;
+pub(crate) mod control;
 mod drive;
-mod factors;
+pub(crate) mod factors;
 mod stages;
 mod tangent;
 mod trajectory;

@@ -3,7 +3,7 @@
 mod attractors;
 mod basin;
 mod plane;
-mod tints;
+pub(crate) mod tints;
 
 pub use basin::basin_map;
 pub use plane::regime_map;

@@ -1,0 +1,504 @@
+//! What can go wrong, with the numbers that say where, how far off, and what to try.
+
+use std::borrow::Cow;
+use std::path::PathBuf;
+
+/// The crate's result.
+pub type Result<T, E = Error> = std::result::Result<T, E>;
+
+/// Every failure of the library. [`Error::is_input`] separates bad input (exit status 2) from numerical failure (1).
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter outside its domain.
+    #[error("{name} is {value}, but must be {must}")]
+    Parameter {
+        /// The parameter as the user names it.
+        name: String,
+        /// The value given.
+        value: String,
+        /// What is allowed.
+        must: Cow<'static, str>,
+    },
+    /// An input that can't be read as what it should be: a scene file, a start, a combination of options.
+    #[error("{0}")]
+    Input(String),
+    /// A file that can't be read or written.
+    #[error("cannot {action} {}: {reason}", path.display())]
+    File {
+        /// `read`, `write`, `create`.
+        action: &'static str,
+        /// The file.
+        path: PathBuf,
+        /// The operating system's words.
+        reason: String,
+    },
+    /// A SUNDIALS function returned a negative code.
+    #[error("{}", sundials(&MessageUnits::NONE, function, name, *code, *time, message))]
+    Sundials {
+        /// The C function.
+        function: &'static str,
+        /// The flag's own name, such as `CV_ERR_FAILURE`.
+        name: String,
+        /// The flag.
+        code: i32,
+        /// Time that the integration had reached; `None` where there is none.
+        time: Option<f64>,
+        /// The message that SUNDIALS would have printed.
+        message: String,
+    },
+    /// An integrator returned successfully at another time than the one asked for (SUNDIALS issue 82).
+    #[error("{}", wrong_time(&MessageUnits::NONE, *asked, *returned))]
+    WrongTime {
+        /// The time asked for.
+        asked: f64,
+        /// The time returned.
+        returned: f64,
+    },
+    /// The step fell below the spacing of the floating-point numbers around t.
+    #[error("{}", step_too_small(&MessageUnits::NONE, *t, *h))]
+    StepTooSmall {
+        /// Time reached.
+        t: f64,
+        /// Last step tried.
+        h: f64,
+    },
+    /// The solution leaves every bound in finite time: there is nothing to compute beyond t.
+    #[error("{}", blow_up(&MessageUnits::NONE, *t, *uncertainty))]
+    BlowUp {
+        /// Time of the singularity, as the run has it.
+        t: f64,
+        /// Bound on the error of t, where a second run has given one.
+        uncertainty: Option<f64>,
+        /// Largest component of |dy/dt| where the run ended.
+        rate: f64,
+    },
+    /// The solution goes on, but for a while it changes faster than doubles can follow: within less than the spacing of the
+    /// numbers around t, or beyond the largest of them.
+    #[error("{}", too_fast(&MessageUnits::NONE, (*t, *uncertainty), *overflows, *lasting))]
+    TooFast {
+        /// Time at which it does, as the run has it.
+        t: f64,
+        /// Bound on the error of t, where a second run has given one.
+        uncertainty: Option<f64>,
+        /// Largest component of |dy/dt| where the run ended.
+        rate: f64,
+        /// Whether the rates go on to leave the range of doubles.
+        overflows: bool,
+        /// The equations whose solutions are known to exist for all time, where they are: a friction law by its name.
+        lasting: Option<&'static str>,
+    },
+    /// The bound on work was used up.
+    #[error("{}", too_many_steps(&MessageUnits::NONE, *limit, *t, *end))]
+    TooManySteps {
+        /// Time reached.
+        t: f64,
+        /// Time asked for.
+        end: f64,
+        /// The bound.
+        limit: usize,
+    },
+    /// A right-hand side was not finite where it had to be.
+    #[error("{}", non_finite(&MessageUnits::NONE, what, *t))]
+    NonFinite {
+        /// What was evaluated.
+        what: &'static str,
+        /// Where.
+        t: f64,
+    },
+    /// The field has no formula that power series could run on.
+    #[error(
+        "this field is not written for power series, which the method taylor needs; choose another method"
+    )]
+    NotAnalytic,
+    /// A run did not come back to the section within the time it was given.
+    #[error("{}", no_return(&MessageUnits::NONE, (*since, *t), *section, (*lowest, *highest)))]
+    NoReturn {
+        /// Time of the last return; the beginning of the run if there was none.
+        since: f64,
+        /// Time reached.
+        t: f64,
+        /// Where the section lies, in the direction of its normal: the stress of a section of constant stress.
+        section: f64,
+        /// The lowest the run has been since in that direction.
+        lowest: f64,
+        /// The highest.
+        highest: f64,
+    },
+    /// An iteration stopped before its tolerance.
+    #[error(
+        "{what} did not converge: residual {residual:e} after {iterations} iterations, {tolerance:e} was asked for"
+    )]
+    NotConverged {
+        /// What was solved.
+        what: &'static str,
+        /// Iterations made.
+        iterations: usize,
+        /// Residual reached.
+        residual: f64,
+        /// Residual asked for.
+        tolerance: f64,
+    },
+    /// A branch or curve went no further than its method could.
+    #[error("{}", stuck(&MessageUnits::NONE, *driving, *stiffness))]
+    Stuck {
+        /// V_H reached.
+        driving: f64,
+        /// K reached.
+        stiffness: f64,
+    },
+    /// A branch or curve has more points than are allowed.
+    #[error(
+        "stopped after {limit} points, as many as allowed; raise --max-points, or --step-limit for longer steps"
+    )]
+    TooManyPoints {
+        /// The bound.
+        limit: usize,
+    },
+    /// A formula that holds in few dimensions only was asked of a larger system.
+    #[error("{what} is known for systems of {known} variables only, and this one has {dimension}")]
+    Dimension {
+        /// The formula.
+        what: &'static str,
+        /// Where it holds: `2 or 3`.
+        known: &'static str,
+        /// The number of variables.
+        dimension: usize,
+    },
+    /// The user stopped it (Ctrl-C), or the caller's callback did.
+    #[error("interrupted; what was finished is kept")]
+    Interrupted,
+    /// Something else was found where a periodic orbit was looked for.
+    #[error("{}", no_orbit(&MessageUnits::NONE, what, *period, hint))]
+    NoOrbit {
+        /// What happened.
+        what: String,
+        /// The period of what was found instead.
+        period: Option<f64>,
+        /// What to try.
+        hint: &'static str,
+    },
+    /// Another error, told in the user's units.
+    #[error("{words}")]
+    InUnits {
+        /// The error, dimensionless.
+        error: Box<Error>,
+        /// What it says.
+        words: String,
+    },
+}
+
+/// The units in which an error tells its numbers: how large one dimensionless unit is, and the name behind a number.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MessageUnits {
+    /// Of times.
+    pub time: (f64, &'static str),
+    /// Of stresses.
+    pub stress: (f64, &'static str),
+    /// Of slip rates.
+    pub slip_rate: (f64, &'static str),
+    /// Of stiffnesses.
+    pub stiffness: (f64, &'static str),
+}
+
+impl MessageUnits {
+    /// Numbers as they are, without a name.
+    const NONE: MessageUnits = MessageUnits {
+        time: (1.0, ""),
+        stress: (1.0, ""),
+        slip_rate: (1.0, ""),
+        stiffness: (1.0, ""),
+    };
+}
+
+impl Error {
+    /// A parameter outside its domain: `Error::parameter("K", -1.0, "positive and finite")`.
+    pub fn parameter(
+        name: impl Into<String>,
+        value: impl ToString,
+        must: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Error::Parameter {
+            name: name.into(),
+            value: echoed(shortest(value.to_string())),
+            must: must.into(),
+        }
+    }
+
+    /// A name that is none of those that there are, with the one that may have been meant:
+    /// `Error::unknown("law", "spinodl", &AnyLaw::NAMES)`.
+    pub fn unknown(what: impl Into<String>, given: &str, known: &[&str]) -> Self {
+        let list = match known {
+            [one] => (*one).to_owned(),
+            [others @ .., last] if others.len() < 3 => format!("{} or {last}", others.join(", ")),
+            _ => format!("one of {}", known.join(", ")),
+        };
+        let hint = did_you_mean(given, known.iter().copied());
+        Error::parameter(what, given, list + &hint)
+    }
+
+    /// The same error, with its times, stresses, slip rates and stiffnesses told in these units.
+    pub fn in_units(self, units: &MessageUnits) -> Self {
+        let words = match &self {
+            Error::StepTooSmall { t, h } => step_too_small(units, *t, *h),
+            Error::BlowUp { t, uncertainty, .. } => blow_up(units, *t, *uncertainty),
+            Error::TooFast {
+                t,
+                uncertainty,
+                overflows,
+                lasting,
+                ..
+            } => too_fast(units, (*t, *uncertainty), *overflows, *lasting),
+            Error::TooManySteps { t, end, limit } => too_many_steps(units, *limit, *t, *end),
+            Error::NonFinite { what, t } => non_finite(units, what, *t),
+            Error::NoReturn {
+                since,
+                t,
+                section,
+                lowest,
+                highest,
+            } => no_return(units, (*since, *t), *section, (*lowest, *highest)),
+            Error::Stuck { driving, stiffness } => stuck(units, *driving, *stiffness),
+            Error::WrongTime { asked, returned } => wrong_time(units, *asked, *returned),
+            Error::NoOrbit { what, period, hint } => no_orbit(units, what, *period, hint),
+            // The message of SUNDIALS tells times of its own.
+            Error::Sundials {
+                function,
+                name,
+                code,
+                time,
+                ..
+            } => sundials(units, function, name, *code, *time, ""),
+            _ => return self,
+        };
+        Error::InUnits {
+            error: Box::new(self),
+            words,
+        }
+    }
+
+    /// Whether the input is to blame (exit status 2) and not the computation (exit status 1).
+    pub fn is_input(&self) -> bool {
+        match self {
+            Error::Parameter { .. }
+            | Error::Input(_)
+            | Error::File { .. }
+            | Error::Dimension { .. } => true,
+            Error::InUnits { error, .. } => error.is_input(),
+            _ => false,
+        }
+    }
+}
+
+/// What was given, as messages show it: of what is long the begin.
+fn echoed(given: String) -> String {
+    /// Letters that are shown.
+    const SHOWN: usize = 80;
+    let length = given.chars().count();
+    if length <= SHOWN {
+        return given;
+    }
+    let begin: String = given.chars().take(SHOWN).collect();
+    format!("{begin}... ({length} letters)")
+}
+
+/// Names at least as similar as this (Jaro-Winkler) are offered as what may have been meant.
+const SIMILAR: f64 = 0.75;
+
+/// `; did you mean "x"?` for the known name most like the given one, or nothing if none is.
+pub fn did_you_mean<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> String {
+    // Underscores are what most would write first: they count as hyphens.
+    let plain = |name: &str| name.replace('_', "-").to_lowercase();
+    let given = plain(given);
+    known
+        .map(|name| (strsim::jaro_winkler(&given, &plain(name)), name))
+        .filter(|&(similarity, _)| similarity >= SIMILAR)
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map_or(String::new(), |(_, name)| {
+            format!("; did you mean {name:?}?")
+        })
+}
+
+/// A count with its thousands apart: `63,183`.
+#[doc(hidden)]
+pub fn count(n: usize) -> String {
+    let digits = n.to_string();
+    let mut text = String::new();
+    for (i, digit) in digits.chars().enumerate() {
+        if i > 0 && (digits.len() - i).is_multiple_of(3) {
+            text.push(',');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A number with many zeros is easier to read with an exponent, and nothing at all is easily overlooked.
+fn shortest(plain: String) -> String {
+    if plain.is_empty() {
+        return "\"\"".into();
+    }
+    match plain.parse::<f64>() {
+        Ok(x) if format!("{x:?}").len() < plain.len() => format!("{x:?}"),
+        _ => plain,
+    }
+}
+
+/// A number as people write it: in digits, or with an exponent where these would be many.
+fn number(x: f64) -> String {
+    if x == 0.0 || (1e-4..1e15).contains(&x.abs()) {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
+}
+
+fn measured(x: f64, (factor, name): (f64, &str)) -> String {
+    // The last digit of a product is no digit of x.
+    let x = if factor == 1.0 {
+        x
+    } else {
+        format!("{:.14e}", x * factor).parse().unwrap_or(x * factor)
+    };
+    named(number(x), name)
+}
+
+/// A number with its unit, if that has a name.
+fn named(number: String, unit: &str) -> String {
+    if unit.is_empty() {
+        number
+    } else {
+        format!("{number} {unit}")
+    }
+}
+
+/// A time to the digits that are known.
+fn known(t: f64, uncertainty: Option<f64>, (factor, name): (f64, &str)) -> String {
+    /// What the rounding to the digits told may add to a bound.
+    const TOLD: f64 = 1.07;
+    let Some(uncertainty) = uncertainty else {
+        return measured(t, (factor, name));
+    };
+    let (t, uncertainty) = (t * factor, uncertainty * factor * TOLD);
+    let decimals = 2.0 - uncertainty.log10().floor();
+    let t = if (0.0..=17.0).contains(&decimals) && t.abs() < 1e15 {
+        format!("{t:.*}", decimals as usize)
+    } else {
+        number(t)
+    };
+    named(format!("{t} ± {uncertainty:.1e}"), name)
+}
+
+fn step_too_small(units: &MessageUnits, t: f64, h: f64) -> String {
+    let (t, h) = (measured(t, units.time), measured(h, units.time));
+    format!("the step fell to {h} at t = {t}, below what can be added to t; try a larger tolerance")
+}
+
+fn blow_up(units: &MessageUnits, t: f64, uncertainty: Option<f64>) -> String {
+    let t = known(t, uncertainty, units.time);
+    format!(
+        "the solution blows up in finite time: at t = {t} it leaves every bound; there is no solution beyond"
+    )
+}
+
+fn too_fast(
+    units: &MessageUnits,
+    (t, uncertainty): (f64, Option<f64>),
+    overflows: bool,
+    lasting: Option<&str>,
+) -> String {
+    let spacing = measured(t.abs() * f64::EPSILON, units.time);
+    let t = known(t, uncertainty, units.time);
+    let how = if overflows {
+        "its rates pass 1.8e308, the largest double".to_owned()
+    } else {
+        format!("it changes within less than {spacing}, the spacing of doubles there")
+    };
+    let lasting = match lasting {
+        Some(name) => format!(
+            "; solutions of the law {name} exist for all time, so this is no blow-up but the end of double precision"
+        ),
+        None => String::new(),
+    };
+    format!(
+        "at t = {t} the solution is too fast for double precision: {how}{lasting}; no tolerance helps, a stiffer spring may"
+    )
+}
+
+fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f64) -> String {
+    // A run that goes on until it meets something has no end.
+    let before = if end.is_finite() {
+        format!(", before t = {}", measured(end, units.time))
+    } else {
+        String::new()
+    };
+    format!(
+        "{} steps were used up at t = {}{before}; raise --max-steps, loosen the tolerance or shorten the run",
+        count(limit),
+        measured(t, units.time)
+    )
+}
+
+fn non_finite(units: &MessageUnits, what: &str, t: f64) -> String {
+    format!("{what} is not finite at t = {}", measured(t, units.time))
+}
+
+fn no_return(
+    units: &MessageUnits,
+    (since, t): (f64, f64),
+    section: f64,
+    (lowest, highest): (f64, f64),
+) -> String {
+    let [since, t] = [since, t].map(|t| measured(t, units.time));
+    if lowest > highest {
+        return format!(
+            "no return to the section from t = {since} to t = {t}, which is less than a step; wait longer"
+        );
+    }
+    let [section, lowest, highest] =
+        [section, lowest, highest].map(|stress| measured(stress, units.stress));
+    format!(
+        "no return to the section from t = {since} to t = {t}: the run stayed between {lowest} and {highest}, the section lies at {section}; move the section in between, cross it the other way or wait longer"
+    )
+}
+
+fn no_orbit(units: &MessageUnits, what: &str, period: Option<f64>, hint: &str) -> String {
+    let period = period.map_or(String::new(), |period| {
+        format!(", of period {}", measured(period, units.time))
+    });
+    format!("{what}{period}; {hint}")
+}
+
+fn stuck(units: &MessageUnits, driving: f64, stiffness: f64) -> String {
+    let driving = measured(driving, units.slip_rate);
+    let stiffness = measured(stiffness, units.stiffness);
+    format!(
+        "the curve ends at V_H = {driving}, K = {stiffness}, where the method goes no further; try a smaller --step-limit"
+    )
+}
+
+fn wrong_time(units: &MessageUnits, asked: f64, returned: f64) -> String {
+    let [asked, returned] = [asked, returned].map(|t| measured(t, units.time));
+    format!(
+        "asked for the state at t = {asked}, but the integrator returned t = {returned}; try a larger tolerance"
+    )
+}
+
+fn sundials(
+    units: &MessageUnits,
+    function: &str,
+    name: &str,
+    code: i32,
+    time: Option<f64>,
+    message: &str,
+) -> String {
+    let at = time.map_or(String::new(), |t| {
+        format!(" at t = {}", measured(t, units.time))
+    });
+    let said = if message.is_empty() {
+        String::new()
+    } else {
+        format!(": {message}")
+    };
+    format!("{function} returned {name} ({code}){at}{said}")
+}

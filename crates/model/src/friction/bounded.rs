@@ -1,0 +1,96 @@
+//! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
+//! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
+
+use super::{AnyLaw, Law, Spinodal};
+use crate::number::Real;
+
+/// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bounded {
+    /// b/a
+    pub beta: f64,
+    /// 2 exp(-a_v/a)
+    pub gamma0: f64,
+    /// R = t** V*/L
+    pub r: f64,
+}
+
+impl Bounded {
+    #[inline(always)]
+    fn as_limit(&self) -> Spinodal {
+        let Bounded { beta, gamma0, r } = *self;
+        Spinodal {
+            beta,
+            gamma0,
+            r,
+            c: 0.0,
+        }
+    }
+}
+
+impl Law for Bounded {
+    type Core = Spinodal;
+
+    fn core(&self) -> Spinodal {
+        self.as_limit()
+    }
+
+    fn any(&self) -> AnyLaw {
+        AnyLaw::Bounded(*self)
+    }
+
+    fn name(&self) -> &'static str {
+        "bounded"
+    }
+
+    #[inline(always)]
+    fn activation<T: Real>(&self, tau: T) -> T {
+        self.as_limit().activation(tau)
+    }
+
+    // v = 2 exp(-a_v/a) (psi/psi_*)^(-beta) sinh(tau), psi_* = 1 / (1 + R)  (9)
+    #[inline(always)]
+    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
+        self.as_limit().slip_rate(activation, psi)
+    }
+
+    fn log_strength<T: Real>(&self, psi: T) -> T {
+        self.as_limit().log_strength(psi)
+    }
+
+    fn log_activation(&self, tau: f64) -> f64 {
+        self.as_limit().log_activation(tau)
+    }
+
+    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
+        self.as_limit().compliance(v, log_strength)
+    }
+
+    // tau = asinh{(v/2) exp[(a_v + b ln(psi/psi_*))/a]}  (6)
+    fn stress<T: Real>(&self, v: T, psi: T) -> T {
+        self.as_limit().stress(v, psi)
+    }
+
+    // dpsi/dt = (1 - psi)/R - |v| psi  (6)
+    #[inline(always)]
+    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        self.as_limit().evolution(v, psi)
+    }
+
+    fn steady_state<T: Real>(&self, v: T) -> T {
+        self.as_limit().steady_state(v)
+    }
+
+    // V_M = 1 / (R (beta - 1))  (7)
+    fn steady_extrema(&self) -> Vec<f64> {
+        self.as_limit().steady_extrema()
+    }
+
+    fn lasts(&self) -> bool {
+        true
+    }
+
+    fn bounds_state(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,67 @@
+//! What the rounding of the law's own parameters does: 0.0489/0.0349 is no double, and the truth is that of the decimals.
+
+use super::AnyLaw;
+
+/// How much a parameter is changed to see its effect, relative.
+const CHANGE: f64 = 1e-6;
+/// How much the parameters may be off: b/a by two roundings and a division.
+const ROUNDING: f64 = 2.0 * f64::EPSILON;
+
+/// How much gamma0 = 2 exp(-a_v/a) may be off: by a_v/a times more.
+fn rounding_of(gamma0: f64) -> f64 {
+    ROUNDING * (1.0 + (0.5 * gamma0).ln().abs())
+}
+
+/// The law with each of its parameters changed, and how much of the change rounding makes.
+fn changed(law: &AnyLaw) -> Vec<(AnyLaw, f64)> {
+    macro_rules! each {
+        ($kind:ident, $law:expr, $($field:ident),+) => {
+            vec![$({
+                let mut other = *$law;
+                other.$field *= 1.0 + CHANGE;
+                let rounding = match stringify!($field) {
+                    "gamma0" => rounding_of($law.gamma0),
+                    _ => ROUNDING,
+                };
+                (AnyLaw::$kind(other), rounding / CHANGE)
+            }),+]
+        };
+    }
+    match law {
+        AnyLaw::Spinodal(l) => each!(Spinodal, l, beta, gamma0, r, c),
+        AnyLaw::Bounded(l) => each!(Bounded, l, beta, gamma0, r),
+        AnyLaw::RegularisedAgeing(l) => each!(RegularisedAgeing, l, beta, gamma0),
+        AnyLaw::DieterichRuina(l) => each!(DieterichRuina, l, beta, gamma0),
+        AnyLaw::Slip(l) => each!(Slip, l, beta, gamma0),
+    }
+}
+
+/// What a number that depends on the law is off by the rounding of the parameters; infinite where it does not exist.
+#[doc(hidden)]
+pub fn rounding(law: &AnyLaw, number: impl Fn(&AnyLaw) -> Option<f64>) -> f64 {
+    let [sum] = roundings(law, |law| [number(law).unwrap_or(f64::NAN)]);
+    sum
+}
+
+/// The same of several numbers.
+fn roundings<const N: usize>(law: &AnyLaw, numbers: impl Fn(&AnyLaw) -> [f64; N]) -> [f64; N] {
+    let each = effects(law, numbers);
+    std::array::from_fn(|i| {
+        let sum: f64 = each.iter().map(|effect| effect[i].abs()).sum();
+        if sum.is_finite() { sum } else { f64::INFINITY }
+    })
+}
+
+/// What the rounding of each parameter does to the numbers, of either sign.
+#[doc(hidden)]
+pub fn effects<const N: usize>(
+    law: &AnyLaw,
+    numbers: impl Fn(&AnyLaw) -> [f64; N],
+) -> Vec<[f64; N]> {
+    let here = numbers(law);
+    let effect = |(other, part): (AnyLaw, f64)| {
+        let there = numbers(&other);
+        std::array::from_fn(|i| (there[i] - here[i]) * part)
+    };
+    changed(law).into_iter().map(effect).collect()
+}

@@ -1,0 +1,100 @@
+//! The paper's systems: one interface (11), two interfaces (19), the symmetric subspace of the latter, and the normal form
+//! (39)-(40); and any other small system.
+//!
+//! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
+
+pub mod classics;
+mod logarithmic;
+pub mod normal_form;
+mod parted;
+mod response;
+pub mod scales;
+mod series;
+mod single_interface;
+mod smooth;
+mod symmetric;
+#[cfg(target_arch = "x86_64")]
+mod tangent;
+mod trajectories;
+mod two_interfaces;
+
+pub use parted::{Parted, parted, united};
+pub use single_interface::SingleInterface;
+pub use smooth::Smooth;
+pub use symmetric::Symmetric;
+#[doc(hidden)]
+pub use trajectories::{Convoy, MAX_LANES, convoy};
+pub use two_interfaces::TwoInterfaces;
+
+use crate::error::Result;
+use crate::field::{Jacobian, State, VectorField};
+use crate::friction::{AnyLaw, Law, positive, with_law};
+use std::ops::{Mul, Sub};
+
+/// The two control parameters of the paper.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Parameter {
+    /// V_H, the driving velocity in V*.
+    Driving,
+    /// K = k L / (a sigma), the stiffness.
+    Stiffness,
+}
+
+/// A system that depends on V_H and K.
+pub trait Driven<const N: usize>: VectorField<N> {
+    /// df/dp.
+    fn parameter_derivative(&self, y: &State<N>, p: Parameter) -> State<N>;
+    /// dJ/dp.
+    fn parameter_jacobian(&self, y: &State<N>, p: Parameter) -> Jacobian<N>;
+    /// The slip rates of both interfaces, in V*; a single one stands in both places.
+    fn slip_rates(&self, y: &State<N>) -> [f64; 2];
+}
+
+/// V_H and K, checked.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Loading {
+    /// V_H in V*.
+    pub driving: f64,
+    /// K in a sigma / L.
+    pub stiffness: f64,
+}
+
+impl Loading {
+    /// # Errors
+    /// [`crate::Error::Parameter`] unless both are positive and finite.
+    pub fn new(driving: f64, stiffness: f64) -> Result<Self> {
+        Ok(Loading {
+            driving: positive("driving", driving)?,
+            stiffness: positive("stiffness", stiffness)?,
+        })
+    }
+}
+
+/// dtau/dt = K (V_H - v), from (V_H, K) and the slip rate of the whole slab  (11), (19)
+#[inline(always)]
+fn stress_rate<T: Sub<Output = T> + Mul<Output = T>>(
+    (driving, stiffness): (T, T),
+    slip_rate: T,
+) -> T {
+    stiffness * (driving - slip_rate)
+}
+
+/// Two interfaces (19) with a law chosen at run time, compiled for that law.
+pub fn two_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
+    with_law!(law, law => Box::new(TwoInterfaces { law, loading }))
+}
+
+/// Two interfaces (19) in (tau, ln psi_2, ln(psi_1 - psi_2)) with a law chosen at run time.
+pub fn parted_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
+    with_law!(law, law => Box::new(Parted { law: law.core() }.at(&loading)))
+}
+
+/// The symmetric subspace of (19) with a law chosen at run time.
+pub fn symmetric(law: AnyLaw, loading: Loading) -> Box<dyn Driven<2>> {
+    with_law!(law, law => Box::new(Symmetric::new(law, loading)))
+}
+
+/// One interface (11) with a law chosen at run time.
+pub fn single_interface(law: AnyLaw, loading: Loading) -> Box<dyn Driven<2>> {
+    with_law!(law, law => Box::new(SingleInterface { law, loading }))
+}

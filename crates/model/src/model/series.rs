@@ -1,0 +1,201 @@
+//! The interfaces in power series: the laws' own formulas, in the state (tau, psi_1, psi_2).
+//!
+//! In psi a law takes two series fewer than in ln psi, an exponential and a quotient. Two equal interfaces are the symmetric
+//! subspace, and one interface is two equal ones driven twice as fast by a spring half as stiff, so one code serves all.
+
+use super::{Loading, stress_rate};
+use crate::friction::Law;
+use crate::number::DoubleDouble;
+use crate::series::{
+    Accuracy, Both, Element, Expansion, Formula, Order, Rates, Series, Solution, Stepper, WATCHED,
+    value,
+};
+#[cfg(target_arch = "x86_64")]
+use {crate::series::Pair, pulp::x86::V3};
+
+/// Both interfaces in the lanes of E, variables (tau, psi).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Interfaces<E, L> {
+    pub law: L,
+    pub driving: E,
+    pub stiffness: E,
+}
+
+impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
+    // |v| has a kink where v = 0, which is where tau = 0.
+    const KINK: Option<usize> = Some(0);
+
+    #[inline(always)]
+    fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, E, O>; 2]) -> Rates<'t, E, O, 2> {
+        let v = self.law.slip_rate(self.law.activation(tau), psi);
+        let loading = (value(self.driving), value(self.stiffness));
+        Rates {
+            variables: [
+                stress_rate(loading, v.over_interfaces()),
+                self.law.evolution(v, psi),
+            ],
+            watched: [v; WATCHED],
+        }
+    }
+
+    #[inline(always)]
+    fn units(&self, x: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
+        let [tau, psi] = *x;
+        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+        [of_tau, psi * tau.like(atol + rtol)]
+    }
+
+    #[inline(always)]
+    fn allows(&self, [tau, psi]: &[E; 2]) -> E {
+        // psi, and no number where tau is not finite.
+        tau.mul_add(tau.like(0.0), *psi)
+    }
+}
+
+type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
+type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
+
+/// A solution in N = 2 or 3 dimensions, in the best arithmetic of this processor.
+pub(super) enum Track<L> {
+    #[cfg(target_arch = "x86_64")]
+    Pair(V3, PairStepper<L>),
+    Plain(PlainStepper<L>),
+}
+
+/// The same expression for every variant, `$s` its stepper.
+macro_rules! each {
+    ($track:expr, $s:ident => $body:expr) => {
+        match $track {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(_, $s) => $body,
+            Track::Plain($s) => $body,
+        }
+    };
+}
+
+impl<L: Law> Track<L> {
+    pub fn new(law: L, loading: &Loading) -> Self {
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = crate::series::avx2() {
+            let zero = Pair::new(simd, [0.0; 2]);
+            return Track::Pair(simd, stepper(law, loading, zero));
+        }
+        Track::Plain(stepper(law, loading, Both([0.0; 2])))
+    }
+}
+
+fn stepper<E: Element, L: Law>(
+    law: L,
+    loading: &Loading,
+    zero: E,
+) -> Stepper<E, Interfaces<E, L>, 2> {
+    let formula = Interfaces {
+        law,
+        driving: zero.like(loading.driving),
+        stiffness: zero.like(loading.stiffness),
+    };
+    Stepper::new(formula, zero)
+}
+
+/// A step of the pair, to be compiled for the processor's vector instructions.
+#[cfg(target_arch = "x86_64")]
+struct PairStep<'a, L> {
+    stepper: &'a mut PairStepper<L>,
+    accuracy: &'a Accuracy,
+    limit: f64,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl<L: Law> pulp::NullaryFnOnce for PairStep<'_, L> {
+    type Output = f64;
+    #[inline(always)]
+    fn call(self) -> f64 {
+        let limit = self.stepper.state()[0].like(self.limit);
+        self.stepper.advance(self.accuracy, limit).first()
+    }
+}
+
+impl<L: Law, const N: usize> Solution<N> for Track<L> {
+    fn start(&mut self, y: &[f64; N]) {
+        let log_states = [y[1], y[N - 1]];
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(simd, stepper) => {
+                let tau = Pair::new(*simd, [y[0]; 2]);
+                stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
+            }
+            Track::Plain(stepper) => {
+                stepper.start([Both([y[0]; 2]), Both(log_states.map(f64::exp))]);
+            }
+        }
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            Track::Pair(simd, stepper) => {
+                let limit = limit.hi();
+                let step = PairStep {
+                    stepper,
+                    accuracy,
+                    limit,
+                };
+                DoubleDouble::from(simd.vectorize(step))
+            }
+            Track::Plain(stepper) => {
+                DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())
+            }
+        }
+    }
+
+    fn state(&self) -> [f64; N] {
+        let x = each!(self, s => s.state().map(Element::interfaces));
+        chart(x[0][0], x[1].map(f64::ln))
+    }
+
+    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
+        each!(self, s => copy(s, order, into));
+    }
+}
+
+/// The series of the last step, with the slip rate as what is watched first.
+pub(super) fn copy<E: Element, F: Formula<E, 2>, const N: usize>(
+    stepper: &Stepper<E, F, 2>,
+    order: usize,
+    into: &mut Expansion<N>,
+) {
+    into.order = order;
+    into.unit = stepper.unit().first();
+    into.chart = logarithms;
+    let (tau, psi) = (stepper.series(0), stepper.series(1));
+    for j in 0..=order {
+        let x = chart::<N>(tau[j].first(), psi[j].interfaces());
+        for (series, x) in into.variables.iter_mut().zip(x) {
+            series[j] = x;
+        }
+    }
+    let Some(v) = stepper.watched_series(0) else {
+        return;
+    };
+    for (j, v) in v[..order].iter().enumerate() {
+        let [first, second] = v.interfaces();
+        into.slip_rates[0][j] = first;
+        into.slip_rates[1][j] = second;
+    }
+}
+
+/// (tau, x_1, x_2), or (tau, x_1) where both are equal.
+pub(super) fn chart<const N: usize>(tau: f64, x: [f64; 2]) -> [f64; N] {
+    let mut all = [tau; N];
+    all[1..].copy_from_slice(&x[..N - 1]);
+    all
+}
+
+/// From (tau, psi) to (tau, ln psi).
+pub(super) fn logarithms<const N: usize>(mut x: [f64; N]) -> [f64; N] {
+    for psi in &mut x[1..] {
+        *psi = psi.max(f64::MIN_POSITIVE).ln();
+    }
+    x
+}

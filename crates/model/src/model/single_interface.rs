@@ -1,0 +1,121 @@
+//! One interface, equation (11).
+
+use super::logarithmic::{Logarithmic, recorded};
+use super::response::{Response, bilinear, curvature_variables, slope_variables};
+use super::series::Track;
+use super::tangent::tangent;
+use super::{Driven, Loading, Parameter, stress_rate};
+use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::friction::{AnyLaw, Law};
+use crate::series::{Recorded, Solution, Tangent};
+
+/// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SingleInterface<L> {
+    /// The law of the interface.
+    pub law: L,
+    /// V_H and K.
+    pub loading: Loading,
+}
+
+impl<L: Law> SingleInterface<L> {
+    fn recorded(&self) -> Recorded<Logarithmic<AnyLaw>, 2> {
+        recorded(self.law, &self.loading, 1.0)
+    }
+
+    /// The loading under which two equal interfaces move as this one: K (V_H - v) = K/2 (2 V_H - 2 v).
+    pub(super) fn as_pair(&self) -> Loading {
+        Loading {
+            driving: 2.0 * self.loading.driving,
+            stiffness: 0.5 * self.loading.stiffness,
+        }
+    }
+
+    #[inline]
+    fn slopes(&self, y: &State<2>) -> Response<super::response::Slope> {
+        let [tau, w] = slope_variables(y[0], y[1]);
+        Response::new(&self.law, self.law.activation(tau), w)
+    }
+}
+
+impl<L: Law> VectorField<2> for SingleInterface<L> {
+    fn f(&self, y: &State<2>) -> State<2> {
+        let one = Response::new(&self.law, self.law.activation(y[0]), y[1]);
+        State::<2>::new(
+            stress_rate((self.loading.driving, self.loading.stiffness), one.v),
+            one.g,
+        )
+    }
+
+    fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
+        let k = self.loading.stiffness;
+        let one = self.slopes(y);
+        #[rustfmt::skip]
+        let j = Jacobian::<2>::new(
+            -k * one.v.gradient[0], -k * one.v.gradient[1],
+            one.g.gradient[0],      one.g.gradient[1],
+        );
+        j
+    }
+
+    fn second_derivative(&self, y: &State<2>, a: &State<2>, b: &State<2>) -> State<2> {
+        let [tau, w] = curvature_variables(y[0], y[1]);
+        let one = Response::new(&self.law, self.law.activation(tau), w);
+        let (a, b) = ([a[0], a[1]], [b[0], b[1]]);
+        State::<2>::new(
+            -self.loading.stiffness * bilinear(&one.v, a, b),
+            bilinear(&one.g, a, b),
+        )
+    }
+
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<2>> {
+        Some(self)
+    }
+}
+
+impl<L: Law> Analytic<2> for SingleInterface<L> {
+    fn solution(&self) -> Box<dyn Solution<2> + '_> {
+        Box::new(Track::new(self.law.core(), &self.as_pair()))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<2> + '_> {
+        self.recorded().reference()
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
+        let pair = tangent(self.law.core(), self.as_pair(), (2.0, 0.5), parameters);
+        pair.unwrap_or_else(|| self.recorded().tangent(parameters))
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {
+        self.recorded().reference_tangent()
+    }
+}
+
+impl<L: Law> Driven<2> for SingleInterface<L> {
+    fn parameter_derivative(&self, y: &State<2>, p: Parameter) -> State<2> {
+        let rate = match p {
+            Parameter::Driving => self.loading.stiffness,
+            Parameter::Stiffness => self.loading.driving - self.slip_rates(y)[0],
+        };
+        State::<2>::new(rate, 0.0)
+    }
+
+    fn parameter_jacobian(&self, y: &State<2>, p: Parameter) -> Jacobian<2> {
+        let mut j = Jacobian::<2>::zeros();
+        if p == Parameter::Stiffness {
+            let one = self.slopes(y);
+            j[(0, 0)] = -one.v.gradient[0];
+            j[(0, 1)] = -one.v.gradient[1];
+        }
+        j
+    }
+
+    fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
+        [self.law.slip_rate(self.law.activation(y[0]), y[1].exp()); 2]
+    }
+}

@@ -1,0 +1,153 @@
+//! Any small system of [`Equations`] as a vector field: everything from the right-hand side, written once.
+
+use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::number::Jet;
+#[cfg(target_arch = "x86_64")]
+use crate::series::{Both, Four, Variational};
+use crate::series::{Cubic, Equations, Plain, Recorded, Solution, Tangent, Transport, is_small};
+
+/// Equations at given parameters.
+///
+/// ```
+/// use twinslip::field::State;
+/// use twinslip::integrate::{MAX_STEPS, Taylor, Tolerances};
+/// use twinslip::model::{Smooth, classics::Lorenz};
+/// # fn main() -> twinslip::Result<()> {
+/// let lorenz = Smooth { equations: Lorenz::classical(), parameters: [28.0, 8.0 / 3.0] };
+/// let mut taylor = Taylor::new(Tolerances::equal(1e-14)?, MAX_STEPS)?;
+/// let (_, derivatives) = taylor.derivatives(&lorenz, (0.0, 1.0), &State::<3>::new(1.0, 2.0, 20.0), true)?;
+/// // volumes shrink by the same factor everywhere
+/// assert!((derivatives.log_determinant + 10.0 + 1.0 + 8.0 / 3.0).abs() < 1e-13);
+/// # Ok(())
+/// # }
+/// ```
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Smooth<S, const N: usize> {
+    /// The right-hand side.
+    pub equations: S,
+    /// The two control parameters.
+    pub parameters: [f64; 2],
+}
+
+impl<S: Equations<N>, const N: usize> Smooth<S, N> {
+    /// df/dp of the i-th parameter.
+    pub fn parameter_derivative(&self, y: &State<N>, i: usize) -> State<N> {
+        let mut parameters = self.parameters.map(constant);
+        parameters[i].gradient = [1.0];
+        let x = y.data.0[0].map(constant);
+        State::from(self.equations.rates(x, parameters).map(|f| f.gradient[0]))
+    }
+
+    /// dJ/dp of the i-th parameter.
+    pub fn parameter_jacobian(&self, y: &State<N>, i: usize) -> Jacobian<N> {
+        let inner = |value: f64| Jet::<f64, N> {
+            value,
+            gradient: [0.0; N],
+        };
+        let fixed = |value| Jet {
+            value,
+            gradient: [inner(0.0)],
+        };
+        let mut parameters = self.parameters.map(|p| fixed(inner(p)));
+        parameters[i].gradient = [inner(1.0)];
+        let x = Jet::variables(y.data.0[0]).map(fixed);
+        let rates = self.equations.rates(x, parameters);
+        Jacobian::from_fn(|i, j| rates[i].gradient[0].gradient[j])
+    }
+}
+
+/// A number that does not vary.
+fn constant(value: f64) -> Jet<f64, 1> {
+    Jet {
+        value,
+        gradient: [0.0],
+    }
+}
+
+impl<S: Equations<N>, const N: usize> VectorField<N> for Smooth<S, N> {
+    fn lasting(&self) -> Option<&'static str> {
+        self.equations.lasting()
+    }
+
+    fn f(&self, y: &State<N>) -> State<N> {
+        State::from(self.equations.rates(y.data.0[0], self.parameters))
+    }
+
+    fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
+        let parameters = self.parameters.map(|value| Jet {
+            value,
+            gradient: [0.0; N],
+        });
+        let rates = self
+            .equations
+            .rates(Jet::variables(y.data.0[0]), parameters);
+        Jacobian::from_fn(|i, j| rates[i].gradient[j])
+    }
+
+    fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
+        // f(y + a u + b v), differentiated in a and in b.
+        let of = |value: f64, u: f64, v: f64| Jet {
+            value: Jet {
+                value,
+                gradient: [u],
+            },
+            gradient: [constant(v)],
+        };
+        let x = std::array::from_fn(|i| of(y[i], u[i], v[i]));
+        let rates = self
+            .equations
+            .rates(x, self.parameters.map(|p| of(p, 0.0, 0.0)));
+        State::from(rates.map(|f| f.gradient[0].gradient[0]))
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<N>> {
+        Some(self)
+    }
+}
+
+impl<S: Equations<N>, const N: usize> Smooth<S, N> {
+    fn is_small(&self) -> bool {
+        is_small(&self.equations, self.parameters)
+    }
+
+    fn recorded(&self) -> Recorded<S, N> {
+        Recorded {
+            equations: self.equations,
+            parameters: self.parameters,
+            symmetric: false,
+        }
+    }
+}
+
+impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
+    fn solution(&self) -> Box<dyn Solution<N> + '_> {
+        if self.is_small() {
+            Box::new(Plain::new(self.equations, self.parameters))
+        } else {
+            self.recorded().solution()
+        }
+    }
+
+    fn reference(&self) -> Box<dyn Solution<N> + '_> {
+        self.recorded().reference()
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_> {
+        // Those in the parameters fill lanes that there are.
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = crate::series::avx2().filter(|_| self.is_small()) {
+            let gradient = Both([Four::new(simd, [0.0; 4]); 2]);
+            let (equations, parameters) = (self.equations, self.parameters);
+            return Box::new(Variational::new(equations, parameters, gradient));
+        }
+        self.recorded().tangent(parameters)
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {
+        self.recorded().reference_tangent()
+    }
+
+    fn transport(&self, start: [Cubic; N]) -> Option<Box<dyn Transport<N> + '_>> {
+        Some(self.recorded().transport(start))
+    }
+}

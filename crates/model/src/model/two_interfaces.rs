@@ -1,0 +1,136 @@
+//! Two interfaces under one stress, equation (19).
+
+use super::logarithmic::{Logarithmic, recorded};
+use super::response::{Response, bilinear, curvature_variables, slope_variables};
+use super::series::Track;
+use super::tangent::tangent;
+use super::{Driven, Loading, Parameter, stress_rate};
+use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::friction::{AnyLaw, Law};
+use crate::series::{Cubic, Recorded, Solution, Tangent, Transport};
+
+/// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TwoInterfaces<L> {
+    /// The law of both interfaces.
+    pub law: L,
+    /// V_H and K.
+    pub loading: Loading,
+}
+
+impl<L: Law> VectorField<3> for TwoInterfaces<L> {
+    fn f(&self, y: &State<3>) -> State<3> {
+        let s = self.law.activation(y[0]);
+        let first = Response::new(&self.law, s, y[1]);
+        let second = Response::new(&self.law, s, y[2]);
+        State::<3>::new(
+            stress_rate(
+                (self.loading.driving, self.loading.stiffness),
+                first.v + second.v,
+            ),
+            first.g,
+            second.g,
+        )
+    }
+
+    fn jacobian(&self, y: &State<3>) -> Jacobian<3> {
+        let k = self.loading.stiffness;
+        let [first, second] = self.slopes(y);
+        #[rustfmt::skip]
+        let j = Jacobian::<3>::new(
+            -k * (first.v.gradient[0] + second.v.gradient[0]), -k * first.v.gradient[1], -k * second.v.gradient[1],
+            first.g.gradient[0],                                first.g.gradient[1],      0.0,
+            second.g.gradient[0],                               0.0,                      second.g.gradient[1],
+        );
+        j
+    }
+
+    fn second_derivative(&self, y: &State<3>, a: &State<3>, b: &State<3>) -> State<3> {
+        let of = |w: f64| {
+            let [tau, w] = curvature_variables(y[0], w);
+            Response::new(&self.law, self.law.activation(tau), w)
+        };
+        let (first, second) = (of(y[1]), of(y[2]));
+        let (a1, b1) = ([a[0], a[1]], [b[0], b[1]]);
+        let (a2, b2) = ([a[0], a[2]], [b[0], b[2]]);
+        State::<3>::new(
+            -self.loading.stiffness * (bilinear(&first.v, a1, b1) + bilinear(&second.v, a2, b2)),
+            bilinear(&first.g, a1, b1),
+            bilinear(&second.g, a2, b2),
+        )
+    }
+
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<3>> {
+        Some(self)
+    }
+}
+
+impl<L: Law> TwoInterfaces<L> {
+    fn recorded(&self) -> Recorded<Logarithmic<AnyLaw>, 3> {
+        recorded(self.law, &self.loading, 1.0)
+    }
+
+    #[inline]
+    fn slopes(&self, y: &State<3>) -> [Response<super::response::Slope>; 2] {
+        let [tau, first] = slope_variables(y[0], y[1]);
+        let [_, second] = slope_variables(y[0], y[2]);
+        let s = self.law.activation(tau);
+        [
+            Response::new(&self.law, s, first),
+            Response::new(&self.law, s, second),
+        ]
+    }
+}
+
+impl<L: Law> Analytic<3> for TwoInterfaces<L> {
+    fn solution(&self) -> Box<dyn Solution<3> + '_> {
+        Box::new(Track::new(self.law.core(), &self.loading))
+    }
+
+    fn reference(&self) -> Box<dyn Solution<3> + '_> {
+        self.recorded().reference()
+    }
+
+    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<3> + '_> {
+        let pair = tangent(self.law.core(), self.loading, (1.0, 1.0), parameters);
+        pair.unwrap_or_else(|| self.recorded().tangent(parameters))
+    }
+
+    fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {
+        self.recorded().reference_tangent()
+    }
+
+    fn transport(&self, start: [Cubic; 3]) -> Option<Box<dyn Transport<3> + '_>> {
+        Some(self.recorded().transport(start))
+    }
+}
+
+impl<L: Law> Driven<3> for TwoInterfaces<L> {
+    fn parameter_derivative(&self, y: &State<3>, p: Parameter) -> State<3> {
+        let rate = match p {
+            Parameter::Driving => self.loading.stiffness,
+            Parameter::Stiffness => self.loading.driving - self.slip_rates(y).iter().sum::<f64>(),
+        };
+        State::<3>::new(rate, 0.0, 0.0)
+    }
+
+    fn parameter_jacobian(&self, y: &State<3>, p: Parameter) -> Jacobian<3> {
+        let mut j = Jacobian::<3>::zeros();
+        if p == Parameter::Stiffness {
+            let [first, second] = self.slopes(y);
+            j[(0, 0)] = -(first.v.gradient[0] + second.v.gradient[0]);
+            j[(0, 1)] = -first.v.gradient[1];
+            j[(0, 2)] = -second.v.gradient[1];
+        }
+        j
+    }
+
+    fn slip_rates(&self, y: &State<3>) -> [f64; 2] {
+        let s = self.law.activation(y[0]);
+        [1, 2].map(|i| self.law.slip_rate(s, y[i].exp()))
+    }
+}

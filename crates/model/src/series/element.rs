@@ -1,0 +1,312 @@
+//! What the coefficients of a series are: one number, or one in each of several lanes.
+
+use crate::number::{DoubleDouble, Real};
+use pulp::NullaryFnOnce;
+use std::fmt::Debug;
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+/// A coefficient of a series.
+///
+/// The lanes of a pair are the two interfaces under one stress, whose sum the stress balance needs; the lanes of a batch are
+/// trajectories that have nothing to do with each other.
+pub trait Element:
+    Copy
+    + Debug
+    + Neg<Output = Self>
+    + Add<Output = Self>
+    + Sub<Output = Self>
+    + Mul<Output = Self>
+    + Div<Output = Self>
+{
+    /// The number x in every lane. (A method of a value, since what the processor can do is known from values alone.)
+    fn like(self, x: f64) -> Self;
+    /// The same for a number of 31 digits, as many of them as the element holds.
+    fn like_exact(self, x: DoubleDouble) -> Self {
+        self.like(x.hi())
+    }
+    /// The first lane, with all its digits.
+    fn to_exact(self) -> DoubleDouble {
+        DoubleDouble::from(self.first())
+    }
+    /// The same without the derivatives that it may carry.
+    #[inline(always)]
+    fn plain(self) -> Self {
+        self
+    }
+    /// The call, compiled for the processor that the element is made for.
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        f.call()
+    }
+    /// self a + b, fused where the processor does that.
+    fn mul_add(self, a: Self, b: Self) -> Self;
+    /// |self|
+    fn abs(self) -> Self;
+    /// The larger one; not self where self is no number.
+    fn max(self, other: Self) -> Self;
+    /// The smaller one; not self where self is no number.
+    fn min(self, other: Self) -> Self;
+    /// 1 with the sign of self.
+    fn sign(self) -> Self;
+    /// The logarithm to base 2 within 0.01, for self > 0; far below all others for 0.
+    fn rough_log2(self) -> Self;
+    /// 2^self within 1 per cent, or a number as near to it as the range allows.
+    fn rough_exp2(self) -> Self;
+    /// e^self
+    fn exp(self) -> Self;
+    /// e^self - 1, accurate near 0. Lane by lane where an element does not say otherwise: series need it but once in a step.
+    fn exp_m1(self) -> Self {
+        lane_by_lane(self, f64::exp_m1)
+    }
+    /// ln self
+    fn ln(self) -> Self;
+    /// ln(1 + self), accurate near 0; likewise.
+    fn ln_1p(self) -> Self {
+        lane_by_lane(self, f64::ln_1p)
+    }
+    /// self^p
+    fn powf(self, p: f64) -> Self;
+    /// sinh and cosh
+    fn sinh_cosh(self) -> (Self, Self);
+    /// a in the lanes where self is negative, else b.
+    fn if_negative(self, a: Self, b: Self) -> Self;
+    /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
+    /// where an element does not say otherwise.
+    fn if_positive(self, a: Self, b: Self) -> Self {
+        if self.all_positive() { a } else { b }
+    }
+    /// a in the lanes where self is zero, else b.
+    fn if_zero(self, a: Self, b: Self) -> Self;
+    /// Whether every lane is positive and finite.
+    fn all_positive(self) -> bool;
+    /// Whether no lane is negative.
+    #[inline(always)]
+    fn none_negative(self) -> bool {
+        (self.if_negative(self.like(-1.0), self.like(1.0))).all_positive()
+    }
+    /// Whether every lane is finite.
+    fn all_finite(self) -> bool;
+    /// How many lanes there are.
+    const LANES: usize;
+    /// Whether series of these are worth the time that it takes to compile them order by order.
+    const UNROLLED: bool = false;
+    /// The number in the first lane.
+    fn first(self) -> f64;
+    /// The number in a lane.
+    fn lane(self, i: usize) -> f64;
+    /// The same with another number in a lane.
+    fn with_lane(self, i: usize, x: f64) -> Self;
+    /// The largest number in any lane; not those that are no numbers.
+    fn largest_lane(self) -> f64;
+    /// The numbers of both interfaces, where they are lanes; else the first lane twice.
+    fn interfaces(self) -> [f64; 2] {
+        [self.first(); 2]
+    }
+    /// The sum over the interfaces that are lanes of this element.
+    fn over_interfaces(self) -> Self {
+        self
+    }
+    /// The largest over the interfaces that are lanes of this element.
+    fn largest_over_interfaces(self) -> Self {
+        self
+    }
+}
+
+/// The function in one lane after the other.
+fn lane_by_lane<E: Element>(mut x: E, f: impl Fn(f64) -> f64) -> E {
+    for i in 0..E::LANES {
+        x = x.with_lane(i, f(x.lane(i)));
+    }
+    x
+}
+
+/// log2 x from the bits of x: its exponent, and its mantissa by a parabola.
+#[inline(always)]
+pub(super) fn rough_log2(x: f64) -> f64 {
+    let bits = x.to_bits();
+    let exponent = (bits >> 52) as i32 - 1023;
+    let m = f64::from_bits((bits & 0x000f_ffff_ffff_ffff) | 0x3ff0_0000_0000_0000);
+    f64::from(exponent) + (m - 1.0) * (1.344 - 0.344 * (m - 1.0))
+}
+
+/// 2^x by bits.
+#[inline(always)]
+pub(super) fn rough_exp2(x: f64) -> f64 {
+    let x = if x > -1000.0 { x } else { -1000.0 };
+    let x = if x < 1000.0 { x } else { 1000.0 };
+    // Adding this leaves the whole part in the last bits.
+    const SHIFT: f64 = 6755399441055744.0;
+    let shifted = (x - 0.5) + SHIFT;
+    let f = x - (shifted - SHIFT);
+    let scale = f64::from_bits(shifted.to_bits().wrapping_add(1023) << 52);
+    scale * (1.0 + f * (0.6565 + 0.3435 * f))
+}
+
+impl Element for f64 {
+    const LANES: usize = 1;
+    const UNROLLED: bool = true;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        x
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn like(self, x: f64) -> f64 {
+        x
+    }
+    // Unfused: in a binary for any x86-64 the fused one is a call of the library.
+    #[inline(always)]
+    fn mul_add(self, a: f64, b: f64) -> f64 {
+        self * a + b
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        self.abs()
+    }
+    #[inline(always)]
+    fn max(self, other: f64) -> f64 {
+        if self > other { self } else { other }
+    }
+    #[inline(always)]
+    fn min(self, other: f64) -> f64 {
+        if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn rough_log2(self) -> f64 {
+        rough_log2(self)
+    }
+    #[inline(always)]
+    fn rough_exp2(self) -> f64 {
+        rough_exp2(self)
+    }
+    #[inline(always)]
+    fn sign(self) -> f64 {
+        1_f64.copysign(self)
+    }
+    #[inline(always)]
+    fn exp(self) -> f64 {
+        self.exp()
+    }
+    #[inline(always)]
+    fn ln(self) -> f64 {
+        self.ln()
+    }
+    #[inline(always)]
+    fn powf(self, p: f64) -> f64 {
+        self.powf(p)
+    }
+    #[inline(always)]
+    fn sinh_cosh(self) -> (f64, f64) {
+        (Real::sinh(self), Real::cosh(self))
+    }
+    #[inline(always)]
+    fn if_negative(self, a: f64, b: f64) -> f64 {
+        if self < 0.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn if_zero(self, a: f64, b: f64) -> f64 {
+        if self == 0.0 { a } else { b }
+    }
+    #[inline(always)]
+    fn all_positive(self) -> bool {
+        self > 0.0 && self < f64::INFINITY
+    }
+    #[inline(always)]
+    fn all_finite(self) -> bool {
+        self.is_finite()
+    }
+    #[inline(always)]
+    fn first(self) -> f64 {
+        self
+    }
+}
+
+impl Element for DoubleDouble {
+    const LANES: usize = 1;
+    #[inline(never)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        f.call()
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self.hi()
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, x: f64) -> Self {
+        DoubleDouble::from(x)
+    }
+    #[inline(always)]
+    fn largest_lane(self) -> f64 {
+        self.hi()
+    }
+    fn like(self, x: f64) -> Self {
+        DoubleDouble::from(x)
+    }
+    fn like_exact(self, x: DoubleDouble) -> Self {
+        x
+    }
+    fn to_exact(self) -> DoubleDouble {
+        self
+    }
+    fn mul_add(self, a: Self, b: Self) -> Self {
+        self * a + b
+    }
+    fn abs(self) -> Self {
+        Real::abs(self)
+    }
+    fn max(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+    fn min(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+    fn sign(self) -> Self {
+        DoubleDouble::from(1_f64.copysign(self.hi()))
+    }
+    fn rough_log2(self) -> Self {
+        DoubleDouble::from(rough_log2(self.hi()))
+    }
+    fn rough_exp2(self) -> Self {
+        DoubleDouble::from(rough_exp2(self.hi()))
+    }
+    fn exp(self) -> Self {
+        Real::exp(self)
+    }
+    fn exp_m1(self) -> Self {
+        Real::exp_m1(self)
+    }
+    fn ln(self) -> Self {
+        Real::ln(self)
+    }
+    fn ln_1p(self) -> Self {
+        Real::ln_1p(self)
+    }
+    fn powf(self, p: f64) -> Self {
+        Real::powf(self, p)
+    }
+    fn sinh_cosh(self) -> (Self, Self) {
+        (Real::sinh(self), Real::cosh(self))
+    }
+    fn if_negative(self, a: Self, b: Self) -> Self {
+        if self.hi() < 0.0 { a } else { b }
+    }
+    fn if_zero(self, a: Self, b: Self) -> Self {
+        if self.hi() == 0.0 { a } else { b }
+    }
+    fn all_positive(self) -> bool {
+        self.hi() > 0.0 && self.is_finite()
+    }
+    fn all_finite(self) -> bool {
+        self.is_finite()
+    }
+    fn first(self) -> f64 {
+        self.hi()
+    }
+}

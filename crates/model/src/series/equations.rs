@@ -1,0 +1,112 @@
+//! Any small system of differential equations, and its solution in series.
+
+use super::formula::{Formula, Rates, WATCHED};
+use super::handle::{Series, value};
+use super::stepper::Stepper;
+use super::tape::{Counting, Order, ROOM, ROWS, Tape};
+use super::{Accuracy, Expansion, Solution};
+use crate::number::{DoubleDouble, Real};
+use std::cell::Cell;
+use std::fmt::Debug;
+
+/// dx/dt = f(x; p) in N variables with two control parameters: the right-hand side, written once for every number.
+///
+/// Jets make derivatives of it, and series its solutions. It must be smooth along the solutions: of |x| they take the sign at
+/// the beginning of a step. Formulas of up to three variables and 64
+/// series are compiled (one for each variable and product, two for a quotient, three for an exponential, four for a power); larger
+/// ones run in loops over their operations.
+pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
+    /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
+    fn rates<T: Real>(&self, x: [T; N], parameters: [T; 2]) -> [T; N];
+
+    /// Slip rates along the solution, of one interface or two, for fields that have any.
+    fn slip_rates<T: Real>(&self, _x: [T; N], _parameters: [T; 2]) -> [Option<T>; 2] {
+        [None; 2]
+    }
+
+    /// The name of a law by which every solution, forwards in time, is known to exist for all time.
+    fn lasting(&self) -> Option<&'static str> {
+        None
+    }
+}
+
+/// Whether the formula is small enough for code that is compiled for it: a few variables, and rows that there is room for.
+pub(crate) fn is_small<S: Equations<N>, const N: usize>(equations: &S, p: [f64; 2]) -> bool {
+    const MOST: usize = 3;
+    let memory = [const { Cell::new(1.0) }; ROWS * ROOM];
+    let tape = Tape::new(&memory, Counting, N);
+    let x = std::array::from_fn(|i| tape.variable(i));
+    equations.rates(x, p.map(value));
+    // What the outputs may take.
+    N <= MOST && tape.rows() + N <= ROWS
+}
+
+/// The equations as a formula.
+#[derive(Debug, Clone, Copy)]
+struct Fixed<S> {
+    equations: S,
+    parameters: [f64; 2],
+}
+
+impl<S: Equations<N>, const N: usize> Formula<f64, N> for Fixed<S> {
+    #[inline(always)]
+    fn rates<'t, O: Order>(&self, x: [Series<'t, f64, O>; N]) -> Rates<'t, f64, O, N> {
+        Rates {
+            variables: self.equations.rates(x, self.parameters.map(value)),
+            watched: [Series::constant(0.0); WATCHED],
+        }
+    }
+
+    /// atol + rtol |x_i|
+    #[inline(always)]
+    fn units(&self, x: &[f64; N], (rtol, atol): (f64, f64)) -> [f64; N] {
+        x.map(|x| x.abs() * rtol + atol)
+    }
+
+    /// 1, and no number where one of x is not finite.
+    #[inline(always)]
+    fn allows(&self, x: &[f64; N]) -> f64 {
+        x.iter().fold(1.0, |one, x| x * 0.0 + one)
+    }
+}
+
+/// A solution of the equations on its way. A step may err by `atol + rtol |x_i|` in x_i, in each of them.
+pub struct Plain<S, const N: usize> {
+    stepper: Stepper<f64, Fixed<S>, N>,
+}
+
+impl<S: Equations<N>, const N: usize> Plain<S, N> {
+    /// To be started.
+    pub fn new(equations: S, parameters: [f64; 2]) -> Self {
+        let formula = Fixed {
+            equations,
+            parameters,
+        };
+        Plain {
+            stepper: Stepper::new(formula, 0.0),
+        }
+    }
+}
+
+impl<S: Equations<N>, const N: usize> Solution<N> for Plain<S, N> {
+    fn start(&mut self, y: &[f64; N]) {
+        self.stepper.start(*y);
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        DoubleDouble::from(self.stepper.advance(accuracy, limit.hi()))
+    }
+
+    fn state(&self) -> [f64; N] {
+        *self.stepper.state()
+    }
+
+    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
+        into.order = order;
+        into.unit = self.stepper.unit();
+        into.chart = |x| x;
+        for (i, variable) in into.variables.iter_mut().enumerate() {
+            variable[..=order].copy_from_slice(&self.stepper.series(i)[..=order]);
+        }
+    }
+}

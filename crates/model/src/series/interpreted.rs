@@ -1,0 +1,404 @@
+//! Solutions of a recorded formula: any system in any number of variables, in numbers of any kind.
+//!
+//! Steps as [`super::Stepper`] makes them, for one trajectory; the series come from a [`Program`]. Where the formula takes the
+//! sign of a quantity, no step leads further than just behind a zero of that.
+
+use super::Accuracy;
+use super::cubic::Cubic;
+use super::element::{Element, rough_exp2, rough_log2};
+use super::linearised::longest_of_columns;
+use super::program::{Program, Rows};
+use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
+use crate::number::DoubleDouble;
+
+/// Records the formula at a state.
+pub(super) type Record<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
+
+/// A solution on its way, in a number of dimensions known when the program runs.
+pub(super) trait Trajectory {
+    /// Begins at y.
+    fn start(&mut self, y: &[f64]);
+    /// As [`super::Solution::advance`].
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
+    /// The i-th variable of the state reached.
+    fn state(&self, i: usize) -> f64;
+    /// The unit of time of the last step's series.
+    fn unit(&self) -> f64;
+    /// The first coefficients of the i-th variable's series, as many as there is room for.
+    fn series(&self, i: usize, into: &mut [f64]);
+    /// The same of the slip rate of an interface; zeros where there is none.
+    fn slip_rates(&self, interface: usize, into: &mut [f64]);
+    /// The derivative of the i-th variable in a component of the start, or after these in a parameter; zero if not asked for.
+    fn derivative(&self, _i: usize, _direction: usize) -> f64 {
+        0.0
+    }
+    /// The integral of the Jacobian's trace, and the logarithm of the growth across a symmetric subspace.
+    fn log_growth(&self) -> (f64, Option<f64>) {
+        (0.0, None)
+    }
+}
+
+/// A solution on its way, in numbers T. What the program gives first are the rates of the variables; what it gives after them
+/// as many slip rates as `watched` says, one or two, are kept with its series.
+pub struct Interpreted<'a, T> {
+    record: Record<'a>,
+    program: Program,
+    rows: Rows<T>,
+    /// For the first coefficients elsewhere than where the series begin.
+    probe: Rows<T>,
+    room: usize,
+    x: Vec<T>,
+    lost: Vec<T>,
+    any: T,
+    watched: usize,
+    /// The unit of time of the series, and of the next one. The coefficients neither overflow nor vanish if it is near the
+    /// step.
+    unit: f64,
+    next_unit: f64,
+}
+
+impl<'a, T: Element> Interpreted<'a, T> {
+    /// To be started, in so many variables, with room for so many coefficients; `any` is any number.
+    pub(super) fn new(
+        record: Record<'a>,
+        (variables, watched): (usize, usize),
+        room: usize,
+        any: T,
+    ) -> Self {
+        let program = record(&vec![1.0; variables]);
+        let zero = any.like(0.0);
+        Interpreted {
+            rows: Rows::new(&program, room, any),
+            probe: Rows::new(&program, 1, any),
+            program,
+            record,
+            room,
+            x: vec![zero; variables],
+            lost: vec![zero; variables],
+            any,
+            watched,
+            unit: 1.0,
+            next_unit: 1.0,
+        }
+    }
+
+    /// Begins at x.
+    pub(super) fn begin(&mut self, x: &[T]) {
+        self.x.copy_from_slice(x);
+        self.lost.fill(self.any.like(0.0));
+        self.record_here();
+        self.rows.level(&self.program, 0);
+        // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
+        let sizes = || self.x.iter().map(|x| x.first().abs());
+        let largest = sizes().fold(0.0, f64::max);
+        let least = f64::max(LEAST, largest * f64::EPSILON);
+        let rate = |(i, size): (usize, f64)| {
+            let rate = self.rows.coefficient(self.program.outputs[i], 0).first();
+            (rate / f64::max(size, least)).abs()
+        };
+        let rate = sizes().enumerate().map(rate).fold(0.0, f64::max);
+        self.next_unit = 1.0 / f64::max(rate, f64::MIN_POSITIVE);
+    }
+
+    /// The formula as it is here, if it is not the same everywhere, and the first coefficients of the variables.
+    fn record_here(&mut self) {
+        if self.program.branches {
+            let x: Vec<f64> = self.x.iter().map(|x| x.first()).collect();
+            self.program = (self.record)(&x);
+            self.rows = Rows::new(&self.program, self.room, self.any);
+            self.probe = Rows::new(&self.program, 1, self.any);
+        }
+        for (i, x) in self.x.iter().enumerate() {
+            self.rows.set(i, 0, *x);
+        }
+    }
+
+    /// The state reached.
+    pub(super) fn reached(&self) -> &[T] {
+        &self.x
+    }
+
+    /// What the program gives, and its series.
+    pub(super) fn made(&self) -> (&Program, &Rows<T>) {
+        (&self.program, &self.rows)
+    }
+
+    /// Makes the series at the state reached.
+    pub(super) fn expand(&mut self, order: usize) {
+        self.unit = self.next_unit;
+        self.record_here();
+        for _ in 0..=SHORTER_UNITS {
+            for k in 0..order {
+                self.rows.level(&self.program, k);
+                let share = self.any.like(self.unit) / self.any.like((k + 1) as f64);
+                for i in 0..self.x.len() {
+                    let rate = self.rows.coefficient(self.program.outputs[i], k);
+                    self.rows.set(i, k + 1, rate * share);
+                }
+            }
+            // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the
+            // coefficients do not overflow.
+            if (0..self.x.len()).all(|i| self.rows.row(i)[order].all_finite()) {
+                break;
+            }
+            self.unit *= SHORTER;
+        }
+    }
+
+    /// The step, in units of the series, at which the last two terms of the series reach what may err (Jorba & Zou 2005, section
+    /// 3.2, in the norm that the tolerances make).
+    pub(super) fn longest(&self, accuracy: &Accuracy) -> f64 {
+        let order = accuracy.order;
+        let log_of = |j: usize| rough_log2(self.largest(j, accuracy.tolerances));
+        let (before, last) = (log_of(order - 1), log_of(order));
+        let log = f64::min(-before / (order - 1) as f64, -last / order as f64);
+        // Where the last term is larger than the one before, that is mostly chance.
+        let log = if before - last - log >= 0.0 {
+            log
+        } else {
+            self.while_terms_fall(accuracy, log)
+        };
+        SAFETY * rough_exp2(log)
+    }
+
+    /// The largest j-th coefficient, in what may err.
+    fn largest(&self, j: usize, (rtol, atol): (f64, f64)) -> f64 {
+        let relative = |(i, x): (usize, &T)| {
+            (self.rows.row(i)[j].first() / (atol + rtol * x.first().abs())).abs()
+        };
+        self.x.iter().enumerate().map(relative).fold(0.0, f64::max)
+    }
+
+    /// The logarithm of a step, shortened to where the last terms cease to grow.
+    ///
+    /// Small terms bound the rest of the series only where they fall. Those of an exponential of 30 h are small and grow up to
+    /// the thirtieth if its factor is small enough.
+    fn while_terms_fall(&self, accuracy: &Accuracy, log: f64) -> f64 {
+        /// Coefficients below two to this say nothing.
+        const NONE: f64 = -900.0;
+        // By pairs: the terms of an even or odd function vanish in turn.
+        let pair = |j: usize| {
+            let of = |j| self.largest(j, accuracy.tolerances);
+            rough_log2(f64::max(of(j - 1), of(j)))
+        };
+        let order = accuracy.order;
+        let (first, second, third) = (pair(order - 4), pair(order - 2), pair(order));
+        let grown = third - second + 2.0 * log;
+        let grow = f64::min(grown, second - first + 2.0 * log);
+        if first > NONE && grow > 0.0 {
+            log - 0.5 * grown
+        } else {
+            log
+        }
+    }
+
+    /// Goes on by h > 0, counted in units of the series, at most `limit`, and returns the time that this took: not a number if
+    /// there is no step.
+    pub(super) fn advance_by(&mut self, order: usize, h: f64, limit: DoubleDouble) -> DoubleDouble {
+        let in_units = limit / self.unit;
+        let whole = h >= in_units.hi().abs();
+        let mut step = if whole {
+            in_units
+        } else {
+            DoubleDouble::from(h.copysign(limit.hi()))
+        };
+        let mut time = if whole { limit } else { step * self.unit };
+        let (mut x, mut lost) = self.evaluate(order, step);
+        if !finite(&x) || self.passes_kink(&x) {
+            step = self.shortened(order, step);
+            if !step.is_finite() {
+                return step;
+            }
+            time = step * self.unit;
+            (x, lost) = self.evaluate(order, step);
+        }
+        self.x = x;
+        self.lost = lost;
+        self.next_unit = time.hi().abs();
+        time
+    }
+
+    /// A part of the step h that leads where all is finite, and no further than just behind a kink; not a number where there is
+    /// none.
+    #[cold]
+    fn shortened(&mut self, order: usize, mut h: DoubleDouble) -> DoubleDouble {
+        let mut halvings = 0;
+        while !finite(&self.evaluate(order, h).0) {
+            if halvings == HALVINGS {
+                return DoubleDouble::from(f64::NAN);
+            }
+            h = h * 0.5;
+            halvings += 1;
+        }
+        if !self.passes_kink(&self.evaluate(order, h).0) {
+            return h;
+        }
+        // By bisection: a series does not reach beyond, and it happens once in a run.
+        let (mut near, mut far) = (DoubleDouble::ZERO, h);
+        for _ in 0..BISECTIONS {
+            let middle = (near + far) * 0.5;
+            if self.passes_kink(&self.evaluate(order, middle).0) {
+                far = middle;
+            } else {
+                near = middle;
+            }
+        }
+        far
+    }
+
+    /// Whether a quantity whose sign the formula takes has another one there.
+    fn passes_kink(&mut self, x: &[T]) -> bool {
+        if self.program.kinks.is_empty() {
+            return false;
+        }
+        for (i, x) in x.iter().enumerate() {
+            self.probe.set(i, 0, *x);
+        }
+        self.probe.level(&self.program, 0);
+        let signs = |&row: &usize| self.rows.row(row)[0].first() * self.probe.row(row)[0].first();
+        self.program.kinks.iter().map(signs).any(|sign| sign < 0.0)
+    }
+
+    /// The state after h units, and what rounding took from it.
+    fn evaluate(&self, order: usize, h: DoubleDouble) -> (Vec<T>, Vec<T>) {
+        let h = self.any.like_exact(h);
+        let (mut x, mut lost) = (self.x.clone(), self.lost.clone());
+        for i in 0..x.len() {
+            let series = self.rows.row(i);
+            let mut sum = series[order];
+            for c in series[1..order].iter().rev() {
+                sum = sum.mul_add(h, *c);
+            }
+            let change = sum.mul_add(h, lost[i]);
+            let reached = x[i] + change;
+            lost[i] = change - (reached - x[i]);
+            x[i] = reached;
+        }
+        (x, lost)
+    }
+}
+
+fn finite<T: Element>(x: &[T]) -> bool {
+    x.iter().all(|x| x.all_finite())
+}
+
+impl<T: Element> Trajectory for Interpreted<'_, T> {
+    fn start(&mut self, y: &[f64]) {
+        let x: Vec<T> = y.iter().map(|&y| self.any.like(y)).collect();
+        self.begin(&x);
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        self.expand(accuracy.order);
+        self.advance_by(accuracy.order, self.longest(accuracy), limit)
+    }
+
+    fn state(&self, i: usize) -> f64 {
+        self.x[i].first()
+    }
+
+    fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    fn series(&self, i: usize, into: &mut [f64]) {
+        for (to, x) in into.iter_mut().zip(self.rows.row(i)) {
+            *to = x.first();
+        }
+    }
+
+    fn slip_rates(&self, interface: usize, into: &mut [f64]) {
+        if self.watched == 0 {
+            return;
+        }
+        // A single interface stands in both places.
+        let rate = self.program.outputs[self.x.len() + interface.min(self.watched - 1)];
+        for (k, to) in into.iter_mut().enumerate() {
+            *to = self.rows.coefficient(rate, k).first();
+        }
+    }
+}
+
+/// A solution to third order in two variations of its start.
+pub(super) struct Transported<'a> {
+    solution: Interpreted<'a, Cubic>,
+    start: Vec<Cubic>,
+    order: usize,
+}
+
+impl<'a> Transported<'a> {
+    /// To be started; the variations of the start are those of `start`.
+    pub fn new(record: Record<'a>, shape: (usize, usize), room: usize, start: &[Cubic]) -> Self {
+        Transported {
+            solution: Interpreted::new(record, shape, room, Cubic::default()),
+            start: start.to_vec(),
+            order: 0,
+        }
+    }
+
+    /// The i-th variable of the state reached.
+    pub fn polynomial(&self, i: usize) -> Cubic {
+        self.solution.x[i]
+    }
+
+    /// The i-th variable, and its time derivative, at a time after the beginning of the last step.
+    pub fn after(&self, i: usize, time: Cubic) -> [Cubic; 2] {
+        let one_over = 1.0 / self.solution.unit;
+        let h = time.scaled(one_over);
+        let (mut state, mut rate) = (Cubic::default(), Cubic::default());
+        for c in self.solution.rows.row(i)[..=self.order].iter().rev() {
+            rate = rate * h + state;
+            state = state * h + *c;
+        }
+        [state, rate.scaled(one_over)]
+    }
+
+    /// The step, in units of the series and at most `most`, at which the last terms of every monomial are below the tolerance.
+    fn longest(&self, accuracy: &Accuracy, most: f64) -> f64 {
+        let rows = &self.solution.rows;
+        let size = |monomial: usize, k: usize| {
+            let relative = |i: usize| {
+                let series = rows.row(i);
+                series[k].0[monomial].abs() / (1.0 + series[0].value().abs())
+            };
+            (0..self.start.len()).map(relative).fold(0.0, f64::max)
+        };
+        let of = |monomial| longest_of_columns(accuracy, most, |k| size(monomial, k));
+        (0..10).map(of).fold(most, f64::min)
+    }
+}
+
+impl Trajectory for Transported<'_> {
+    fn start(&mut self, y: &[f64]) {
+        let mut x = self.start.clone();
+        for (x, y) in x.iter_mut().zip(y) {
+            x.0[0] = *y;
+        }
+        self.solution.begin(&x);
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        self.order = accuracy.order;
+        self.solution.expand(accuracy.order);
+        let in_units = (limit.hi() / self.solution.unit).abs();
+        let most = f64::min(self.solution.longest(accuracy), in_units);
+        let h = self.longest(accuracy, most);
+        self.solution.advance_by(accuracy.order, h, limit)
+    }
+
+    fn state(&self, i: usize) -> f64 {
+        self.solution.state(i)
+    }
+
+    fn unit(&self) -> f64 {
+        self.solution.unit
+    }
+
+    fn series(&self, i: usize, into: &mut [f64]) {
+        self.solution.series(i, into);
+    }
+
+    fn slip_rates(&self, interface: usize, into: &mut [f64]) {
+        self.solution.slip_rates(interface, into);
+    }
+}

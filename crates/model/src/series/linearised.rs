@@ -1,0 +1,345 @@
+//! Variational equations in any number of variables and parameters: the columns of the monodromy matrix, and derivatives in
+//! parameters.
+//!
+//! With the Jacobian's entries as series along the solution, x_i' = J_ij x_j takes one product of series for each entry that is
+//! there, and the columns share it: they stand in lanes. The trace is integrated too: the determinant of a strongly contracting
+//! tangent is known by that alone.
+
+use super::Accuracy;
+use super::element::{Element, rough_exp2, rough_log2};
+use super::interpreted::{Interpreted, Trajectory};
+use super::program::{Program, Rows, Source};
+use crate::number::DoubleDouble;
+use pulp::NullaryFnOnce;
+
+/// An entry of the Jacobian, or of the derivatives in parameters, that is not zero everywhere.
+#[derive(Debug, Clone, Copy)]
+struct Entry {
+    /// The rate, and what it is differentiated in.
+    place: (usize, usize),
+    series: Source,
+}
+
+/// The columns: `chunks` elements X for every variable, whose lanes are the N components of the start and then the parameters.
+struct Columns<X> {
+    variables: usize,
+    chunks: usize,
+    /// At the beginning of the next step.
+    x: Vec<X>,
+    /// The series, in the order of the powers.
+    series: Vec<X>,
+}
+
+impl<X: Element> Columns<X> {
+    fn new(variables: usize, directions: usize, room: usize, any: X) -> Self {
+        let chunks = directions.div_ceil(X::LANES);
+        let zero = any.like(0.0);
+        Columns {
+            variables,
+            chunks,
+            x: vec![zero; variables * chunks],
+            series: vec![zero; room * variables * chunks],
+        }
+    }
+
+    /// The identity, and zero in the parameters.
+    fn start(&mut self) {
+        let zero = self.x[0].like(0.0);
+        self.x.fill(zero);
+        for i in 0..self.variables {
+            let x = &mut self.x[i * self.chunks + i / X::LANES];
+            *x = x.with_lane(i % X::LANES, 1.0);
+        }
+    }
+
+    fn get(&self, i: usize, direction: usize) -> f64 {
+        self.x[i * self.chunks + direction / X::LANES].lane(direction % X::LANES)
+    }
+
+    /// The k-th coefficients.
+    fn level(&self, k: usize) -> &[X] {
+        let width = self.variables * self.chunks;
+        &self.series[k * width..][..width]
+    }
+}
+
+/// The series of the columns from that of the entries, to be compiled for the processor.
+struct Expand<'a, T, X> {
+    columns: &'a mut Columns<X>,
+    jacobian: &'a [Entry],
+    forcing: &'a [Entry],
+    rows: &'a Rows<T>,
+    unit: f64,
+    order: usize,
+}
+
+impl<T: Element, X: Element> NullaryFnOnce for Expand<'_, T, X> {
+    type Output = ();
+    #[inline(always)]
+    fn call(self) {
+        let Columns {
+            variables,
+            chunks,
+            x,
+            series,
+        } = self.columns;
+        let (variables, chunks) = (*variables, *chunks);
+        let width = variables * chunks;
+        let any = x[0];
+        series[..width].copy_from_slice(x);
+        for k in 0..self.order {
+            let (known, rest) = series.split_at_mut((k + 1) * width);
+            let next = &mut rest[..width];
+            next.fill(any.like(0.0));
+            for entry in self.jacobian {
+                let (i, j) = entry.place;
+                let sums = &mut next[i * chunks..][..chunks];
+                match entry.series {
+                    Source::Number(a) => {
+                        let a = any.like_exact(a);
+                        for (c, sum) in sums.iter_mut().enumerate() {
+                            *sum = a.mul_add(known[k * width + j * chunks + c], *sum);
+                        }
+                    }
+                    Source::Row(row) => {
+                        let a = &self.rows.row(row)[..=k];
+                        for (c, sum) in sums.iter_mut().enumerate() {
+                            let column = &known[j * chunks + c..];
+                            *sum = *sum + product(a, column, width, any);
+                        }
+                    }
+                }
+            }
+            for entry in self.forcing {
+                let (i, parameter) = entry.place;
+                let lane = variables + parameter;
+                let x = self.rows.coefficient(entry.series, k);
+                let sum = &mut next[i * chunks + lane / X::LANES];
+                let one = any.like(0.0).with_lane(lane % X::LANES, 1.0);
+                *sum = one.mul_add(any.like_exact(x.to_exact()), *sum);
+            }
+            let share = any.like(self.unit) / any.like((k + 1) as f64);
+            for sum in next {
+                *sum = *sum * share;
+            }
+        }
+    }
+}
+
+/// sum of a_l b_(k-l) over l <= k, of a column whose coefficients stand `width` apart: in two sums, which do not wait for each
+/// other.
+#[inline(always)]
+fn product<T: Element, X: Element>(a: &[T], column: &[X], width: usize, any: X) -> X {
+    let k = a.len() - 1;
+    let (mut even, mut odd) = (any.like(0.0), any.like(0.0));
+    let mut l = 0;
+    while l < k {
+        even = any
+            .like_exact(a[l].to_exact())
+            .mul_add(column[(k - l) * width], even);
+        odd = any
+            .like_exact(a[l + 1].to_exact())
+            .mul_add(column[(k - l - 1) * width], odd);
+        l += 2;
+    }
+    if l == k {
+        even = any.like_exact(a[l].to_exact()).mul_add(column[0], even);
+    }
+    even + odd
+}
+
+/// The step, in units of the series and at most `most`, at which the last two terms of every column are below the tolerance,
+/// from the sizes of the columns' k-th coefficients.
+#[inline(always)]
+pub(super) fn longest_of_columns<X: Element>(
+    accuracy: &Accuracy,
+    most: f64,
+    sizes: impl Fn(usize) -> X,
+) -> f64 {
+    /// Columns are not as small.
+    const NOTHING: f64 = 1e-250;
+    let order = accuracy.order;
+    let begins = sizes(0);
+    let any = begins;
+    // Derivatives in parameters begin at zero.
+    let grows = sizes(1) * any.like(most);
+    let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
+    let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
+    let before = (sizes(order - 1) * per_tolerable).largest_lane();
+    let last = (sizes(order) * per_tolerable).largest_lane();
+    let before = -rough_log2(before) / (order - 1) as f64;
+    let last = -rough_log2(last) / order as f64;
+    rough_exp2(before.min(last))
+}
+
+/// A solution with its derivatives, in numbers T, the columns in the lanes of X.
+///
+/// A step may err by `atol + rtol |x_i|` in x_i. In a column of derivatives it may err by `rtol` of the largest of its
+/// components, each counted in units of 1 + |x_i|.
+pub(super) struct Linearised<'a, T, X> {
+    solution: Interpreted<'a, T>,
+    columns: Columns<X>,
+    parameters: usize,
+    /// Whether the growth across a symmetric subspace is what the last variable grows by on its own.
+    symmetric: bool,
+    log_determinant: DoubleDouble,
+    log_across: DoubleDouble,
+}
+
+impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
+    /// To be started. The program gives, after the rates and the slip rates that the solution keeps, the Jacobian row by row
+    /// and then, for each rate, its derivatives in the parameters.
+    pub fn new(
+        solution: Interpreted<'a, T>,
+        (parameters, symmetric): (usize, bool),
+        room: usize,
+        any: X,
+    ) -> Self {
+        let variables = solution.reached().len();
+        Linearised {
+            columns: Columns::new(variables, variables + parameters, room, any),
+            solution,
+            parameters,
+            symmetric,
+            log_determinant: DoubleDouble::ZERO,
+            log_across: DoubleDouble::ZERO,
+        }
+    }
+
+    /// Entries that are not zero, of a matrix with so many columns that stands there in the outputs.
+    fn entries(program: &Program, from: usize, (rows, columns): (usize, usize)) -> Vec<Entry> {
+        let all = program.outputs[from..][..rows * columns].iter().enumerate();
+        all.filter(|(_, series)| **series != Source::Number(DoubleDouble::ZERO))
+            .map(|(at, series)| Entry {
+                place: (at / columns, at % columns),
+                series: *series,
+            })
+            .collect()
+    }
+
+    /// The step of the columns, in units of the series and at most `most`.
+    fn longest(&self, accuracy: &Accuracy, most: f64) -> f64 {
+        let (n, chunks) = (self.columns.variables, self.columns.chunks);
+        let any = self.columns.x[0];
+        let per_unit: Vec<X> = self
+            .solution
+            .reached()
+            .iter()
+            .map(|x| any.like(1.0 / (1.0 + x.first().abs())))
+            .collect();
+        let size = |chunk: usize, k: usize| {
+            let level = self.columns.level(k);
+            let relative = |i: usize| (level[i * chunks + chunk] * per_unit[i]).abs();
+            (0..n).map(relative).fold(any.like(0.0), Element::max)
+        };
+        let of = |chunk| longest_of_columns(accuracy, most, |k| size(chunk, k));
+        (0..chunks).map(of).fold(most, f64::min)
+    }
+
+    /// Goes on by h units.
+    fn advance_columns(&mut self, order: usize, h: DoubleDouble) {
+        let any = self.columns.x[0];
+        let h = any.like_exact(h);
+        let Columns {
+            variables,
+            chunks,
+            x,
+            series,
+        } = &mut self.columns;
+        let width = *variables * *chunks;
+        for (at, x) in x.iter_mut().enumerate() {
+            let mut sum = series[order * width + at];
+            for k in (0..order).rev() {
+                sum = sum.mul_add(h, series[k * width + at]);
+            }
+            *x = sum;
+        }
+    }
+
+    /// The mean over the last step, of h units, of a diagonal entry of the Jacobian.
+    fn mean(&self, of: Source, order: usize, h: DoubleDouble) -> DoubleDouble {
+        let (_, rows) = self.solution.made();
+        let any = rows.row(0)[0];
+        let (mut mean, h) = (any.like(0.0), any.like_exact(h));
+        for k in (0..order).rev() {
+            mean = mean.mul_add(h, rows.coefficient(of, k) / any.like((k + 1) as f64));
+        }
+        mean.to_exact()
+    }
+}
+
+impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
+    fn start(&mut self, y: &[f64]) {
+        self.solution.start(y);
+        self.columns.start();
+        self.log_determinant = DoubleDouble::ZERO;
+        self.log_across = DoubleDouble::ZERO;
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        let (n, order) = (self.columns.variables, accuracy.order);
+        self.solution.expand(order);
+        let (program, rows) = self.solution.made();
+        let from = program.outputs.len() - n * (n + self.parameters);
+        let jacobian = Self::entries(program, from, (n, n));
+        let forcing = Self::entries(program, from + n * n, (n, self.parameters));
+        let unit = self.solution.unit();
+        self.columns.x[0].run(Expand {
+            columns: &mut self.columns,
+            jacobian: &jacobian,
+            forcing: &forcing,
+            rows,
+            unit,
+            order,
+        });
+        let in_units = (limit.hi() / unit).abs();
+        let most = f64::min(self.solution.longest(accuracy), in_units);
+        let h = self.longest(accuracy, most);
+        let taken = self.solution.advance_by(order, h, limit);
+        if !taken.is_finite() {
+            return taken;
+        }
+        let h = taken / unit;
+        self.advance_columns(order, h);
+        for entry in jacobian {
+            if entry.place.0 != entry.place.1 {
+                continue;
+            }
+            let grown = self.mean(entry.series, order, h) * taken;
+            self.log_determinant = self.log_determinant + grown;
+            if entry.place.0 == n - 1 {
+                self.log_across = self.log_across + grown;
+            }
+        }
+        taken
+    }
+
+    fn state(&self, i: usize) -> f64 {
+        self.solution.state(i)
+    }
+
+    fn unit(&self) -> f64 {
+        self.solution.unit()
+    }
+
+    fn series(&self, i: usize, into: &mut [f64]) {
+        self.solution.series(i, into);
+    }
+
+    fn slip_rates(&self, interface: usize, into: &mut [f64]) {
+        self.solution.slip_rates(interface, into);
+    }
+
+    fn derivative(&self, i: usize, direction: usize) -> f64 {
+        if direction < self.columns.variables + self.parameters {
+            self.columns.get(i, direction)
+        } else {
+            0.0
+        }
+    }
+
+    fn log_growth(&self) -> (f64, Option<f64>) {
+        let across = self.symmetric.then(|| self.log_across.to_f64());
+        (self.log_determinant.to_f64(), across)
+    }
+}

@@ -1,0 +1,186 @@
+//! Solutions as power series in time: what a Taylor method steps with.
+//!
+//! A differential equation is a [`Formula`], written for any [`crate::number::Real`]. Evaluated once per order on
+//! [`Series`] it yields one coefficient after the other of its solution (`tape` says how); [`Stepper`] makes steps of them.
+//! No recurrence is written for a law: the laws' own formulas, the same that give values and exact derivatives, run on
+//! series. That costs 10 to 15 per cent over recurrences written by hand for one law.
+//!
+//! The coefficients are [`Element`]s: ordinary numbers, both interfaces in one vector register, or several trajectories at
+//! once. What the processor can do is asked when the program runs, so that a binary for any x86-64 uses AVX2 and AVX-512.
+//!
+//! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
+//! methods. Experimental Mathematics 14, 99-117.
+
+mod columns;
+mod cubic;
+#[cfg(target_arch = "x86_64")]
+mod dual;
+mod element;
+mod equations;
+mod event;
+mod formula;
+#[cfg(target_arch = "x86_64")]
+mod functions;
+mod handle;
+mod interpreted;
+#[cfg(target_arch = "x86_64")]
+mod lanes;
+mod linearised;
+mod plain;
+mod program;
+mod real;
+mod recorded;
+mod recurrences;
+mod stepper;
+mod tape;
+mod trace;
+mod transport;
+#[cfg(target_arch = "x86_64")]
+mod variational;
+mod vectors;
+
+use crate::number::DoubleDouble;
+use crate::number::polynomial::evaluate;
+pub use columns::{Columns, Linearisation, Spread};
+pub use cubic::Cubic;
+pub use element::Element;
+pub(crate) use equations::is_small;
+pub use equations::{Equations, Plain};
+pub use event::{Passage, Section, Zeros};
+pub use formula::{Formula, Rates, WATCHED};
+pub use handle::{Series, value};
+#[cfg(target_arch = "x86_64")]
+pub use lanes::{Eight, Four, Pair};
+pub use plain::Both;
+pub use recorded::Recorded;
+pub use stepper::Stepper;
+pub use tape::Order;
+pub use transport::Transport;
+#[cfg(target_arch = "x86_64")]
+pub use variational::Variational;
+pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
+#[cfg(target_arch = "x86_64")]
+#[doc(hidden)]
+pub use vectors::{avx2, avx512};
+
+/// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
+pub const MAX_ORDER: usize = 18;
+
+/// The order of the series in double-double arithmetic, run in loops.
+pub const REFERENCE_ORDER: usize = 32;
+
+/// The order of a step, and what it may err by.
+#[derive(Debug, Clone, Copy)]
+pub struct Accuracy {
+    /// 12, 16 or [`MAX_ORDER`]; [`REFERENCE_ORDER`] in double-double arithmetic.
+    pub order: usize,
+    /// Relative and absolute tolerance.
+    pub tolerances: (f64, f64),
+}
+
+/// A solution in N dimensions on its way, step by step.
+pub trait Solution<const N: usize> {
+    /// Begins at y.
+    fn start(&mut self, y: &[f64; N]);
+    /// Goes on by the step that the accuracy asks for, at most `limit` (negative: back in time), and returns it. Not a number
+    /// if there is no step; the state then stays.
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
+    /// The state reached.
+    fn state(&self) -> [f64; N];
+    /// The series at the beginning of the last step.
+    fn expansion(&self, order: usize, into: &mut Expansion<N>);
+}
+
+/// A solution with its derivatives in its start and in the parameters, on its way. Started with y, those in y are the identity
+/// and those in parameters zero; every step has all of them within the accuracy.
+pub trait Tangent<const N: usize>: Solution<N> {
+    /// The derivatives of the state reached.
+    fn derivatives(&self) -> Derivatives<N>;
+}
+
+/// Derivatives of a state in its start and in the parameters.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Derivatives<const N: usize> {
+    /// In the j-th component of the start: column j.
+    pub start: [[f64; N]; N],
+    /// In the two control parameters: V_H and K of the slab, those of an [`Equations`].
+    pub parameters: [[f64; N]; 2],
+    /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
+    /// it knows nothing.
+    pub log_determinant: f64,
+    /// Where the system is the symmetric subspace of two equal parts under one common variable: the logarithm by which a small
+    /// difference between the parts grows.
+    pub log_across: Option<f64>,
+}
+
+/// The series of a solution at the beginning of a step, in the variables that it is made in.
+#[derive(Debug, Clone)]
+pub struct Expansion<const N: usize> {
+    /// The time of the beginning, in 31 digits: stress and state can change ten thousand times faster than time.
+    pub begin: DoubleDouble,
+    /// The time from the beginning of the step to its end.
+    pub length: f64,
+    /// The unit of time.
+    pub unit: f64,
+    /// The order to which the variables are known.
+    pub order: usize,
+    /// The coefficients of tau and psi, or of whatever the field's variables are.
+    pub variables: [[f64; REFERENCE_ORDER + 1]; N],
+    /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
+    pub slip_rates: [[f64; REFERENCE_ORDER + 1]; 2],
+    /// From these variables to the state that the field is integrated in.
+    pub chart: fn([f64; N]) -> [f64; N],
+}
+
+impl<const N: usize> Expansion<N> {
+    /// Of nothing yet.
+    pub fn new() -> Self {
+        Expansion {
+            begin: DoubleDouble::ZERO,
+            length: 0.0,
+            unit: 1.0,
+            order: 0,
+            variables: [[0.0; REFERENCE_ORDER + 1]; N],
+            slip_rates: [[0.0; REFERENCE_ORDER + 1]; 2],
+            chart: |x| x,
+        }
+    }
+
+    /// The time from the beginning of the step to a time of the solution, to all digits of the difference.
+    pub fn since_begin(&self, time: f64) -> f64 {
+        (DoubleDouble::from(time) - self.begin).hi()
+    }
+
+    /// The state at a time after the beginning of the step.
+    pub fn state(&self, time: f64) -> [f64; N] {
+        self.state_at(time / self.unit)
+    }
+
+    /// The state after s units.
+    fn state_at(&self, s: f64) -> [f64; N] {
+        let mut x = [0.0; N];
+        for (x, series) in x.iter_mut().zip(&self.variables) {
+            *x = evaluate(&series[..=self.order], s);
+        }
+        (self.chart)(x)
+    }
+
+    /// The slips of both interfaces up to a time after the beginning of the step: the slip rates integrated term by term.
+    pub fn slips(&self, time: f64) -> [f64; 2] {
+        let s = time / self.unit;
+        let mut slips = [0.0; 2];
+        for (slip, rates) in slips.iter_mut().zip(&self.slip_rates) {
+            for j in (0..self.order).rev() {
+                *slip = *slip * s + rates[j] / (j + 1) as f64;
+            }
+            *slip *= time;
+        }
+        slips
+    }
+}
+
+impl<const N: usize> Default for Expansion<N> {
+    fn default() -> Self {
+        Self::new()
+    }
+}

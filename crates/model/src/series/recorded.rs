@@ -1,0 +1,227 @@
+//! Solutions of any [`Equations`] that are computed by a recorded formula: references, tangents and transports.
+
+use super::cubic::Cubic;
+use super::equations::Equations;
+use super::interpreted::{Interpreted, Record, Trajectory, Transported};
+use super::linearised::Linearised;
+use super::program::Program;
+use super::trace::{Graph, Traced};
+use super::{
+    Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, Transport,
+};
+#[cfg(target_arch = "x86_64")]
+use super::{Four, avx2};
+use crate::number::{DoubleDouble, Real};
+use std::ops::{Deref, DerefMut};
+
+/// Coefficients that there is room for.
+const ROOM: usize = MAX_ORDER + 1;
+const REFERENCE_ROOM: usize = REFERENCE_ORDER + 1;
+
+/// Equations at given parameters, whose solutions are made by a recorded formula.
+#[derive(Debug, Clone, Copy)]
+pub struct Recorded<S, const N: usize> {
+    /// The right-hand side.
+    pub equations: S,
+    /// The two control parameters.
+    pub parameters: [f64; 2],
+    /// Whether they are the symmetric subspace of two equal parts under one common variable, the first: the difference between
+    /// the parts then grows as the last variable does on its own.
+    pub symmetric: bool,
+}
+
+/// A recorded formula: its variables, the slip rates among its outputs, the parameters in which it has derivatives.
+struct Recording<'a> {
+    record: Record<'a>,
+    variables: usize,
+    slip_rates: usize,
+    parameters: usize,
+    symmetric: bool,
+}
+
+/// What a solution is made in. None of these is generic: they are compiled with this crate, not with each system.
+impl<'a> Recording<'a> {
+    fn shape(&self) -> (usize, usize) {
+        (self.variables, self.slip_rates)
+    }
+
+    fn solution(self) -> Box<dyn Trajectory + 'a> {
+        let shape = self.shape();
+        Box::new(Interpreted::new(self.record, shape, ROOM, 0.0))
+    }
+
+    fn reference(self) -> Box<dyn Trajectory + 'a> {
+        let (shape, zero) = (self.shape(), DoubleDouble::ZERO);
+        Box::new(Interpreted::new(self.record, shape, REFERENCE_ROOM, zero))
+    }
+
+    fn tangent(self) -> Box<dyn Trajectory + 'a> {
+        let (shape, kind) = (self.shape(), (self.parameters, self.symmetric));
+        let solution = Interpreted::new(self.record, shape, ROOM, 0.0);
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = avx2() {
+            let any = Four::new(simd, [0.0; 4]);
+            return Box::new(Linearised::new(solution, kind, ROOM, any));
+        }
+        Box::new(Linearised::new(solution, kind, ROOM, 0.0))
+    }
+
+    fn reference_tangent(self) -> Box<dyn Trajectory + 'a> {
+        let (shape, kind) = (self.shape(), (self.parameters, self.symmetric));
+        let zero = DoubleDouble::ZERO;
+        let solution = Interpreted::new(self.record, shape, REFERENCE_ROOM, zero);
+        Box::new(Linearised::new(solution, kind, REFERENCE_ROOM, zero))
+    }
+
+    fn transport(self, start: &[Cubic]) -> Transported<'a> {
+        let shape = self.shape();
+        Transported::new(self.record, shape, ROOM, start)
+    }
+}
+
+/// A trajectory whose number of dimensions the compiler knows.
+struct Known<T, const N: usize>(T);
+
+impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Known<T, N> {
+    fn start(&mut self, y: &[f64; N]) {
+        self.0.start(y);
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        self.0.advance(accuracy, limit)
+    }
+
+    fn state(&self) -> [f64; N] {
+        std::array::from_fn(|i| self.0.state(i))
+    }
+
+    fn expansion(&self, order: usize, into: &mut Expansion<N>) {
+        into.order = order;
+        into.unit = self.0.unit();
+        into.chart = |x| x;
+        for (i, variable) in into.variables.iter_mut().enumerate() {
+            self.0.series(i, &mut variable[..=order]);
+        }
+        for (i, rates) in into.slip_rates.iter_mut().enumerate() {
+            self.0.slip_rates(i, &mut rates[..order]);
+        }
+    }
+}
+
+impl<const N: usize> Tangent<N> for Known<Box<dyn Trajectory + '_>, N> {
+    fn derivatives(&self) -> Derivatives<N> {
+        let column = |at: usize| std::array::from_fn(|i| self.0.derivative(i, at));
+        let (log_determinant, log_across) = self.0.log_growth();
+        Derivatives {
+            start: std::array::from_fn(column),
+            parameters: [column(N), column(N + 1)],
+            log_determinant,
+            log_across,
+        }
+    }
+}
+
+impl<const N: usize> Transport<N> for Known<Box<Transported<'_>>, N> {
+    fn polynomials(&self) -> [Cubic; N] {
+        std::array::from_fn(|i| self.0.polynomial(i))
+    }
+
+    fn after(&self, time: Cubic) -> [[Cubic; N]; 2] {
+        let each: [[Cubic; 2]; N] = std::array::from_fn(|i| self.0.after(i, time));
+        [0, 1].map(|k| each.map(|both| both[k]))
+    }
+}
+
+impl<'a, S: Equations<N> + 'a, const N: usize> Recorded<S, N> {
+    /// A solution.
+    pub fn solution(self) -> Box<dyn Solution<N> + 'a> {
+        Box::new(Known(self.recording(Derived::Nothing).solution()))
+    }
+
+    /// A solution in 31 digits.
+    pub fn reference(self) -> Box<dyn Solution<N> + 'a> {
+        Box::new(Known(self.recording(Derived::Nothing).reference()))
+    }
+
+    /// A solution with its derivatives, in those parameters too if asked for.
+    pub fn tangent(self, parameters: bool) -> Box<dyn Tangent<N> + 'a> {
+        let recording = if parameters {
+            self.recording(Derived::InParameters)
+        } else {
+            self.recording(Derived::InVariables)
+        };
+        Box::new(Known(recording.tangent()))
+    }
+
+    /// The same, with all derivatives, in 31 digits.
+    pub fn reference_tangent(self) -> Box<dyn Tangent<N> + 'a> {
+        let recording = self.recording(Derived::InParameters);
+        Box::new(Known(recording.reference_tangent()))
+    }
+
+    /// A solution to third order in two variations, which are those of this start.
+    pub fn transport(self, start: [Cubic; N]) -> Box<dyn Transport<N> + 'a> {
+        let recording = self.recording(Derived::Nothing);
+        Box::new(Known(Box::new(recording.transport(&start))))
+    }
+
+    /// The formula, and as many derivatives as asked for: none, those in the variables, or those in the parameters too.
+    fn recording(self, derivatives: Derived) -> Recording<'a> {
+        let constant = self.parameters.map(f64::constant);
+        let slip_rates = self.equations.slip_rates([1.0; N], constant);
+        Recording {
+            slip_rates: slip_rates.iter().flatten().count(),
+            symmetric: self.symmetric,
+            variables: N,
+            parameters: match derivatives {
+                Derived::InParameters => 2,
+                _ => 0,
+            },
+            record: Box::new(move |x| {
+                let graph = Graph::default();
+                let x = std::array::from_fn(|i| graph.variable(i, x[i]));
+                let p = [0, 1].map(|q| graph.variable(N + q, self.parameters[q]));
+                let rates = self.equations.rates(x, p);
+                let slip_rates = self.equations.slip_rates(x, p);
+                assemble(&graph, &self.parameters, (&rates, &slip_rates), derivatives)
+            }),
+        }
+    }
+}
+
+/// Which derivatives are recorded.
+#[derive(Debug, Clone, Copy)]
+enum Derived {
+    Nothing,
+    InVariables,
+    InParameters,
+}
+
+/// The program of these rates and slip rates. Its outputs: the rates, the slip rates, the Jacobian row by row, and for each
+/// rate its derivatives in the parameters.
+fn assemble(
+    graph: &Graph,
+    parameters: &[f64],
+    (rates, slip_rates): (&[Traced<'_>], &[Option<Traced<'_>>]),
+    derivatives: Derived,
+) -> Program {
+    let n = rates.len();
+    let mut outputs = rates.to_vec();
+    outputs.extend(slip_rates.iter().flatten());
+    let mut append = |variables: std::ops::Range<usize>| {
+        let columns: Vec<Vec<Traced<'_>>> =
+            variables.map(|i| graph.derivatives(rates, i)).collect();
+        for i in 0..n {
+            outputs.extend(columns.iter().map(|column| column[i]));
+        }
+    };
+    match derivatives {
+        Derived::Nothing => {}
+        Derived::InVariables => append(0..n),
+        Derived::InParameters => {
+            append(0..n);
+            append(n..n + parameters.len());
+        }
+    }
+    Program::new(graph, (n, parameters), &outputs)
+}

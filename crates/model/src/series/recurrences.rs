@@ -1,0 +1,272 @@
+//! The recurrences of series: the newest coefficient of a product, a quotient or a function, from those of its arguments.
+
+use super::element::Element;
+use super::tape::{Order, Row};
+use crate::number::DoubleDouble;
+
+impl<E: Element, O: Order> Row<'_, E, O> {
+    /// Puts down what is known of the coefficient after the newest.
+    #[inline(always)]
+    fn begin_next(self, x: E) {
+        self.tape.set(self.row, self.order() + 1, x);
+    }
+
+    /// sum of a_j b_(k-j) over 0 < j < k. From the middle outward, so that the newest coefficients come last and nobody waits
+    /// for them; in two sums, which the processor forms side by side.
+    ///
+    /// At even orders the terms of the next sum that are known are added up too, with the coefficients that are in registers
+    /// anyway: loads are what limits such sums. It is kept where the next coefficient of the result will stand.
+    #[inline(always)]
+    fn inner_product(self, other: Self, result: Self) -> E {
+        let k = self.order();
+        let zero = self.get(0).like(0.0);
+        if !O::UNROLLED {
+            return self.running_product(other);
+        }
+        if k < 2 {
+            return zero;
+        }
+        if k % 2 == 1 {
+            let begun = self.get(1).mul_add(other.get(k - 1), result.get(k));
+            return self.get(k - 1).mul_add(other.get(1), begun);
+        }
+        let mut i = k / 2;
+        let (mut a, mut b) = (self.get(i), other.get(i));
+        let (mut left, mut right) = (a * b, zero);
+        let (mut next_left, mut next_right) = (zero, zero);
+        while i > 1 {
+            i -= 1;
+            let (a_far, b_far) = (self.get(k - i), other.get(k - i));
+            next_left = a.mul_add(b_far, next_left);
+            next_right = a_far.mul_add(b, next_right);
+            (a, b) = (self.get(i), other.get(i));
+            left = a.mul_add(b_far, left);
+            right = a_far.mul_add(b, right);
+        }
+        result.begin_next(next_left + next_right);
+        left + right
+    }
+
+    /// The same in loops, with four sums side by side: one or two would wait for each other.
+    #[inline(always)]
+    fn running_product(self, other: Self) -> E {
+        let k = self.order();
+        let (a, b) = (&self.coefficients()[..k], &other.coefficients()[..k]);
+        let zero = self.get(0).like(0.0);
+        let (mut first, mut second, mut third, mut fourth) = (zero, zero, zero, zero);
+        let (mut i, mut j) = (1, k.saturating_sub(1));
+        while i + 3 < k {
+            first = a[i].get().mul_add(b[j].get(), first);
+            second = a[i + 1].get().mul_add(b[j - 1].get(), second);
+            third = a[i + 2].get().mul_add(b[j - 2].get(), third);
+            fourth = a[i + 3].get().mul_add(b[j - 3].get(), fourth);
+            i += 4;
+            j -= 4;
+        }
+        while i < k {
+            first = a[i].get().mul_add(b[j].get(), first);
+            i += 1;
+            j -= 1;
+        }
+        (first + second) + (third + fourth)
+    }
+
+    /// The sums of a_(k-j) f_j and of a_(k-j) g_j over 0 < j < k, for these results, likewise: every a_j is read but once.
+    #[inline(always)]
+    fn inner_products(self, f: Self, g: Self, results: (Self, Self)) -> (E, E) {
+        if !O::UNROLLED {
+            return (self.running_product(f), self.running_product(g));
+        }
+        let k = self.order();
+        let zero = self.get(0).like(0.0);
+        if k < 2 {
+            return (zero, zero);
+        }
+        if k % 2 == 1 {
+            let (near, far) = (self.get(1), self.get(k - 1));
+            let of_f = near.mul_add(f.get(k - 1), results.0.get(k));
+            let of_g = near.mul_add(g.get(k - 1), results.1.get(k));
+            return (far.mul_add(f.get(1), of_f), far.mul_add(g.get(1), of_g));
+        }
+        let mut i = k / 2;
+        let (mut a, mut b, mut c) = (self.get(i), f.get(i), g.get(i));
+        let (mut left, mut right) = ((a * b, a * c), (zero, zero));
+        let (mut next_left, mut next_right) = ((zero, zero), (zero, zero));
+        while i > 1 {
+            i -= 1;
+            let (a_far, b_far, c_far) = (self.get(k - i), f.get(k - i), g.get(k - i));
+            next_left.0 = a.mul_add(b_far, next_left.0);
+            next_left.1 = a.mul_add(c_far, next_left.1);
+            next_right.0 = a_far.mul_add(b, next_right.0);
+            next_right.1 = a_far.mul_add(c, next_right.1);
+            (a, b, c) = (self.get(i), f.get(i), g.get(i));
+            left.0 = a.mul_add(b_far, left.0);
+            left.1 = a.mul_add(c_far, left.1);
+            right.0 = a_far.mul_add(b, right.0);
+            right.1 = a_far.mul_add(c, right.1);
+        }
+        results.0.begin_next(next_left.0 + next_right.0);
+        results.1.begin_next(next_left.1 + next_right.1);
+        (left.0 + right.0, left.1 + right.1)
+    }
+
+    // In what follows the newest coefficient of the argument, which is known last, enters by one multiplication at the end:
+    // the next order waits for that chain.
+
+    /// (a b)_k
+    #[inline(always)]
+    pub(super) fn product(self, other: Self) -> Self {
+        let (k, (this, first), (other, second)) = (self.order(), self.parts(), other.parts());
+        let result = self.another();
+        let new = if k == 0 {
+            this.get(0) * other.get(0)
+        } else {
+            let sum = this.inner_product(other, result);
+            let sum = this.get(0).mul_add(other.get(k), sum);
+            this.get(k).mul_add(other.get(0), sum)
+        };
+        let result = result.put(new);
+        match (first, second) {
+            (Some(x), Some(y)) => result.scaled(x * y),
+            (Some(x), None) | (None, Some(x)) => result.scaled(x),
+            (None, None) => result,
+        }
+    }
+
+    /// q = a / b from a = q b: b_0 q_k = a_k - sum of b_j q_(k-j) over 0 < j <= k.
+    #[inline(always)]
+    pub(super) fn quotient(self, other: Self) -> Self {
+        let (k, denominator) = (self.order(), other);
+        let other = other.stored();
+        // The first coefficients of this row are 1 / b_0, -1 / b_0 and -q_0 / b_0.
+        let inverse = other.another();
+        let q = other.another();
+        if k == 0 {
+            let one_over = other.get(0).like(1.0) / other.get(0);
+            let first = self.newest() / other.get(0);
+            inverse.put(one_over);
+            inverse.tape.set(inverse.row, 1, -one_over);
+            inverse.tape.set(inverse.row, 2, -(first * one_over));
+            return q.put(first);
+        }
+        let rest = q.inner_product(other, q) * inverse.get(1);
+        let rest = self.mul_add(inverse.get(0), rest);
+        q.put(denominator.mul_add(inverse.get(2), rest))
+    }
+
+    /// j a_j as a row of its own, whose first coefficient is free.
+    #[inline(always)]
+    fn slopes(self) -> Self {
+        let k = self.order();
+        let slopes = self.another();
+        if k > 0 {
+            slopes.put(self.times(self.unscaled().like(k as f64)));
+        }
+        slopes
+    }
+
+    /// 1/k
+    #[inline(always)]
+    fn one_over_order(self) -> E {
+        let x = self.unscaled();
+        x.like(1.0) / x.like(self.order() as f64)
+    }
+
+    /// e = exp a from e' = e a'.
+    #[inline(always)]
+    pub(super) fn exponential(self) -> Self {
+        let k = self.order();
+        let slopes = self.slopes();
+        let e = self.another();
+        if k == 0 {
+            return e.put(self.newest().exp());
+        }
+        let rest = slopes.inner_product(e, e) * self.one_over_order();
+        e.put(self.mul_add(e.get(0), rest))
+    }
+
+    /// exp a - 1: beyond the first coefficient those of exp a, which are as small as those of a.
+    #[inline(always)]
+    pub(super) fn exponential_less_one(self) -> Self {
+        let e = self.exponential();
+        if self.order() == 0 {
+            return e.mapped(self.newest().exp_m1());
+        }
+        e.loose()
+    }
+
+    /// s = sinh a, c = cosh a from s' = c a', c' = s a'.
+    #[inline(always)]
+    pub(super) fn hyperbolic(self) -> (Self, Self) {
+        let k = self.order();
+        let slopes = self.slopes();
+        let (s, c) = (self.another(), self.another());
+        if k == 0 {
+            let (sinh, cosh) = self.newest().sinh_cosh();
+            return (s.put(sinh), c.put(cosh));
+        }
+        let (of_c, of_s) = slopes.inner_products(c, s, (s, c));
+        let one_over = self.one_over_order();
+        (
+            s.put(self.mul_add(c.get(0), of_c * one_over)),
+            c.put(self.mul_add(s.get(0), of_s * one_over)),
+        )
+    }
+
+    /// l = ln a from a l' = a': a_0 k l_k = k a_k - sum of a_(k-j) j l_j over 0 < j < k.
+    #[inline(always)]
+    pub(super) fn logarithm(self) -> Self {
+        let (k, this) = (self.order(), self.stored());
+        let l = self.another();
+        // The first coefficient of this row is 1 / a_0.
+        let slopes = self.another();
+        if k == 0 {
+            slopes.put(this.get(0).like(1.0) / this.get(0));
+            return l.put(this.get(0).ln());
+        }
+        let sum = slopes.inner_product(this, l);
+        let one_over = slopes.get(0);
+        let rest = sum * -(self.one_over_order() * one_over);
+        let new = self.mul_add(one_over, rest);
+        slopes.put(new * new.like(k as f64));
+        l.put(new)
+    }
+
+    /// ln(1 + a): beyond the first coefficient those of the logarithm.
+    #[inline(always)]
+    pub(super) fn logarithm_of_one_more(self) -> Self {
+        let l = self.plus(self.any().like(1.0)).logarithm();
+        if self.order() == 0 {
+            return l.mapped(self.newest().ln_1p());
+        }
+        l.loose()
+    }
+
+    /// y = a^p from a y' = p a' y: k a_0 y_k = sum of (p (k-j) - j) a_(k-j) y_j over 0 <= j < k
+    ///                                      = p k sum a_(k-j) y_j - (1+p) sum a_(k-j) j y_j.
+    #[inline(always)]
+    pub(super) fn power(self, p: f64) -> Self {
+        let (k, this) = (self.order(), self.stored());
+        let y = self.another();
+        let slopes = self.another();
+        // What all orders take: p / a_0, -(1+p) / a_0 and p y_0 / a_0.
+        let factors = self.another();
+        let a0 = this.get(0);
+        if k == 0 {
+            let one_over = a0.like(1.0) / a0;
+            let one_and_p = a0.like_exact(DoubleDouble::of_finite(1.0, p));
+            let first = a0.powf(p);
+            let p_over = a0.like(p) * one_over;
+            factors.put(p_over);
+            factors.tape.set(factors.row, 1, -(one_and_p * one_over));
+            factors.tape.set(factors.row, 2, p_over * first);
+            return y.put(first);
+        }
+        let (plain, weighted) = this.inner_products(y, slopes, (y, slopes));
+        let of_weighted = factors.get(1) * self.one_over_order();
+        let rest = weighted.mul_add(of_weighted, plain * factors.get(0));
+        let new = self.mul_add(factors.get(2), rest);
+        slopes.put(new * new.like(k as f64));
+        y.put(new)
+    }
+}

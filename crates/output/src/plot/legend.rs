@@ -1,0 +1,201 @@
+//! The heading of a panel: its title and the legend, both outside of the frame so that nothing covers the curves. What has no
+//! room on a line goes to the next.
+
+use super::canvas::{Align, Canvas, Colour, INK, MARK, Pixel, colour};
+use super::cells::tint;
+use super::clip::Window;
+use super::curves::{line_width, series_colour};
+use super::symbols::{self, Look};
+use super::text::{TEXT, width, wrapped};
+use super::{Panel, Stroke, strokes};
+
+/// Height of one line.
+const LINE: f64 = 20.0;
+/// Room above the first line and below the last.
+const AROUND: f64 = 6.0;
+/// Room after the title, and after an entry.
+const AFTER_TITLE: f64 = 22.0;
+const AFTER_ENTRY: f64 = 16.0;
+/// Length of a line's sample: more than one turn of any pattern.
+const SAMPLE: f64 = 32.0;
+/// Room between a sample and its name.
+const GAP: f64 = 7.0;
+/// Side of a square, and breadth of its outline.
+const SQUARE: f64 = 11.0;
+const OUTLINE: f64 = 0.6;
+/// Lines and points of the legend are not finer than this.
+const FINEST: f64 = 1.6;
+
+/// What stands before a name.
+#[derive(Debug, Clone, PartialEq)]
+enum Sample {
+    Nothing,
+    Line(Stroke, f64),
+    Dots(f64),
+    Symbol(Look),
+    Squares(Vec<Colour>),
+}
+
+/// Words with what stands before them.
+#[derive(Debug, Clone, PartialEq)]
+struct Entry {
+    /// From the left end of the heading, and the middle of its line from the top.
+    at: Pixel,
+    sample: Sample,
+    text: String,
+    colour: Colour,
+}
+
+/// Title and legend with their places.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Heading {
+    entries: Vec<Entry>,
+    lines: usize,
+}
+
+impl Heading {
+    /// Height of one line.
+    pub const LEAST: f64 = AROUND + LINE;
+
+    /// That of a panel, on lines of this length.
+    pub fn new(panel: &Panel, limit: f64) -> Self {
+        let mut flow = Flow {
+            heading: Heading {
+                entries: Vec::new(),
+                lines: 1,
+            },
+            used: 0.0,
+            limit,
+        };
+        flow.add(Sample::Nothing, &panel.title, INK, AFTER_TITLE);
+        for swatch in panel.cells.iter().flat_map(|map| &map.swatches) {
+            let colours: Vec<Colour> = swatch.shades.iter().copied().map(tint).collect();
+            let sample = if colours.is_empty() {
+                Sample::Nothing
+            } else {
+                Sample::Squares(colours)
+            };
+            flow.add(sample, &swatch.label, INK, AFTER_ENTRY);
+        }
+        for (i, series) in panel.series.iter().enumerate() {
+            let colour = series_colour(series, i);
+            let width = line_width(panel, i).max(FINEST);
+            let sample = if series.dots {
+                Sample::Dots(width)
+            } else {
+                Sample::Line(series.stroke, width)
+            };
+            flow.add(sample, &series.label, colour, AFTER_ENTRY);
+        }
+        for (stroke, words) in &panel.strokes {
+            flow.add(Sample::Line(*stroke, FINEST), words, INK, AFTER_ENTRY);
+        }
+        for key in &panel.keys {
+            let look = Look {
+                symbol: key.symbol,
+                filled: key.filled,
+                colour: key.colour.map_or(MARK, colour),
+            };
+            flow.add(Sample::Symbol(look), &key.label, INK, AFTER_ENTRY);
+        }
+        flow.heading
+    }
+
+    /// How high it is.
+    pub fn height(&self) -> f64 {
+        AROUND + LINE * self.lines as f64
+    }
+
+    /// Draws it with its lower left corner there.
+    pub fn draw(&self, canvas: &Canvas, corner: Pixel) {
+        let top = corner.1 - self.height();
+        self.entries.iter().for_each(|entry| {
+            let at = (corner.0 + entry.at.0, top + entry.at.1);
+            entry.sample.draw(canvas, at, entry.colour);
+            let text = (at.0 + entry.sample.width(), at.1);
+            canvas.words(&entry.text, text, Align::Left, TEXT, entry.colour)
+        })
+    }
+}
+
+impl Sample {
+    /// Of the room before the words.
+    fn width(&self) -> f64 {
+        match self {
+            Sample::Nothing => 0.0,
+            Sample::Line(..) => SAMPLE + GAP,
+            Sample::Dots(_) | Sample::Symbol(_) => 2.0 * symbols::HALF + GAP,
+            Sample::Squares(colours) => SQUARE * colours.len() as f64 + GAP,
+        }
+    }
+
+    fn draw(&self, canvas: &Canvas, (x, y): Pixel, colour: Colour) {
+        let all = Window {
+            x: (f64::NEG_INFINITY, f64::INFINITY),
+            y: (f64::NEG_INFINITY, f64::INFINITY),
+        };
+        match self {
+            Sample::Nothing => (),
+            Sample::Line(stroke, width) => {
+                strokes::draw(canvas, &[(x, y), (x + SAMPLE, y)], *stroke, *width, colour)
+            }
+            Sample::Dots(radius) => canvas.circle((x + symbols::HALF, y), *radius, colour),
+            Sample::Symbol(look) => symbols::draw(canvas, *look, (x + symbols::HALF, y), &all),
+            Sample::Squares(colours) => squares(canvas, (x, y), colours),
+        }
+    }
+}
+
+/// Squares side by side from there, with an outline around all, as the palest ones are nearly white.
+fn squares(canvas: &Canvas, (x, y): Pixel, colours: &[Colour]) {
+    let side = |i: usize| x + SQUARE * i as f64;
+    let strip = |from: usize, to: usize| {
+        let place = Window {
+            x: (side(from), side(to)),
+            y: (y - 0.5 * SQUARE, y + 0.5 * SQUARE),
+        };
+        place.corners().to_vec()
+    };
+    for (i, &colour) in colours.iter().enumerate() {
+        canvas.areas(&[strip(i, i + 1)], colour, true);
+    }
+    let mut outline = strip(0, colours.len());
+    outline.push(outline[0]);
+    canvas.line(&outline, INK, OUTLINE)
+}
+
+/// Entries set one after the other.
+struct Flow {
+    heading: Heading,
+    /// Of the last line.
+    used: f64,
+    limit: f64,
+}
+
+impl Flow {
+    fn add(&mut self, sample: Sample, text: &str, colour: Colour, after: f64) {
+        if text.is_empty() {
+            return;
+        }
+        let room = (self.limit - sample.width()).max(1.0);
+        for (i, text) in wrapped(text, TEXT, room).into_iter().enumerate() {
+            let whole = sample.width() + width(&text, TEXT);
+            if self.used > 0.0 && (i > 0 || self.used + whole > self.limit) {
+                self.heading.lines += 1;
+                self.used = 0.0;
+            }
+            let middle = AROUND / 2.0 + (self.heading.lines as f64 - 0.5) * LINE;
+            let (first, indent) = match i {
+                0 => (sample.clone(), 0.0),
+                _ => (Sample::Nothing, sample.width()),
+            };
+            self.heading.entries.push(Entry {
+                at: (self.used + indent, middle),
+                sample: first,
+                text,
+                colour,
+            });
+            self.used += whole + after;
+        }
+    }
+}

@@ -1,0 +1,165 @@
+//! The points that are pointed out with their names, and words at a place.
+
+use super::canvas::{Align, Canvas, Colour, INK, MARK, PAPER, Pixel, colour};
+use super::clip::Window;
+use super::frame::Frame;
+use super::symbols::{self, Look};
+use super::text::{self, TEXT};
+use super::{Mark, Panel, names};
+
+/// Room between a name and its neighbours.
+const AIR: f64 = 4.0;
+/// Room around words that lines don't cross.
+const BACKING: f64 = 2.0;
+/// A name that begins farther than this from its point is tied to it.
+const TIED: f64 = 12.0;
+/// Points nearer than this look like one: they share a name.
+const ONE: f64 = 3.0;
+/// Breadth of the tie.
+const TIE: f64 = 0.7;
+
+/// Writes the notes that lie in the frame, each where it covers neither a curve nor another one, as near to its place as that
+/// allows, and gives their middles and sizes.
+pub fn notes(
+    canvas: &Canvas,
+    panel: &Panel,
+    frame: &Frame,
+    curves: &[Pixel],
+) -> Vec<(Pixel, (f64, f64))> {
+    let marks = panel.marks.iter();
+    let points: Vec<Pixel> = marks
+        .filter_map(|mark| frame.place(mark.x, mark.y))
+        .collect();
+    let mut written: Vec<(Pixel, (f64, f64))> = Vec::new();
+    for note in &panel.notes {
+        let Some(at) = frame.place(note.x, note.y) else {
+            continue;
+        };
+        let size = (
+            text::width(&note.text, TEXT) + 2.0 * BACKING,
+            TEXT + 2.0 * BACKING,
+        );
+        let half = (0.5 * size.0, 0.5 * size.1);
+        // Near a side, words move inwards.
+        let at = frame.inside().without(half).nearest(at);
+        let at = names::beside(at, size, (curves, &points, &written), frame.inside());
+        backed(canvas, frame, at, size);
+        let ink = note.colour.map_or(INK, colour);
+        canvas.words(&note.text, at, Align::Middle, TEXT, ink);
+        written.push((at, size));
+    }
+    written
+}
+
+/// White behind words of that size with their middle there.
+fn backed(canvas: &Canvas, frame: &Frame, at: Pixel, (width, height): (f64, f64)) {
+    let backing = Window {
+        x: (at.0 - 0.5 * width, at.0 + 0.5 * width),
+        y: (at.1 - 0.5 * height, at.1 + 0.5 * height),
+    };
+    canvas.area(&frame.inside().area(&backing.corners()), PAPER)
+}
+
+/// Draws the points in the frame that are pointed out, with their names where there is room.
+pub fn marks(
+    canvas: &Canvas,
+    panel: &Panel,
+    frame: &Frame,
+    curves: &[Pixel],
+    words: &[(Pixel, (f64, f64))],
+) {
+    let shown = shown(panel, frame);
+    let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
+    let centres = names::placed(&named, curves, words, frame.inside());
+    for (one, centre) in shown.iter().zip(&centres) {
+        tie(canvas, &one.named, *centre, mark_colour(one.mark));
+    }
+    for one in shown.iter().filter(|one| !one.mark.behind) {
+        symbols::draw(canvas, look(one.mark), one.named.at, frame.inside());
+    }
+    for (one, centre) in shown.iter().zip(&centres) {
+        let Shown { mark, name, named } = one;
+        if !name.is_empty() {
+            // Dark red is hard to read on a map.
+            if panel.cells.is_some() {
+                backed(canvas, frame, *centre, named.size);
+            }
+            canvas.words(name, *centre, Align::Middle, TEXT, mark_colour(mark));
+        }
+    }
+}
+
+/// Draws the points that the curves go over.
+pub fn behind(canvas: &Canvas, panel: &Panel, frame: &Frame) {
+    let marks = panel.marks.iter().filter(|mark| mark.behind);
+    for mark in marks {
+        if let Some(at) = frame.place(mark.x, mark.y) {
+            symbols::draw(canvas, look(mark), at, frame.inside());
+        }
+    }
+}
+
+fn look(mark: &Mark) -> Look {
+    Look {
+        symbol: mark.symbol,
+        filled: mark.filled,
+        colour: mark_colour(mark),
+    }
+}
+
+fn mark_colour(mark: &Mark) -> Colour {
+    mark.colour.map_or(MARK, colour)
+}
+
+/// A point within the frame.
+struct Shown<'a> {
+    mark: &'a Mark,
+    /// Its name, with those of other points that look like the same one.
+    name: String,
+    named: names::Named,
+}
+
+/// The points within the frame, with the sizes of their names.
+fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Vec<Shown<'a>> {
+    let mut shown: Vec<Shown<'a>> = Vec::new();
+    for mark in &panel.marks {
+        let Some(at) = frame.place(mark.x, mark.y) else {
+            continue;
+        };
+        let near = |one: &&mut Shown<'_>| {
+            let (x, y) = one.named.at;
+            let named = !one.name.is_empty() && !mark.label.is_empty();
+            named && (x - at.0).hypot(y - at.1) < ONE
+        };
+        let name = match shown.iter_mut().find(near) {
+            Some(one) => {
+                if one.name.split(", ").all(|name| name != mark.label) {
+                    one.name = format!("{}, {}", one.name, mark.label);
+                }
+                String::new()
+            }
+            None => mark.label.clone(),
+        };
+        let (size, side) = ((0.0, 0.0), mark.side);
+        shown.push(Shown {
+            mark,
+            name,
+            named: names::Named { at, size, side },
+        });
+    }
+    for one in shown.iter_mut().filter(|one| !one.name.is_empty()) {
+        one.named.size = (text::width(&one.name, TEXT) + AIR, TEXT + AIR);
+    }
+    shown
+}
+
+/// Ties a name that stands far off to its point, up to its edge.
+fn tie(canvas: &Canvas, named: &names::Named, centre: Pixel, colour: Colour) {
+    let off = (centre.0 - named.at.0, centre.1 - named.at.1);
+    let edge = names::edge(off, named.size);
+    if named.size == (0.0, 0.0) || edge.0.hypot(edge.1) <= TIED {
+        return;
+    }
+    let end = (named.at.0 + edge.0, named.at.1 + edge.1);
+    canvas.line(&[named.at, end], colour, TIE)
+}

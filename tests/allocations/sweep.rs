@@ -1,0 +1,55 @@
+//! No step of a sweep's runs allocates.
+
+use allocation_counter::measure;
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::section::Regime;
+use twinslip::sweep::{Grid, Range, Settings, Sweeper};
+
+/// Allocations of a look for what a run creeps to.
+const SEARCH: u64 = 400;
+
+#[test]
+fn no_step_allocates() {
+    // Just below the Hopf point of the asymmetric steady state runs return for long.
+    let at = |text: &str| Settings {
+        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+        grid: Grid::Plane {
+            driving: Range::parse("driving", text).unwrap(),
+            stiffness: Range::parse("stiffness", "0.14:0.14:1").unwrap(),
+        },
+        starts: 1,
+        seed: 0,
+        follow: false,
+        rtol: 1e-9,
+        lyapunov: false,
+        max_returns: 4000,
+        max_steps: 10_000_000,
+    };
+    let allocated = |text: &str| {
+        let settings = at(text);
+        let mut sweeper = Sweeper::new(&settings).unwrap();
+        let mut rows = Vec::with_capacity(1);
+        let counted = measure(|| sweeper.rows(0..1, &mut rows));
+        assert_eq!(rows[0].regime, Regime::Steady);
+        println!(
+            "{text}: {} returns, {}",
+            rows[0].returns, counted.count_total
+        );
+        (rows[0].returns, counted.count_total)
+    };
+    // Both are judged at 64 and at 128 returns, and then no more: what lies between them is returns, fewer of which allocate
+    // than not, and steps, dozens from one return to the next, none of which does.
+    let [(few, short), (more, long)] = ["0.06292:0.06292:1", "0.06293:0.06293:1"].map(allocated);
+    assert!((128..256).contains(&few) && (few + 20..256).contains(&more));
+    assert!(
+        long.abs_diff(short) < u64::try_from(more - few).expect("few"),
+        "{short} and {long} allocations, {few} and {more} returns"
+    );
+    // At 256 and at 512 it may creep to an orbit, which is looked for by Newton's method.
+    let (many, longest) = allocated("0.063:0.063:1");
+    assert!((512..1024).contains(&many), "{many}");
+    assert!(
+        longest - long < 2 * SEARCH,
+        "{long} and {longest} allocations, {more} and {many} returns"
+    );
+}

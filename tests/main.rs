@@ -1,0 +1,68 @@
+//! The tests: one binary, as most of the time that tests take to build goes into binaries. `cargo test --test tests NAME::` runs
+//! the file `tests/NAME.rs`. Those that count allocations are a binary of their own, `tests/allocations`.
+#![allow(missing_docs)]
+
+// What tests share.
+mod command;
+mod common;
+mod drawn;
+
+mod batch;
+mod branches;
+mod branches_equilibria;
+mod branches_orbits;
+mod browser;
+mod cli;
+mod continuation;
+mod curves_equilibria;
+mod curves_orbits;
+#[cfg(feature = "sundials")]
+mod cvode_integrator;
+mod derivatives;
+mod double_double;
+#[cfg(unix)]
+mod durability;
+mod equilibria;
+mod equilibria_generic;
+mod equilibria_random;
+mod estimates;
+mod events;
+mod extremes;
+mod figures_of_laws;
+mod friction;
+mod guide;
+mod internals;
+#[cfg(target_arch = "x86_64")]
+mod lanes;
+mod lyapunov;
+mod numbers;
+mod orbits;
+mod orbits_of_systems;
+mod page;
+#[cfg(feature = "parquet")]
+mod parquet;
+mod parted;
+mod pictures;
+mod polynomials;
+mod reproduce;
+mod rooms;
+mod rosenbrock;
+mod rosenbrock_classics;
+mod rosenbrock_extremes;
+mod rosenbrock_tangent;
+mod run;
+mod scenes;
+mod schema;
+mod scorecard;
+mod section;
+mod stress;
+mod strong_resonance;
+#[cfg(feature = "sundials")]
+mod sundials;
+mod sweep;
+mod sweep_command;
+mod systems;
+mod tableaus;
+mod taylor;
+mod transport;
+mod work_precision;
