@@ -19,6 +19,7 @@ mod curves_orbits;
 #[cfg(feature = "sundials")]
 mod cvode_integrator;
 mod derivatives;
+mod dimensions;
 mod double_double;
 #[cfg(unix)]
 mod durability;

@@ -128,7 +128,7 @@ fn check_differences<S: Equations<N>, const N: usize>(
     }
 }
 
-fn check<S: Equations<N>, const N: usize>(field: Smooth<S, N>, y: [f64; N], t: f64) {
+pub fn check<S: Equations<N>, const N: usize>(field: Smooth<S, N>, y: [f64; N], t: f64) {
     check_derivatives(&field, y);
     check_flows(&field, y, t);
 }

@@ -90,6 +90,9 @@ pub trait Element:
     const LANES: usize;
     /// Whether series of these are worth the time that it takes to compile them order by order.
     const UNROLLED: bool = false;
+    /// Whether a formula and the sums of products are functions of their own, called: of long elements they take minutes to
+    /// compile otherwise, and run no faster.
+    const CALLED: bool = false;
     /// The number in the first lane.
     fn first(self) -> f64;
     /// The number in a lane.

@@ -64,18 +64,23 @@ fn level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
     let any = memory[0].get();
     let next = order.index() + 1;
     let unit_over_next = unit * (any.like(1.0) / any.like(next as f64));
-    let put = |i: usize| {
-        let rate = rates.variables[i].times(unit_over_next, order);
-        memory[i * ROOM + next].set(rate);
-    };
-    put(0);
+    // No closure: it would be compiled for any processor.
+    macro_rules! put {
+        ($i:expr) => {
+            let rate = rates.variables[$i].times(unit_over_next, order);
+            memory[$i * ROOM + next].set(rate);
+        };
+    }
+    put!(0);
     if C > 1 {
-        put(1);
+        put!(1);
     }
     if C > 2 {
-        put(2);
+        put!(2);
     }
-    (3..C).for_each(put);
+    for i in 3..C {
+        put!(i);
+    }
     let [a, b, c, d, e] = rates.watched;
     [a.row(), b.row(), c.row(), d.row(), e.row()]
 }
@@ -112,6 +117,21 @@ fn run_level<E: Element, F: Formula<E, C>, O: Order, const C: usize>(
         order,
         unit,
     })
+}
+
+/// A level in loops.
+#[inline(always)]
+fn running_level<E: Element, F: Formula<E, C>, const C: usize>(
+    formula: &F,
+    memory: &[Cell<E>],
+    order: Running,
+    unit: E,
+) -> [Option<usize>; WATCHED] {
+    if E::CALLED {
+        run_level(formula, memory, order, unit)
+    } else {
+        level(formula, memory, order, unit)
+    }
 }
 
 /// The first level alone: the rates at the first coefficients, in that unit of time.
@@ -162,7 +182,7 @@ pub(super) fn expand_running<E: Element, F: Formula<E, C>, const C: usize>(
 ) -> [Option<usize>; WATCHED] {
     let mut watched = [None; WATCHED];
     for index in 0..order {
-        watched = level(formula, memory, Running(index), unit);
+        watched = running_level(formula, memory, Running(index), unit);
     }
     watched
 }

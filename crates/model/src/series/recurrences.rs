@@ -3,6 +3,41 @@
 use super::element::Element;
 use super::tape::{Order, Row};
 use crate::number::DoubleDouble;
+use pulp::NullaryFnOnce;
+use std::cell::Cell;
+
+/// sum of a_j b_(k-j) over 0 < j < k, k being the length of both.
+struct Product<'a, E> {
+    a: &'a [Cell<E>],
+    b: &'a [Cell<E>],
+    zero: E,
+}
+
+impl<E: Element> NullaryFnOnce for Product<'_, E> {
+    type Output = E;
+    /// With four sums side by side: one or two would wait for each other.
+    #[inline(always)]
+    fn call(self) -> E {
+        let Product { a, b, zero } = self;
+        let k = a.len();
+        let (mut first, mut second, mut third, mut fourth) = (zero, zero, zero, zero);
+        let (mut i, mut j) = (1, k.saturating_sub(1));
+        while i + 3 < k {
+            first = a[i].get().mul_add(b[j].get(), first);
+            second = a[i + 1].get().mul_add(b[j - 1].get(), second);
+            third = a[i + 2].get().mul_add(b[j - 2].get(), third);
+            fourth = a[i + 3].get().mul_add(b[j - 3].get(), fourth);
+            i += 4;
+            j -= 4;
+        }
+        while i < k {
+            first = a[i].get().mul_add(b[j].get(), first);
+            i += 1;
+            j -= 1;
+        }
+        (first + second) + (third + fourth)
+    }
+}
 
 impl<E: Element, O: Order> Row<'_, E, O> {
     /// Puts down what is known of the coefficient after the newest.
@@ -47,28 +82,20 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         left + right
     }
 
-    /// The same in loops, with four sums side by side: one or two would wait for each other.
+    /// The same in loops.
     #[inline(always)]
     fn running_product(self, other: Self) -> E {
         let k = self.order();
-        let (a, b) = (&self.coefficients()[..k], &other.coefficients()[..k]);
-        let zero = self.get(0).like(0.0);
-        let (mut first, mut second, mut third, mut fourth) = (zero, zero, zero, zero);
-        let (mut i, mut j) = (1, k.saturating_sub(1));
-        while i + 3 < k {
-            first = a[i].get().mul_add(b[j].get(), first);
-            second = a[i + 1].get().mul_add(b[j - 1].get(), second);
-            third = a[i + 2].get().mul_add(b[j - 2].get(), third);
-            fourth = a[i + 3].get().mul_add(b[j - 3].get(), fourth);
-            i += 4;
-            j -= 4;
+        let product = Product {
+            a: &self.coefficients()[..k],
+            b: &other.coefficients()[..k],
+            zero: self.get(0).like(0.0),
+        };
+        if E::CALLED {
+            product.zero.run(product)
+        } else {
+            product.call()
         }
-        while i < k {
-            first = a[i].get().mul_add(b[j].get(), first);
-            i += 1;
-            j -= 1;
-        }
-        (first + second) + (third + fourth)
     }
 
     /// The sums of a_(k-j) f_j and of a_(k-j) g_j over 0 < j < k, for these results, likewise: every a_j is read but once.
