@@ -1,5 +1,4 @@
-//! Polynomials of the third degree in two variations: what a flow map is to third order around a solution. Their operations are
-//! called, not inlined: formulas of them would take minutes to compile.
+//! Polynomials of the third degree in two variations: what a flow map is to third order around a solution.
 
 use super::element::{Element, rough_exp2, rough_log2};
 use crate::number::{DoubleDouble, Real};
@@ -66,7 +65,7 @@ impl Cubic {
 
 impl Neg for Cubic {
     type Output = Self;
-    #[inline(never)]
+    #[inline]
     fn neg(self) -> Self {
         self.scaled(-1.0)
     }
@@ -74,7 +73,7 @@ impl Neg for Cubic {
 
 impl Add for Cubic {
     type Output = Self;
-    #[inline(never)]
+    #[inline]
     fn add(self, o: Self) -> Self {
         self.zip(o, |x, y| x + y)
     }
@@ -82,7 +81,7 @@ impl Add for Cubic {
 
 impl Sub for Cubic {
     type Output = Self;
-    #[inline(never)]
+    #[inline]
     fn sub(self, o: Self) -> Self {
         self.zip(o, |x, y| x - y)
     }
@@ -90,7 +89,7 @@ impl Sub for Cubic {
 
 impl Mul for Cubic {
     type Output = Self;
-    #[inline(never)]
+    #[inline]
     fn mul(self, o: Self) -> Self {
         let (a, b) = (self.0, o.0);
         let mut c = [a[0] * b[0]; 10];
@@ -136,6 +135,10 @@ impl Element for Cubic {
     fn to_exact(self) -> DoubleDouble {
         DoubleDouble::from(self.0[0])
     }
+    fn scale(self, x: DoubleDouble) -> Self {
+        self.scaled(x.hi())
+    }
+    #[inline]
     fn mul_add(self, a: Self, b: Self) -> Self {
         self * a + b
     }

@@ -38,6 +38,11 @@ pub trait Element:
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
         f.call()
     }
+    /// x self, for a number x of 31 digits.
+    #[inline(always)]
+    fn scale(self, x: DoubleDouble) -> Self {
+        self * self.like_exact(x)
+    }
     /// self a + b, fused where the processor does that.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// |self|

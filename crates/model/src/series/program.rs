@@ -276,6 +276,8 @@ pub(super) struct Rows<T> {
     coefficients: Vec<T>,
     /// Coefficients that a row has room for.
     room: usize,
+    /// 1/k for every order k.
+    inverses: Vec<DoubleDouble>,
     any: T,
 }
 
@@ -285,8 +287,16 @@ impl<T: Element> Rows<T> {
         Rows {
             coefficients: vec![any.like(0.0); program.rows() * room],
             room,
+            inverses: (0..room)
+                .map(|k| DoubleDouble::from(1.0) / k as f64)
+                .collect(),
             any,
         }
+    }
+
+    /// 1/k
+    pub fn one_over(&self, k: usize) -> DoubleDouble {
+        self.inverses[k]
     }
 
     /// The coefficients of a row.
@@ -345,7 +355,7 @@ impl<T: Element> Rows<T> {
             Operation::Shifted(a, _) => self.get(a, k),
             Operation::Complement(x, a) if k == 0 => any.like_exact(x) - self.get(a, 0),
             Operation::Complement(_, a) => -self.get(a, k),
-            Operation::Scaled(a, x) => self.get(a, k) * any.like_exact(x),
+            Operation::Scaled(a, x) => self.get(a, k).scale(x),
             Operation::Over(a, x) => self.get(a, k) / any.like_exact(x),
             Operation::Product(a, b) => self.convolution(a, b, k, (0, k + 1)),
             Operation::Quotient(a, b) => {
@@ -364,7 +374,8 @@ impl<T: Element> Rows<T> {
                 if k == 0 {
                     self.get(a, 0).exp()
                 } else {
-                    self.convolution(spare, result, k, (1, k + 1)) * self.one_over(k)
+                    self.convolution(spare, result, k, (1, k + 1))
+                        .scale(self.one_over(k))
                 }
             }
             Operation::ExponentialLessOne(a, _) if k == 0 => self.get(a, 0).exp_m1(),
@@ -375,9 +386,11 @@ impl<T: Element> Rows<T> {
                     self.set(spare, 0, any.like(1.0) / self.get(a, 0));
                     self.get(a, 0).ln()
                 } else {
-                    let sum = self.convolution(spare, a, k, (1, k)) * self.one_over(k);
+                    let sum = self
+                        .convolution(spare, a, k, (1, k))
+                        .scale(self.one_over(k));
                     let new = (self.get(a, k) - sum) * self.get(spare, 0);
-                    self.set(spare, k, new * any.like(k as f64));
+                    self.set(spare, k, new.scale(DoubleDouble::from(k as f64)));
                     new
                 }
             }
@@ -392,8 +405,10 @@ impl<T: Element> Rows<T> {
                     s
                 } else {
                     let one_over = self.one_over(k);
-                    let c = self.convolution(spare, result, k, (1, k + 1)) * one_over;
-                    let s = self.convolution(spare, cosh, k, (1, k + 1)) * one_over;
+                    let c = self
+                        .convolution(spare, result, k, (1, k + 1))
+                        .scale(one_over);
+                    let s = self.convolution(spare, cosh, k, (1, k + 1)).scale(one_over);
                     self.set(cosh, k, c);
                     s
                 }
@@ -414,22 +429,20 @@ impl<T: Element> Rows<T> {
             self.set(slopes, 0, any.like(1.0) / self.get(a, 0));
             return self.get(a, 0).powf(p);
         }
-        let one_and_p = any.like_exact(DoubleDouble::of_finite(1.0, p));
-        let plain = self.convolution(y, a, k, (0, k)) * any.like(p);
-        let weighted = self.convolution(slopes, a, k, (1, k)) * one_and_p;
-        let new = (plain - weighted * self.one_over(k)) * self.get(slopes, 0);
-        self.set(slopes, k, new * any.like(k as f64));
+        let one_and_p = DoubleDouble::of_finite(1.0, p) * self.one_over(k);
+        let plain = self
+            .convolution(y, a, k, (0, k))
+            .scale(DoubleDouble::from(p));
+        let weighted = self.convolution(slopes, a, k, (1, k)).scale(one_and_p);
+        let new = (plain - weighted) * self.get(slopes, 0);
+        self.set(slopes, k, new.scale(DoubleDouble::from(k as f64)));
         new
     }
 
     /// j a_j
     fn slope(&mut self, a: usize, slopes: usize, k: usize) {
-        let new = self.get(a, k) * self.any.like(k as f64);
+        let new = self.get(a, k).scale(DoubleDouble::from(k as f64));
         self.set(slopes, k, new);
-    }
-
-    fn one_over(&self, k: usize) -> T {
-        self.any.like(1.0) / self.any.like(k as f64)
     }
 }
 
