@@ -77,7 +77,7 @@ struct Long;
 
 impl Equations<3> for Long {
     fn rates<T: Real>(&self, x: [T; 3], [a, b]: [T; 2]) -> [T; 3] {
-        let one = x[0] / x[0];
+        let one = x[0] / (x[0] + 0.0);
         let mut sum = T::constant(0.0);
         for i in 1..=40 {
             sum = sum + one * one.powf(f64::from(i)) / 40.0;
