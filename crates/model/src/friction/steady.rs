@@ -107,7 +107,7 @@ pub struct StiffnessMaximum {
 /// Only a law that weakens between two extrema has one: k_c vanishes at both.
 ///
 /// # Errors
-/// [`crate::Error::NotConverged`] if the search fails, which the shape of the laws excludes.
+/// [`crate::error::Error::NotConverged`] if the search fails, which the shape of the laws excludes.
 pub fn critical_stiffness_maximum(law: &impl Law) -> Result<Option<StiffnessMaximum>> {
     let extrema = law.steady_extrema();
     let [v_peak, v_trough] = extrema[..] else {

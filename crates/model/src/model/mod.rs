@@ -61,7 +61,7 @@ pub struct Loading {
 
 impl Loading {
     /// # Errors
-    /// [`crate::Error::Parameter`] unless both are positive and finite.
+    /// [`crate::error::Error::Parameter`] unless both are positive and finite.
     pub fn new(driving: f64, stiffness: f64) -> Result<Self> {
         Ok(Loading {
             driving: positive("driving", driving)?,

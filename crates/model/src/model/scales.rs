@@ -54,7 +54,7 @@ impl Material {
     /// The dimensionless parameters and the units that lead back.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] for a value outside its domain.
+    /// [`crate::error::Error::Parameter`] for a value outside its domain.
     pub fn dimensionless(&self) -> Result<(Parameters, Scales)> {
         let scales = Scales::new(
             self.direct_effect,
@@ -95,7 +95,7 @@ impl Scales {
     /// From a, L in m, V* in m/s and sigma in Pa.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] unless all are positive and finite.
+    /// [`crate::error::Error::Parameter`] unless all are positive and finite.
     pub fn new(
         direct_effect: f64,
         slip_length: f64,
@@ -119,7 +119,7 @@ impl Scales {
     /// V_H and K from a machine.
     ///
     /// # Errors
-    /// [`crate::Error::Parameter`] unless both are positive and finite.
+    /// [`crate::error::Error::Parameter`] unless both are positive and finite.
     pub fn loading(&self, machine: &Machine) -> Result<Loading> {
         Loading::new(
             machine.driving / self.slip_rate,
