@@ -1,7 +1,7 @@
 //! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
 //! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
 
-use super::{AnyLaw, Law, Spinodal};
+use super::{Law, Spinodal};
 use crate::number::Real;
 
 /// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -33,10 +33,6 @@ impl Law for Bounded {
 
     fn core(&self) -> Spinodal {
         self.as_limit()
-    }
-
-    fn any(&self) -> AnyLaw {
-        AnyLaw::Bounded(*self)
     }
 
     fn name(&self) -> &'static str {

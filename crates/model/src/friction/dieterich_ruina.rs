@@ -1,6 +1,6 @@
 //! The Dieterich-Ruina law with the ageing evolution, equations (4) and (8). Velocity weakening throughout for beta > 1.
 
-use super::{AnyLaw, Law};
+use super::Law;
 use crate::number::Real;
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = 1 - v psi, with psi in L/V*.
@@ -18,10 +18,6 @@ impl Law for DieterichRuina {
 
     fn core(&self) -> DieterichRuina {
         *self
-    }
-
-    fn any(&self) -> AnyLaw {
-        AnyLaw::DieterichRuina(*self)
     }
 
     fn name(&self) -> &'static str {

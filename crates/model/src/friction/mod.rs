@@ -49,9 +49,6 @@ pub trait Law: Copy + Debug + Send + Sync {
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 
-    /// This law as one that was chosen at run time.
-    fn any(&self) -> AnyLaw;
-
     /// The name by which the command line knows the law.
     fn name(&self) -> &'static str;
 
@@ -287,9 +284,6 @@ impl AnyLaw {
 impl Law for AnyLaw {
     type Core = AnyLaw;
     fn core(&self) -> AnyLaw {
-        *self
-    }
-    fn any(&self) -> AnyLaw {
         *self
     }
     fn name(&self) -> &'static str {

@@ -1,6 +1,6 @@
 //! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
 
-use super::{AnyLaw, Law, direct};
+use super::{Law, direct};
 use crate::number::Real;
 
 /// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
@@ -17,10 +17,6 @@ impl Law for RegularisedAgeing {
 
     fn core(&self) -> RegularisedAgeing {
         *self
-    }
-
-    fn any(&self) -> AnyLaw {
-        AnyLaw::RegularisedAgeing(*self)
     }
 
     fn name(&self) -> &'static str {

@@ -2,7 +2,7 @@
 //!
 //! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
 
-use super::{AnyLaw, DieterichRuina, Law};
+use super::{DieterichRuina, Law};
 use crate::number::Real;
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
@@ -28,10 +28,6 @@ impl Law for Slip {
 
     fn core(&self) -> Slip {
         *self
-    }
-
-    fn any(&self) -> AnyLaw {
-        AnyLaw::Slip(*self)
     }
 
     fn name(&self) -> &'static str {

@@ -1,7 +1,7 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::{AnyLaw, Law, direct};
+use super::{Law, direct};
 use crate::number::Real;
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -32,10 +32,6 @@ impl Law for Spinodal {
 
     fn core(&self) -> Spinodal {
         *self
-    }
-
-    fn any(&self) -> AnyLaw {
-        AnyLaw::Spinodal(*self)
     }
 
     fn name(&self) -> &'static str {

@@ -1,7 +1,8 @@
 //! Equations (11) and (19) in ln psi, for every number: what references, third-order maps and recorded formulas are made of.
 
+use super::response::Response;
 use super::{Loading, stress_rate};
-use crate::friction::{AnyLaw, Law};
+use crate::friction::Law;
 use crate::number::Real;
 use crate::series::{Equations, Recorded};
 
@@ -14,24 +15,22 @@ pub(super) struct Logarithmic<L> {
 }
 
 impl<L: Law> Logarithmic<L> {
-    /// v and dw/dt.
     #[inline(always)]
-    fn response<T: Real>(&self, activation: T, w: T) -> (T, T) {
-        let psi = w.exp();
-        let v = self.law.slip_rate(activation, psi);
-        (v, self.law.evolution(v, psi) / psi)
+    fn response<T: Real>(&self, activation: T, w: T) -> Response<T> {
+        Response::new(&self.law, activation, w)
     }
 }
 
 impl<L: Law> Equations<2> for Logarithmic<L> {
     #[inline(always)]
     fn rates<T: Real>(&self, [tau, w]: [T; 2], [driving, stiffness]: [T; 2]) -> [T; 2] {
-        let (v, g) = self.response(self.law.activation(tau), w);
-        [stress_rate((driving, stiffness), v * self.alike), g]
+        let one = self.response(self.law.activation(tau), w);
+        let slip_rate = one.v * self.alike;
+        [stress_rate((driving, stiffness), slip_rate), one.g]
     }
 
     fn slip_rates<T: Real>(&self, [tau, w]: [T; 2], _: [T; 2]) -> [Option<T>; 2] {
-        [Some(self.response(self.law.activation(tau), w).0), None]
+        [Some(self.response(self.law.activation(tau), w).v), None]
     }
 }
 
@@ -39,32 +38,32 @@ impl<L: Law> Equations<3> for Logarithmic<L> {
     #[inline(always)]
     fn rates<T: Real>(&self, [tau, w1, w2]: [T; 3], [driving, stiffness]: [T; 2]) -> [T; 3] {
         let activation = self.law.activation(tau);
-        let (v1, g1) = self.response(activation, w1);
-        let (v2, g2) = self.response(activation, w2);
-        [stress_rate((driving, stiffness), v1 + v2), g1, g2]
+        let first = self.response(activation, w1);
+        let second = self.response(activation, w2);
+        let slip_rate = first.v + second.v;
+        [
+            stress_rate((driving, stiffness), slip_rate),
+            first.g,
+            second.g,
+        ]
     }
 
     fn slip_rates<T: Real>(&self, [tau, w1, w2]: [T; 3], _: [T; 2]) -> [Option<T>; 2] {
         let activation = self.law.activation(tau);
-        [w1, w2].map(|w| Some(self.response(activation, w).0))
+        [w1, w2].map(|w| Some(self.response(activation, w).v))
     }
 }
 
-/// The formula of these interfaces, recorded.
-pub(super) fn recorded<const N: usize>(
-    law: impl Law,
-    &Loading { driving, stiffness }: &Loading,
-    alike: f64,
-) -> Recorded<Logarithmic<AnyLaw>, N>
-where
-    Logarithmic<AnyLaw>: Equations<N>,
-{
-    Recorded {
-        equations: Logarithmic {
-            law: law.any(),
-            alike,
-        },
-        parameters: [driving, stiffness],
-        symmetric: N == 2,
+impl<L: Law> Logarithmic<L> {
+    /// The formula, to be recorded.
+    pub fn recorded<const N: usize>(self, loading: &Loading) -> Recorded<Self, N>
+    where
+        Self: Equations<N>,
+    {
+        Recorded {
+            equations: self,
+            parameters: [loading.driving, loading.stiffness],
+            symmetric: N == 2,
+        }
     }
 }

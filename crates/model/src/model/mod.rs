@@ -13,7 +13,6 @@ mod series;
 mod single_interface;
 mod smooth;
 mod symmetric;
-#[cfg(target_arch = "x86_64")]
 mod tangent;
 mod trajectories;
 mod two_interfaces;

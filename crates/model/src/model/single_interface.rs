@@ -1,13 +1,13 @@
 //! One interface, equation (11).
 
-use super::logarithmic::{Logarithmic, recorded};
+use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::Track;
 use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, stress_rate};
+use super::{Driven, Loading, Parameter};
 use crate::field::{Analytic, Jacobian, State, VectorField};
-use crate::friction::{AnyLaw, Law};
-use crate::series::{Recorded, Solution, Tangent};
+use crate::friction::Law;
+use crate::series::{Equations, Recorded, Solution, Tangent};
 
 /// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,8 +19,16 @@ pub struct SingleInterface<L> {
 }
 
 impl<L: Law> SingleInterface<L> {
-    fn recorded(&self) -> Recorded<Logarithmic<AnyLaw>, 2> {
-        recorded(self.law, &self.loading, 1.0)
+    /// (11), for every number.
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        }
+    }
+
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 2> {
+        self.equations().recorded(&self.loading)
     }
 
     /// The loading under which two equal interfaces move as this one: K (V_H - v) = K/2 (2 V_H - 2 v).
@@ -40,11 +48,8 @@ impl<L: Law> SingleInterface<L> {
 
 impl<L: Law> VectorField<2> for SingleInterface<L> {
     fn f(&self, y: &State<2>) -> State<2> {
-        let one = Response::new(&self.law, self.law.activation(y[0]), y[1]);
-        State::<2>::new(
-            stress_rate((self.loading.driving, self.loading.stiffness), one.v),
-            one.g,
-        )
+        let Loading { driving, stiffness } = self.loading;
+        State::from(self.equations().rates(y.data.0[0], [driving, stiffness]))
     }
 
     fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
@@ -87,8 +92,7 @@ impl<L: Law> Analytic<2> for SingleInterface<L> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
-        let pair = tangent(self.law.core(), self.as_pair(), (2.0, 0.5), parameters);
-        pair.unwrap_or_else(|| self.recorded().tangent(parameters))
+        tangent(self.law.core(), self.as_pair(), (2.0, 0.5), parameters)
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {

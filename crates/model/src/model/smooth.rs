@@ -3,8 +3,10 @@
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::Jet;
 #[cfg(target_arch = "x86_64")]
-use crate::series::{Both, Four, Variational};
-use crate::series::{Cubic, Equations, Plain, Recorded, Solution, Tangent, Transport, is_small};
+use crate::series::Four;
+use crate::series::{
+    Both, Cubic, Equations, Plain, Recorded, Solution, Tangent, Transport, Variational, is_small,
+};
 
 /// Equations at given parameters.
 ///
@@ -133,14 +135,18 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_> {
+        if !self.is_small() {
+            return self.recorded().tangent(parameters);
+        }
         // Those in the parameters fill lanes that there are.
+        let (equations, parameters) = (self.equations, self.parameters);
         #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = crate::series::avx2().filter(|_| self.is_small()) {
+        if let Some(simd) = crate::series::avx2() {
             let gradient = Both([Four::new(simd, [0.0; 4]); 2]);
-            let (equations, parameters) = (self.equations, self.parameters);
             return Box::new(Variational::new(equations, parameters, gradient));
         }
-        self.recorded().tangent(parameters)
+        let gradient = Both([Both([Both([0.0; 2]); 2]); 2]);
+        Box::new(Variational::new(equations, parameters, gradient))
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {

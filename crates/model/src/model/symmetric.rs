@@ -4,12 +4,12 @@
 //! interfaces behave as one that is driven half as fast by a spring twice as stiff, 2 K (V_H/2 - v) = K (V_H - 2 v), so the
 //! formulas of [`SingleInterface`] serve.
 
-use super::logarithmic::{Logarithmic, recorded};
+use super::logarithmic::Logarithmic;
 use super::series::Track;
 use super::tangent::tangent;
 use super::{Driven, Loading, Parameter, SingleInterface};
 use crate::field::{Analytic, Jacobian, State, VectorField};
-use crate::friction::{AnyLaw, Law};
+use crate::friction::Law;
 use crate::series::{Recorded, Solution, Tangent};
 
 /// dtau/dt = K (V_H - 2 v), dw/dt = g(v, w): (19) with w_1 = w_2, in the state (tau, w).
@@ -19,8 +19,12 @@ pub struct Symmetric<L> {
 }
 
 impl<L: Law> Symmetric<L> {
-    fn recorded(&self) -> Recorded<Logarithmic<AnyLaw>, 2> {
-        recorded(self.equivalent.law, &self.equivalent.as_pair(), 2.0)
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 2> {
+        let two = Logarithmic {
+            law: self.equivalent.law,
+            alike: 2.0,
+        };
+        two.recorded(&self.equivalent.as_pair())
     }
 
     /// Of two interfaces with this law and loading.
@@ -81,13 +85,12 @@ impl<L: Law> Analytic<2> for Symmetric<L> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
-        let pair = tangent(
+        tangent(
             self.equivalent.law.core(),
             self.equivalent.as_pair(),
             (1.0, 1.0),
             parameters,
-        );
-        pair.unwrap_or_else(|| self.recorded().tangent(parameters))
+        )
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {

@@ -1,19 +1,23 @@
 //! The interfaces with their tangents in power series.
 //!
 //! The laws' formulas run on jets of series: the Jacobian's entries along the solution, for both interfaces at once. The
-//! linearised equations of all columns are then sums of products with them, see [`Columns`]. For processors with AVX2; for
-//! others, and for other systems, there is [`crate::series::Recorded`].
+//! linearised equations of all columns are then sums of products with them, see [`Columns`]. In doubles: it takes a quarter of
+//! the time of [`crate::series::Recorded`], which serves for 31 digits and for other systems.
 
 use super::series::{Interfaces, chart, copy};
 use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::{DoubleDouble, Jet};
 use crate::series::{
-    Accuracy, Both, Columns, Derivatives, Element, Expansion, Formula, Four, Linearisation,
-    MAX_ORDER, Order, Pair, Rates, Series, Solution, Spread, Stepper, Tangent, value,
+    Accuracy, Both, Columns, Derivatives, Element, Expansion, Formula, Linearisation, MAX_ORDER,
+    Order, Rates, Series, Solution, Spread, Stepper, Tangent, value,
 };
 use pulp::NullaryFnOnce;
-use pulp::x86::V3;
+#[cfg(target_arch = "x86_64")]
+use {
+    crate::series::{Four, Pair},
+    pulp::x86::V3,
+};
 
 /// The interfaces, with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
 #[derive(Clone, Copy)]
@@ -57,9 +61,32 @@ impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
     }
 }
 
+/// How code is compiled: for the processor at hand, or for any.
+trait Shell: Copy {
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output;
+}
+
+#[derive(Clone, Copy)]
+struct AnyProcessor;
+
+impl Shell for AnyProcessor {
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        f.call()
+    }
+}
+
+#[cfg(target_arch = "x86_64")]
+impl Shell for V3 {
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        self.vectorize(f)
+    }
+}
+
 /// A solution with the columns that are the derivatives in its start, in V_H and in K, as many as X has lanes.
-struct Track<E, X, L> {
-    simd: V3,
+struct Track<S, E, X, L> {
+    shell: S,
     /// V_H and K of the pair that moves as the system does, per those of the system.
     weights: (f64, f64),
     stepper: Stepper<E, Linearised<E, L>, 2>,
@@ -76,34 +103,37 @@ struct Track<E, X, L> {
     start: [f64; 2],
 }
 
-/// A solution with its derivatives, by the vector instructions of this processor; `None` where it has none. Without derivatives
-/// in parameters it takes less.
+/// A solution with its derivatives, in the best arithmetic of this processor; without those in parameters it takes less.
 pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     law: L,
     loading: Loading,
     weights: (f64, f64),
     parameters: bool,
-) -> Option<Box<dyn Tangent<N> + 'a>> {
-    let simd = crate::series::avx2()?;
-    let pair = Pair::new(simd, [0.0; 2]);
-    let four = Four::new(simd, [0.0; 4]);
-    Some(if parameters {
-        let any = Both([four; 2]);
-        Box::new(Track::new(simd, law, loading, weights, pair, any))
-    } else {
-        Box::new(Track::new(simd, law, loading, weights, pair, four))
-    })
+) -> Box<dyn Tangent<N> + 'a> {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = crate::series::avx2() {
+        let pair = Pair::new(simd, [0.0; 2]);
+        let four = Four::new(simd, [0.0; 4]);
+        return if parameters {
+            let any = Both([four; 2]);
+            Box::new(Track::new(simd, law, loading, weights, pair, any))
+        } else {
+            Box::new(Track::new(simd, law, loading, weights, pair, four))
+        };
+    }
+    let (pair, any) = (Both([0.0; 2]), Both([Both([Both([0.0; 2]); 2]); 2]));
+    Box::new(Track::new(AnyProcessor, law, loading, weights, pair, any))
 }
 
-impl<E: Spread<X>, X: Element, L: Law> Track<E, X, L> {
-    fn new(simd: V3, law: L, loading: Loading, weights: (f64, f64), zero: E, any: X) -> Self {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law> Track<S, E, X, L> {
+    fn new(shell: S, law: L, loading: Loading, weights: (f64, f64), zero: E, any: X) -> Self {
         let formula = Linearised(Interfaces {
             law,
             driving: zero.like(loading.driving),
             stiffness: zero.like(loading.stiffness),
         });
         Track {
-            simd,
+            shell,
             weights,
             stepper: Stepper::new(formula, zero),
             columns: Columns::new([any; 3], any, any),
@@ -197,7 +227,7 @@ struct Step<'a, T, E> {
     limit: E,
 }
 
-impl<E: Spread<X>, X: Element, L: Law> NullaryFnOnce for Step<'_, Track<E, X, L>, E> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law> NullaryFnOnce for Step<'_, Track<S, E, X, L>, E> {
     type Output = E;
     #[inline(always)]
     fn call(self) -> E {
@@ -205,7 +235,7 @@ impl<E: Spread<X>, X: Element, L: Law> NullaryFnOnce for Step<'_, Track<E, X, L>
     }
 }
 
-impl<E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<E, X, L> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<S, E, X, L> {
     fn start(&mut self, y: &[f64; N]) {
         let zero = self.stiffness.like(0.0);
         self.start = [y[1], y[N - 1]];
@@ -234,8 +264,8 @@ impl<E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<E, 
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let limit = self.stiffness.like_exact(limit);
-        let simd = self.simd;
-        simd.vectorize(Expand {
+        let shell = self.shell;
+        shell.run(Expand {
             stepper: &mut self.stepper,
             accuracy,
         });
@@ -244,7 +274,7 @@ impl<E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<E, 
             accuracy,
             limit,
         };
-        simd.vectorize(step).to_exact()
+        shell.run(step).to_exact()
     }
 
     fn state(&self) -> [f64; N] {
@@ -257,7 +287,7 @@ impl<E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<E, 
     }
 }
 
-impl<E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N> for Track<E, X, L> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N> for Track<S, E, X, L> {
     fn derivatives(&self) -> Derivatives<N> {
         let psi = self.stepper.state()[1].interfaces();
         let [tau, psi1, psi2] = self.columns.state();

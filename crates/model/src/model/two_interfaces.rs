@@ -1,13 +1,13 @@
 //! Two interfaces under one stress, equation (19).
 
-use super::logarithmic::{Logarithmic, recorded};
+use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::Track;
 use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, stress_rate};
+use super::{Driven, Loading, Parameter};
 use crate::field::{Analytic, Jacobian, State, VectorField};
-use crate::friction::{AnyLaw, Law};
-use crate::series::{Cubic, Recorded, Solution, Tangent, Transport};
+use crate::friction::Law;
+use crate::series::{Cubic, Equations, Recorded, Solution, Tangent, Transport};
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,17 +20,8 @@ pub struct TwoInterfaces<L> {
 
 impl<L: Law> VectorField<3> for TwoInterfaces<L> {
     fn f(&self, y: &State<3>) -> State<3> {
-        let s = self.law.activation(y[0]);
-        let first = Response::new(&self.law, s, y[1]);
-        let second = Response::new(&self.law, s, y[2]);
-        State::<3>::new(
-            stress_rate(
-                (self.loading.driving, self.loading.stiffness),
-                first.v + second.v,
-            ),
-            first.g,
-            second.g,
-        )
+        let Loading { driving, stiffness } = self.loading;
+        State::from(self.equations().rates(y.data.0[0], [driving, stiffness]))
     }
 
     fn jacobian(&self, y: &State<3>) -> Jacobian<3> {
@@ -70,8 +61,16 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
 }
 
 impl<L: Law> TwoInterfaces<L> {
-    fn recorded(&self) -> Recorded<Logarithmic<AnyLaw>, 3> {
-        recorded(self.law, &self.loading, 1.0)
+    /// (19), for every number.
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        }
+    }
+
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 3> {
+        self.equations().recorded(&self.loading)
     }
 
     #[inline]
@@ -96,8 +95,7 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<3> + '_> {
-        let pair = tangent(self.law.core(), self.loading, (1.0, 1.0), parameters);
-        pair.unwrap_or_else(|| self.recorded().tangent(parameters))
+        tangent(self.law.core(), self.loading, (1.0, 1.0), parameters)
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {

@@ -149,7 +149,6 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
     }
 
     /// The same linear map of every coefficient, where it is no constant.
-    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub(super) fn lanewise(self, map: impl Fn(E) -> E) -> Self {
         match self.kind() {

@@ -13,7 +13,6 @@
 
 mod columns;
 mod cubic;
-#[cfg(target_arch = "x86_64")]
 mod dual;
 mod element;
 mod equations;
@@ -35,7 +34,6 @@ mod stepper;
 mod tape;
 mod trace;
 mod transport;
-#[cfg(target_arch = "x86_64")]
 mod variational;
 mod vectors;
 
@@ -56,7 +54,6 @@ pub use recorded::Recorded;
 pub use stepper::Stepper;
 pub use tape::Order;
 pub use transport::Transport;
-#[cfg(target_arch = "x86_64")]
 pub use variational::Variational;
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
