@@ -12,10 +12,10 @@ use std::time::Duration;
 use twinslip::bifurcation::{BranchRequest, Event, LocusKind, LocusRequest, Parameter, orbits};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::Loading;
-use twinslip::orbit::Slab;
+use twinslip::orbit::InterfaceSystem;
 
-fn slab(stiffness: f64) -> Slab {
-    Slab {
+fn slab(stiffness: f64) -> InterfaceSystem {
+    InterfaceSystem {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         interfaces: 2,
         loading: Loading::new(1.0, stiffness).expect("positive"),

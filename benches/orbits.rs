@@ -14,11 +14,12 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
 use twinslip::model::Loading;
 use twinslip::orbit::{
-    Accuracy, Begin, Polygon, Query, Slab, Tracer, close, find, floquet, newton_step,
+    InitialGuess, InterfaceSystem, OrbitAccuracy, Query, ShootingNodes, Tracer, close, find,
+    floquet, newton_step,
 };
 
-fn slab(driving: f64, stiffness: f64) -> Slab {
-    Slab {
+fn slab(driving: f64, stiffness: f64) -> InterfaceSystem {
+    InterfaceSystem {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         interfaces: 2,
         loading: Loading::new(driving, stiffness).expect("positive"),
@@ -26,16 +27,16 @@ fn slab(driving: f64, stiffness: f64) -> Slab {
 }
 
 /// The asymmetric orbit, closed to rounding.
-fn polygon(slab: &Slab) -> Polygon<3> {
+fn shooting(slab: &InterfaceSystem) -> ShootingNodes<3> {
     let query = Query {
         symmetry: Symmetry::Asymmetric,
-        begin: Begin::Anywhere,
+        begin: InitialGuess::Anywhere,
     };
-    let orbit = find(slab, &query, &Accuracy::of(Choice::Taylor))
+    let orbit = find(slab, &query, &OrbitAccuracy::of(Choice::Taylor))
         .expect("an orbit")
         .orbit;
     let nodes = orbit.nodes.iter().map(|x| State::<3>::from_fn(|i, _| x[i]));
-    Polygon {
+    ShootingNodes {
         nodes: nodes.collect(),
         durations: orbit.durations,
     }
@@ -62,7 +63,7 @@ fn newton_steps(criterion: &mut Criterion) {
             .measurement_time(Duration::from_secs(2));
         for method in &methods {
             let mut tracer = tracer(method, 1e-12);
-            let closed = polygon(&slab);
+            let closed = shooting(&slab);
             group.bench_function(BenchmarkId::from_parameter(method), |bencher| {
                 bencher.iter(|| {
                     newton_step(&mut tracer, &*field, black_box(&closed)).expect("an orbit")
@@ -76,7 +77,7 @@ fn hundred_orbits(criterion: &mut Criterion) {
     let velocities: Vec<f64> = (0..100)
         .map(|i| 100.0_f64.powf(f64::from(i) / 99.0))
         .collect();
-    let first = polygon(&slab(1.0, 0.14));
+    let first = shooting(&slab(1.0, 0.14));
     let mut group = criterion.benchmark_group("hundred-orbits");
     group
         .sample_size(10)
@@ -84,23 +85,23 @@ fn hundred_orbits(criterion: &mut Criterion) {
     group.bench_function("taylor", |bencher| {
         bencher.iter(|| {
             let mut tracer = tracer("taylor", 1e-12);
-            let mut polygon = first.clone();
+            let mut shooting = first.clone();
             let mut last = 1.0;
             let mut unstable = 0;
             for &driving in black_box(&velocities) {
                 let slab = slab(driving, 0.14);
                 let field = slab.whole();
                 // K V_H T hardly changes.
-                polygon
+                shooting
                     .durations
                     .iter_mut()
                     .for_each(|t| *t *= last / driving);
                 last = driving;
-                let closed = close(&mut tracer, &*field, polygon).expect("an orbit");
+                let closed = close(&mut tracer, &*field, shooting).expect("an orbit");
                 let multipliers = floquet(&closed, &|x| field.f(x));
                 unstable += usize::from(multipliers.multipliers[0].ln_abs.value > 0.0);
-                polygon = closed
-                    .polygon
+                shooting = closed
+                    .shooting
                     .meshed(&mut tracer, &*field)
                     .expect("the same orbit");
             }

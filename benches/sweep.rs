@@ -5,17 +5,17 @@ use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use std::time::Duration;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::sweep::{Grid, Range, Settings, Sweeper, Units, run};
+use twinslip::sweep::{Grid, Range, SweepSettings, Sweeper, UnitShare, run};
 
 /// n x n points.
-fn map(n: usize, driving: (f64, f64), stiffness: (f64, f64)) -> Settings {
+fn map(n: usize, driving: (f64, f64), stiffness: (f64, f64)) -> SweepSettings {
     let range = |(from, to): (f64, f64)| Range {
         from,
         to,
         count: n,
         log: false,
     };
-    Settings {
+    SweepSettings {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         grid: Grid::Plane {
             driving: range(driving),
@@ -32,12 +32,12 @@ fn map(n: usize, driving: (f64, f64), stiffness: (f64, f64)) -> Settings {
 }
 
 /// Where the paper's tori and resonances are.
-fn whole(n: usize) -> Settings {
+fn whole(n: usize) -> SweepSettings {
     map(n, (0.04, 0.2), (0.02, 0.25))
 }
 
 /// Where all runs settle on stick-slip cycles.
-fn cycles(n: usize) -> Settings {
+fn cycles(n: usize) -> SweepSettings {
     map(n, (0.125, 0.2), (0.08, 0.25))
 }
 
@@ -61,10 +61,10 @@ fn sweeps(criterion: &mut Criterion) {
             });
         }
     }
-    let over = |settings: &Settings, threads: usize| {
+    let over = |settings: &SweepSettings, threads: usize| {
         let stop = AtomicBool::new(false);
         let seen = &mut |_: &[_]| ControlFlow::Continue(());
-        run(settings, Units::from(0), Some(threads), &stop, seen).expect("checked");
+        run(settings, UnitShare::from(0), Some(threads), &stop, seen).expect("checked");
     };
     let settings = cycles(48);
     group.throughput(Throughput::Elements(settings.points() as u64));

@@ -82,7 +82,7 @@ pub mod internals {
     pub use crate::paper::clock::timed;
     #[cfg(feature = "sundials")]
     pub use crate::sundials::{compatible, counted};
-    pub use crate::views::sweep::tints::{Kind, LIGHTEST};
+    pub use crate::views::sweep::tints::{LIGHTEST, RegimeKind};
 }
 
 #[doc = include_str!("../docs/guide.md")]

@@ -146,7 +146,7 @@ fn nothing_is_invented() {
 
 #[test]
 fn rows_are_orbits() {
-    use twinslip::orbit::{Accuracy, Begin, Query, find};
+    use twinslip::orbit::{InitialGuess, OrbitAccuracy, Query, find};
     let request = BranchRequest {
         at: vec![0.2, 10.0],
         symmetry: Some(Symmetry::Asymmetric),
@@ -162,9 +162,9 @@ fn rows_are_orbits() {
         assert_eq!(row.label, Some(Label::Uz));
         let query = Query {
             symmetry: Symmetry::Asymmetric,
-            begin: Begin::Anywhere,
+            begin: InitialGuess::Anywhere,
         };
-        let accuracy = Accuracy::of(Choice::Taylor);
+        let accuracy = OrbitAccuracy::of(Choice::Taylor);
         let orbit = find(&two(driving, 0.14), &query, &accuracy)
             .expect("an orbit")
             .orbit;
@@ -351,7 +351,7 @@ fn branches_of_degenerate_hopf_points_are_vertical() {
     }
 }
 
-/// No fold without a turn: next to a Hopf point that is nearly degenerate K falls, at first by less than what the walk errs by.
+/// No fold without a turn: next to a Hopf point that is nearly degenerate K falls, at first by less than what the continuation errs by.
 #[test]
 fn a_fold_is_told_of_only_where_the_parameter_turns() {
     let parameters = Parameters::heslot_1994();

@@ -2,7 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
-use twinslip::continuation::{Mark, Point, Settings, Start, Stop, Watch, ZeroProblem, follow};
+use twinslip::continuation::{
+    CurveObserver, CurvePoint, PointKind, Settings, Start, Stop, ZeroProblem, follow,
+};
 use twinslip::{Error, Result};
 
 /// One equation in one unknown, with its two derivatives.
@@ -22,20 +24,20 @@ impl<F: Fn(f64, f64) -> [f64; 3]> ZeroProblem for Scalar<F> {
 }
 
 /// Test functions of a point, and how many points may be seen.
-struct Look<T: Fn(&Point) -> Vec<f64>> {
+struct Look<T: Fn(&CurvePoint) -> Vec<f64>> {
     tests: T,
     patience: usize,
     ending: Option<usize>,
 }
 
-impl<T: Fn(&Point) -> Vec<f64>> Watch for Look<T> {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+impl<T: Fn(&CurvePoint) -> Vec<f64>> CurveObserver for Look<T> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         Ok((self.tests)(point))
     }
     fn ends(&self, test: usize) -> bool {
         self.ending == Some(test)
     }
-    fn seen(&mut self, _: &Point, _: Mark) -> ControlFlow<()> {
+    fn seen(&mut self, _: &CurvePoint, _: PointKind) -> ControlFlow<()> {
         self.patience -= 1;
         if self.patience == 0 {
             ControlFlow::Break(())
@@ -45,7 +47,7 @@ impl<T: Fn(&Point) -> Vec<f64>> Watch for Look<T> {
     }
 }
 
-fn look<T: Fn(&Point) -> Vec<f64>>(tests: T) -> Look<T> {
+fn look<T: Fn(&CurvePoint) -> Vec<f64>>(tests: T) -> Look<T> {
     Look {
         tests,
         patience: usize::MAX,
@@ -86,16 +88,16 @@ fn a_circle_is_closed_and_has_two_folds() {
     let marks: Vec<_> = branch
         .points
         .iter()
-        .filter(|(_, mark)| *mark != Mark::Step)
+        .filter(|(_, mark)| *mark != PointKind::Step)
         .map(|(p, mark)| (*mark, p.u[0], p.lambda))
         .collect();
     let expected = [
-        (Mark::Begin, 1.0, 0.0),
-        (Mark::Zero(1), 0.6, 0.8),
-        (Mark::Zero(0), 0.0, 1.0),
-        (Mark::Zero(0), 0.0, -1.0),
-        (Mark::Zero(1), 0.6, -0.8),
-        (Mark::Begin, 1.0, 0.0),
+        (PointKind::Begin, 1.0, 0.0),
+        (PointKind::Zero(1), 0.6, 0.8),
+        (PointKind::Zero(0), 0.0, 1.0),
+        (PointKind::Zero(0), 0.0, -1.0),
+        (PointKind::Zero(1), 0.6, -0.8),
+        (PointKind::Begin, 1.0, 0.0),
     ];
     assert_eq!(marks.len(), expected.len(), "{marks:?}");
     for ((mark, u, lambda), (mark_0, u_0, lambda_0)) in marks.iter().zip(expected) {
@@ -125,7 +127,7 @@ fn the_same_special_points_whatever_the_steps() {
         let special: Vec<_> = branch
             .points
             .iter()
-            .filter(|(_, mark)| *mark != Mark::Step)
+            .filter(|(_, mark)| *mark != PointKind::Step)
             .map(|(p, mark)| (*mark, p.u[0], p.lambda))
             .collect();
         let root = |guess: f64| {
@@ -137,15 +139,15 @@ fn the_same_special_points_whatever_the_steps() {
         };
         let on = |u: f64| u - u * u * u;
         let expected = [
-            (Mark::Begin, 1.324717957244746, -1.0),
-            (Mark::Wanted(0), root(0.9), 0.2),
-            (Mark::Zero(0), fold, fold_lambda),
-            (Mark::Wanted(0), root(0.2), 0.2),
-            (Mark::Zero(1), -0.31, on(-0.31)),
-            (Mark::Zero(1), -0.33, on(-0.33)),
-            (Mark::Zero(0), -fold, -fold_lambda),
-            (Mark::Wanted(0), root(-1.1), 0.2),
-            (Mark::Highest, -1.324717957244746, 1.0),
+            (PointKind::Begin, 1.324717957244746, -1.0),
+            (PointKind::Wanted(0), root(0.9), 0.2),
+            (PointKind::Zero(0), fold, fold_lambda),
+            (PointKind::Wanted(0), root(0.2), 0.2),
+            (PointKind::Zero(1), -0.31, on(-0.31)),
+            (PointKind::Zero(1), -0.33, on(-0.33)),
+            (PointKind::Zero(0), -fold, -fold_lambda),
+            (PointKind::Wanted(0), root(-1.1), 0.2),
+            (PointKind::Highest, -1.324717957244746, 1.0),
         ];
         assert_eq!(
             special.len(),
@@ -159,7 +161,7 @@ fn the_same_special_points_whatever_the_steps() {
                 "longest {longest}, {mark:?}: {u}, not {u_0}"
             );
             assert!((lambda - lambda_0).abs() < 1e-12);
-            if matches!(mark, Mark::Wanted(_) | Mark::Highest) {
+            if matches!(mark, PointKind::Wanted(_) | PointKind::Highest) {
                 assert_eq!(*lambda, lambda_0, "landed exactly");
             }
         }
@@ -186,7 +188,7 @@ fn through_the_tip_of_a_cusp() {
     let folds: Vec<_> = branch
         .points
         .iter()
-        .filter(|(_, m)| matches!(m, Mark::Zero(_)))
+        .filter(|(_, m)| matches!(m, PointKind::Zero(_)))
         .collect();
     assert_eq!(folds.len(), 1);
     let tip = -(0.0005_f64).cbrt();
@@ -194,7 +196,7 @@ fn through_the_tip_of_a_cusp() {
     assert!((folds[0].0.lambda + 3.0 * tip * tip).abs() < 1e-12);
     // it came back to the end that it started from, on the other sheet
     let (end, mark) = branch.points.last().unwrap();
-    assert_eq!((*mark, end.lambda), (Mark::Lowest, -1.0));
+    assert_eq!((*mark, end.lambda), (PointKind::Lowest, -1.0));
     assert!(end.u[0] > -0.0011 && end.u[0] < -0.0009);
 }
 
@@ -216,7 +218,7 @@ fn straight_through_a_pitchfork() {
     let zeros: Vec<_> = branch
         .points
         .iter()
-        .filter(|(_, m)| *m == Mark::Zero(0))
+        .filter(|(_, m)| *m == PointKind::Zero(0))
         .collect();
     assert_eq!(zeros.len(), 1);
     assert!(zeros[0].0.lambda.abs() < 1e-15);
@@ -244,7 +246,7 @@ fn a_branch_point_on_a_curved_branch() {
         let zeros: Vec<_> = branch
             .points
             .iter()
-            .filter(|(_, m)| *m == Mark::Zero(0))
+            .filter(|(_, m)| *m == PointKind::Zero(0))
             .collect();
         assert_eq!(zeros.len(), 1);
         assert!(
@@ -399,7 +401,10 @@ fn a_branch_point_is_passed_with_rough_derivatives() {
             let what = format!("steps up to {longest} from {from}");
             let branch = follow(&Rough, &begin, &settings, &mut watch).unwrap();
             assert_eq!(branch.stopped, Stop::RangeEnd, "{what}");
-            let zeros = branch.points.iter().filter(|(_, m)| *m == Mark::Zero(1));
+            let zeros = branch
+                .points
+                .iter()
+                .filter(|(_, m)| *m == PointKind::Zero(1));
             let zeros: Vec<_> = zeros.map(|(p, _)| p.lambda).collect();
             assert_eq!(zeros.len(), 1, "{what}");
             assert!((zeros[0] - 0.6).abs() < 1e-6, "{what}: {}", zeros[0]);

@@ -8,9 +8,9 @@ use twinslip::field::{Jacobian, State};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Control, CvodeIntegrator, Integrator, MAX_STEPS, Step, Tolerances};
 use twinslip::model::{Driven, Loading, two_interfaces};
-use twinslip::sundials::Method;
+use twinslip::sundials::MultistepMethod;
 
-const METHODS: [Method; 2] = [Method::Bdf, Method::Adams];
+const METHODS: [MultistepMethod; 2] = [MultistepMethod::Bdf, MultistepMethod::Adams];
 
 /// (tau, psi1, psi2) as text or numbers, into numbers.
 fn three(value: &Value) -> [f64; 3] {
@@ -30,7 +30,7 @@ fn reference() -> Value {
     serde_json::from_str(include_str!("data/trajectories.json")).expect("valid JSON")
 }
 
-fn integrator(method: Method, tolerance: f64) -> CvodeIntegrator<3> {
+fn integrator(method: MultistepMethod, tolerance: f64) -> CvodeIntegrator<3> {
     CvodeIntegrator::new(method, Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
 }
 
@@ -199,7 +199,7 @@ fn dense_output_agrees_with_tight_runs_from_the_same_step() {
 #[test]
 fn an_observer_may_stop_or_fail() {
     let (field, y0, end) = stick_slip();
-    let mut cvode = integrator(Method::Bdf, 1e-8);
+    let mut cvode = integrator(MultistepMethod::Bdf, 1e-8);
     let mut stopped = None;
     let mut observer = |step: &Step<'_, 3>| {
         if step.t1 < 5.0 {
@@ -225,8 +225,12 @@ fn an_observer_may_stop_or_fail() {
 fn too_many_steps_say_where_and_how_many() {
     let (field, y0, end) = stick_slip();
     for limit in [7, 1500] {
-        let mut cvode =
-            CvodeIntegrator::new(Method::Bdf, Tolerances::equal(1e-12).unwrap(), limit).unwrap();
+        let mut cvode = CvodeIntegrator::new(
+            MultistepMethod::Bdf,
+            Tolerances::equal(1e-12).unwrap(),
+            limit,
+        )
+        .unwrap();
         let mut observer = |_: &Step<'_, 3>| Ok(Control::Continue);
         let errors = [
             cvode.flow(&*field, (0.0, end), &y0, None),
@@ -294,12 +298,15 @@ fn the_tangent_agrees_with_differences_and_with_liouville() {
 #[test]
 fn a_flow_over_no_time_is_the_identity_and_names_are_those_of_the_command_line() {
     let (field, y0, _) = stick_slip();
-    let mut cvode = integrator(Method::Bdf, 1e-8);
+    let mut cvode = integrator(MultistepMethod::Bdf, 1e-8);
     assert_eq!(cvode.flow(&*field, (2.0, 2.0), &y0, None).unwrap(), y0);
     let (y, m) = cvode.tangent_flow(&*field, (2.0, 2.0), &y0).unwrap();
     assert_eq!((y, m), (y0, Jacobian::<3>::identity()));
     assert_eq!(cvode.name(), "cvode-bdf");
-    assert_eq!(integrator(Method::Adams, 1e-8).name(), "cvode-adams");
+    assert_eq!(
+        integrator(MultistepMethod::Adams, 1e-8).name(),
+        "cvode-adams"
+    );
 }
 
 #[test]
@@ -340,9 +347,9 @@ fn an_interval_of_a_few_spacings_of_time_is_integrated_too() {
 fn one_solver_serves_many_fields_as_fresh_ones_would() {
     let (first, y0, end) = stick_slip();
     let second = field("dieterich-ruina", 0.45, 1.0);
-    let mut reused = integrator(Method::Adams, 1e-9);
+    let mut reused = integrator(MultistepMethod::Adams, 1e-9);
     for field in [&first, &second, &first] {
-        let fresh = integrator(Method::Adams, 1e-9).flow(&**field, (0.0, end), &y0, None);
+        let fresh = integrator(MultistepMethod::Adams, 1e-9).flow(&**field, (0.0, end), &y0, None);
         assert_eq!(reused.flow(&**field, (0.0, end), &y0, None), fresh);
         reused.tangent_flow(&**field, (0.0, 1.0), &y0).unwrap();
     }

@@ -6,7 +6,7 @@ use twinslip::field::State;
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::Smooth;
 use twinslip::number::Real;
-use twinslip::series::{Cubic, Equations};
+use twinslip::series::{Equations, Jet3};
 
 /// Two van der Pol oscillators with a spring between them, in (x_1, v_1, x_2, v_2) and the parameters (mu, k).
 #[derive(Debug, Clone, Copy)]
@@ -180,7 +180,7 @@ fn four_equations_are_transported() {
     };
     let y = [1.0, 0.2, -0.5, 1.4];
     let directions = [[0.6, 0.3], [-0.2, 0.5], [0.1, -0.4], [0.8, 0.2]];
-    let start = std::array::from_fn(|i| Cubic::linear(y[i], directions[i]));
+    let start = std::array::from_fn(|i| Jet3::linear(y[i], directions[i]));
     let mut taylor = Taylor::new(Tolerances::equal(1e-14).unwrap(), MAX_STEPS).unwrap();
     let made = taylor.transport(&field, (0.0, 2.0), start).unwrap();
     let mut flow = |s: f64, t: f64| {

@@ -3,7 +3,7 @@
 use nalgebra::Complex;
 use std::ops::ControlFlow;
 use twinslip::bifurcation::Label;
-use twinslip::bifurcation::equilibria::generic::{Family, Found, Onward};
+use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use twinslip::continuation::{Settings, Stop};
 use twinslip::field::{Jacobian, State, VectorField};
 
@@ -76,10 +76,10 @@ impl VectorField<1> for Folded {
 }
 
 fn all<const N: usize>(
-    family: &Family<'_, N>,
+    family: &FieldEquilibria<'_, N>,
     onward: &Onward<N>,
     settings: &Settings,
-) -> Vec<Found<N>> {
+) -> Vec<FoundEquilibrium<N>> {
     let mut found = Vec::new();
     let branch = family
         .follow(onward, settings, &mut |point| {
@@ -91,7 +91,7 @@ fn all<const N: usize>(
     found
 }
 
-fn only<const N: usize>(points: &[Found<N>], label: Label) -> Vec<Found<N>> {
+fn only<const N: usize>(points: &[FoundEquilibrium<N>], label: Label) -> Vec<FoundEquilibrium<N>> {
     points
         .iter()
         .filter(|p| p.label == Some(label))
@@ -102,7 +102,7 @@ fn only<const N: usize>(points: &[Found<N>], label: Label) -> Vec<Found<N>> {
 #[test]
 fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
     let fields = |p: [f64; 2]| Box::new(Lorenz { rho: p[0] }) as Box<dyn VectorField<3>>;
-    let family = Family {
+    let family = FieldEquilibria {
         fields: &fields,
         parameters: [0.0, 0.0],
         varied: 0,
@@ -151,7 +151,7 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
     let fields =
         |p: [f64; 2]| Box::new(Brusselator { a: p[0], b: p[1] }) as Box<dyn VectorField<2>>;
     for a in [0.7, 1.0, 2.0] {
-        let family = Family {
+        let family = FieldEquilibria {
             fields: &fields,
             parameters: [a, 0.0],
             varied: 1,
@@ -173,7 +173,7 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
 #[test]
 fn both_folds_of_a_cubic() {
     let fields = |p: [f64; 2]| Box::new(Folded { p: p[0] }) as Box<dyn VectorField<1>>;
-    let family = Family {
+    let family = FieldEquilibria {
         fields: &fields,
         parameters: [0.0, 0.0],
         varied: 0,
@@ -249,7 +249,7 @@ impl VectorField<2> for Conservative {
 /// What is zero throughout has no certain sign, and no change of one.
 #[test]
 fn a_conservative_system_has_no_hopf_points() {
-    let family = Family {
+    let family = FieldEquilibria {
         fields: &|p: [f64; 2]| Box::new(Conservative { p: p[0] }),
         parameters: [0.0, 0.0],
         varied: 0,

@@ -7,7 +7,7 @@ use twinslip::integrate::{Control, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Loading, two_interfaces};
 use twinslip::number::DoubleDouble;
 use twinslip::number::polynomial::Crossing;
-use twinslip::scene::{Event, IntegrateOptions, Outcome, Plan, Sink, run};
+use twinslip::scene::{IntegrateOptions, Plan, RunOutcome, Sink, SlipEvent, run};
 use twinslip::series::{Expansion, Passage, Section, Zeros};
 
 #[derive(clap::Parser)]
@@ -28,7 +28,7 @@ impl Sink for Rows {
     }
 }
 
-fn made(arguments: &str) -> (Outcome, Vec<Vec<f64>>) {
+fn made(arguments: &str) -> (RunOutcome, Vec<Vec<f64>>) {
     let words = std::iter::once("line").chain(arguments.split_whitespace());
     let line = <Line as clap::Parser>::parse_from(words);
     let plan = Plan::new(&line.options).expect("a plan");
@@ -181,7 +181,7 @@ fn four_extrema_in_one_step() {
     assert_eq!(touching.len(), 2);
 }
 
-fn fields(event: &Event) -> [f64; 7] {
+fn fields(event: &SlipEvent) -> [f64; 7] {
     let [first, second] = event.slip;
     [
         event.onset,

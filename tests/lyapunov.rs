@@ -11,8 +11,8 @@ use twinslip::integrate::{Control, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Loading, two_interfaces};
 use twinslip::number::polynomial::Crossing;
 use twinslip::section::{
-    Chart, Ended, Record, Regime, Spectrum, Surface, Watching, at_equilibrium, record, spectrum,
-    verdict,
+    Ended, LyapunovSpectrum, Regime, ReturnRecord, SeriesVariables, Surface, Watching,
+    at_equilibrium, record, spectrum, verdict,
 };
 
 const ACCURACY: f64 = 1e-12;
@@ -22,7 +22,7 @@ fn returns(
     start: State<3>,
     surface: &Surface<3>,
     (skip, returns): (usize, usize),
-) -> Record<3> {
+) -> ReturnRecord<3> {
     let watching = Watching {
         skip,
         returns,
@@ -46,12 +46,12 @@ fn plane(i: usize, offset: f64) -> Surface<3> {
         normal,
         offset,
         direction: Crossing::Upwards,
-        chart: Chart::Plain,
+        chart: SeriesVariables::Plain,
     }
 }
 
 #[track_caller]
-fn holds<const N: usize>(found: &Spectrum<N>, exact: [f64; N], within: f64) {
+fn holds<const N: usize>(found: &LyapunovSpectrum<N>, exact: [f64; N], within: f64) {
     for (found, exact) in found.exponents.iter().zip(exact) {
         let apart = (found.value - exact).abs();
         assert!(

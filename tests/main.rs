@@ -19,6 +19,7 @@ mod curves_orbits;
 #[cfg(feature = "sundials")]
 mod cvode_integrator;
 mod derivatives;
+mod difference_chart;
 mod dimensions;
 mod double_double;
 #[cfg(unix)]
@@ -42,7 +43,6 @@ mod orbits_of_systems;
 mod page;
 #[cfg(feature = "parquet")]
 mod parquet;
-mod parted;
 mod pictures;
 mod polynomials;
 mod reproduce;

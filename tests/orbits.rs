@@ -8,10 +8,12 @@ use twinslip::error::Error;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Begin, Kind, Orbit, Query, Slab, crosscheck, find};
+use twinslip::orbit::{
+    InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, crosscheck, find,
+};
 
-fn slab(driving: f64, stiffness: f64) -> Slab {
-    Slab {
+fn slab(driving: f64, stiffness: f64) -> InterfaceSystem {
+    InterfaceSystem {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         interfaces: 2,
         loading: Loading::new(driving, stiffness).expect("positive"),
@@ -21,17 +23,17 @@ fn slab(driving: f64, stiffness: f64) -> Slab {
 fn query(symmetry: Symmetry) -> Query {
     Query {
         symmetry,
-        begin: Begin::Anywhere,
+        begin: InitialGuess::Anywhere,
     }
 }
 
-fn taylor() -> Accuracy {
-    Accuracy::of(Choice::Taylor)
+fn taylor() -> OrbitAccuracy {
+    OrbitAccuracy::of(Choice::Taylor)
 }
 
 /// A reference orbit: the slab, its symmetry, the period, and the multipliers by (ln |mu|, |arg mu| / pi), largest first.
 struct Reference {
-    slab: Slab,
+    slab: InterfaceSystem,
     symmetry: Symmetry,
     period: f64,
     multipliers: Vec<(f64, f64)>,
@@ -138,9 +140,9 @@ fn other_methods_agree_on_trajectories_of_their_own() {
     for reference in references() {
         let orbit = found(&reference);
         for name in &names {
-            let accuracy = Accuracy {
+            let accuracy = OrbitAccuracy {
                 checked: false,
-                ..Accuracy::of(Choice::named(name).expect("known"))
+                ..OrbitAccuracy::of(Choice::named(name).expect("known"))
             };
             let place = format!("{name}, {}", reference.place);
             let second = crosscheck(&reference.slab, &orbit, &accuracy)
@@ -171,7 +173,7 @@ fn three_orbits_coexist_at_small_stiffness() {
     let start = (11.377, [1.53e-6_f64.ln(), 1.83e-4_f64.ln()]);
     let unstable = of(Query {
         symmetry: Symmetry::Asymmetric,
-        begin: Begin::At {
+        begin: InitialGuess::At {
             start,
             period: Some(480.0),
         },
@@ -195,7 +197,7 @@ fn three_orbits_coexist_at_small_stiffness() {
     // without the period it is its returns that lead there
     let returned = of(Query {
         symmetry: Symmetry::Asymmetric,
-        begin: Begin::At {
+        begin: InitialGuess::At {
             start,
             period: None,
         },
@@ -217,7 +219,7 @@ fn the_branch_from_a_hopf_point_leads_to_the_same_orbits() {
                 .expect("an orbit")
                 .orbit
         };
-        let (settled, followed) = (of(Begin::Anywhere), of(Begin::Hopf));
+        let (settled, followed) = (of(InitialGuess::Anywhere), of(InitialGuess::Hopf));
         assert_close(followed.period.value, settled.period.value, 1e-12, "period");
         assert_eq!(followed.verdict(), settled.verdict());
     }
@@ -232,7 +234,7 @@ fn a_cycle_is_not_taken_for_a_shorter_one_twice() {
     let start = (orbit.point[0], [orbit.point[1], orbit.point[2]]);
     let twice = Query {
         symmetry: Symmetry::Asymmetric,
-        begin: Begin::At {
+        begin: InitialGuess::At {
             start,
             period: Some(2.0 * orbit.period.value),
         },
@@ -243,7 +245,7 @@ fn a_cycle_is_not_taken_for_a_shorter_one_twice() {
     }
     // A start alone leads to the cycle itself.
     let once = Query {
-        begin: Begin::At {
+        begin: InitialGuess::At {
             start,
             period: None,
         },
@@ -271,7 +273,7 @@ fn what_is_no_orbit_is_said() {
     // Newton's method on a cycle as small as that has but the equilibrium to go to.
     let slab = slab(1000.0, 0.14);
     let small = Query {
-        begin: Begin::At {
+        begin: InitialGuess::At {
             start: (slab.steady_stress(), [slab.steady_log_state() + 1e-9; 2]),
             period: Some(0.01),
         },
@@ -282,7 +284,7 @@ fn what_is_no_orbit_is_said() {
         Err(Error::NotConverged { .. }) => {}
         other => panic!("{other:?}"),
     }
-    let single = Slab {
+    let single = InterfaceSystem {
         interfaces: 1,
         ..slab
     };
@@ -292,7 +294,7 @@ fn what_is_no_orbit_is_said() {
 
 #[test]
 fn a_single_interface_is_two_alike_at_half_the_stiffness_and_twice_the_velocity() {
-    let single = Slab {
+    let single = InterfaceSystem {
         interfaces: 1,
         ..slab(0.1, 0.28)
     };
@@ -335,9 +337,9 @@ fn budgets_hold_between_two_methods_at_random_places() {
         let Ok(first) = find(&slab, &query(symmetry), &taylor()) else {
             return Ok(());
         };
-        let other = Accuracy {
+        let other = OrbitAccuracy {
             checked: false,
-            ..Accuracy::of(Choice::named("rodas5p").expect("known"))
+            ..OrbitAccuracy::of(Choice::named("rodas5p").expect("known"))
         };
         let second = crosscheck(&slab, &first.orbit, &other).expect("the same orbit");
         let (a, b) = (first.orbit.period, second.orbit.period);

@@ -4,74 +4,75 @@ use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;
 use twinslip::bifurcation::Criticality;
 use twinslip::bifurcation::orbits::normal_form::{Form, normal_form};
-use twinslip::bifurcation::orbits::{End, Met, Watch, follow};
+use twinslip::bifurcation::orbits::{End, Met, WatchedFunction, follow};
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
 use twinslip::model::classics::{Brusselator, Langford, Roessler, VanDerPol};
 use twinslip::number::Real;
 use twinslip::orbit::{
-    Condition, Corrector, Family, Goal, Indicator, OverParameters, Path, Polygon, Site, Tracer,
-    Walk,
+    Condition, ContinuationPoint, Corrector, Goal, OverParameters, Palc, PalcSettings,
+    ParametrisedField, ShootingNodes, TestFunction, Tracer,
 };
 use twinslip::series::Equations;
 
 /// The orbit that a run settles on, of about this period.
-fn settled<F: Family<N>, const N: usize>(
+fn settled<F: ParametrisedField<N>, const N: usize>(
     family: &F,
     at: [f64; 2],
     start: State<N>,
     (settling, period): (f64, f64),
-) -> Site<N> {
+) -> ContinuationPoint<N> {
     let field = family.field(at);
     let mut tracer = Tracer::taylor(1e-10).expect("a tracer");
     let start = tracer.flow(&*field, &start, settling, None).expect("a run");
-    let polygon = Polygon::along(&mut tracer, &*field, &start, period).expect("a polygon");
-    Site { polygon, at }
+    let shooting = ShootingNodes::along(&mut tracer, &*field, &start, period).expect("a shooting");
+    ContinuationPoint { shooting, at }
 }
 
 /// The orbit at exactly these parameters.
-fn closed<F: Family<N>, const N: usize>(
+fn closed<F: ParametrisedField<N>, const N: usize>(
     corrector: &mut Corrector<'_, F, N>,
-    site: Site<N>,
+    site: ContinuationPoint<N>,
     free: usize,
-) -> Site<N> {
+) -> ContinuationPoint<N> {
     let held = [Condition::Parameter(free, site.at[free])];
     let orbit = corrector.correct(site, &[free], &held, Goal::SHARP);
     orbit.expect("an orbit").site
 }
 
 /// Along a branch from an orbit towards greater values of a parameter: the first zero of what is watched below `end`.
-fn first<F: Family<3>>(
+fn first<F: ParametrisedField<3>>(
     family: &F,
-    site: Site<3>,
+    site: ContinuationPoint<3>,
     (free, end): (usize, f64),
-    watch: Indicator,
-) -> Option<Site<3>> {
+    watch: TestFunction,
+) -> Option<ContinuationPoint<3>> {
     let mut corrector = Corrector::new(family, 1e-12).expect("a corrector");
-    let path = Path::branch(free, 0.3);
-    let here = corrector.look(site, &path.free, &[]).expect("an orbit");
+    let settings = PalcSettings::branch(free, 0.3);
+    let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
     let mut direction = here.along[0].clone();
     if direction.parameters[free] < 0.0 {
         direction = direction.scaled(-1.0);
     }
-    let mut walk = Walk::from(&mut corrector, path, here.site, direction).expect("a walk");
+    let mut palc =
+        Palc::from(&mut corrector, settings, here.site, direction).expect("a continuation");
     let mut found = None;
     follow(
-        &mut walk,
-        &[Watch::Indicator(watch)],
+        &mut palc,
+        &[WatchedFunction::TestFunction(watch)],
         400,
         &mut |_, _, met| match met {
             Met::Zero(_, at) => {
                 found = Some(at.site.clone());
                 Break(())
             }
-            Met::Orbit(pace) if pace.here.site.at[free] > end => Break(()),
+            Met::Orbit(now) if now.here.site.at[free] > end => Break(()),
             Met::Orbit(_) => Continue(()),
         },
     )
     .expect("a branch");
     let site = found?;
-    let meets = [Condition::Indicator(watch)];
+    let meets = [Condition::TestFunction(watch)];
     let sharp = corrector.correct(site, &[free], &meets, Goal::SHARP);
     Some(sharp.expect("the bifurcation").site)
 }
@@ -86,17 +87,17 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
         let (sin, cos) = (turn * f64::from(k)).sin_cos();
         State::<3>::new(radius * cos, radius * sin, 0.7)
     });
-    let site = Site {
-        polygon: Polygon {
+    let site = ContinuationPoint {
+        shooting: ShootingNodes {
             nodes: nodes.collect(),
             durations: vec![turn / 3.5; 12],
         },
         at: [rho, 0.0],
     };
-    let torus = first(&family, site, (0, 1.5), Indicator::Torus).expect("a torus");
+    let torus = first(&family, site, (0, 1.5), TestFunction::Torus).expect("a torus");
     let error = (torus.at[0] / Langford::torus() - 1.0).abs();
     assert!(error < 1e-10, "{error}");
-    let period = torus.polygon.period() * 3.5 / std::f64::consts::TAU;
+    let period = torus.shooting.period() * 3.5 / std::f64::consts::TAU;
     assert!((period - 1.0).abs() < 1e-12);
     // In (r, z) that is a Hopf point, with R' = a R^3 in x = z - 0.7, y = k (r - r_0): Guckenheimer, J. and Holmes, P. (1983).
     // Nonlinear Oscillations, Dynamical Systems, and Bifurcations of Vector Fields, (3.4.11).
@@ -108,7 +109,7 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
     let frequency = k * radius;
     let a = (f_xxx + f_xyy) / 16.0 + f_xy * (f_xx + f_yy) / (16.0 * frequency);
     // Of an eigenvector of length 1, around the orbit once.
-    let exact = 4.0 * a * k * k / (1.0 + k * k) * torus.polygon.period();
+    let exact = 4.0 * a * k * k / (1.0 + k * k) * torus.shooting.period();
     let (coefficient, criticality) = normal_form(&family, &torus, Form::Torus);
     let off = (coefficient.value - exact).abs();
     assert!(off <= coefficient.uncertainty, "{coefficient:?}, {exact}");
@@ -123,18 +124,18 @@ fn roesslers_orbit_doubles_its_period_and_again() {
     let site = settled(&family, [0.2, 2.5], start, (300.0, 5.75));
     let mut corrector = Corrector::<_, 3>::new(&family, 1e-14).expect("a corrector");
     let site = closed(&mut corrector, site, 1);
-    let doubling = first(&family, site, (1, 4.0), Indicator::Doubling).expect("a doubling");
+    let doubling = first(&family, site, (1, 4.0), TestFunction::Doubling).expect("a doubling");
     assert!((2.8..2.9).contains(&doubling.at[1]), "{}", doubling.at[1]);
     // The same by an unlike method, on nodes cut to six digits.
     let mut rough = doubling.clone();
-    for x in &mut rough.polygon.nodes {
+    for x in &mut rough.shooting.nodes {
         *x = x.map(|x| (x * 1e6).round() / 1e6);
     }
     let choice = Choice::named("rodas5p").expect("a method");
     let tolerances = Tolerances::equal(1e-12).expect("tolerances");
     let tracer = Tracer::new(choice, tolerances, MAX_STEPS).expect("a tracer");
     let mut second = Corrector::by(&family, tracer);
-    let meets = [Condition::Indicator(Indicator::Doubling)];
+    let meets = [Condition::TestFunction(TestFunction::Doubling)];
     let again = second
         .correct(rough, &[1], &meets, Goal::SHARP)
         .expect("the same");
@@ -144,18 +145,18 @@ fn roesslers_orbit_doubles_its_period_and_again() {
         .look(doubling.clone(), &[1], &meets)
         .expect("an orbit");
     let (twice, direction) = here.doubled().expect("a multiplier -1");
-    let path = Path::branch(1, 0.3);
-    let mut walk = Walk::from(
+    let settings = PalcSettings::branch(1, 0.3);
+    let mut palc = Palc::from(
         &mut corrector,
-        path,
+        settings,
         twice.moved(&direction, 0.05),
         direction,
     )
     .expect("a walk onto the doubled branch");
     let mut cascade = None;
     follow(
-        &mut walk,
-        &[Watch::Indicator(Indicator::Doubling)],
+        &mut palc,
+        &[WatchedFunction::TestFunction(TestFunction::Doubling)],
         400,
         &mut |_, _, met| match met {
             Met::Zero(_, at) => {
@@ -168,7 +169,7 @@ fn roesslers_orbit_doubles_its_period_and_again() {
     .expect("a branch");
     let next = cascade.expect("a second doubling");
     assert!((3.7..3.9).contains(&next.at[1]), "{}", next.at[1]);
-    let ratio = next.polygon.period() / doubling.polygon.period();
+    let ratio = next.shooting.period() / doubling.shooting.period();
     assert!((1.9..2.2).contains(&ratio), "{ratio}");
 }
 
@@ -179,7 +180,7 @@ fn van_der_pols_period_at_damping_one_and_a_thousand() {
     let mut corrector = Corrector::<_, 2>::new(&family, 1e-15).expect("a corrector");
     let site = closed(&mut corrector, site, 0);
     // Andersen, C. M. and Geer, J. F. (1982). SIAM J. Appl. Math. 42, 678-693.
-    assert!((site.polygon.period() / 6.663_286_859_323_13 - 1.0).abs() < 1e-13);
+    assert!((site.shooting.period() / 6.663_286_859_323_13 - 1.0).abs() < 1e-13);
     let choice = Choice::named("rodas5p").expect("a method");
     let tolerances = Tolerances::equal(1e-9).expect("tolerances");
     let tracer = Tracer::new(choice, tolerances, MAX_STEPS).expect("a tracer");
@@ -187,18 +188,18 @@ fn van_der_pols_period_at_damping_one_and_a_thousand() {
     let (damping, held) = (1000.0, [Condition::Parameter(0, 1000.0)]);
     let at = [damping, 0.0];
     let period = VanDerPol::relaxation_period(damping);
-    let field = Family::<2>::field(&family, at);
+    let field = ParametrisedField::<2>::field(&family, at);
     // On the slow part of the cycle, and once around.
     let start = State::<2>::new(1.9, -1.9 / (damping * (1.9 * 1.9 - 1.0)));
     let start = stiff
         .tracer
         .flow(&*field, &start, period, None)
         .expect("a run");
-    let polygon = Polygon::along(&mut stiff.tracer, &*field, &start, period).expect("a run");
+    let shooting = ShootingNodes::along(&mut stiff.tracer, &*field, &start, period).expect("a run");
     drop(field);
-    let orbit = stiff.correct(Site { polygon, at }, &[0], &held, Goal::STEP);
+    let orbit = stiff.correct(ContinuationPoint { shooting, at }, &[0], &held, Goal::STEP);
     let site = orbit.expect("a stiff orbit").site;
-    let error = (site.polygon.period() - VanDerPol::relaxation_period(1000.0)).abs();
+    let error = (site.shooting.period() - VanDerPol::relaxation_period(1000.0)).abs();
     assert!(error < 5.0 * 1000.0_f64.ln() / 1000.0, "{error}");
 }
 
@@ -209,11 +210,11 @@ fn brusselators_orbits_begin_with_the_period_of_their_hopf_point() {
     let site = settled(&family, [1.0, 2.05], start, (2000.0, 6.3));
     let mut corrector = Corrector::<_, 2>::new(&family, 1e-14).expect("a corrector");
     let near = closed(&mut corrector, site, 1);
-    let site = settled(&family, [1.0, 2.01], near.polygon.nodes[0], (4000.0, 6.29));
+    let site = settled(&family, [1.0, 2.01], near.shooting.nodes[0], (4000.0, 6.29));
     let nearer = closed(&mut corrector, site, 1);
     // T - 2 pi shrinks in proportion with B - 2.
     let tau = std::f64::consts::TAU;
-    let off = [&near, &nearer].map(|site| site.polygon.period() - tau);
+    let off = [&near, &nearer].map(|site| site.shooting.period() - tau);
     assert!(off[0].abs() < 0.05, "{off:?}");
     assert!((off[0] / off[1] / 5.0 - 1.0).abs() < 0.15, "{off:?}");
 }
@@ -252,7 +253,7 @@ impl VectorField<4> for WithAnother {
 
 struct FourOfThem;
 
-impl Family<4> for FourOfThem {
+impl ParametrisedField<4> for FourOfThem {
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<4> + '_> {
         Box::new(WithAnother(at))
     }
@@ -281,36 +282,36 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
     let start = State::<4>::new(-3.0, 0.0, 0.1, 0.0);
     let tracer = &mut corrector.tracer;
     let start = tracer.flow(&*field, &start, 100.0, None).expect("a run");
-    let polygon = Polygon::along(tracer, &*field, &start, 5.75).expect("a polygon");
+    let shooting = ShootingNodes::along(tracer, &*field, &start, 5.75).expect("a shooting");
     drop(field);
     let held = [Condition::Parameter(1, 2.5)];
     // The orbit itself is found in any dimension.
     let orbit = corrector
-        .correct(Site { polygon, at }, &[1], &held, Goal::STEP)
+        .correct(ContinuationPoint { shooting, at }, &[1], &held, Goal::STEP)
         .expect("an orbit");
-    assert!((orbit.site.polygon.period() - 5.75).abs() < 0.05);
+    assert!((orbit.site.shooting.period() - 5.75).abs() < 0.05);
     assert_eq!(orbit.spectrum.dimension, 4);
     assert!(matches!(
         orbit.spectrum.log_multipliers(),
         Err(Error::Dimension { dimension: 4, .. })
     ));
-    let indicators = [
-        Indicator::Fold,
-        Indicator::Doubling,
-        Indicator::Torus,
-        Indicator::Trace(-2.0),
-        Indicator::Across,
+    let test_functions = [
+        TestFunction::Fold,
+        TestFunction::Doubling,
+        TestFunction::Torus,
+        TestFunction::Trace(-2.0),
+        TestFunction::Transverse,
     ];
-    for indicator in indicators {
+    for test_function in test_functions {
         let refused = |error: Error| {
             assert!(
                 matches!(error, Error::Dimension { dimension: 4, .. }),
-                "{indicator:?}: {error}"
+                "{test_function:?}: {error}"
             );
             assert!(error.is_input());
         };
         let site = orbit.site.clone();
-        let meets = [Condition::Indicator(indicator)];
+        let meets = [Condition::TestFunction(test_function)];
         refused(
             corrector
                 .correct(site.clone(), &[1], &meets, Goal::STEP)
@@ -318,17 +319,22 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
         );
         refused(corrector.look(site.clone(), &[1], &meets).unwrap_err());
         let direction = orbit.along[0].clone();
-        let path = Path::locus(indicator, 0.3);
-        let begun = Walk::from(&mut corrector, path, site.clone(), direction.clone());
-        refused(begun.err().expect("no walk"));
-        let mut walk =
-            Walk::from(&mut corrector, Path::branch(1, 0.3), site, direction).expect("a walk");
-        let watches = [Watch::Indicator(indicator)];
-        refused(follow(&mut walk, &watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
+        let settings = PalcSettings::locus(test_function, 0.3);
+        let begun = Palc::from(&mut corrector, settings, site.clone(), direction.clone());
+        refused(begun.err().expect("no continuation"));
+        let mut palc = Palc::from(
+            &mut corrector,
+            PalcSettings::branch(1, 0.3),
+            site,
+            direction,
+        )
+        .expect("a continuation");
+        let watches = [WatchedFunction::TestFunction(test_function)];
+        refused(follow(&mut palc, &watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
     }
     // In the plane there are neither period doublings nor tori.
-    for indicator in [Indicator::Doubling, Indicator::Torus] {
-        assert!(indicator.checked::<2>().is_err() && indicator.checked::<3>().is_ok());
+    for test_function in [TestFunction::Doubling, TestFunction::Torus] {
+        assert!(test_function.checked::<2>().is_err() && test_function.checked::<3>().is_ok());
     }
 }
 
@@ -336,27 +342,28 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
 const SMALL: f64 = 0.4;
 
 /// Of an orbit's branch until it ends, leaves the range or has so many orbits: why, and the orbits' parameter and extent.
-fn along<F: Family<N>, const N: usize>(
+fn along<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    site: Site<N>,
+    site: ContinuationPoint<N>,
     (free, sign): (usize, f64),
     range: (f64, f64),
     most: usize,
 ) -> (End, Vec<(f64, f64)>) {
     let mut corrector = Corrector::new(family, 1e-11).expect("a corrector");
-    let path = Path::branch(free, 0.1);
-    let here = corrector.look(site, &path.free, &[]).expect("an orbit");
+    let settings = PalcSettings::branch(free, 0.1);
+    let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
     let mut direction = here.along[0].clone();
     if direction.parameters[free] * sign < 0.0 {
         direction = direction.scaled(-1.0);
     }
-    let mut walk = Walk::from(&mut corrector, path, here.site, direction).expect("a walk");
+    let mut palc =
+        Palc::from(&mut corrector, settings, here.site, direction).expect("a continuation");
     let mut orbits = Vec::new();
-    let end = follow(&mut walk, &[], most, &mut |_, _, met| {
-        if let Met::Orbit(pace) = met {
-            let site = &pace.here.site;
-            orbits.push((site.at[free], site.polygon.extent()));
-            if !(range.0..range.1).contains(&site.at[free]) || site.polygon.extent() < SMALL {
+    let end = follow(&mut palc, &[], most, &mut |_, _, met| {
+        if let Met::Orbit(now) = met {
+            let site = &now.here.site;
+            orbits.push((site.at[free], site.shooting.extent()));
+            if !(range.0..range.1).contains(&site.at[free]) || site.shooting.extent() < SMALL {
                 return Break(());
             }
         }
@@ -417,7 +424,10 @@ fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
     let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
     let (end, orbits) = along(&family, site, (0, -1.0), (0.0, 0.6), 2000);
     let &(current, extent) = orbits.last().expect("orbits");
-    assert!(end == End::Told && extent < SMALL, "{end:?}, {extent}");
+    assert!(
+        end == End::Interrupted && extent < SMALL,
+        "{end:?}, {extent}"
+    );
     let v = -(1.0_f64 - 0.8 * eps).sqrt();
     let hopf = (v + 0.7) / 0.8 - v + v * v * v / 3.0;
     assert!((current - hopf).abs() < 0.02, "{current}, {hopf}");

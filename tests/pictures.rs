@@ -6,7 +6,7 @@ use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::Rect;
 use resvg::usvg::{Options, Tree};
 use twinslip::output::plot::{
-    Axis, Block, Cells, Drawing, Key, Mark, Note, Panel, Series, Shade, Side, Stroke, Swatch,
+    Axis, Block, Cells, Drawing, Key, Mark, Note, Panel, PlotSeries, Shade, Side, Stroke, Swatch,
     Symbol,
 };
 
@@ -18,11 +18,13 @@ fn crowded() -> Panel {
     let around = |f: fn(f64) -> f64| turn.iter().map(|t| 0.5 + 0.03 * t * f(*t)).collect();
     let mut panel = unit("");
     for stroke in [Stroke::Solid, Stroke::Dashed, Stroke::Dotted] {
-        let spiral = Series::new("", around(f64::cos), around(f64::sin));
+        let spiral = PlotSeries::new("", around(f64::cos), around(f64::sin));
         panel.series.push(spiral.stroke(stroke));
     }
-    panel.series.push(Series::new("", x.clone(), wave).wide());
-    panel.series.push(Series::dots("", x.clone(), x));
+    panel
+        .series
+        .push(PlotSeries::new("", x.clone(), wave).wide());
+    panel.series.push(PlotSeries::dots("", x.clone(), x));
     let corners = [(0.0, 0.0), (1.0, 0.3), (0.4, 1.0), (1.2, 0.5), (0.5, -9.0)];
     let symbols = [
         Symbol::Star,
@@ -97,7 +99,7 @@ fn nothing_is_drawn_outside_of_a_fixed_range() {
 fn a_segment_with_both_ends_outside_is_cut_at_the_frame() {
     let mut panel = unit("");
     let ends = vec![-1.0, 2.0];
-    panel.series.push(Series::new("", ends.clone(), ends));
+    panel.series.push(PlotSeries::new("", ends.clone(), ends));
     let seen = seen(&alone(panel));
     let frame = seen.frames()[0];
     let lines = seen
@@ -120,7 +122,7 @@ fn a_segment_with_both_ends_outside_is_cut_at_the_frame() {
 fn a_free_axis_follows_what_the_other_shows() {
     let x = numbers(0.0, 100.0, 101);
     let mut panel = Panel::new("", Axis::linear("x").within(0.0, 3.0), Axis::linear("y"));
-    panel.series.push(Series::new("", x.clone(), x));
+    panel.series.push(PlotSeries::new("", x.clone(), x));
     let seen = seen(&alone(panel));
     assert!(seen.says("3.0") && !seen.says("100"), "{:?}", seen.words);
 }
@@ -141,7 +143,7 @@ fn long_legends_wrap_and_lack_nothing() {
     let mut panel = unit("curves in the plane of driving and stiffness");
     for (i, name) in names.iter().enumerate() {
         let height = 0.1 * i as f64;
-        let series = Series::new(*name, vec![0.0, 1.0], vec![height, height]);
+        let series = PlotSeries::new(*name, vec![0.0, 1.0], vec![height, height]);
         panel.series.push(series.colour(i));
     }
     let keys = ["cusp", "generalised Hopf", "1:1 resonance", "1:2 resonance"];
@@ -154,7 +156,7 @@ fn long_legends_wrap_and_lack_nothing() {
     let top = |drawing: &Drawing| seen(drawing).frames()[0];
     let short = top(&alone(Panel {
         keys: Vec::new(),
-        series: vec![Series::new("", vec![0.0, 1.0], vec![0.0, 1.0])],
+        series: vec![PlotSeries::new("", vec![0.0, 1.0], vec![0.0, 1.0])],
         ..panel.clone()
     }));
     for columns in [1, 3] {
@@ -184,7 +186,7 @@ fn strokes_differ_in_the_frame_and_in_the_legend() {
     ];
     let patterns = |stroke| {
         let mut panel = unit("");
-        let line = Series::new("line", vec![0.0, 1.0], vec![0.5, 0.5]);
+        let line = PlotSeries::new("line", vec![0.0, 1.0], vec![0.5, 0.5]);
         panel.series.push(line.stroke(stroke).colour(0));
         let seen = seen(&alone(panel));
         let frame = seen.frames()[0];
@@ -293,7 +295,7 @@ fn blocks_stand_one_below_the_other() {
         let x = numbers(0.0, 9.0, 200);
         let y = x.iter().map(|x| x.sin()).collect();
         Panel {
-            series: vec![Series::new("stress", x, y)],
+            series: vec![PlotSeries::new("stress", x, y)],
             ..Panel::new("run", Axis::linear("t"), Axis::linear("τ"))
         }
     };
@@ -493,7 +495,7 @@ fn curves_and_names_lie_on_maps() {
     });
     panel
         .series
-        .push(Series::new("", vec![0.0, 1.0], vec![0.2, 0.9]).colour(0));
+        .push(PlotSeries::new("", vec![0.0, 1.0], vec![0.2, 0.9]).colour(0));
     panel.marks.push(Mark::new(0.5, 0.3, "name"));
     let seen = seen(&alone(panel));
     assert!(seen.says("red"));

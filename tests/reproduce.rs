@@ -174,8 +174,8 @@ fn figures_may_be_called_as_people_do() {
 fn pieces_tell_what_they_do_and_how_far_they_are() {
     use std::sync::Mutex;
     use std::sync::atomic::AtomicBool;
-    use twinslip::paper::{Order, Product, Reached, Told, reproduce};
-    let order = Order {
+    use twinslip::paper::{Product, Reached, RunEvent, Selection, reproduce};
+    let order = Selection {
         out: folder("reproduce-told"),
         products: Product::listed("fig03,fig05").expect("products"),
         force: false,
@@ -186,18 +186,18 @@ fn pieces_tell_what_they_do_and_how_far_they_are() {
         program: String::new(),
     };
     let told = Mutex::new(Vec::new());
-    let hear = |what: Told<'_>| {
+    let hear = |what: RunEvent<'_>| {
         let words = match what {
-            Told::Begun { products, pieces } => format!("begun {products} {pieces}"),
-            Told::Piece(going) => {
+            RunEvent::Begun { products, pieces } => format!("begun {products} {pieces}"),
+            RunEvent::Piece(going) => {
                 let so_far = match going.reached {
                     Reached::Whole => "whole".to_owned(),
                     other => format!("{other:?}"),
                 };
                 format!("{} {} {so_far}", going.scene, going.what)
             }
-            Told::Making(product) => format!("making {}", product.id),
-            Told::Made(product, _) => format!("made {}", product.id),
+            RunEvent::Making(product) => format!("making {}", product.id),
+            RunEvent::Made(product, _) => format!("made {}", product.id),
         };
         told.lock().expect("no panic").push(words);
     };

@@ -21,7 +21,7 @@ fn joined(y: &State<3>, tangent: &Jacobian<3>) -> State<12> {
     State::<12>::from_iterator(y.iter().chain(tangent.iter()).copied())
 }
 
-fn parted(z: &State<12>) -> (State<3>, Jacobian<3>) {
+fn split(z: &State<12>) -> (State<3>, Jacobian<3>) {
     (
         z.fixed_rows::<3>(0).into(),
         Jacobian::from_column_slice(&z.as_slice()[3..]),
@@ -30,12 +30,12 @@ fn parted(z: &State<12>) -> (State<3>, Jacobian<3>) {
 
 impl VectorField<12> for Extended {
     fn f(&self, z: &State<12>) -> State<12> {
-        let (y, tangent) = parted(z);
+        let (y, tangent) = split(z);
         joined(&self.0.f(&y), &(self.0.jacobian(&y) * tangent))
     }
 
     fn jacobian(&self, z: &State<12>) -> Jacobian<12> {
-        let (y, tangent) = parted(z);
+        let (y, tangent) = split(z);
         let j = self.0.jacobian(&y);
         let mut all = Jacobian::<12>::zeros();
         for block in 0..4 {
@@ -102,7 +102,7 @@ fn a_run_is_that_of_the_extended_system() {
         let exact = integrator::<12>(RosenbrockMethod::Rodas5P, 1e-12)
             .flow(&Extended(field(&run)), t, &start, None)
             .unwrap();
-        let (_, exact) = parted(&exact);
+        let (_, exact) = split(&exact);
         for (method, tolerance, allowed) in [
             (RosenbrockMethod::Rodas5P, 1e-10, 1e-7),
             (RosenbrockMethod::Rodas4, 1e-10, 1e-7),

@@ -10,7 +10,7 @@ use twinslip::number::Uncertain;
 use twinslip::output::Cell;
 use twinslip::paper::Pieces;
 use twinslip::paper::scorecard::{
-    Answer, Entry, Verdict, difference, entries, json, judge, table1,
+    Agreement, Answer, Entry, compare, difference, entries, json, table1,
 };
 
 static STOP: AtomicBool = AtomicBool::new(false);
@@ -37,8 +37,8 @@ fn value(answer: &Answer) -> Uncertain {
     }
 }
 
-fn verdict(printed: &str, value: f64) -> Verdict {
-    judge(printed, &Answer::Number(Uncertain::new(value, 0.0))).0
+fn verdict(printed: &str, value: f64) -> Agreement {
+    compare(printed, &Answer::Number(Uncertain::new(value, 0.0))).0
 }
 
 #[test]
@@ -63,9 +63,9 @@ fn a_number_agrees_if_it_rounds_to_the_printed_one() {
         ("3", 3.6, false),
     ] {
         let expected = if agrees {
-            Verdict::Agrees
+            Agreement::Agrees
         } else {
-            Verdict::Differs
+            Agreement::Differs
         };
         assert_eq!(verdict(printed, value), expected, "{printed} and {value}");
     }
@@ -78,17 +78,17 @@ fn what_is_printed_of_a_number_agrees_with_it_and_with_no_other() {
         let x = 10_f64.powf(f64::from(i) * 0.004 - 4.0) * if i % 2 == 0 { 1.0 } else { -1.0 };
         for digits in 1..6 {
             let printed = format!("{x:.digits$e}");
-            assert_eq!(verdict(&printed, x), Verdict::Agrees, "{printed} and {x}");
+            assert_eq!(verdict(&printed, x), Agreement::Agrees, "{printed} and {x}");
             let power: i32 = printed.split_once('e').expect("a power").1.parse().unwrap();
             let unit = 10_f64.powi(power - digits as i32);
             let printed_value: f64 = printed.parse().unwrap();
             for off in [-0.6 * unit, 0.6 * unit] {
                 let other = printed_value + off;
-                assert_eq!(verdict(&printed, other), Verdict::Differs, "{printed}");
+                assert_eq!(verdict(&printed, other), Agreement::Differs, "{printed}");
             }
             for off in [-0.4 * unit, 0.4 * unit] {
                 let other = printed_value + off;
-                assert_eq!(verdict(&printed, other), Verdict::Agrees, "{printed}");
+                assert_eq!(verdict(&printed, other), Agreement::Agrees, "{printed}");
             }
         }
     }
@@ -109,7 +109,7 @@ fn a_bound_agrees_if_it_is_right_and_tight() {
         ("> 0.135", 0.1339, false),
         ("> 0.135", 0.137, false),
     ] {
-        let agreed = verdict(printed, value) == Verdict::Agrees;
+        let agreed = verdict(printed, value) == Agreement::Agrees;
         assert_eq!(agreed, agrees, "{printed} and {value}");
     }
 }
@@ -123,7 +123,7 @@ fn a_number_with_its_logarithm_is_one_fact() {
         ("0.0553 (log10: -1.2582)", 0.05518, false, 0.0),
         ("0.0821 (log10: -1.0859)", 0.0799, false, 0.02696),
     ] {
-        let agreed = verdict(printed, value) == Verdict::Agrees;
+        let agreed = verdict(printed, value) == Agreement::Agrees;
         assert_eq!(agreed, agrees, "{printed} and {value}");
         let computed = Answer::Number(Uncertain::new(value, 0.0));
         let found = difference(printed, &computed).expect("a number");
@@ -155,20 +155,20 @@ fn the_uncertainty_decides_nothing_but_is_told() {
         (0.07674, f64::INFINITY, true, false),
     ] {
         let computed = Answer::Number(Uncertain::new(value, uncertainty));
-        let (verdict, is_decided) = judge("0.0767", &computed);
-        assert_eq!(verdict == Verdict::Agrees, agrees);
+        let (verdict, is_decided) = compare("0.0767", &computed);
+        assert_eq!(verdict == Agreement::Agrees, agrees);
         assert_eq!(is_decided, decided, "{value} +- {uncertainty}");
     }
 }
 
 #[test]
 fn a_claim_agrees_if_the_words_are_the_same() {
-    let judged = |word| judge("supercritical", &Answer::Word(word)).0;
-    assert_eq!(judged("supercritical"), Verdict::Agrees);
-    assert_eq!(judged("subcritical"), Verdict::Differs);
+    let compared = |word| compare("supercritical", &Answer::Word(word)).0;
+    assert_eq!(compared("supercritical"), Agreement::Agrees);
+    assert_eq!(compared("subcritical"), Agreement::Differs);
     // A number can't be held against a word.
-    assert_eq!(verdict("supercritical", 1.0), Verdict::Differs);
-    assert_eq!(judge("0.2", &Answer::Word("0.20")).0, Verdict::Differs);
+    assert_eq!(verdict("supercritical", 1.0), Agreement::Differs);
+    assert_eq!(compare("0.2", &Answer::Word("0.20")).0, Agreement::Differs);
 }
 
 #[test]
@@ -209,21 +209,21 @@ fn there_are_enough_entries_and_each_is_whole() {
 
 #[test]
 fn verdicts_are_those_of_the_rule() {
-    let of = |verdict: Verdict| -> BTreeSet<&str> {
+    let of = |verdict: Agreement| -> BTreeSet<&str> {
         let these = all().iter().filter(|entry| entry.verdict == verdict);
         these.map(|entry| entry.id).collect()
     };
     for entry in all() {
-        let (by_rule, decided) = judge(entry.printed, &entry.computed);
+        let (by_rule, decided) = compare(entry.printed, &entry.computed);
         let expected = match entry.verdict {
             // Evidence turns a difference into a misprint and nothing else.
-            Verdict::Misprint => Verdict::Differs,
+            Agreement::Misprint => Agreement::Differs,
             other => other,
         };
         assert_eq!(by_rule, expected, "{}", entry.id);
         assert!(decided, "{}", entry.id);
         let reason = entry.note.contains("misprint: ");
-        assert_eq!(reason, entry.verdict == Verdict::Misprint, "{}", entry.id);
+        assert_eq!(reason, entry.verdict == Agreement::Misprint, "{}", entry.id);
     }
     let misprints = [
         "frequency-at-onset",
@@ -231,7 +231,7 @@ fn verdicts_are_those_of_the_rule() {
         "PD-first",
         "PD-last",
     ];
-    assert_eq!(of(Verdict::Misprint), BTreeSet::from(misprints));
+    assert_eq!(of(Agreement::Misprint), BTreeSet::from(misprints));
     let table = all().iter().filter(|entry| entry.id.starts_with("1:"));
     let table: BTreeSet<&str> = table.map(|entry| entry.id).collect();
     // V_H is printed twice, as a number and as its logarithm, and counted once.
@@ -254,7 +254,7 @@ fn verdicts_are_those_of_the_rule() {
         "torus-at-0.14",
         "roots-of-42",
     ]);
-    assert_eq!(of(Verdict::Differs), differ);
+    assert_eq!(of(Agreement::Differs), differ);
 }
 
 /// Within what is claimed, up to the rounding of the reference to a double; what is given to fewer digits, within these.

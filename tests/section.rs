@@ -11,7 +11,7 @@ use twinslip::integrate::{Choice, Control, Integrator, MAX_STEPS, Taylor, Tolera
 use twinslip::model::{Driven, Loading, two_interfaces};
 use twinslip::number::polynomial::Crossing;
 use twinslip::section::{
-    Ended, Periodic, Record, Regime, Surface, Verdict, Watching, half_driving_stress,
+    Ended, Periodic, Regime, RegimeVerdict, ReturnRecord, Surface, Watching, half_driving_stress,
     invariant_curve, record, regularity, return_map, spectrum, verdict, weighted_mean,
 };
 
@@ -48,7 +48,13 @@ impl Case {
         State::<3>::new(self.surface.offset, w, w + asymmetry)
     }
 
-    fn record(&self, method: &str, rtol: f64, start: State<3>, count: (usize, usize)) -> Record<3> {
+    fn record(
+        &self,
+        method: &str,
+        rtol: f64,
+        start: State<3>,
+        count: (usize, usize),
+    ) -> ReturnRecord<3> {
         let watching = Watching {
             skip: count.0,
             returns: count.1,
@@ -71,11 +77,11 @@ impl Case {
         )
     }
 
-    fn verdict(&self, record: &Record<3>) -> Verdict<3> {
+    fn verdict(&self, record: &ReturnRecord<3>) -> RegimeVerdict<3> {
         verdict(&*self.field, &self.surface, record, None).unwrap()
     }
 
-    fn periodic(&self, record: &Record<3>) -> Periodic<3> {
+    fn periodic(&self, record: &ReturnRecord<3>) -> Periodic<3> {
         let verdict = self.verdict(record);
         verdict
             .periodic
@@ -117,7 +123,7 @@ fn orbit_beyond_hopf(v: f64) -> (State<3>, [Complex<f64>; 2]) {
     case.fixed_point(point)
 }
 
-fn mean(record: &Record<3>) -> State<3> {
+fn mean(record: &ReturnRecord<3>) -> State<3> {
     record.returns.iter().map(|r| r.state).sum::<State<3>>() / record.returns.len() as f64
 }
 
@@ -611,7 +617,7 @@ fn the_bias_of_a_coarse_record_is_counted() {
 }
 
 /// Returns that are made up, about the orbit inside a torus: each so far from it, at the angle of its number.
-fn made_up(accuracy: f64, at: impl Fn(f64) -> [f64; 2]) -> (Case, Record<3>) {
+fn made_up(accuracy: f64, at: impl Fn(f64) -> [f64; 2]) -> (Case, ReturnRecord<3>) {
     let case = Case::paper(0.2, 0.102);
     let settled = case.record("auto", 1e-10, case.near_symmetric(0.3), (1000, 300));
     let centre = case.fixed_point(mean(&settled)).0;
@@ -622,7 +628,7 @@ fn made_up(accuracy: f64, at: impl Fn(f64) -> [f64; 2]) -> (Case, Record<3>) {
             state: centre + State::<3>::new(0.0, x, y),
         }
     });
-    let record = Record {
+    let record = ReturnRecord {
         returns: returns.collect(),
         waypoints: Vec::new(),
         ended: Ended::Complete,

@@ -7,16 +7,16 @@ use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Begin, Orbit, Query, Slab, find};
+use twinslip::orbit::{InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, find};
 use twinslip::section::Regime;
-use twinslip::sweep::{Grid, Range, Row, Settings, Sweeper, Units, run};
+use twinslip::sweep::{Grid, Range, SweepRow, SweepSettings, Sweeper, UnitShare, run};
 
 fn law() -> AnyLaw {
     AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
 }
 
-fn settings(driving: &str, stiffness: &str, starts: usize) -> Settings {
-    Settings {
+fn settings(driving: &str, stiffness: &str, starts: usize) -> SweepSettings {
+    SweepSettings {
         law: law(),
         grid: Grid::Plane {
             driving: Range::parse("driving", driving).unwrap(),
@@ -32,11 +32,11 @@ fn settings(driving: &str, stiffness: &str, starts: usize) -> Settings {
     }
 }
 
-fn rows(settings: &Settings) -> Vec<Row> {
+fn rows(settings: &SweepSettings) -> Vec<SweepRow> {
     in_chunks(settings, usize::MAX)
 }
 
-fn in_chunks(settings: &Settings, size: usize) -> Vec<Row> {
+fn in_chunks(settings: &SweepSettings, size: usize) -> Vec<SweepRow> {
     let mut sweeper = Sweeper::new(settings).unwrap();
     let (mut rows, mut next) = (Vec::new(), 0);
     while next < settings.units() {
@@ -47,10 +47,10 @@ fn in_chunks(settings: &Settings, size: usize) -> Vec<Row> {
     rows
 }
 
-fn over(settings: &Settings, units: Units, threads: usize) -> Vec<Row> {
+fn over(settings: &SweepSettings, units: UnitShare, threads: usize) -> Vec<SweepRow> {
     let mut all = Vec::new();
     let stop = AtomicBool::new(false);
-    let seen = &mut |rows: &[Row]| {
+    let seen = &mut |rows: &[SweepRow]| {
         all.extend_from_slice(rows);
         ControlFlow::Continue(())
     };
@@ -58,22 +58,22 @@ fn over(settings: &Settings, units: Units, threads: usize) -> Vec<Row> {
     all
 }
 
-fn is_small_orbit(row: &Row) -> bool {
+fn is_small_orbit(row: &SweepRow) -> bool {
     row.regime == Regime::Periodic && row.returns_per_period == Some(1)
 }
 
 /// By multiple shooting.
 fn orbit(driving: f64, stiffness: f64, symmetry: Symmetry) -> Orbit {
-    let slab = Slab {
+    let slab = InterfaceSystem {
         law: law(),
         interfaces: 2,
         loading: Loading::new(driving, stiffness).unwrap(),
     };
     let query = Query {
         symmetry,
-        begin: Begin::Hopf,
+        begin: InitialGuess::Hopf,
     };
-    let found = find(&slab, &query, &Accuracy::of(Choice::Taylor));
+    let found = find(&slab, &query, &OrbitAccuracy::of(Choice::Taylor));
     found.unwrap().orbit
 }
 
@@ -129,8 +129,8 @@ fn along_k_02_the_torus_is_where_the_orbit_is_unstable() {
     assert_eq!(changes.len(), 2, "a torus between two torus bifurcations");
 }
 
-fn at(driving: f64, stiffness: f64, start: usize) -> Row {
-    let settings = Settings {
+fn at(driving: f64, stiffness: f64, start: usize) -> SweepRow {
+    let settings = SweepSettings {
         rtol: 1e-8,
         ..settings(
             &format!("{driving}:{driving}:1"),
@@ -142,8 +142,8 @@ fn at(driving: f64, stiffness: f64, start: usize) -> Row {
 }
 
 /// With more returns than usual.
-fn at_length(driving: f64, stiffness: f64, start: usize) -> Row {
-    let settings = Settings {
+fn at_length(driving: f64, stiffness: f64, start: usize) -> SweepRow {
+    let settings = SweepSettings {
         rtol: 1e-8,
         max_returns: 4000,
         ..settings(
@@ -237,8 +237,8 @@ fn chaos_has_the_exponent_of_the_tangents() {
 fn a_large_motion_coexists_with_the_small_orbit_below_the_torus_bifurcation() {
     let settings = settings("0.0755:0.0758:16", "0.14:0.14:1", 2);
     let rows = rows(&settings);
-    let large = |row: &Row| row.stress_range.is_some_and(|(low, _)| low < 8.0);
-    let both = |pair: &[Row]| {
+    let large = |row: &SweepRow| row.stress_range.is_some_and(|(low, _)| low < 8.0);
+    let both = |pair: &[SweepRow]| {
         pair.iter().any(|row| is_small_orbit(row) && !large(row)) && pair.iter().any(large)
     };
     assert!(rows.chunks(2).any(both), "{rows:?}");
@@ -264,7 +264,7 @@ fn a_basin_has_both_attractors() {
     const SIDE: usize = 9;
     let states = Range::parse("state-1", "1e-6:1:9log").unwrap();
     let loading = Loading::new(2.0, 0.1).unwrap();
-    let settings = Settings {
+    let settings = SweepSettings {
         grid: Grid::Basin {
             loading,
             state_1: states,
@@ -274,7 +274,7 @@ fn a_basin_has_both_attractors() {
     };
     let rows = rows(&settings);
     for symmetry in [Symmetry::Symmetric, Symmetry::Asymmetric] {
-        let all: Vec<&Row> = rows
+        let all: Vec<&SweepRow> = rows
             .iter()
             .filter(|row| row.symmetry == Some(symmetry))
             .collect();
@@ -304,19 +304,22 @@ fn rows_depend_on_their_numbers_alone() {
     assert_eq!(in_chunks(&plane, 1), all);
     assert_eq!(in_chunks(&plane, 7), all);
     for threads in [1, 2, 3] {
-        assert_eq!(over(&plane, Units::from(0), threads), all);
+        assert_eq!(over(&plane, UnitShare::from(0), threads), all);
     }
-    assert_eq!(over(&plane, Units::from(20), 2), all[20..]);
+    assert_eq!(over(&plane, UnitShare::from(20), 2), all[20..]);
     for shard in 1..=3 {
-        let of_shard: Vec<Row> = all.iter().skip(shard - 1).step_by(3).cloned().collect();
-        assert_eq!(over(&plane, Units::shard(shard, 3, 0), 2), of_shard);
-        assert_eq!(over(&plane, Units::shard(shard, 3, 4), 2), of_shard[4..]);
+        let of_shard: Vec<SweepRow> = all.iter().skip(shard - 1).step_by(3).cloned().collect();
+        assert_eq!(over(&plane, UnitShare::shard(shard, 3, 0), 2), of_shard);
+        assert_eq!(
+            over(&plane, UnitShare::shard(shard, 3, 4), 2),
+            of_shard[4..]
+        );
     }
 }
 
 #[test]
 fn lines_that_follow_depend_on_themselves_alone() {
-    let plane = Settings {
+    let plane = SweepSettings {
         follow: true,
         ..settings("0.045:0.09:10", "0.1:0.2:4", 2)
     };
@@ -324,8 +327,8 @@ fn lines_that_follow_depend_on_themselves_alone() {
     let all = rows(&plane);
     assert!(all.iter().enumerate().all(|(k, row)| row.number == k));
     assert_eq!(in_chunks(&plane, 1), all);
-    assert_eq!(over(&plane, Units::from(0), 2), all);
-    assert_eq!(over(&plane, Units::from(1), 2), all[20..]);
+    assert_eq!(over(&plane, UnitShare::from(0), 2), all);
+    assert_eq!(over(&plane, UnitShare::from(1), 2), all[20..]);
 }
 
 #[test]
@@ -359,11 +362,11 @@ fn lanes_find_what_single_runs_find() {
 #[test]
 fn seeds_reproduce() {
     let plane = settings("0.06:0.1:3", "0.14:0.14:1", 5);
-    let other = Settings {
+    let other = SweepSettings {
         seed: 8,
         ..plane.clone()
     };
-    let starts = |settings: &Settings| -> Vec<[f64; 3]> {
+    let starts = |settings: &SweepSettings| -> Vec<[f64; 3]> {
         rows(settings).iter().map(|row| row.start).collect()
     };
     let (first, again, other) = (starts(&plane), starts(&plane), starts(&other));
@@ -376,7 +379,7 @@ fn seeds_reproduce() {
 
 #[test]
 fn a_point_that_fails_is_a_row() {
-    let plane = Settings {
+    let plane = SweepSettings {
         max_steps: 100,
         ..settings("0.1:0.2:3", "0.14:0.14:1", 1)
     };
@@ -434,28 +437,28 @@ fn settings_refuse_nonsense() {
         state_2: states,
     };
     for bad in [
-        Settings {
+        SweepSettings {
             starts: 0,
             ..good.clone()
         },
-        Settings {
+        SweepSettings {
             max_returns: 10,
             ..good.clone()
         },
-        Settings {
+        SweepSettings {
             max_steps: 0,
             ..good.clone()
         },
-        Settings {
+        SweepSettings {
             rtol: 0.0,
             ..good.clone()
         },
-        Settings {
+        SweepSettings {
             grid: basin,
             follow: true,
             ..good.clone()
         },
-        Settings {
+        SweepSettings {
             grid: basin,
             starts: 2,
             ..good.clone()

@@ -6,15 +6,15 @@ use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::classics::Lorenz;
-use twinslip::model::{Loading, Parted, Smooth, parted, two_interfaces};
+use twinslip::model::{DifferenceChart, Loading, Smooth, to_difference_chart, two_interfaces};
 use twinslip::number::Real;
-use twinslip::series::{Cubic, Element, Equations};
+use twinslip::series::{Element, Equations, Jet3};
 
 fn taylor(tolerance: f64) -> Taylor {
     Taylor::new(Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()
 }
 
-fn largest(c: Cubic) -> f64 {
+fn largest(c: Jet3) -> f64 {
     c.0.iter().fold(0.0, |largest, c| largest.max(c.abs()))
 }
 
@@ -34,11 +34,11 @@ fn assert_third_order(made: impl Fn(f64, f64) -> f64, exact: impl Fn(f64, f64) -
 
 #[test]
 fn functions_are_right_to_third_order() {
-    let x = Cubic([0.7, 0.5, -0.8, 0.3, 0.2, -0.4, 0.6, 0.1, -0.3, 0.2]);
-    type Function = (Cubic, fn(f64) -> f64);
+    let x = Jet3([0.7, 0.5, -0.8, 0.3, 0.2, -0.4, 0.6, 0.1, -0.3, 0.2]);
+    type Function = (Jet3, fn(f64) -> f64);
     let functions: [Function; 9] = [
         (x * x, |x| x * x),
-        (Cubic::constant(1.0) / x, |x| 1.0 / x),
+        (Jet3::constant(1.0) / x, |x| 1.0 / x),
         (Element::exp(x), f64::exp),
         (Element::exp_m1(x), f64::exp_m1),
         (Element::ln(x), f64::ln),
@@ -76,9 +76,9 @@ fn the_return_map_of_a_wheel_is_its_closed_form() {
         parameters: [mu, beta],
     };
     // Begins at the radius r0 + s and the angle t.
-    let radius = Cubic::linear(0.3, [1.0, 0.0]);
-    let angle = Cubic::linear(0.0, [0.0, 1.0]);
-    let cosine = Cubic([1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0]);
+    let radius = Jet3::linear(0.3, [1.0, 0.0]);
+    let angle = Jet3::linear(0.0, [0.0, 1.0]);
+    let cosine = Jet3([1.0, 0.0, 0.0, 0.0, 0.0, -0.5, 0.0, 0.0, 0.0, 0.0]);
     let sine = angle - angle * angle * angle.scaled(1.0 / 6.0);
     let start = [radius * cosine, radius * sine];
     let normal = State::<2>::new(0.0, 1.0);
@@ -88,10 +88,9 @@ fn the_return_map_of_a_wheel_is_its_closed_form() {
         .unwrap();
     assert!(largest(y) < 1e-13, "{y:?}");
     let grown = Element::exp(time.scaled(2.0 * mu));
-    let q =
-        Cubic::constant(1.0) + radius * radius * (grown - Cubic::constant(1.0)).scaled(1.0 / mu);
+    let q = Jet3::constant(1.0) + radius * radius * (grown - Jet3::constant(1.0)).scaled(1.0 / mu);
     let turned = angle + time + Element::ln(q).scaled(0.5 * beta);
-    let excess = turned - Cubic::constant(2.0 * PI);
+    let excess = turned - Jet3::constant(2.0 * PI);
     assert!(largest(excess) < 1e-11, "{excess:?}");
     let exact = radius * Element::exp(time.scaled(mu)) * Element::powf(q, -0.5);
     let error = largest(x - exact);
@@ -109,7 +108,7 @@ fn the_return_map_of_a_wheel_is_its_closed_form() {
 /// The polynomial against the flow from varied starts, in every component.
 fn check_flow(field: &dyn VectorField<3>, y: [f64; 3], t: f64, h: f64) {
     let directions = [[0.4, 1.0], [1.0, -0.3], [-0.5, 0.7]];
-    let start = std::array::from_fn(|i| Cubic::linear(y[i], directions[i]));
+    let start = std::array::from_fn(|i| Jet3::linear(y[i], directions[i]));
     let end = taylor(1e-15).transport(field, (0.0, t), start).unwrap();
     for (i, end) in end.iter().enumerate() {
         let exact = |s: f64, t_: f64| {
@@ -146,8 +145,13 @@ fn two_interfaces_are_transported() {
     let y = State::<3>::new(10.0, -0.7, -2.0);
     let field = two_interfaces(AnyLaw::Spinodal(law), loading);
     check_flow(&*field, [y[0], y[1], y[2]], 20.0, 1e-2);
-    let x = parted(&y).unwrap();
-    check_flow(&Parted { law }.at(&loading), [x[0], x[1], x[2]], 20.0, 1e-2);
+    let x = to_difference_chart(&y).unwrap();
+    check_flow(
+        &DifferenceChart { law }.at(&loading),
+        [x[0], x[1], x[2]],
+        20.0,
+        1e-2,
+    );
 }
 
 /// There and back is the identity.
@@ -158,9 +162,9 @@ fn transport_turns_back() {
         parameters: [28.0, 8.0 / 3.0],
     };
     let start = [
-        Cubic::linear(1.0, [1.0, 0.0]),
-        Cubic::linear(2.0, [0.0, 1.0]),
-        Cubic::linear(20.0, [0.5, 0.5]),
+        Jet3::linear(1.0, [1.0, 0.0]),
+        Jet3::linear(2.0, [0.0, 1.0]),
+        Jet3::linear(20.0, [0.5, 0.5]),
     ];
     let there = taylor(1e-15).transport(&lorenz, (0.0, 0.3), start).unwrap();
     let back = taylor(1e-15).transport(&lorenz, (0.3, 0.0), there).unwrap();

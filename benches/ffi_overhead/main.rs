@@ -20,7 +20,7 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Tolerances;
 use twinslip::model::{Driven, Loading, two_interfaces};
 use twinslip::sundials::{
-    self, Cvode, Kinsol, Method, Mode, Operations, Problem, Residual, Sensitivity,
+    self, Cvode, Kinsol, Mode, MultistepMethod, Operations, Problem, Residual, Sensitivity,
 };
 
 const STIFFNESS: f64 = 0.14;
@@ -76,7 +76,7 @@ struct Ours {
 }
 
 impl Ours {
-    fn new(method: Method, operations: Operations) -> Self {
+    fn new(method: MultistepMethod, operations: Operations) -> Self {
         let identity = Jacobian::<3>::identity();
         Ours {
             solver: Cvode::new(method, operations).expect("SUNDIALS"),
@@ -149,9 +149,9 @@ fn row(name: &str, times: &[f64], c: &[f64], answer: &Answer, error: f64) {
 
 fn table() {
     let mut c = C::new();
-    let mut stock = Ours::new(Method::Bdf, Operations::Stock);
-    let mut fixed = Ours::new(Method::Bdf, Operations::Fixed);
-    let mut tight = Ours::new(Method::Adams, Operations::Fixed);
+    let mut stock = Ours::new(MultistepMethod::Bdf, Operations::Stock);
+    let mut fixed = Ours::new(MultistepMethod::Bdf, Operations::Fixed);
+    let mut tight = Ours::new(MultistepMethod::Adams, Operations::Fixed);
     let y = tight.state(1e-13, LONG);
     let m = tight.tangent(1e-13, SHORT);
     let error = |answer: &Answer| match answer.m {
@@ -197,7 +197,7 @@ fn table() {
 
 /// Slips: falls of the stress through its middle. One interface slips, the other creeps.
 fn cycles() -> usize {
-    let mut solver = Cvode::<3>::new(Method::Adams, Operations::Fixed).expect("SUNDIALS");
+    let mut solver = Cvode::<3>::new(MultistepMethod::Adams, Operations::Fixed).expect("SUNDIALS");
     let field = field();
     solver.watch_events(1, &[-1]).expect("room");
     solver.start(0.0, &start()).expect("finite");
@@ -284,7 +284,7 @@ fn cvodes(criterion: &mut Criterion) {
             b.iter_custom(|repeat| c.run(tangent, repeat).time)
         });
         for operations in [Operations::Stock, Operations::Fixed] {
-            let mut ours = Ours::new(Method::Bdf, operations);
+            let mut ours = Ours::new(MultistepMethod::Bdf, operations);
             group.bench_function(format!("ours, {operations:?}"), |b| {
                 b.iter_custom(|repeat| ours.run(tangent, repeat).time)
             });

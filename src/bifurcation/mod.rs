@@ -10,7 +10,7 @@ pub mod strong_resonance;
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::number::Uncertain;
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 use std::ops::ControlFlow;
 
 pub use crate::model::Parameter;
@@ -322,13 +322,13 @@ impl Event {
 }
 
 /// Whether to go on.
-pub type Seen<'a> = &'a mut dyn FnMut(Event) -> ControlFlow<()>;
+pub type EventObserver<'a> = &'a mut dyn FnMut(Event) -> ControlFlow<()>;
 
 /// A branch that is asked for.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchRequest {
     /// Law and interfaces; its loading has the fixed parameter.
-    pub slab: Slab,
+    pub slab: InterfaceSystem,
     /// What is varied.
     pub along: Parameter,
     /// From where to where; the larger one may come first.
@@ -351,7 +351,7 @@ pub struct BranchRequest {
 
 impl BranchRequest {
     /// A range of a parameter, with everything else as it is by default.
-    pub fn new(slab: Slab, along: Parameter, range: (f64, f64)) -> Self {
+    pub fn new(slab: InterfaceSystem, along: Parameter, range: (f64, f64)) -> Self {
         BranchRequest {
             slab,
             along,
@@ -369,7 +369,12 @@ impl BranchRequest {
 
 impl LocusRequest {
     /// Ranges of V_H and K, with everything else as it is by default.
-    pub fn new(slab: Slab, kind: LocusKind, driving: (f64, f64), stiffness: (f64, f64)) -> Self {
+    pub fn new(
+        slab: InterfaceSystem,
+        kind: LocusKind,
+        driving: (f64, f64),
+        stiffness: (f64, f64),
+    ) -> Self {
         LocusRequest {
             slab,
             kind,
@@ -399,8 +404,8 @@ pub const MAX_POINTS: usize = 20_000;
 /// [`Error::TooManyPoints`] where there are, after these; those of `follow`.
 pub(crate) fn within(
     limit: usize,
-    seen: Seen<'_>,
-    follow: impl FnOnce(Seen<'_>) -> Result<()>,
+    seen: EventObserver<'_>,
+    follow: impl FnOnce(EventObserver<'_>) -> Result<()>,
 ) -> Result<()> {
     let (mut points, mut beyond) = (0, false);
     let ended = follow(&mut |event| {
@@ -441,7 +446,7 @@ pub enum LocusKind {
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocusRequest {
     /// Law and interfaces; its loading does not matter.
-    pub slab: Slab,
+    pub slab: InterfaceSystem,
     /// Of what.
     pub kind: LocusKind,
     /// One symmetry, or both where there are two.

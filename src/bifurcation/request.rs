@@ -3,7 +3,7 @@
 use super::{BranchRequest, LocusRequest};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 
 impl BranchRequest {
     /// # Errors
@@ -40,7 +40,12 @@ impl LocusRequest {
     }
 }
 
-fn checked(slab: &Slab, symmetry: Option<Symmetry>, step: f64, tolerance: f64) -> Result<()> {
+fn checked(
+    slab: &InterfaceSystem,
+    symmetry: Option<Symmetry>,
+    step: f64,
+    tolerance: f64,
+) -> Result<()> {
     if !(1..=2).contains(&slab.interfaces) {
         return Err(Error::parameter("interfaces", slab.interfaces, "1 or 2"));
     }

@@ -51,7 +51,7 @@ pub struct Homoclinic {
 }
 
 /// A passage of the section w = 0.
-struct Passage {
+struct AxisPassage {
     time: f64,
     v: f64,
 }
@@ -70,7 +70,7 @@ fn taylor(size: f64, mu2: f64) -> Result<Taylor> {
 }
 
 /// The first passage of w = 0 from this state, on the way that `direction` says.
-fn passage(mu: [f64; 2], start: State<2>, size: f64, direction: f64) -> Result<Passage> {
+fn passage(mu: [f64; 2], start: State<2>, size: f64, direction: f64) -> Result<AxisPassage> {
     let field = field(mu);
     let horizon = direction * HORIZON / (size * size + mu[1].abs()).sqrt();
     let mut found = None;
@@ -85,7 +85,7 @@ fn passage(mu: [f64; 2], start: State<2>, size: f64, direction: f64) -> Result<P
         };
         let time = bracketed_root("a passage of w = 0", step.t0, step.t1, along)?;
         let v = (step.dense)(time)[0];
-        found = Some(Passage { time, v });
+        found = Some(AxisPassage { time, v });
         Ok(Control::Stop)
     };
     taylor(size, mu[1])?.flow(&field, (0.0, horizon), &start, Some(&mut look))?;

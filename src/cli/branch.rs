@@ -3,14 +3,14 @@
 use super::continuation::Task;
 use super::{Ending, say};
 use crate::error::Result;
-use crate::scene::{BranchOptions, BranchPlan, Of};
+use crate::scene::{BranchKind, BranchOptions, BranchPlan};
 use crate::views;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     let plan = BranchPlan::new(options)?;
     let task = Task {
         system: &plan.system,
-        columns: views::branch_columns(plan.of == Of::Orbits, plan.system.interfaces),
+        columns: views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces),
         numerics: plan.numerics.clone(),
         slab: &plan.request.slab,
         second: plan.following.second,

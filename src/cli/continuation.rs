@@ -2,14 +2,14 @@
 
 use super::progress::{Progress, during};
 use super::report::{Report, unit_names};
-use super::resume::{Expected, Kept, beside, row_key, special_key};
-use super::rows::Row;
+use super::resume::{EarlierRun, Expected, beside, row_key, special_key};
+use super::rows::CurveRow;
 use super::words::{several, time};
 use super::{Ending, interrupt, say, special, written};
-use crate::bifurcation::{Criticality, Event, Label, Seen, Special, orbits};
+use crate::bifurcation::{Criticality, Event, EventObserver, Label, Special, orbits};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 use crate::output::{
     self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot, seven_digits,
 };
@@ -31,7 +31,7 @@ pub struct Task<'a, R> {
     /// What was asked for.
     pub numerics: Value,
     /// The same in dimensionless numbers.
-    pub slab: &'a Slab,
+    pub slab: &'a InterfaceSystem,
     /// By which method special points of orbits are computed once more.
     pub second: Option<Choice>,
     /// The file to go on with.
@@ -44,7 +44,7 @@ pub struct Task<'a, R> {
     pub words: &'a [String],
 }
 
-impl<'a, R: Row> Task<'a, R> {
+impl<'a, R: CurveRow> Task<'a, R> {
     /// Files and format, checked before anything is computed.
     pub fn report(&self) -> Result<Report<'a>> {
         let (resume, plot) = (self.resume, self.plot);
@@ -59,10 +59,10 @@ impl<'a, R: Row> Task<'a, R> {
     pub fn run(
         &self,
         report: &Report<'_>,
-        compute: impl FnOnce(&[usize], Seen<'_>) -> Result<()>,
+        compute: impl FnOnce(&[usize], EventObserver<'_>) -> Result<()>,
         picture: impl Fn(&[R], &[Special]) -> plot::Drawing,
     ) -> Result<Ending> {
-        let mut out = Out::new(self, report)?;
+        let mut out = ContinuationOut::new(self, report)?;
         interrupt::watch();
         let skipped = std::mem::take(&mut out.skipped);
         out.progress.begin("looking for the first point");
@@ -137,7 +137,7 @@ impl<'a, R: Row> Task<'a, R> {
     fn write(
         &self,
         report: &Report<'_>,
-        out: &Out<'_, R>,
+        out: &ContinuationOut<'_, R>,
         checks: &special::Checks,
         failure: Option<&Error>,
     ) -> Result<Ending> {
@@ -168,7 +168,7 @@ impl<'a, R: Row> Task<'a, R> {
 }
 
 /// Where rows go.
-enum To {
+enum ContinuationSink {
     Nothing,
     Table(Box<dyn RowWriter>),
     /// Checked lines of rows, and of special points where there is a file for them.
@@ -176,13 +176,13 @@ enum To {
 }
 
 /// Takes what is found: writes it and keeps it.
-struct Out<'a, R> {
+struct ContinuationOut<'a, R> {
     task: &'a Task<'a, R>,
     report: &'a Report<'a>,
     remarks: Vec<String>,
     names: Vec<(String, Quantity)>,
     /// Opened with the first row: a request that is refused leaves no file.
-    to: To,
+    to: ContinuationSink,
     /// The file of special points beside that of the rows.
     special_file: Option<RowFile>,
     broken: Option<io::Error>,
@@ -201,12 +201,12 @@ struct Out<'a, R> {
     scrolling: bool,
 }
 
-impl<'a, R: Row> Out<'a, R> {
+impl<'a, R: CurveRow> ContinuationOut<'a, R> {
     fn new(task: &'a Task<'a, R>, report: &'a Report<'a>) -> Result<Self> {
         let remarks = report.remarks(task.system, &task.numerics);
         let table = report.format == Format::Table;
         let names = views::names(&task.columns, table);
-        let mut kept = Kept::default();
+        let mut kept = EarlierRun::default();
         let csv = report
             .place
             .path()
@@ -226,7 +226,7 @@ impl<'a, R: Row> Out<'a, R> {
                 remarks: &remarks,
                 columns,
             };
-            kept = Kept::read(
+            kept = EarlierRun::read(
                 path,
                 &expected(&rows),
                 &expected(&special),
@@ -236,12 +236,12 @@ impl<'a, R: Row> Out<'a, R> {
         let scrolling = report.format != Format::Json
             && report.place.path().is_none()
             && io::stdout().is_terminal();
-        Ok(Out {
+        Ok(ContinuationOut {
             task,
             report,
             remarks,
             names,
-            to: To::Nothing,
+            to: ContinuationSink::Nothing,
             special_file,
             broken: None,
             complete: kept.complete,
@@ -258,13 +258,17 @@ impl<'a, R: Row> Out<'a, R> {
 
     /// Opens the table or CSV, once.
     fn open(&mut self) -> io::Result<()> {
-        if !matches!(self.to, To::Nothing) || self.report.format == Format::Json || self.complete {
+        if !matches!(self.to, ContinuationSink::Nothing)
+            || self.report.format == Format::Json
+            || self.complete
+        {
             return Ok(());
         }
         if self.report.format == Format::Table {
             let (names, quantities): (Vec<_>, Vec<_>) = self.names.iter().cloned().unzip();
             let units = unit_names(&self.task.system.units, quantities.into_iter());
-            self.to = To::Table(self.report.begin(self.remarks.clone(), &names, &units)?);
+            self.to =
+                ContinuationSink::Table(self.report.begin(self.remarks.clone(), &names, &units)?);
             return Ok(());
         }
         let mut remarks = self.remarks.clone();
@@ -295,7 +299,7 @@ impl<'a, R: Row> Out<'a, R> {
             to.write_all(&output::head(&remarks, &checked(&self.names)))?;
             to.flush()?;
         }
-        self.to = To::Lines(to, special);
+        self.to = ContinuationSink::Lines(to, special);
         Ok(())
     }
 
@@ -304,12 +308,12 @@ impl<'a, R: Row> Out<'a, R> {
         let table = self.report.format == Format::Table;
         let cells = views::cells(&self.task.columns, row, &self.task.system.units, table);
         match &mut self.to {
-            To::Nothing => {
+            ContinuationSink::Nothing => {
                 interrupt::holds();
                 Ok(())
             }
-            To::Table(writer) => writer.row(&cells),
-            To::Lines(to, _) => {
+            ContinuationSink::Table(writer) => writer.row(&cells),
+            ContinuationSink::Lines(to, _) => {
                 let key = row_key(self.rows.len(), self.special.len());
                 to.write_all(checked_line(&key, &cells).as_bytes())?;
                 to.flush()
@@ -320,7 +324,7 @@ impl<'a, R: Row> Out<'a, R> {
     fn special(&mut self, special: &Special) -> io::Result<()> {
         let line = special_line(self.special.len(), special, &self.task.system.units);
         match &mut self.to {
-            To::Lines(_, Some(to)) => to.write_all(line.as_bytes()),
+            ContinuationSink::Lines(_, Some(to)) => to.write_all(line.as_bytes()),
             _ => Ok(()),
         }
     }

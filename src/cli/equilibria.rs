@@ -12,7 +12,7 @@ use nalgebra::Complex;
 use serde_json::{Value, json};
 
 /// An equilibrium with what the stiffness makes of it.
-struct Found {
+struct ClassifiedEquilibrium {
     equilibrium: Equilibrium,
     stability: Option<Stability>,
     residual: f64,
@@ -37,7 +37,7 @@ pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
                 .stiffness
                 .map(|k| stability(&system.law, &equilibrium, k))
                 .transpose()?;
-            Ok(Found {
+            Ok(ClassifiedEquilibrium {
                 residual: equilibrium.residual(&system.law, driving),
                 stability,
                 equilibrium,
@@ -50,7 +50,7 @@ pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
             "the number of steady states is undecided: V_H is within rounding of a bifurcation",
         );
     }
-    let undecided = |found: &Found| {
+    let undecided = |found: &ClassifiedEquilibrium| {
         let verdict = found.stability.as_ref().map(|stability| stability.verdict);
         verdict == Some(Verdict::Undecided)
     };
@@ -100,7 +100,7 @@ fn write(
     report: &Report<'_>,
     system: &System,
     solver: &str,
-    found: &[Found],
+    found: &[ClassifiedEquilibrium],
     complete: bool,
 ) -> Result<Ending> {
     let numerics = json!({"solver": solver});
@@ -168,7 +168,7 @@ fn shown_eigenvalues(interfaces: usize, table: bool) -> usize {
     if table { 1 } else { interfaces + 1 }
 }
 
-fn cells(found: &Found, system: &System, table: bool) -> Vec<Cell> {
+fn cells(found: &ClassifiedEquilibrium, system: &System, table: bool) -> Vec<Cell> {
     let units = &system.units;
     let equilibrium = &found.equilibrium;
     let stress = units.outward_uncertain(Quantity::Stress, equilibrium.stress);
@@ -220,7 +220,7 @@ fn uncertainties(equilibrium: &Equilibrium) -> [Vec<f64>; 3] {
     ]
 }
 
-fn object(found: &Found, system: &System) -> Value {
+fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
     let units = &system.units;
     let equilibrium = &found.equilibrium;
     let out = |quantity, values: &[f64]| -> Vec<f64> {

@@ -2,13 +2,13 @@
 
 use super::interrupt;
 use super::report::{self, Report, unit_names};
-use super::stream::Out;
+use super::stream::StreamOut;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Cell, Format, Place, Rows, object, plot};
+use crate::output::{Cell, Format, Place, RowList, object, plot};
 use crate::scene::{
-    Column, Event, IntegrateOptions, Keeping, Outcome, Plan, Quantity, System, explain,
+    IntegrateOptions, Keeping, OutputColumn, Plan, Quantity, RunOutcome, SlipEvent, System, explain,
 };
 use crate::views;
 use serde_json::{Map, Value, json};
@@ -29,7 +29,7 @@ const EVENT_COLUMNS: [(&str, Quantity); 8] = [
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     let plan = Plan::new(options)?;
     if let Some(path) = &options.plot {
-        plot::Kind::of(path)?;
+        plot::PictureFormat::of(path)?;
     }
     let events = events_place(options)?;
     let events_path = events.as_ref().map(|(path, _)| path.as_path());
@@ -48,10 +48,10 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         say(explain(&plan, keeping).trim_end());
     }
     let columns = plan.columns.iter().map(|c| (c.name(), c.quantity()));
-    let pictured = Column::pictured(plan.system.interfaces);
+    let pictured = OutputColumn::pictured(plan.system.interfaces);
     let numbers = numerics(&plan);
-    let mut out = match Out::new(&report, (&plan.system, &numbers), columns.collect(), kept) {
-        Ok(out) => out.drawing(pictured.iter().map(Column::name).collect()),
+    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns.collect(), kept) {
+        Ok(out) => out.drawing(pictured.iter().map(OutputColumn::name).collect()),
         Err(error) => return written(Err(error), &report.place),
     };
     if plan.observed() {
@@ -60,7 +60,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     let outcome = crate::scene::run(&plan, &mut out)?;
     interrupt::unwatch();
     let seconds = out.progress.finish().as_secs_f64();
-    let Out {
+    let StreamOut {
         rows,
         drawn,
         broken,
@@ -133,8 +133,8 @@ fn events_place(options: &IntegrateOptions) -> Result<Option<(PathBuf, Format)>>
 fn write(
     plan: &Plan,
     report: &Report<'_>,
-    rows: &Rows,
-    outcome: &Outcome,
+    rows: &RowList,
+    outcome: &RunOutcome,
     events: Option<&(PathBuf, Format)>,
 ) -> Result<Ending> {
     if report.format == Format::Json {
@@ -173,15 +173,15 @@ fn write(
 
 /// What the object holds.
 #[derive(serde::Serialize)]
-struct Found<'a> {
-    rows: &'a Rows,
+struct IntegrationResult<'a> {
+    rows: &'a RowList,
     #[serde(rename = "final")]
     last: Option<Map<String, Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     events: Option<Vec<Map<String, Value>>>,
 }
 
-fn result<'a>(plan: &Plan, rows: &'a Rows, outcome: &Outcome) -> Found<'a> {
+fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> IntegrationResult<'a> {
     let last = outcome.last.as_ref().map(|row| {
         let mut last = object(&rows.columns, row);
         last.insert("error_estimate".into(), json!(outcome.error_estimate));
@@ -193,11 +193,11 @@ fn result<'a>(plan: &Plan, rows: &'a Rows, outcome: &Outcome) -> Found<'a> {
             .map(|event| event_object(event, &plan.system))
             .collect()
     });
-    Found { rows, last, events }
+    IntegrationResult { rows, last, events }
 }
 
 /// An event in the user's units; a single interface has no second slip, and neither it nor equal ones have a leader.
-fn cells(event: &Event, system: &System) -> Vec<Cell> {
+fn cells(event: &SlipEvent, system: &System) -> Vec<Cell> {
     let two = system.interfaces == 2;
     let [first, second] = event.slip;
     let values = [
@@ -219,7 +219,7 @@ fn cells(event: &Event, system: &System) -> Vec<Cell> {
     cells
 }
 
-fn event_object(event: &Event, system: &System) -> Map<String, Value> {
+fn event_object(event: &SlipEvent, system: &System) -> Map<String, Value> {
     EVENT_COLUMNS
         .iter()
         .zip(cells(event, system))
@@ -236,7 +236,7 @@ fn event_object(event: &Event, system: &System) -> Map<String, Value> {
         .collect()
 }
 
-fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
+fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
         "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {}",
@@ -260,7 +260,7 @@ fn summary(outcome: &Outcome, events: bool, seconds: f64) -> String {
 }
 
 /// The run in time, and the phase plane beside it.
-fn picture(plan: &Plan, rows: &Rows) -> plot::Drawing {
+fn picture(plan: &Plan, rows: &RowList) -> plot::Drawing {
     let time = views::panels_in_time(plan, rows);
     plot::Drawing::columns(vec![time, vec![views::phase_plane(plan, rows)]])
 }

@@ -8,7 +8,7 @@ use crate::friction::{
     steady_stress,
 };
 use crate::number::Uncertain;
-use crate::output::{Cell, Format, Rows, object, plot};
+use crate::output::{Cell, Format, RowList, object, plot};
 use crate::scene::{LawOptions, Quantity, System};
 use serde_json::{Value, json};
 
@@ -27,7 +27,7 @@ pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
     let system = System::new(&options.model)?;
     let grid = grid(options, &system)?;
     if let Some(path) = &options.plot {
-        plot::Kind::of(path)?;
+        plot::PictureFormat::of(path)?;
     }
     let plots: Vec<&std::path::Path> = options.plot.as_deref().into_iter().collect();
     let report = Report::new(&options.output, words, &plots)?;
@@ -75,9 +75,9 @@ fn grid(options: &LawOptions, system: &System) -> Result<Vec<f64>> {
         .collect())
 }
 
-fn rows(system: &System, grid: &[f64]) -> Rows {
+fn rows(system: &System, grid: &[f64]) -> RowList {
     let (law, units) = (&system.law, &system.units);
-    let mut rows = Rows::new(COLUMNS.map(|(name, _)| name.to_owned()).into());
+    let mut rows = RowList::new(COLUMNS.map(|(name, _)| name.to_owned()).into());
     for &v in grid {
         let stress = steady_stress(law, v);
         let values = [
@@ -125,7 +125,7 @@ fn kind(kind: ExtremumKind) -> &'static str {
     }
 }
 
-fn write(report: &Report<'_>, system: &System, rows: &Rows) -> Result<Ending> {
+fn write(report: &Report<'_>, system: &System, rows: &RowList) -> Result<Ending> {
     let (extrema, maximum) = landmarks(system)?;
     let transition = system
         .law
@@ -199,7 +199,7 @@ fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -
     lines
 }
 
-fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
+fn picture(system: &System, rows: &RowList) -> Result<plot::Drawing> {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let out = |quantity, x| system.units.outward(quantity, x);
     let unit = |quantity| system.units.short_name(quantity);
@@ -218,7 +218,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
     let coefficient = plot::Axis::linear("friction coefficient τₛₛ/σ");
     let friction = plot::Panel {
-        series: vec![plot::Series::new(
+        series: vec![plot::PlotSeries::new(
             "",
             column("slip_rate"),
             column("friction"),
@@ -235,7 +235,7 @@ fn picture(system: &System, rows: &Rows) -> Result<plot::Drawing> {
     let unit = unit(Quantity::Stiffness);
     let critical = plot::Axis::linear(format!("critical stiffness k_c [{unit}]"));
     let stiffness = plot::Panel {
-        series: vec![plot::Series::new(
+        series: vec![plot::PlotSeries::new(
             "",
             column("slip_rate"),
             from_above(column("critical_stiffness")),

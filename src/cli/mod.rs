@@ -39,13 +39,13 @@ use std::sync::OnceLock;
 /// Exit status: 0 done; 1 the computation failed, rows so far are kept; 2 wrong usage or input; 3 a verdict is undecided.
 #[derive(Debug, Parser)]
 #[command(name = "twinslip", version, max_term_width = 110)]
-struct Line {
+struct CommandLine {
     #[command(subcommand)]
-    command: Command,
+    command: CliCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum CliCommand {
     #[command(flatten)]
     Compute(scene::Command),
     /// A scene: one that is built in, such as fig12, or a file
@@ -87,7 +87,7 @@ pub fn program() -> clap::Command {
         }
         text
     });
-    Line::command().long_version(text.as_str())
+    CommandLine::command().long_version(text.as_str())
 }
 
 /// How a command ended, if it ended well.
@@ -123,7 +123,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
     let parsed = program()
         .try_get_matches_from(&arguments)
-        .and_then(|matches| Line::from_arg_matches(&matches));
+        .and_then(|matches| CommandLine::from_arg_matches(&matches));
     let line = match parsed {
         Ok(line) => line,
         Err(error) => {
@@ -145,13 +145,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         )
         .collect();
     let ended = allowed_vectors().and_then(|_| match &line.command {
-        Command::Compute(command) => compute(command, &words),
-        Command::Run(options) => run::run(options, &words),
-        Command::Merge(options) => merge::run(options),
-        Command::Reproduce(options) => reproduce::run(options),
-        Command::Figure(options) => reproduce::run_figure(options),
-        Command::Completions(options) => shell::completions(options),
-        Command::Man(options) => shell::man(options),
+        CliCommand::Compute(command) => compute(command, &words),
+        CliCommand::Run(options) => run::run(options, &words),
+        CliCommand::Merge(options) => merge::run(options),
+        CliCommand::Reproduce(options) => reproduce::run(options),
+        CliCommand::Figure(options) => reproduce::run_figure(options),
+        CliCommand::Completions(options) => shell::completions(options),
+        CliCommand::Man(options) => shell::man(options),
     });
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,

@@ -10,23 +10,24 @@ use crate::friction::positive;
 use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Accuracy, Begin, Crosscheck, Found, Kind, Multiplier, Orbit, Query, Slab, crosscheck, find,
+    Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Kind, Multiplier, Orbit, OrbitAccuracy,
+    Query, crosscheck, find,
 };
 use crate::output::{self, Cell, Format};
 use crate::scene::{OrbitOptions, Quantity, System, start, tolerances};
 use serde_json::{Value, json};
 
 /// What is to be done, checked.
-struct Plan {
+struct OrbitPlan {
     system: System,
-    slab: Slab,
+    slab: InterfaceSystem,
     query: Query,
-    accuracy: Accuracy,
+    accuracy: OrbitAccuracy,
     /// The second method.
-    second: Option<Accuracy>,
+    second: Option<OrbitAccuracy>,
 }
 
-impl Plan {
+impl OrbitPlan {
     fn new(options: &OrbitOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
         let loading = system.loading()?;
@@ -50,20 +51,20 @@ impl Plan {
             })
             .transpose()?;
         let begin = match options.start.as_deref() {
-            None => Begin::Anywhere,
+            None => InitialGuess::Anywhere,
             Some("hopf") if period.is_some() => {
                 return Err(Error::Input(
                     "--period-guess goes with a --start near the orbit, not with --start hopf"
                         .into(),
                 ));
             }
-            Some("hopf") => Begin::Hopf,
-            Some(text) => Begin::At {
+            Some("hopf") => InitialGuess::Hopf,
+            Some(text) => InitialGuess::At {
                 start: start(text, &system, &loading)?,
                 period,
             },
         };
-        let mut accuracy = Accuracy::of(Choice::named(&options.method)?);
+        let mut accuracy = OrbitAccuracy::of(Choice::named(&options.method)?);
         if options.max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
@@ -73,8 +74,8 @@ impl Plan {
         } else if let Some(atol) = options.atol {
             accuracy.tolerances = tolerances(accuracy.tolerances.rtol, Some(atol))?;
         }
-        Ok(Plan {
-            slab: Slab {
+        Ok(OrbitPlan {
+            slab: InterfaceSystem {
                 law: system.law,
                 interfaces: system.interfaces,
                 loading,
@@ -104,13 +105,13 @@ impl Plan {
         say(format_args!(
             "  guess             {}",
             match self.query.begin {
-                Begin::At {
+                InitialGuess::At {
                     period: Some(_), ..
                 } => "the start, over the period given",
-                Begin::At { .. } => "the returns of the start, else what it settles on",
-                Begin::Anywhere =>
+                InitialGuess::At { .. } => "the returns of the start, else what it settles on",
+                InitialGuess::Anywhere =>
                     "what runs settle on, else the branch from the nearest Hopf point",
-                Begin::Hopf => "the branch from the nearest Hopf point, past its folds",
+                InitialGuess::Hopf => "the branch from the nearest Hopf point, past its folds",
             }
         ));
         say(format_args!(
@@ -141,7 +142,7 @@ fn method_name(choice: Choice) -> &'static str {
 }
 
 /// The method of the crosscheck: another one than the first.
-fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
+fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
     #[cfg(feature = "sundials")]
     const DEFAULT: &str = "cvode-bdf";
     #[cfg(not(feature = "sundials"))]
@@ -158,20 +159,20 @@ fn second(name: Option<&str>, first: Choice) -> Result<Option<Accuracy>> {
             "--crosscheck {name} is the method of the orbit itself; choose another, or none"
         )));
     }
-    Ok(Some(Accuracy {
+    Ok(Some(OrbitAccuracy {
         checked: false,
-        ..Accuracy::of(method)
+        ..OrbitAccuracy::of(method)
     }))
 }
 
 pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
-    let plan = Plan::new(options)?;
+    let plan = OrbitPlan::new(options)?;
     let report = Report::new(&options.output, words, &[])?;
     if options.output.explain {
         plan.explain();
     }
     let searched = || find(&plan.slab, &plan.query, &plan.accuracy);
-    let Found { orbit, others } =
+    let FoundOrbit { orbit, others } =
         progress::during(report.quiet, "looking for the orbit", searched)?;
     let mut trouble = None;
     let checked = plan.second.as_ref().and_then(|second| {
@@ -219,7 +220,7 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
 }
 
 fn write(
-    plan: &Plan,
+    plan: &OrbitPlan,
     report: &Report<'_>,
     orbit: &Orbit,
     others: &[Orbit],

@@ -79,7 +79,7 @@ impl<'a> Report<'a> {
         (resume, plot): (Option<&Path>, Option<&Path>),
     ) -> Result<Self> {
         if let Some(path) = plot {
-            plot::Kind::of(path)?;
+            plot::PictureFormat::of(path)?;
         }
         let others: Vec<&Path> = plot.into_iter().collect();
         let goes_on = |report: &Report<'_>| {

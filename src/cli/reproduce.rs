@@ -6,7 +6,7 @@ use super::words::{count, time};
 use super::{Ending, say};
 use crate::error::{Error, Result};
 use crate::integrate::used_vectors;
-use crate::paper::{Done, Going, Order, PRODUCTS, Product, Reached, Told, hash, reproduce};
+use crate::paper::{Done, Going, PRODUCTS, Product, Reached, RunEvent, Selection, hash, reproduce};
 use crate::sweep::threads_checked;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::collections::BTreeMap;
@@ -69,7 +69,7 @@ pub struct Making {
 
 /// What a directory is to those who read it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kept {
+enum DirectoryKind {
     /// A reproduction: manifest, report, and nothing made twice but by `force`.
     Whole { force: bool },
     /// A place for files.
@@ -85,7 +85,7 @@ pub fn run(options: &ReproduceOptions) -> Result<Ending> {
         &options.out,
         products,
         &options.making,
-        Kept::Whole {
+        DirectoryKind::Whole {
             force: options.force,
         },
     )
@@ -93,23 +93,28 @@ pub fn run(options: &ReproduceOptions) -> Result<Ending> {
 
 pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
     let product = Product::named(&options.number)?;
-    make(&options.out, vec![product], &options.making, Kept::Files)
+    make(
+        &options.out,
+        vec![product],
+        &options.making,
+        DirectoryKind::Files,
+    )
 }
 
 fn make(
     out: &std::path::Path,
     products: Vec<&'static Product>,
     making: &Making,
-    kept: Kept,
+    kept: DirectoryKind,
 ) -> Result<Ending> {
     threads_checked(making.threads)?;
     let machine = machine();
-    let order = Order {
+    let order = Selection {
         out: out.to_owned(),
         products,
-        force: matches!(kept, Kept::Whole { force: true }),
+        force: matches!(kept, DirectoryKind::Whole { force: true }),
         png: making.png,
-        report: kept != Kept::Files,
+        report: kept != DirectoryKind::Files,
         threads: making.threads,
         program: program(&machine),
         machine,
@@ -117,11 +122,11 @@ fn make(
     let begun = Instant::now();
     let bar = Bar::new(making.quiet);
     interrupt::keeps(match kept {
-        Kept::Whole { .. } => format!(
+        DirectoryKind::Whole { .. } => format!(
             "what was finished is in {} and is not made again by the same command",
             out.display()
         ),
-        Kept::Files => "the figure was not finished, and no file was written".into(),
+        DirectoryKind::Files => "the figure was not finished, and no file was written".into(),
     });
     interrupt::watch();
     let done = reproduce(&order, interrupt::flag(), &|told| bar.tell(told));
@@ -164,7 +169,7 @@ fn program(machine: &BTreeMap<String, String>) -> String {
     text
 }
 
-fn summary(done: &Done, order: &Order, wall: Duration) {
+fn summary(done: &Done, order: &Selection, wall: Duration) {
     for (product, seconds) in &done.made {
         say(format_args!(
             "{:<10} {seconds:7.2} s  {}",
@@ -236,13 +241,13 @@ impl Bar {
         }
     }
 
-    fn tell(&self, told: Told<'_>) {
+    fn tell(&self, told: RunEvent<'_>) {
         if self.bar.is_hidden() {
             return;
         }
         match told {
-            Told::Begun { products, pieces } => self.bar.set_length((products + pieces) as u64),
-            Told::Piece(Going {
+            RunEvent::Begun { products, pieces } => self.bar.set_length((products + pieces) as u64),
+            RunEvent::Piece(Going {
                 scene,
                 what,
                 reached,
@@ -255,10 +260,10 @@ impl Bar {
                 };
                 self.goes(scene, format!("{scene}: {what}, {so_far}"));
             }
-            Told::Making(product) => {
+            RunEvent::Making(product) => {
                 self.goes(product.id, format!("{}: {}", product.id, product.title));
             }
-            Told::Made(product, _) => self.ended(product.id),
+            RunEvent::Made(product, _) => self.ended(product.id),
         }
     }
 

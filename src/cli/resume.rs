@@ -1,7 +1,7 @@
 //! Going on with the CSV file of an interrupted run: the rows of all branches but the last one that it had begun stay as they are,
 //! with their special points in the file beside it. What follows is computed as if nothing had happened.
 
-use super::rows::{Row, special_row};
+use super::rows::{CurveRow, special_row};
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::output::{Head, OURS, Status, checked_cells, damage, whole_line};
@@ -16,7 +16,7 @@ const FEW: usize = 300;
 
 /// What stays of an earlier run.
 #[derive(Debug)]
-pub struct Kept<R> {
+pub struct EarlierRun<R> {
     /// The rows.
     pub rows: Vec<R>,
     /// The special points.
@@ -31,9 +31,9 @@ pub struct Kept<R> {
     pub special_bytes: u64,
 }
 
-impl<R> Default for Kept<R> {
+impl<R> Default for EarlierRun<R> {
     fn default() -> Self {
-        Kept {
+        EarlierRun {
             rows: Vec::new(),
             special: Vec::new(),
             numbers: Vec::new(),
@@ -78,13 +78,13 @@ type Keys = Box<dyn Iterator<Item = String>>;
 type MakeRow<'a, R> = &'a mut dyn FnMut(&dyn Fn(&str) -> String, usize) -> Option<R>;
 
 /// The rows of a file, each with where it ends.
-struct Table<R> {
+struct SavedRows<R> {
     head: Head,
     rows: Vec<R>,
     ends: Vec<u64>,
 }
 
-impl<R> Table<R> {
+impl<R> SavedRows<R> {
     /// Reads a file; `None` if there is none, or its head is torn.
     fn read(
         path: &Path,
@@ -114,7 +114,7 @@ impl<R> Table<R> {
             };
         }
         same(&head, expected.remarks, expected.columns).map_err(|why| wrong(path, &why))?;
-        let mut table = Table {
+        let mut table = SavedRows {
             ends: vec![head.bytes],
             rows: Vec::new(),
             head,
@@ -151,7 +151,7 @@ impl<R> Table<R> {
     }
 }
 
-impl<R: Row> Kept<R> {
+impl<R: CurveRow> EarlierRun<R> {
     /// Reads both files; nothing stays of what does not exist, is empty or ends before a second branch begins.
     ///
     /// # Errors
@@ -165,7 +165,7 @@ impl<R: Row> Kept<R> {
     ) -> Result<Self> {
         // How many special points there were before the last row.
         let before = std::cell::Cell::new(0);
-        let rows = Table::read(
+        let rows = SavedRows::read(
             path,
             rows,
             &|row| {
@@ -178,10 +178,10 @@ impl<R: Row> Kept<R> {
             },
         )?;
         let Some(rows) = rows else {
-            return Ok(Kept::default());
+            return Ok(EarlierRun::default());
         };
         let points = beside(path);
-        let special = Table::read(
+        let special = SavedRows::read(
             &points,
             special,
             &|number| Box::new(std::iter::once(special_key(number))),
@@ -190,9 +190,9 @@ impl<R: Row> Kept<R> {
         let bytes = rows.head.bytes;
         let Some(special) = special else {
             // Without their special points the rows are of no use: all is computed again.
-            return Ok(Kept {
+            return Ok(EarlierRun {
                 bytes,
-                ..Kept::default()
+                ..EarlierRun::default()
             });
         };
         if special.rows.len() < before.get() {
@@ -209,7 +209,7 @@ impl<R: Row> Kept<R> {
         let last = rows.rows.last().map_or(0, R::number);
         let (special, special_bytes) = special.staying(|one| complete || one.branch < last);
         let (rows, bytes) = rows.staying(|row| complete || row.number() < last);
-        Ok(Kept {
+        Ok(EarlierRun {
             rows,
             special,
             numbers: (0..last).collect(),

@@ -6,7 +6,7 @@ use crate::number::Uncertain;
 use crate::scene::{Quantity, Units};
 
 /// A row of a branch or of a curve.
-pub trait Row: Sized {
+pub trait CurveRow: Sized {
     /// What rows of one number make up.
     const WHOLE: &'static str;
     /// The same, more of them.
@@ -71,7 +71,7 @@ pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Speci
     })
 }
 
-impl Row for BranchRow {
+impl CurveRow for BranchRow {
     const WHOLE: &'static str = "branch";
     const WHOLES: &'static str = "branches";
 
@@ -132,7 +132,7 @@ impl Row for BranchRow {
     }
 }
 
-impl Row for LocusRow {
+impl CurveRow for LocusRow {
     const WHOLE: &'static str = "curve";
     const WHOLES: &'static str = "curves";
 

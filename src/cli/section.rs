@@ -2,14 +2,14 @@
 
 use super::interrupt;
 use super::report::{self, Report, unit_names};
-use super::stream::Out;
+use super::stream::StreamOut;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::output::{Cell, Format, Rows, plot};
+use crate::output::{Cell, Format, RowList, plot};
 use crate::scene::{
-    Lyapunov, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan,
+    CheckedExponents, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan,
     explain_section, run_section,
 };
 use crate::section::Regime;
@@ -21,7 +21,7 @@ use std::path::Path;
 pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let plan = SectionPlan::new(options)?;
     if let Some(path) = &options.plot {
-        plot::Kind::of(path)?;
+        plot::PictureFormat::of(path)?;
     }
     let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
     let report = Report::new(&options.output, words, &others)?;
@@ -32,7 +32,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let columns = columns.iter().map(|c| (c.name(), c.quantity())).collect();
     let numbers = numerics(&plan);
     let drawn = options.plot.is_some();
-    let mut out = match Out::new(&report, (&plan.system, &numbers), columns, drawn) {
+    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns, drawn) {
         Ok(out) => out.counting(),
         Err(error) => return written(Err(error), &report.place),
     };
@@ -40,7 +40,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let outcome = run_section(&plan, &mut out)?;
     interrupt::unwatch();
     let seconds = out.progress.finish().as_secs_f64();
-    let Out { rows, broken, .. } = out;
+    let StreamOut { rows, broken, .. } = out;
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
@@ -82,7 +82,7 @@ fn numerics(plan: &SectionPlan) -> Value {
 fn write(
     plan: &SectionPlan,
     report: &Report<'_>,
-    rows: &Rows,
+    rows: &RowList,
     outcome: &SectionOutcome,
 ) -> Result<Ending> {
     if report.format == Format::Json {
@@ -130,13 +130,17 @@ fn write(
 
 /// What the object holds.
 #[derive(serde::Serialize)]
-struct Found<'a> {
-    rows: &'a Rows,
+struct SectionResult<'a> {
+    rows: &'a RowList,
     #[serde(flatten)]
     verdict: Map<String, Value>,
 }
 
-fn result<'a>(plan: &SectionPlan, rows: &'a Rows, outcome: &SectionOutcome) -> Found<'a> {
+fn result<'a>(
+    plan: &SectionPlan,
+    rows: &'a RowList,
+    outcome: &SectionOutcome,
+) -> SectionResult<'a> {
     let units = &plan.system.units;
     let uncertain = |quantity, x: Option<Uncertain>| {
         x.map_or(Value::Null, |x| report::uncertain(units, quantity, x))
@@ -153,7 +157,7 @@ fn result<'a>(plan: &SectionPlan, rows: &'a Rows, outcome: &SectionOutcome) -> F
     put("curves", json!(outcome.curves));
     if plan.lyapunov {
         let found = outcome.lyapunov.as_ref();
-        let list = |found: &Lyapunov| -> Value {
+        let list = |found: &CheckedExponents| -> Value {
             let list = found.exponents.iter();
             list.map(|x| report::uncertain(units, Quantity::Growth, *x))
                 .collect()
@@ -167,7 +171,7 @@ fn result<'a>(plan: &SectionPlan, rows: &'a Rows, outcome: &SectionOutcome) -> F
         put("liouville_defect", json!(defect));
     }
     put("note", json!(outcome.note));
-    Found { rows, verdict }
+    SectionResult { rows, verdict }
 }
 
 fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String {
@@ -211,7 +215,7 @@ fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String
 }
 
 /// The map, and beside it the states of two interfaces.
-fn picture(plan: &SectionPlan, rows: &Rows) -> plot::Drawing {
+fn picture(plan: &SectionPlan, rows: &RowList) -> plot::Drawing {
     let mut columns = vec![vec![views::return_map(plan, rows)]];
     if plan.system.interfaces == 2 {
         columns.push(vec![views::states_at_returns(rows)]);

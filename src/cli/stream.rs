@@ -4,27 +4,27 @@ use super::interrupt;
 use super::progress::Progress;
 use super::report::{Report, unit_names};
 use crate::integrate::Control;
-use crate::output::{Cell, Format, RowWriter, Rows};
+use crate::output::{Cell, Format, RowList, RowWriter};
 use crate::scene::{Quantity, Sink, System};
 use serde_json::Value;
 use std::io;
 
 /// Takes the rows of a run.
-pub struct Out {
+pub struct StreamOut {
     writer: Option<Box<dyn RowWriter>>,
     /// What went wrong with writing.
     pub broken: Option<io::Error>,
     keep: bool,
     counts: bool,
     /// What is kept.
-    pub rows: Rows,
+    pub rows: RowList,
     /// Points of the picture.
-    pub drawn: Rows,
+    pub drawn: RowList,
     cells: Vec<Cell>,
     pub progress: Progress,
 }
 
-impl Out {
+impl StreamOut {
     /// Begins the table or CSV, below the command that makes it. Rows are kept for an object anyway.
     pub fn new(
         report: &Report<'_>,
@@ -40,13 +40,13 @@ impl Out {
             let remarks = report.remarks(system, numerics);
             Some(report.begin(remarks, &names, &units)?)
         };
-        Ok(Out {
+        Ok(StreamOut {
             keep: keep || writer.is_none(),
             writer,
             broken: None,
             counts: false,
-            rows: Rows::new(names),
-            drawn: Rows::default(),
+            rows: RowList::new(names),
+            drawn: RowList::default(),
             cells: Vec::new(),
             progress: Progress::new(report.quiet),
         })
@@ -54,7 +54,7 @@ impl Out {
 
     /// The first column counts: its whole numbers need no point.
     pub fn counting(self) -> Self {
-        Out {
+        StreamOut {
             counts: true,
             ..self
         }
@@ -62,14 +62,14 @@ impl Out {
 
     /// The picture has these columns.
     pub fn drawing(self, columns: Vec<String>) -> Self {
-        Out {
-            drawn: Rows::new(columns),
+        StreamOut {
+            drawn: RowList::new(columns),
             ..self
         }
     }
 }
 
-impl Sink for Out {
+impl Sink for StreamOut {
     fn row(&mut self, row: &[f64]) -> Control {
         if self.keep {
             self.rows.numbers.extend_from_slice(row);

@@ -1,6 +1,6 @@
 //! Newton's method on the extended system: the N equations, and one that fixes the place on the curve.
 
-use super::{Point, ZeroProblem};
+use super::{CurvePoint, ZeroProblem};
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 
@@ -16,16 +16,16 @@ pub(super) fn joined(u: &DVector<f64>, lambda: f64) -> DVector<f64> {
 
 /// The equation that fixes the place: `normal` times (u, lambda) is `offset`.
 #[derive(Debug)]
-pub(super) struct Plane {
+pub(super) struct Hyperplane {
     pub normal: DVector<f64>,
     pub offset: f64,
 }
 
-impl Plane {
+impl Hyperplane {
     /// All points at this distance along the tangent.
-    pub fn ahead(point: &Point, distance: f64) -> Self {
+    pub fn ahead(point: &CurvePoint, distance: f64) -> Self {
         let here = joined(&point.u, point.lambda);
-        Plane {
+        Hyperplane {
             offset: point.tangent.dot(&here) + distance,
             normal: point.tangent.clone(),
         }
@@ -35,7 +35,7 @@ impl Plane {
     pub fn lambda(dimension: usize, value: f64) -> Self {
         let mut normal = DVector::zeros(dimension + 1);
         normal[dimension] = 1.0;
-        Plane {
+        Hyperplane {
             normal,
             offset: value,
         }
@@ -81,7 +81,7 @@ fn satisfied(matrix: &DMatrix<f64>, x: &DVector<f64>, left: &DVector<f64>) -> bo
 pub(super) fn onto(
     problem: &dyn ZeroProblem,
     guess: &DVector<f64>,
-    plane: &Plane,
+    plane: &Hyperplane,
     tolerance: f64,
 ) -> Result<(DVector<f64>, usize)> {
     let n = problem.dimension();
@@ -126,7 +126,7 @@ pub(super) fn onto(
 pub(super) fn from_afar(
     problem: &dyn ZeroProblem,
     guess: &DVector<f64>,
-    plane: &Plane,
+    plane: &Hyperplane,
     tolerance: f64,
 ) -> Result<DVector<f64>> {
     /// Damped steps, and the least part of a correction that is taken.

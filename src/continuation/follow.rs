@@ -1,8 +1,8 @@
-//! The walk along a curve.
+//! Pseudo-arclength continuation of a curve of zeros: predictor, corrector and step control.
 
-use super::correct::{Plane, from_afar, joined, onto, tangent};
-use super::locate::{Met, Step};
-use super::{Branch, Mark, Point, Settings, Start, Stop, Watch, ZeroProblem};
+use super::correct::{Hyperplane, from_afar, joined, onto, tangent};
+use super::locate::{CurveStep, Located};
+use super::{Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, Stop, ZeroProblem};
 use crate::error::{Error, Result};
 use nalgebra::DVector;
 use std::ops::ControlFlow;
@@ -27,7 +27,7 @@ pub fn follow(
     problem: &dyn ZeroProblem,
     start: &Start,
     settings: &Settings,
-    watch: &mut dyn Watch,
+    watch: &mut dyn CurveObserver,
 ) -> Result<Branch> {
     let settings = settings.clone().checked()?;
     let (lowest, highest) = settings.range;
@@ -35,7 +35,7 @@ pub fn follow(
         return Err(Error::parameter("start", start.lambda, "within the range"));
     }
     let first = begin(problem, start, &settings)?;
-    let mut walk = Walk {
+    let mut continuation = CurveContinuation {
         problem,
         length: settings.first_step,
         settings: &settings,
@@ -44,18 +44,18 @@ pub fn follow(
         before: None,
         bend: DVector::zeros(problem.dimension() + 1),
     };
-    let stopped = walk.whole(first);
+    let stopped = continuation.whole(first);
     Ok(Branch {
-        points: walk.points,
+        points: continuation.points,
         stopped,
     })
 }
 
-fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Result<Point> {
+fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Result<CurvePoint> {
     let n = problem.dimension();
     let guess = joined(&start.u, start.lambda);
-    let fixed = Plane::lambda(n, start.lambda);
-    let across = Plane {
+    let fixed = Hyperplane::lambda(n, start.lambda);
+    let across = Hyperplane {
         offset: start.direction.dot(&guess),
         normal: start.direction.clone(),
     };
@@ -63,7 +63,7 @@ fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Resul
     let near = onto(problem, &guess, plane, settings.tolerance).map(|(x, _)| x);
     let mut x = near.or_else(|_| from_afar(problem, &guess, plane, settings.tolerance))?;
     x[n] = x[n].clamp(settings.range.0, settings.range.1);
-    Ok(Point {
+    Ok(CurvePoint {
         u: x.rows(0, n).into_owned(),
         lambda: x[n],
         tangent: tangent(problem, &x, &start.direction)?,
@@ -71,11 +71,11 @@ fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Resul
     })
 }
 
-struct Walk<'a> {
+struct CurveContinuation<'a> {
     problem: &'a dyn ZeroProblem,
     settings: &'a Settings,
-    watch: &'a mut dyn Watch,
-    points: Vec<(Point, Mark)>,
+    watch: &'a mut dyn CurveObserver,
+    points: Vec<(CurvePoint, PointKind)>,
     length: f64,
     /// (u, lambda) of the point before.
     before: Option<DVector<f64>>,
@@ -83,8 +83,8 @@ struct Walk<'a> {
     bend: DVector<f64>,
 }
 
-impl Walk<'_> {
-    fn show(&mut self, point: &Point, mark: Mark) -> ControlFlow<Stop> {
+impl CurveContinuation<'_> {
+    fn show(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<Stop> {
         self.points.push((point.clone(), mark));
         match self.watch.seen(point, mark) {
             ControlFlow::Break(()) => ControlFlow::Break(Stop::Observer),
@@ -92,7 +92,7 @@ impl Walk<'_> {
         }
     }
 
-    fn whole(&mut self, first: Point) -> Stop {
+    fn whole(&mut self, first: CurvePoint) -> Stop {
         if let ControlFlow::Break(stop) = self.first(&first) {
             return stop;
         }
@@ -109,18 +109,18 @@ impl Walk<'_> {
         Stop::MaxPoints
     }
 
-    fn first(&mut self, first: &Point) -> ControlFlow<Stop> {
-        self.show(first, Mark::Begin)?;
+    fn first(&mut self, first: &CurvePoint) -> ControlFlow<Stop> {
+        self.show(first, PointKind::Begin)?;
         for (i, &value) in self.settings.wanted.iter().enumerate() {
             if value == first.lambda {
-                self.show(first, Mark::Wanted(i))?;
+                self.show(first, PointKind::Wanted(i))?;
             }
         }
         ControlFlow::Continue(())
     }
 
     /// One step, as long as it can be, with all that it meets.
-    fn step(&mut self, here: &Point) -> ControlFlow<Stop, Point> {
+    fn step(&mut self, here: &CurvePoint) -> ControlFlow<Stop, CurvePoint> {
         loop {
             match self.tried(here) {
                 Ok(Some((next, met))) => return self.taken(next, met),
@@ -141,7 +141,7 @@ impl Walk<'_> {
 
     /// The same point with the direction from the one before: next to a branch point, by an accident of the steps, a tangent is
     /// lost to rounding or to the errors of the derivatives. Once only.
-    fn by_secant(&mut self, here: &Point) -> Option<Point> {
+    fn by_secant(&mut self, here: &CurvePoint) -> Option<CurvePoint> {
         let across = joined(&here.u, here.lambda) - self.before.take()?;
         let length = across.norm();
         let tangent = across / length;
@@ -151,17 +151,17 @@ impl Walk<'_> {
         self.length = length.min(self.settings.longest_step);
         self.bend.fill(0.0);
         let here = here.clone();
-        Some(Point { tangent, ..here })
+        Some(CurvePoint { tangent, ..here })
     }
 
     /// The next point and what lies before it; nothing where the step is too long.
-    fn tried(&mut self, here: &Point) -> Result<Option<(Point, Vec<Met>)>> {
+    fn tried(&mut self, here: &CurvePoint) -> Result<Option<(CurvePoint, Vec<Located>)>> {
         let (h, n) = (self.length, self.problem.dimension());
         let x = joined(&here.u, here.lambda);
         let guess = &x + &here.tangent * h + &self.bend * (0.5 * h * h);
-        let plane = Plane::ahead(here, h);
+        let plane = Hyperplane::ahead(here, h);
         let (at, corrections) = onto(self.problem, &guess, &plane, self.settings.tolerance)?;
-        let next = Point {
+        let next = CurvePoint {
             u: at.rows(0, n).into_owned(),
             lambda: at[n],
             tangent: tangent(self.problem, &at, &here.tangent)?,
@@ -175,7 +175,7 @@ impl Walk<'_> {
         if self.watch.too_far(here, &next) && h > FINE * self.settings.longest_step {
             return Ok(None);
         }
-        let step = Step {
+        let step = CurveStep {
             problem: self.problem,
             settings: self.settings,
             from: here,
@@ -194,15 +194,19 @@ impl Walk<'_> {
         Ok(Some((next, met)))
     }
 
-    fn taken(&mut self, next: Point, met: Vec<Met>) -> ControlFlow<Stop, Point> {
-        for Met { point, mark, .. } in met {
+    fn taken(&mut self, next: CurvePoint, met: Vec<Located>) -> ControlFlow<Stop, CurvePoint> {
+        for Located { point, mark, .. } in met {
             if let ControlFlow::Break(stop) = self.show(&point, mark) {
                 return ControlFlow::Break(stop);
             }
             match mark {
-                Mark::Lowest | Mark::Highest => return ControlFlow::Break(Stop::RangeEnd),
-                Mark::Begin => return ControlFlow::Break(Stop::Closed),
-                Mark::Zero(i) if self.watch.ends(i) => return ControlFlow::Break(Stop::Ended(i)),
+                PointKind::Lowest | PointKind::Highest => {
+                    return ControlFlow::Break(Stop::RangeEnd);
+                }
+                PointKind::Begin => return ControlFlow::Break(Stop::Closed),
+                PointKind::Zero(i) if self.watch.ends(i) => {
+                    return ControlFlow::Break(Stop::Ended(i));
+                }
                 _ => {}
             }
         }
@@ -211,7 +215,7 @@ impl Walk<'_> {
             // The curve left the range at the point where it began.
             return ControlFlow::Break(Stop::RangeEnd);
         }
-        if let ControlFlow::Break(stop) = self.show(&next, Mark::Step) {
+        if let ControlFlow::Break(stop) = self.show(&next, PointKind::Step) {
             return ControlFlow::Break(stop);
         }
         ControlFlow::Continue(next)

@@ -1,8 +1,8 @@
 //! What lies within one step: zeros of the test functions, wanted values, the ends of the range.
 
-use super::correct::{Plane, joined, onto, tangent};
+use super::correct::{Hyperplane, joined, onto, tangent};
 use super::signs::{crosses, next_fraction, vertex};
-use super::{Mark, Point, Settings, Watch, ZeroProblem};
+use super::{CurveObserver, CurvePoint, PointKind, Settings, ZeroProblem};
 use crate::error::Result;
 use nalgebra::DVector;
 
@@ -21,11 +21,11 @@ const NARROW: f64 = 1e-4;
 const EVALUATIONS: usize = 100;
 
 /// One step of a curve, on which every point can be had.
-pub(super) struct Step<'a> {
+pub(super) struct CurveStep<'a> {
     pub problem: &'a dyn ZeroProblem,
     pub settings: &'a Settings,
-    pub from: &'a Point,
-    pub to: &'a Point,
+    pub from: &'a CurvePoint,
+    pub to: &'a CurvePoint,
     pub length: f64,
 }
 
@@ -33,22 +33,22 @@ pub(super) struct Step<'a> {
 #[derive(Debug, Clone)]
 struct Sample {
     s: f64,
-    point: Point,
+    point: CurvePoint,
     values: Vec<f64>,
 }
 
 /// Something met on the way.
 #[derive(Debug, Clone)]
-pub(super) struct Met {
+pub(super) struct Located {
     pub s: f64,
-    pub point: Point,
-    pub mark: Mark,
+    pub point: CurvePoint,
+    pub mark: PointKind,
 }
 
-impl Step<'_> {
+impl CurveStep<'_> {
     /// Both ends.
-    fn ends(&self, watch: &dyn Watch) -> Result<[Sample; 2]> {
-        let sample = |s: f64, point: &Point| {
+    fn ends(&self, watch: &dyn CurveObserver) -> Result<[Sample; 2]> {
+        let sample = |s: f64, point: &CurvePoint| {
             let values = values(self.settings, watch, point)?;
             let point = point.clone();
             Ok(Sample { s, point, values })
@@ -57,9 +57,9 @@ impl Step<'_> {
     }
 
     /// At distance s along the tangent of the first point, between two places that are known.
-    fn sample(&self, watch: &dyn Watch, a: &Sample, b: &Sample, s: f64) -> Result<Sample> {
+    fn sample(&self, watch: &dyn CurveObserver, a: &Sample, b: &Sample, s: f64) -> Result<Sample> {
         let (guess, along) = self.between(a, b, s);
-        let point = self.corrected(&guess, &Plane::ahead(self.from, s), s, &along)?;
+        let point = self.corrected(&guess, &Hyperplane::ahead(self.from, s), s, &along)?;
         let values = values(self.settings, watch, &point)?;
         Ok(Sample { s, point, values })
     }
@@ -82,10 +82,10 @@ impl Step<'_> {
     fn corrected(
         &self,
         guess: &DVector<f64>,
-        plane: &Plane,
+        plane: &Hyperplane,
         s: f64,
         along: &DVector<f64>,
-    ) -> Result<Point> {
+    ) -> Result<CurvePoint> {
         let n = self.problem.dimension();
         let (x, _) = onto(self.problem, guess, plane, self.settings.tolerance)?;
         // at a branch point there is more than one tangent: the interpolant's is that of this curve
@@ -93,7 +93,7 @@ impl Step<'_> {
             .ok()
             .filter(|t| t.dot(along) > self.settings.largest_turn.cos())
             .unwrap_or_else(|| along.clone());
-        Ok(Point {
+        Ok(CurvePoint {
             u: x.rows(0, n).into_owned(),
             lambda: x[n],
             tangent,
@@ -102,7 +102,7 @@ impl Step<'_> {
     }
 
     /// Where the step comes back to the curve's first point.
-    fn closing(&self, [a, b]: [&Sample; 2], first: &Point) -> Option<Met> {
+    fn closing(&self, [a, b]: [&Sample; 2], first: &CurvePoint) -> Option<Located> {
         /// Two points are one if they differ by no more than this many tolerances.
         const SAME: f64 = 1e5;
         let x = joined(&first.u, first.lambda);
@@ -115,19 +115,23 @@ impl Step<'_> {
             return None;
         }
         let (guess, along) = self.between(a, b, s);
-        let plane = Plane::ahead(self.from, s);
+        let plane = Hyperplane::ahead(self.from, s);
         let point = self.corrected(&guess, &plane, s, &along).ok()?;
         let apart = (&x - joined(&point.u, point.lambda)).amax();
         let same = apart <= SAME * self.settings.tolerance * (1.0 + x.amax());
-        same.then_some(Met {
+        same.then_some(Located {
             s,
             point,
-            mark: Mark::Begin,
+            mark: PointKind::Begin,
         })
     }
 
     /// All that the step meets, in order; `first` is where the curve began, unless it begins here.
-    pub fn met(&self, watch: &dyn Watch, first: Option<&Point>) -> Result<Vec<Met>> {
+    pub fn met(
+        &self,
+        watch: &dyn CurveObserver,
+        first: Option<&CurvePoint>,
+    ) -> Result<Vec<Located>> {
         let [from, mut to] = self.ends(watch)?;
         let closing = first.and_then(|first| self.closing([&from, &to], first));
         // what lies behind an end of the curve is of no interest, and its mirror image before it may hide in it
@@ -145,21 +149,26 @@ impl Step<'_> {
         let mut found = self.zeros(watch, samples)?;
         found.extend(closing);
         // the curve's end last, so that what lies on it is met
-        let after = |mark: Mark| matches!(mark, Mark::Lowest | Mark::Highest | Mark::Begin);
+        let after = |mark: PointKind| {
+            matches!(
+                mark,
+                PointKind::Lowest | PointKind::Highest | PointKind::Begin
+            )
+        };
         found.sort_by(|a, b| a.s.total_cmp(&b.s).then(after(a.mark).cmp(&after(b.mark))));
         Ok(found)
     }
 
     /// The first end of the curve, moved behind by next to nothing, so that it is found again.
-    fn end(&self, watch: &dyn Watch, from: &Sample, to: &Sample) -> Result<Option<Sample>> {
+    fn end(&self, watch: &dyn CurveObserver, from: &Sample, to: &Sample) -> Result<Option<Sample>> {
         /// Part of the step.
         const BEHIND: f64 = 1e-3;
         let functions = from.values.len();
         let mut nearest = None;
         for i in 0..functions {
             let ends = match meaning(self.settings, i, functions).0 {
-                Mark::Zero(i) => watch.ends(i),
-                mark => matches!(mark, Mark::Lowest | Mark::Highest),
+                PointKind::Zero(i) => watch.ends(i),
+                mark => matches!(mark, PointKind::Lowest | PointKind::Highest),
             };
             if ends && crosses(from.values[i], to.values[i]) {
                 let s = self.zero(watch, i, from, to)?.s + BEHIND * self.length;
@@ -171,7 +180,7 @@ impl Step<'_> {
     }
 
     /// The zeros of all functions. At each one all others are looked at too.
-    fn zeros(&self, watch: &dyn Watch, samples: Vec<Sample>) -> Result<Vec<Met>> {
+    fn zeros(&self, watch: &dyn CurveObserver, samples: Vec<Sample>) -> Result<Vec<Located>> {
         /// New zeros come to light by others, and these by others again: not often.
         const ROUNDS: usize = 4;
         let functions = samples[0].values.len();
@@ -228,7 +237,7 @@ impl Step<'_> {
     }
 
     /// The zero of one function between two samples, by inverse quadratic interpolation in a bracket (Chandrupatla 1997).
-    fn zero(&self, watch: &dyn Watch, i: usize, a: &Sample, b: &Sample) -> Result<Sample> {
+    fn zero(&self, watch: &dyn CurveObserver, i: usize, a: &Sample, b: &Sample) -> Result<Sample> {
         let (mut a, mut b) = (b.clone(), a.clone());
         let mut best = a.clone();
         // both ends may be one point, where another function was found to be zero
@@ -269,7 +278,13 @@ impl Step<'_> {
 
     /// A sample at this part of the bracket, or beside it: next to a branch point, which may be just where a zero is supposed, no
     /// point can be corrected.
-    fn sample_beside(&self, watch: &dyn Watch, a: &Sample, b: &Sample, t: f64) -> Result<Sample> {
+    fn sample_beside(
+        &self,
+        watch: &dyn CurveObserver,
+        a: &Sample,
+        b: &Sample,
+        t: f64,
+    ) -> Result<Sample> {
         /// Parts of the bracket.
         const BESIDE: [f64; 6] = [1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3];
         let at = |t: f64| self.sample(watch, a, b, a.s + t * (b.s - a.s));
@@ -282,19 +297,19 @@ impl Step<'_> {
     }
 
     /// A zero as what it means; with exactly the value of lambda where it means one.
-    fn landed(&self, i: usize, sample: Sample) -> Result<Met> {
+    fn landed(&self, i: usize, sample: Sample) -> Result<Located> {
         let (mark, value) = meaning(self.settings, i, sample.values.len());
         let Sample { s, mut point, .. } = sample;
         if let Some(value) = value {
             let guess = joined(&point.u, value);
-            let plane = Plane::lambda(self.problem.dimension(), value);
+            let plane = Hyperplane::lambda(self.problem.dimension(), value);
             // at a fold lambda alone does not say where; the point is there already
             if let Ok(exact) = self.corrected(&guess, &plane, s, &point.tangent) {
                 point = exact;
             }
             point.lambda = value;
         }
-        Ok(Met { s, point, mark })
+        Ok(Located { s, point, mark })
     }
 }
 
@@ -302,7 +317,7 @@ impl Step<'_> {
 fn chord(a: &Sample, b: &Sample, i: usize) -> Sample {
     let t = a.values[i] / (a.values[i] - b.values[i]);
     let mix = |x: f64, y: f64| x + t * (y - x);
-    let point = Point {
+    let point = CurvePoint {
         u: &a.point.u + (&b.point.u - &a.point.u) * t,
         lambda: mix(a.point.lambda, b.point.lambda),
         tangent: a.point.tangent.clone(),
@@ -316,7 +331,7 @@ fn chord(a: &Sample, b: &Sample, i: usize) -> Sample {
 }
 
 /// The test functions, then lambda less each wanted value, then less both ends of the range.
-fn values(settings: &Settings, watch: &dyn Watch, point: &Point) -> Result<Vec<f64>> {
+fn values(settings: &Settings, watch: &dyn CurveObserver, point: &CurvePoint) -> Result<Vec<f64>> {
     let mut all = watch.tests(point)?;
     all.extend(settings.wanted.iter().map(|w| point.lambda - w));
     all.push(point.lambda - settings.range.0);
@@ -325,16 +340,19 @@ fn values(settings: &Settings, watch: &dyn Watch, point: &Point) -> Result<Vec<f
 }
 
 /// What the zero of the i-th function is, and its value of lambda.
-fn meaning(settings: &Settings, i: usize, count: usize) -> (Mark, Option<f64>) {
+fn meaning(settings: &Settings, i: usize, count: usize) -> (PointKind, Option<f64>) {
     let wanted = settings.wanted.len();
     let tests = count - wanted - 2;
     if i < tests {
-        (Mark::Zero(i), None)
+        (PointKind::Zero(i), None)
     } else if i < tests + wanted {
-        (Mark::Wanted(i - tests), Some(settings.wanted[i - tests]))
+        (
+            PointKind::Wanted(i - tests),
+            Some(settings.wanted[i - tests]),
+        )
     } else if i == tests + wanted {
-        (Mark::Lowest, Some(settings.range.0))
+        (PointKind::Lowest, Some(settings.range.0))
     } else {
-        (Mark::Highest, Some(settings.range.1))
+        (PointKind::Highest, Some(settings.range.1))
     }
 }

@@ -41,7 +41,7 @@ pub trait ZeroProblem {
 
 /// A point of the curve.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Point {
+pub struct CurvePoint {
     /// The unknowns.
     pub u: DVector<f64>,
     /// The parameter.
@@ -52,7 +52,7 @@ pub struct Point {
     pub arclength: f64,
 }
 
-impl Point {
+impl CurvePoint {
     /// d lambda / ds: it changes its sign at a fold.
     pub fn lambda_slope(&self) -> f64 {
         self.tangent[self.u.len()]
@@ -74,7 +74,7 @@ pub struct Start {
 
 /// Why a point is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Mark {
+pub enum PointKind {
     /// The first one, and the last one too where the curve is closed.
     Begin,
     /// A step's end.
@@ -112,12 +112,12 @@ pub enum Stop {
 }
 
 /// What looks on while a curve is followed.
-pub trait Watch {
+pub trait CurveObserver {
     /// The test functions at a point, always as many. NaN where one is undefined: no sign change then is seen.
     ///
     /// # Errors
     /// Like the problem's own: the step is shortened.
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let _ = point;
         Ok(Vec::new())
     }
@@ -129,20 +129,20 @@ pub trait Watch {
     }
 
     /// Whether two points are too far apart for the eye: the step is then shortened, but not below a hundredth of the longest.
-    fn too_far(&self, from: &Point, to: &Point) -> bool {
+    fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
         let _ = (from, to);
         false
     }
 
     /// Every point in the order of the curve.
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()>;
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()>;
 }
 
 /// A curve as far as it was followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Branch {
     /// All points with what they are.
-    pub points: Vec<(Point, Mark)>,
+    pub points: Vec<(CurvePoint, PointKind)>,
     /// Why there are no more.
     pub stopped: Stop,
 }

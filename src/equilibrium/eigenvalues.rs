@@ -5,7 +5,7 @@
 //! the Routh-Hurwitz criterion over these bounds, and "undecided" where that can't tell.
 
 use super::interface::{Interface, weighted};
-use super::polynomial::{Coefficients, roots};
+use super::polynomial::{InexactCoefficients, roots};
 use super::{Equilibrium, OF_31_DIGITS, Symmetry};
 use crate::error::Result;
 use crate::friction::{AnyLaw, effects, positive};
@@ -71,7 +71,7 @@ pub fn eigenvalues(
 ) -> Result<Vec<Complex<f64>>> {
     positive("stiffness", stiffness)?;
     let values = coefficients(law, equilibrium.symmetry, &equilibrium.precise, stiffness);
-    let known = Coefficients {
+    let known = InexactCoefficients {
         values: values.to_vec(),
         shifts: Vec::new(),
         rest: vec![0.0; COUNT],
@@ -126,7 +126,7 @@ fn coefficients<T: Real>(
 }
 
 /// The same with what they may be off.
-fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Coefficients {
+fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCoefficients {
     let (symmetry, rates) = (equilibrium.symmetry, &equilibrium.slip_rate);
     let (slow, driving) = (rates[0], equilibrium.driving);
     let exact = coefficients(law, symmetry, &equilibrium.precise, stiffness);
@@ -159,7 +159,7 @@ fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Coefficie
         let within = |of: usize| slope(i, of).distance_from(slope(i, of).leading());
         rounding + within(0) * reach[0] + within(1) * reach[1]
     };
-    Coefficients {
+    InexactCoefficients {
         values: exact.to_vec(),
         shifts,
         rest: (0..COUNT).map(rest).collect(),
@@ -167,7 +167,7 @@ fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Coefficie
 }
 
 /// All roots, largest real part first.
-fn sorted(equilibrium: &Equilibrium, known: &Coefficients) -> Vec<(Complex<f64>, f64)> {
+fn sorted(equilibrium: &Equilibrium, known: &InexactCoefficients) -> Vec<(Complex<f64>, f64)> {
     let mut found = roots(&known.part(SECOND..COUNT));
     if equilibrium.symmetry == Symmetry::Symmetric && equilibrium.slip_rate.len() == 2 {
         found.extend(roots(&known.part(0..SECOND)));
@@ -176,7 +176,7 @@ fn sorted(equilibrium: &Equilibrium, known: &Coefficients) -> Vec<(Complex<f64>,
     found
 }
 
-fn verdict(equilibrium: &Equilibrium, known: &Coefficients) -> Verdict {
+fn verdict(equilibrium: &Equilibrium, known: &InexactCoefficients) -> Verdict {
     let within = |i: usize| {
         let value = known.values[i].to_f64();
         Interval::around(value, known.error(i) + f64::EPSILON * value.abs())

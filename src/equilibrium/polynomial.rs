@@ -13,7 +13,7 @@ use nalgebra::Complex;
 /// What moves all of them together, such as the slip rate or a parameter, often moves a root much less than errors of any signs of
 /// that size would: so each such shift is kept apart.
 #[derive(Debug, Clone)]
-pub(super) struct Coefficients {
+pub(super) struct InexactCoefficients {
     pub values: Vec<DoubleDouble>,
     /// The largest shifts, either way, each of all coefficients at once.
     pub shifts: Vec<Vec<f64>>,
@@ -21,7 +21,7 @@ pub(super) struct Coefficients {
     pub rest: Vec<f64>,
 }
 
-impl Coefficients {
+impl InexactCoefficients {
     /// How far each one may be off in all.
     pub fn error(&self, i: usize) -> f64 {
         let shifts = self.shifts.iter().map(|shift| shift[i].abs());
@@ -31,7 +31,7 @@ impl Coefficients {
 
     /// A part of them, which is a polynomial of its own.
     pub fn part(&self, range: std::ops::Range<usize>) -> Self {
-        Coefficients {
+        InexactCoefficients {
             values: self.values[range.clone()].to_vec(),
             shifts: self
                 .shifts
@@ -44,12 +44,12 @@ impl Coefficients {
 }
 
 /// A root and the radius of the disc about it within which the true one lies.
-pub(super) type Root = (Complex<f64>, f64);
+pub(super) type RootDisc = (Complex<f64>, f64);
 
 type Digits = DoubleDouble;
 
 /// All roots of the polynomial with coefficients p, the constant first; a root that has no double is left out, and all are where a coefficient has none.
-pub(super) fn roots(p: &Coefficients) -> Vec<Root> {
+pub(super) fn roots(p: &InexactCoefficients) -> Vec<RootDisc> {
     let values = &p.values;
     let degree = values.iter().rposition(|c| c.to_f64() != 0.0);
     if values.iter().any(|c| !c.is_finite()) {
@@ -188,7 +188,7 @@ fn polished(p: &[Digits; 4], start: Digits) -> Digits {
 }
 
 /// The radius about the i-th root: the rounding to a double, and what the errors of the coefficients do.
-fn radius(p: &Coefficients, all: &[Complex<f64>], i: usize) -> f64 {
+fn radius(p: &InexactCoefficients, all: &[Complex<f64>], i: usize) -> f64 {
     let degree = all.len();
     let z = all[i];
     let rounding = f64::EPSILON * z.norm();

@@ -232,11 +232,11 @@ impl<const N: usize> Auto<N> {
     }
 }
 
-type Seen<'o, const N: usize> = dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o;
+type StepObserver<'o, const N: usize> = dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o;
 
 /// Hands steps on to the observer, and keeps how far the run has come.
 struct Relay<'a, 'o, const N: usize> {
-    observer: Option<&'a mut Seen<'o, N>>,
+    observer: Option<&'a mut StepObserver<'o, N>>,
     reached: &'a mut f64,
     stopped: &'a mut bool,
 }

@@ -19,7 +19,7 @@ pub enum Choice {
     Rosenbrock(RosenbrockMethod),
     /// CVODES, of SUNDIALS.
     #[cfg(feature = "sundials")]
-    Cvode(sundials::Method),
+    Cvode(sundials::MultistepMethod),
 }
 
 /// Whether the steps of a method are power series.
@@ -41,7 +41,11 @@ impl Choice {
     pub fn all() -> Vec<Choice> {
         let rosenbrock = RosenbrockMethod::ALL.map(Choice::Rosenbrock);
         #[cfg(feature = "sundials")]
-        let cvode = [sundials::Method::Bdf, sundials::Method::Adams].map(Choice::Cvode);
+        let cvode = [
+            sundials::MultistepMethod::Bdf,
+            sundials::MultistepMethod::Adams,
+        ]
+        .map(Choice::Cvode);
         #[cfg(not(feature = "sundials"))]
         let cvode = [];
         let taylor = std::iter::once(Choice::Taylor);
@@ -68,9 +72,9 @@ impl Choice {
             "auto" => Ok(Choice::Auto),
             "taylor" => Ok(Choice::Taylor),
             #[cfg(feature = "sundials")]
-            "cvode-bdf" => Ok(Choice::Cvode(sundials::Method::Bdf)),
+            "cvode-bdf" => Ok(Choice::Cvode(sundials::MultistepMethod::Bdf)),
             #[cfg(feature = "sundials")]
-            "cvode-adams" => Ok(Choice::Cvode(sundials::Method::Adams)),
+            "cvode-adams" => Ok(Choice::Cvode(sundials::MultistepMethod::Adams)),
             _ if CVODE.contains(&name) => Err(Error::Input(format!(
                 "method {name} needs SUNDIALS, which this build is without; choose one of {}",
                 Choice::names().join(", ")
@@ -106,9 +110,9 @@ impl Choice {
             Choice::Taylor => "taylor",
             Choice::Rosenbrock(method) => method.tableau().name,
             #[cfg(feature = "sundials")]
-            Choice::Cvode(sundials::Method::Bdf) => CVODE[0],
+            Choice::Cvode(sundials::MultistepMethod::Bdf) => CVODE[0],
             #[cfg(feature = "sundials")]
-            Choice::Cvode(sundials::Method::Adams) => CVODE[1],
+            Choice::Cvode(sundials::MultistepMethod::Adams) => CVODE[1],
         }
     }
 
@@ -140,11 +144,11 @@ impl Choice {
                 "order 2, the pair of ode23s, which the paper used: slow at tight tolerances"
             }
             #[cfg(feature = "sundials")]
-            Choice::Cvode(sundials::Method::Bdf) => {
+            Choice::Cvode(sundials::MultistepMethod::Bdf) => {
                 "orders 1 to 5, the reference of the field: slower here at equal error"
             }
             #[cfg(feature = "sundials")]
-            Choice::Cvode(sundials::Method::Adams) => {
+            Choice::Cvode(sundials::MultistepMethod::Adams) => {
                 "orders 1 to 12: good along stick-slip cycles, slow on stiff scenes"
             }
         }

@@ -7,7 +7,8 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflo
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use crate::sundials::{
-    Cvode, ErrorControl, Method, Mode, Operations, Problem, Reason, Scheme, Sensitivity,
+    Cvode, ErrorControl, Mode, MultistepMethod, Operations, Problem, Reason, Sensitivity,
+    SensitivityMethod,
 };
 use std::cell::RefCell;
 
@@ -47,7 +48,7 @@ fn clock(t: (f64, f64)) -> (f64, f64) {
 /// ```
 pub struct CvodeIntegrator<const N: usize> {
     solver: Cvode<N>,
-    method: Method,
+    method: MultistepMethod,
     max_steps: usize,
     work: Work,
 }
@@ -57,7 +58,7 @@ impl<const N: usize> CvodeIntegrator<N> {
     ///
     /// # Errors
     /// [`Error::Sundials`] if SUNDIALS can't allocate.
-    pub fn new(method: Method, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
+    pub fn new(method: MultistepMethod, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
         let mut solver = Cvode::new(method, Operations::Fixed)?;
         solver.set_tolerances(tolerances)?;
         solver.set_max_steps(max_steps);
@@ -171,8 +172,8 @@ impl<const N: usize> CvodeIntegrator<N> {
 impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
     fn name(&self) -> &'static str {
         match self.method {
-            Method::Bdf => "cvode-bdf",
-            Method::Adams => "cvode-adams",
+            MultistepMethod::Bdf => "cvode-bdf",
+            MultistepMethod::Adams => "cvode-adams",
         }
     }
 
@@ -226,7 +227,7 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
             .map(|column| column.into_owned())
             .collect();
         let settings = Sensitivity {
-            scheme: Scheme::Simultaneous,
+            scheme: SensitivityMethod::Simultaneous,
             tolerances: None,
             error_control: ErrorControl::Full,
         };

@@ -1,4 +1,4 @@
-//! Pieces of trajectories with their derivatives, by any of the methods.
+//! Arcs of multiple shooting: pieces of trajectories with their derivatives, by any of the methods.
 
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
@@ -17,7 +17,7 @@ pub struct Arc<const N: usize> {
     pub log_determinant: Option<f64>,
     /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
     /// method makes it.
-    pub log_across: Option<f64>,
+    pub log_transverse: Option<f64>,
     /// Steps that the method took.
     pub steps: usize,
     /// Bound on what the method errs by at the end, in units of 1 + |y|: steps times tolerance and rounding.
@@ -78,7 +78,7 @@ fn log_determinant<const N: usize>(mut m: Jacobian<N>) -> f64 {
 
 /// What makes arcs.
 pub struct Tracer<const N: usize> {
-    method: Method<N>,
+    method: ArcIntegrator<N>,
     name: &'static str,
     /// What a step may err by, relative.
     step_error: f64,
@@ -87,7 +87,7 @@ pub struct Tracer<const N: usize> {
     limit: Option<usize>,
 }
 
-enum Method<const N: usize> {
+enum ArcIntegrator<const N: usize> {
     Taylor(Taylor),
     Other(Box<dyn Integrator<N>>),
 }
@@ -104,11 +104,11 @@ impl<const N: usize> Tracer<N> {
     pub fn new(choice: Choice, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
         let (method, name) = match choice {
             Choice::Auto | Choice::Taylor => (
-                Method::Taylor(Taylor::new(tolerances, max_steps)?),
+                ArcIntegrator::Taylor(Taylor::new(tolerances, max_steps)?),
                 Choice::Taylor.name(),
             ),
             other => (
-                Method::Other(other.integrator(tolerances, max_steps)?),
+                ArcIntegrator::Other(other.integrator(tolerances, max_steps)?),
                 other.name(),
             ),
         };
@@ -128,7 +128,7 @@ impl<const N: usize> Tracer<N> {
 
     /// Whether arcs come with derivatives in the parameters.
     pub fn differentiates(&self) -> bool {
-        matches!(self.method, Method::Taylor(_))
+        matches!(self.method, ArcIntegrator::Taylor(_))
     }
 
     /// All work so far.
@@ -186,15 +186,15 @@ impl<const N: usize> Tracer<N> {
         self.allowed(duration)?;
         let span = (0.0, duration);
         let (made, work) = match &mut self.method {
-            Method::Taylor(taylor) => {
+            ArcIntegrator::Taylor(taylor) => {
                 let made = taylor.derivatives(field, span, start, parameters);
                 let made = made.map(|(end, d)| {
-                    let logs = (Some(d.log_determinant), d.log_across);
+                    let logs = (Some(d.log_determinant), d.log_transverse);
                     (end, d.start.into(), d.parameters.map(State::from), logs)
                 });
                 (made, Integrator::<N>::work(taylor))
             }
-            Method::Other(integrator) => {
+            ArcIntegrator::Other(integrator) => {
                 let made = integrator.tangent_flow(field, span, start);
                 let none = ([State::zeros(); 2], (None, None));
                 let made = made.map(|(end, tangent)| (end, tangent, none.0, none.1));
@@ -209,7 +209,7 @@ impl<const N: usize> Tracer<N> {
             tangent,
             parameters: in_parameters,
             log_determinant: logs.0,
-            log_across: logs.1,
+            log_transverse: logs.1,
             steps: work.steps,
             error: self.step_error * work.steps.max(1) as f64,
         })
@@ -229,11 +229,11 @@ impl<const N: usize> Tracer<N> {
         self.allowed(duration)?;
         let span = (0.0, duration);
         let (end, work) = match &mut self.method {
-            Method::Taylor(taylor) => {
+            ArcIntegrator::Taylor(taylor) => {
                 let end = taylor.flow(field, span, start, observer);
                 (end, Integrator::<N>::work(taylor))
             }
-            Method::Other(integrator) => {
+            ArcIntegrator::Other(integrator) => {
                 let end = integrator.flow(field, span, start, observer);
                 (end, integrator.work())
             }

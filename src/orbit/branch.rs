@@ -1,16 +1,16 @@
 //! Branches of periodic orbits from Hopf points, and the orbits on them at a wanted V_H.
 
 use super::arc::Tracer;
+use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Corrector;
-use super::family::{Family, OverLoadings};
+use super::family::{OverLoadings, ParametrisedField};
 use super::find::SEARCH;
 use super::hopf::{HopfPoint, hopf_points};
-use super::motion::{Motion, Site};
-use super::polygon::Polygon;
+use super::interface_system::InterfaceSystem;
+use super::palc::{Palc, PalcSettings};
 use super::shooting::close;
-use super::slab::Slab;
+use super::shooting_nodes::ShootingNodes;
 use super::space::{Plane, Space, Whole};
-use super::walk::{Path, Walk};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::State;
@@ -27,35 +27,35 @@ const STEPS: usize = 400;
 /// How far beyond the wanted ln V_H a branch is followed, in its distance from the Hopf point and absolutely.
 const BEYOND: f64 = 2.0;
 
-impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
+impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     /// Along the branch of a Hopf point, from a small orbit outwards.
     ///
     /// # Errors
-    /// As of [`Walk::from`].
+    /// As of [`Palc::from`].
     pub fn from_hopf(
         corrector: &'c mut Corrector<'f, F, N>,
-        path: Path,
+        settings: PalcSettings,
         hopf: &HopfPoint,
     ) -> Result<Self> {
         let at = hopf.at();
-        let polygon = hopf.ellipse(&*corrector.family.field(at), FIRST);
-        let centre = polygon.nodes.iter().sum::<State<N>>() / polygon.nodes.len() as f64;
-        let outwards = Motion {
-            nodes: polygon.nodes.iter().map(|x| x - centre).collect(),
-            durations: vec![0.0; polygon.nodes.len()],
+        let shooting = hopf.ellipse(&*corrector.family.field(at), FIRST);
+        let centre = shooting.nodes.iter().sum::<State<N>>() / shooting.nodes.len() as f64;
+        let outwards = TangentVector {
+            nodes: shooting.nodes.iter().map(|x| x - centre).collect(),
+            durations: vec![0.0; shooting.nodes.len()],
             parameters: [0.0; 2],
         };
         // The ellipse itself is the first prediction.
-        let site = Site { polygon, at };
-        Walk::from(corrector, path, site, outwards)
+        let site = ContinuationPoint { shooting, at };
+        Palc::from(corrector, settings, site, outwards)
     }
 
     /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
     /// to an equilibrium.
-    fn vanishes(&self, before: &Site<N>) -> Option<f64> {
-        let here = &self.pace.here.site;
-        let free = *self.path.free.first()?;
-        let (old, new) = (before.polygon.extent(), here.polygon.extent());
+    fn vanishes(&self, before: &ContinuationPoint<N>) -> Option<f64> {
+        let here = &self.now.here.site;
+        let free = *self.settings.free.first()?;
+        let (old, new) = (before.shooting.extent(), here.shooting.extent());
         let (old, new) = (old * old, new * new);
         let shrinks = new < SMALL * SMALL && new < old;
         let slope = (here.at[free] - before.at[free]) / (old - new);
@@ -63,13 +63,13 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     }
 
     /// Which of these Hopf points the branch is about to end at. `before` is where the last step began, with the same nodes.
-    pub fn ends_at(&self, before: &Site<N>, hopfs: &[HopfPoint]) -> Option<usize> {
+    pub fn ends_at(&self, before: &ContinuationPoint<N>, hopfs: &[HopfPoint]) -> Option<usize> {
         /// What the prediction may err by: part of the way that is left, and rounding.
         const PART: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let end = self.vanishes(before)?;
-        let free = *self.path.free.first()?;
-        let here = self.pace.here.site.at[free];
+        let free = *self.settings.free.first()?;
+        let here = self.now.here.site.at[free];
         hopfs.iter().position(|hopf| {
             let hopf = hopf.at()[free];
             (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING
@@ -80,13 +80,13 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
 /// The closed orbits at the slab's V_H on the branches from the Hopf points of a symmetry, the nearest Hopf point first. The
 /// search ends with the first branch that has one.
 pub(super) fn from_hopf<const N: usize>(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     symmetry: Symmetry,
     space: &impl Space<N>,
     tracer: &mut Tracer<N>,
-) -> Result<Vec<Polygon<N>>>
+) -> Result<Vec<ShootingNodes<N>>>
 where
-    OverLoadings: Family<N>,
+    OverLoadings: ParametrisedField<N>,
 {
     let mut found = Vec::new();
     let hopfs = hopf_points(slab, symmetry, Parameter::Driving)?;
@@ -101,40 +101,41 @@ where
 
 /// Follows one branch, and closes an orbit wherever it passes the slab's V_H.
 fn follow<const N: usize>(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     space: &impl Space<N>,
     tracer: &mut Tracer<N>,
     (hopf, hopfs): (&HopfPoint, &[HopfPoint]),
-    found: &mut Vec<Polygon<N>>,
+    found: &mut Vec<ShootingNodes<N>>,
 ) -> Result<()>
 where
-    OverLoadings: Family<N>,
+    OverLoadings: ParametrisedField<N>,
 {
-    /// Tolerance of the walk.
+    /// Tolerance of the continuation.
     const ROUGH: f64 = 1e-10;
     let wanted = slab.loading.driving.ln();
     let begin = hopf.at()[0];
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
     let family = OverLoadings(*slab);
     let mut corrector = Corrector::by(&family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
-    let Ok(mut walk) = Walk::from_hopf(&mut corrector, Path::branch(0, LONGEST), hopf) else {
+    let Ok(mut palc) = Palc::from_hopf(&mut corrector, PalcSettings::branch(0, LONGEST), hopf)
+    else {
         return Ok(());
     };
     for _ in 0..STEPS {
-        let Ok((before, _)) = walk.step() else {
+        let Ok((before, _)) = palc.step() else {
             break;
         };
-        let (old, new) = (&before.here.site, &walk.pace.here.site);
+        let (old, new) = (&before.here.site, &palc.now.here.site);
         if (new.at[0] - wanted) * (old.at[0] - wanted) <= 0.0 {
             // The nearer of both is the guess.
             let nearer = (old.at[0] - wanted).abs() < (new.at[0] - wanted).abs();
             let guess = if nearer { old } else { new };
-            if let Ok(closed) = close(tracer, space.field(), guess.polygon.clone()) {
-                found.push(closed.polygon);
+            if let Ok(closed) = close(tracer, space.field(), guess.shooting.clone()) {
+                found.push(closed.shooting);
             }
         }
         let far = (new.at[0] - begin).abs() > reach;
-        if far || walk.ends_at(old, hopfs).is_some() || walk.mesh().is_err() {
+        if far || palc.ends_at(old, hopfs).is_some() || palc.mesh().is_err() {
             break;
         }
     }
@@ -142,7 +143,7 @@ where
 }
 
 /// The period of the first orbit found at the slab's V_H on branches from Hopf points.
-pub fn period_from_hopf(slab: &Slab, symmetry: Symmetry) -> Result<Option<f64>> {
+pub fn period_from_hopf(slab: &InterfaceSystem, symmetry: Symmetry) -> Result<Option<f64>> {
     const TOLERANCE: f64 = 1e-10;
     let (whole, plane) = (slab.whole(), slab.plane());
     Ok(if symmetry == Symmetry::Symmetric {

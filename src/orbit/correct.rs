@@ -1,15 +1,16 @@
-//! Newton's method for a periodic orbit that meets as many conditions as there are free parameters.
+//! The corrector of the continuation: Newton's method for a periodic orbit that meets as many conditions as there are free
+//! parameters.
 //!
 //! The equations of the orbit alone leave it free to move in as many directions as there are parameters. The correction closes
 //! the orbit and moves it in these directions until the conditions hold: a plane for a step of pseudo-arclength continuation,
-//! an indicator for a bifurcation, a value for a parameter. At folds nothing special happens.
+//! a test function for a bifurcation, a value for a parameter. At folds nothing special happens.
 
 use super::arc::Tracer;
-use super::family::Family;
-use super::indicator::{Indicator, Spectrum};
+use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::family::ParametrisedField;
 use super::linear::Linear;
-use super::motion::{Motion, Site};
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
+use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
 use nalgebra::{Matrix2, Vector2};
 
@@ -17,24 +18,24 @@ use nalgebra::{Matrix2, Vector2};
 #[derive(Debug, Clone, Copy)]
 pub enum Condition<'a, const N: usize> {
     /// To lie in the plane through a site with as many nodes, across a direction.
-    Plane(&'a Motion<N>, &'a Site<N>),
+    Plane(&'a TangentVector<N>, &'a ContinuationPoint<N>),
     /// The coordinate of this parameter to have this value.
     Parameter(usize, f64),
     /// A bifurcation.
-    Indicator(Indicator),
+    TestFunction(TestFunction),
 }
 
 /// An orbit with what is known of its surroundings.
 #[derive(Debug, Clone)]
 pub struct Regular<const N: usize> {
     /// Where it is.
-    pub site: Site<N>,
+    pub site: ContinuationPoint<N>,
     /// Directions in which it can move, orthonormal: one for each free parameter.
-    pub along: Vec<Motion<N>>,
+    pub along: Vec<TangentVector<N>>,
     /// Its spectrum.
     pub spectrum: Spectrum,
-    /// The gradients of the indicators among the conditions, in the order of these, as motions.
-    pub gradients: Vec<Motion<N>>,
+    /// The gradients of the test functions among the conditions, in the order of these, as tangent vectors.
+    pub gradients: Vec<TangentVector<N>>,
     /// Iterations that it took.
     pub iterations: usize,
     /// The first correction: how far the guess was off.
@@ -72,7 +73,7 @@ impl Goal {
 
 /// Corrections below this that have ceased to shrink are the flow's own noise.
 const NOISE: f64 = 1e-8;
-/// The step by which indicators are differentiated.
+/// The step by which test functions are differentiated.
 const STEP: f64 = 1e-6;
 /// Indicators that are farther from zero than this ask for them too.
 const NEAR: f64 = 1.0;
@@ -89,7 +90,7 @@ pub struct Corrector<'a, F, const N: usize> {
     pub tracer: Tracer<N>,
 }
 
-impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
+impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     /// With a Taylor method of this tolerance.
     ///
     /// # Errors
@@ -108,9 +109,9 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// The linearisation at a site, with the derivatives in the parameters.
-    pub(super) fn linear(&mut self, site: &Site<N>) -> Option<Linear<N>> {
+    pub(super) fn linear(&mut self, site: &ContinuationPoint<N>) -> Option<Linear<N>> {
         let field = self.family.field(site.at);
-        let mut linear = Linear::of(&mut self.tracer, self.family, &*field, &site.polygon).ok()?;
+        let mut linear = Linear::of(&mut self.tracer, self.family, &*field, &site.shooting).ok()?;
         drop(field);
         if !self.tracer.differentiates() {
             self.difference(site, &mut linear)?;
@@ -119,7 +120,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// The derivatives in the parameters by central differences.
-    fn difference(&mut self, site: &Site<N>, linear: &mut Linear<N>) -> Option<()> {
+    fn difference(&mut self, site: &ContinuationPoint<N>, linear: &mut Linear<N>) -> Option<()> {
         /// In the coordinates of the parameters.
         const APART: f64 = 1e-5;
         let scale = self.family.scale(site.at);
@@ -130,7 +131,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                 self.family.field(at)
             };
             let (below, above) = (beside(-APART), beside(APART));
-            let Polygon { nodes, durations } = &site.polygon;
+            let ShootingNodes { nodes, durations } = &site.shooting;
             for (k, (x, &duration)) in nodes.iter().zip(durations).enumerate() {
                 let low = self.tracer.flow(&*below, x, duration, None).ok()?;
                 let high = self.tracer.flow(&*above, x, duration, None).ok()?;
@@ -143,11 +144,11 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     /// The orbit near `guess` that meets the conditions, one for each of the free parameters.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] where Newton's method finds none; [`Error::Dimension`] where an indicator among the conditions is
+    /// [`Error::NotConverged`] where Newton's method finds none; [`Error::Dimension`] where a test function among the conditions is
     /// no test function in so many dimensions.
     pub fn correct(
         &mut self,
-        guess: Site<N>,
+        guess: ContinuationPoint<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
         goal: Goal,
@@ -166,14 +167,14 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     /// The same; `reached` are the iterations made and the last correction.
     fn newton(
         &mut self,
-        guess: Site<N>,
+        guess: ContinuationPoint<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
         goal: Goal,
         reached: &mut (usize, f64),
     ) -> Option<Regular<N>> {
         let mut site = guess;
-        let mut gradients: Option<Vec<Motion<N>>> = None;
+        let mut gradients: Option<Vec<TangentVector<N>>> = None;
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         for iterations in 1..=goal.iterations {
             let linear = self.linear(&site)?;
@@ -184,7 +185,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                 None => self.gradients(&site, &linear, &along, &spectrum, conditions)?,
             };
             let by_closing = self.by_closing(&site, &linear, &closing, &spectrum, conditions)?;
-            let known_here = Known {
+            let known_here = KnownSpectrum {
                 spectrum: &spectrum,
                 gradients: &known,
                 by_closing: &by_closing,
@@ -205,7 +206,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
             let size = size.max(stretch);
             let done = size < goal.done || (size < NOISE && size > 0.3 * last);
             site = site.moved(&correction, 1.0);
-            if site.polygon.durations.iter().any(|&t| t <= 0.0) {
+            if site.shooting.durations.iter().any(|&t| t <= 0.0) {
                 return None;
             }
             if done {
@@ -220,10 +221,10 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
                     linear,
                 });
             }
-            // Old gradients serve as long as the corrections shrink, and the indicators are no longer far from zero.
+            // Old gradients serve as long as the corrections shrink, and the test functions are no longer far from zero.
             let off = conditions
                 .iter()
-                .filter_map(indicator)
+                .filter_map(test_function)
                 .map(|i| i.of::<N>(&spectrum).abs());
             let near = off.fold(0.0, f64::max) < NEAR;
             gradients = (near && size < SLOW * last).then_some(known);
@@ -232,13 +233,13 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         None
     }
 
-    /// An orbit as it stands, with its surroundings and the gradients of the conditions' indicators.
+    /// An orbit as it stands, with its surroundings and the gradients of the conditions' test functions.
     ///
     /// # Errors
     /// As of [`Self::correct`]: [`Error::NotConverged`] where the linear equations are singular.
     pub fn look(
         &mut self,
-        site: Site<N>,
+        site: ContinuationPoint<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
     ) -> Result<Regular<N>> {
@@ -257,7 +258,7 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     /// The same where the linearisation is known.
     pub(super) fn look_with(
         &mut self,
-        site: Site<N>,
+        site: ContinuationPoint<N>,
         linear: Linear<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
@@ -277,24 +278,25 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         })
     }
 
-    /// The gradients of all indicators among the conditions, in the directions in which the orbit can move.
+    /// The gradients of all test functions among the conditions, in the directions in which the orbit can move.
     fn gradients(
         &mut self,
-        site: &Site<N>,
+        site: &ContinuationPoint<N>,
         linear: &Linear<N>,
-        along: &[Motion<N>],
+        along: &[TangentVector<N>],
         spectrum: &Spectrum,
         conditions: &[Condition<'_, N>],
-    ) -> Option<Vec<Motion<N>>> {
-        let indicators: Vec<Indicator> = conditions.iter().filter_map(indicator).collect();
-        if indicators.is_empty() {
+    ) -> Option<Vec<TangentVector<N>>> {
+        let test_functions: Vec<TestFunction> =
+            conditions.iter().filter_map(test_function).collect();
+        if test_functions.is_empty() {
             return Some(Vec::new());
         }
-        let mut sums: Vec<Option<Motion<N>>> = vec![None; indicators.len()];
+        let mut sums: Vec<Option<TangentVector<N>>> = vec![None; test_functions.len()];
         for direction in along {
             let change = self.change(site, linear, direction, spectrum)?;
-            for (sum, indicator) in sums.iter_mut().zip(&indicators) {
-                let slope = indicator.change_along::<N>(spectrum, &change);
+            for (sum, test_function) in sums.iter_mut().zip(&test_functions) {
+                let slope = test_function.change_along::<N>(spectrum, &change);
                 let part = direction.clone().scaled(slope);
                 *sum = Some(match sum.take() {
                     None => part,
@@ -305,34 +307,39 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
         sums.into_iter().collect()
     }
 
-    /// What closing the orbit will add to the indicators among the conditions. Where the gaps are small that is for the next
+    /// What closing the orbit will add to the test functions among the conditions. Where the gaps are small that is for the next
     /// iteration to see.
     fn by_closing(
         &mut self,
-        site: &Site<N>,
+        site: &ContinuationPoint<N>,
         linear: &Linear<N>,
-        closing: &Motion<N>,
+        closing: &TangentVector<N>,
         spectrum: &Spectrum,
         conditions: &[Condition<'_, N>],
     ) -> Option<Vec<f64>> {
         /// Smaller closings are not looked at.
         const SMALL: f64 = 1e-7;
-        let indicators: Vec<Indicator> = conditions.iter().filter_map(indicator).collect();
+        let test_functions: Vec<TestFunction> =
+            conditions.iter().filter_map(test_function).collect();
         let length = closing.dot(closing).sqrt();
         let (size, stretch) = site.size(closing);
-        if indicators.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
-            return Some(vec![0.0; indicators.len()]);
+        if test_functions.is_empty() || size.max(stretch) < SMALL || length == 0.0 {
+            return Some(vec![0.0; test_functions.len()]);
         }
         let direction = closing.clone().scaled(1.0 / length);
         let change = self.change(site, linear, &direction, spectrum)?;
-        let of = |i: &Indicator| length * i.change_along::<N>(spectrum, &change);
-        Some(indicators.iter().map(of).collect())
+        let of = |i: &TestFunction| length * i.change_along::<N>(spectrum, &change);
+        Some(test_functions.iter().map(of).collect())
     }
 
-    /// What a small motion of an orbit changes its spectrum by.
-    pub(super) fn by_motion(&mut self, orbit: &Regular<N>, motion: &Motion<N>) -> Option<Spectrum> {
-        let length = motion.dot(motion).sqrt();
-        let direction = motion.clone().normalised()?;
+    /// What a small tangent vector of an orbit changes its spectrum by.
+    pub(super) fn by_tangent(
+        &mut self,
+        orbit: &Regular<N>,
+        tangent: &TangentVector<N>,
+    ) -> Option<Spectrum> {
+        let length = tangent.dot(tangent).sqrt();
+        let direction = tangent.clone().normalised()?;
         let slope = self.slope(orbit, &direction)?;
         Some(Spectrum {
             trace: length * slope.trace,
@@ -343,56 +350,56 @@ impl<'a, F: Family<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// How the spectrum of an orbit changes in a direction.
-    pub fn slope(&mut self, orbit: &Regular<N>, direction: &Motion<N>) -> Option<Spectrum> {
+    pub fn slope(&mut self, orbit: &Regular<N>, direction: &TangentVector<N>) -> Option<Spectrum> {
         self.change(&orbit.site, &orbit.linear, direction, &orbit.spectrum)
     }
 
     /// How the spectrum changes in this direction.
     fn change(
         &mut self,
-        site: &Site<N>,
+        site: &ContinuationPoint<N>,
         linear: &Linear<N>,
-        direction: &Motion<N>,
+        direction: &TangentVector<N>,
         spectrum: &Spectrum,
     ) -> Option<Spectrum> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear
-            .beside(&mut self.tracer, &*field, &beside.polygon)
+            .beside(&mut self.tracer, &*field, &beside.shooting)
             .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }
 }
 
-/// Whether all indicators among the conditions are test functions here.
+/// Whether all test functions among the conditions are test functions here.
 fn checked<const N: usize>(conditions: &[Condition<'_, N>]) -> Result<()> {
-    let mut indicators = conditions.iter().filter_map(indicator);
-    indicators.try_for_each(Indicator::checked::<N>)
+    let mut test_functions = conditions.iter().filter_map(test_function);
+    test_functions.try_for_each(TestFunction::checked::<N>)
 }
 
-fn indicator<const N: usize>(condition: &Condition<'_, N>) -> Option<Indicator> {
+fn test_function<const N: usize>(condition: &Condition<'_, N>) -> Option<TestFunction> {
     match condition {
-        Condition::Indicator(indicator) => Some(*indicator),
+        Condition::TestFunction(test_function) => Some(*test_function),
         _ => None,
     }
 }
 
-/// What is known of the indicators among the conditions.
-struct Known<'a, const N: usize> {
+/// What is known of the test functions among the conditions.
+struct KnownSpectrum<'a, const N: usize> {
     spectrum: &'a Spectrum,
-    gradients: &'a [Motion<N>],
+    gradients: &'a [TangentVector<N>],
     by_closing: &'a [f64],
 }
 
 /// How far to go in every direction for the conditions to hold, to first order.
 fn weights<const N: usize>(
-    site: &Site<N>,
-    closing: &Motion<N>,
-    along: &[Motion<N>],
+    site: &ContinuationPoint<N>,
+    closing: &TangentVector<N>,
+    along: &[TangentVector<N>],
     conditions: &[Condition<'_, N>],
-    known: &Known<'_, N>,
+    known: &KnownSpectrum<'_, N>,
 ) -> Option<Vec<f64>> {
-    let mut indicators = known.gradients.iter().zip(known.by_closing);
+    let mut test_functions = known.gradients.iter().zip(known.by_closing);
     let mut rows = Vec::with_capacity(conditions.len());
     for condition in conditions {
         let (slopes, missing): (Vec<f64>, f64) = match condition {
@@ -404,11 +411,11 @@ fn weights<const N: usize>(
                 along.iter().map(|t| t.parameters[*i]).collect(),
                 value - site.at[*i] - closing.parameters[*i],
             ),
-            Condition::Indicator(indicator) => {
-                let (gradient, by_closing) = indicators.next()?;
+            Condition::TestFunction(test_function) => {
+                let (gradient, by_closing) = test_functions.next()?;
                 (
                     along.iter().map(|t| gradient.dot(t)).collect(),
-                    -indicator.of::<N>(known.spectrum) - by_closing,
+                    -test_function.of::<N>(known.spectrum) - by_closing,
                 )
             }
         };

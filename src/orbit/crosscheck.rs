@@ -1,9 +1,9 @@
 //! The same orbit once more, by an unlike method on trajectories of its own.
 
 use super::find::{plane_of, whole_of};
-use super::polygon::Polygon;
-use super::slab::Slab;
-use super::solve::{Accuracy, Orbit, orbit};
+use super::interface_system::InterfaceSystem;
+use super::shooting_nodes::ShootingNodes;
+use super::solve::{Orbit, OrbitAccuracy, orbit};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 
@@ -26,7 +26,11 @@ const DIGITS: [i32; 3] = [3, 5, 7];
 ///
 /// # Errors
 /// As of [`super::find()`].
-pub fn crosscheck(slab: &Slab, first: &Orbit, accuracy: &Accuracy) -> Result<Crosscheck> {
+pub fn crosscheck(
+    slab: &InterfaceSystem,
+    first: &Orbit,
+    accuracy: &OrbitAccuracy,
+) -> Result<Crosscheck> {
     let (plane, whole) = (slab.plane(), slab.whole());
     let from = |digits: i32| {
         let Orbit {
@@ -34,11 +38,11 @@ pub fn crosscheck(slab: &Slab, first: &Orbit, accuracy: &Accuracy) -> Result<Cro
         } = first;
         if first.symmetry == Symmetry::Symmetric {
             let space = plane_of(slab, &*plane, &*whole);
-            let polygon = Polygon::of_digits(digits, nodes, durations);
-            orbit(slab, &space, accuracy, polygon)
+            let shooting = ShootingNodes::of_digits(digits, nodes, durations);
+            orbit(slab, &space, accuracy, shooting)
         } else {
-            let polygon = Polygon::of_digits(digits, nodes, durations);
-            orbit(slab, &whole_of(&*whole), accuracy, polygon)
+            let shooting = ShootingNodes::of_digits(digits, nodes, durations);
+            orbit(slab, &whole_of(&*whole), accuracy, shooting)
         }
     };
     let [few, more, most] = DIGITS;

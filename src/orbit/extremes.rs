@@ -1,7 +1,7 @@
 //! How far an orbit goes: its least and greatest stress, slip rate and state, on the series along it.
 
 use super::arc::Tracer;
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::{State, VectorField};
 use crate::integrate::Control;
@@ -18,10 +18,10 @@ pub(super) struct Extremes<const N: usize> {
     pub passage: Option<State<N>>,
 }
 
-/// Along the polygon's arcs, each from its own node.
+/// Along the shooting's arcs, each from its own node.
 pub(super) fn extremes<const N: usize>(
     field: &dyn VectorField<N>,
-    polygon: &Polygon<N>,
+    shooting: &ShootingNodes<N>,
     level: f64,
 ) -> Result<Extremes<N>> {
     /// Tolerance of the run.
@@ -46,7 +46,7 @@ pub(super) fn extremes<const N: usize>(
     let mut turns = Vec::new();
     // The sign goes on from arc to arc, so that no passage at a node is lost.
     let mut through = Zeros::default();
-    for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
+    for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
         let mut turning = [(); N].map(|()| Zeros::default());
         all.see(x);
         tracer.flow(

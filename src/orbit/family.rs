@@ -1,16 +1,16 @@
-//! Vector fields that depend on two parameters, along which orbits are continued.
+//! Parametrised vector fields: two parameters, along which orbits are continued.
 
-use super::motion::Site;
-use super::polygon::Polygon;
-use super::slab::Slab;
+use super::continuation_point::ContinuationPoint;
+use super::interface_system::InterfaceSystem;
+use super::shooting_nodes::ShootingNodes;
 use crate::field::{Jacobian, State, VectorField};
-use crate::model::{Loading, Smooth, parted, united};
+use crate::model::{Loading, Smooth, from_difference_chart, to_difference_chart};
 use crate::series::Equations;
 
 /// Vector fields over a plane of two parameters.
 ///
 /// Continuation moves in coordinates of the plane that suit it: logarithms where decades are spanned.
-pub trait Family<const N: usize>: Sync {
+pub trait ParametrisedField<const N: usize>: Sync {
     /// The field at these coordinates, whose Taylor tangents have the derivatives in both parameters.
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_>;
 
@@ -44,7 +44,7 @@ pub struct OverParameters<S>(pub S);
 
 macro_rules! over_parameters {
     ($n:literal) => {
-        impl<S: Equations<$n>> Family<$n> for OverParameters<S> {
+        impl<S: Equations<$n>> ParametrisedField<$n> for OverParameters<S> {
             fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<$n> + '_> {
                 Box::new(Smooth {
                     equations: self.0,
@@ -67,12 +67,12 @@ over_parameters!(3);
 
 /// A slab over (ln V_H, ln K).
 #[derive(Debug, Clone, Copy)]
-pub struct OverLoadings(pub Slab);
+pub struct OverLoadings(pub InterfaceSystem);
 
 impl OverLoadings {
     /// The slab there.
-    pub fn slab(&self, at: [f64; 2]) -> Slab {
-        Slab {
+    pub fn slab(&self, at: [f64; 2]) -> InterfaceSystem {
+        InterfaceSystem {
             loading: Loading {
                 driving: at[0].exp(),
                 stiffness: at[1].exp(),
@@ -82,7 +82,7 @@ impl OverLoadings {
     }
 }
 
-impl Family<3> for OverLoadings {
+impl ParametrisedField<3> for OverLoadings {
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
         self.slab(at).whole()
     }
@@ -96,7 +96,7 @@ impl Family<3> for OverLoadings {
     }
 }
 
-impl Family<2> for OverLoadings {
+impl ParametrisedField<2> for OverLoadings {
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<2> + '_> {
         self.slab(at).plane()
     }
@@ -114,11 +114,11 @@ impl Family<2> for OverLoadings {
 ///
 /// Slower than [`OverLoadings`], for orbits along which the interfaces come near each other.
 #[derive(Debug, Clone, Copy)]
-pub struct OverParted(pub OverLoadings);
+pub struct OverDifferenceChart(pub OverLoadings);
 
-impl Family<3> for OverParted {
+impl ParametrisedField<3> for OverDifferenceChart {
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
-        self.0.slab(at).parted()
+        self.0.slab(at).in_difference_chart()
     }
 
     fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -139,38 +139,44 @@ impl Family<3> for OverParted {
     fn across(&self, x: &State<3>, flow: &State<3>) -> Jacobian<3> {
         // psi_1 = psi_2 + D
         let part = 1.0 / (1.0 + (x[1] - x[2]).exp());
-        let united = Jacobian::<3>::new(1.0, 0.0, 0.0, 0.0, 1.0 - part, part, 0.0, 1.0, 0.0);
-        projection(&(united * flow)) * united
+        let to_states = Jacobian::<3>::new(1.0, 0.0, 0.0, 0.0, 1.0 - part, part, 0.0, 1.0, 0.0);
+        projection(&(to_states * flow)) * to_states
     }
 }
 
-impl OverParted {
+impl OverDifferenceChart {
     /// An orbit in these variables; `None` where the interfaces do not differ everywhere, or not always in the same sense.
-    pub fn parted(site: &Site<3>) -> Option<Site<3>> {
+    pub fn to_chart(site: &ContinuationPoint<3>) -> Option<ContinuationPoint<3>> {
         let exchange = |x: &State<3>| State::<3>::new(x[0], x[2], x[1]);
         let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
-            site.polygon
+            site.shooting
                 .nodes
                 .iter()
                 .map(each)
                 .collect::<Option<Vec<_>>>()
         };
-        let nodes = nodes(&parted).or_else(|| nodes(&|x| parted(&exchange(x))))?;
-        Some(Site {
-            polygon: Polygon {
+        let nodes = nodes(&to_difference_chart)
+            .or_else(|| nodes(&|x| to_difference_chart(&exchange(x))))?;
+        Some(ContinuationPoint {
+            shooting: ShootingNodes {
                 nodes,
-                durations: site.polygon.durations.clone(),
+                durations: site.shooting.durations.clone(),
             },
             at: site.at,
         })
     }
 
     /// The orbit in (tau, ln psi_1, ln psi_2).
-    pub fn united(site: &Site<3>) -> Site<3> {
-        Site {
-            polygon: Polygon {
-                nodes: site.polygon.nodes.iter().map(united).collect(),
-                durations: site.polygon.durations.clone(),
+    pub fn from_chart(site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
+        ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes: site
+                    .shooting
+                    .nodes
+                    .iter()
+                    .map(from_difference_chart)
+                    .collect(),
+                durations: site.shooting.durations.clone(),
             },
             at: site.at,
         }

@@ -1,12 +1,12 @@
 //! Finding periodic orbits: from a given point, from settled runs, or along a branch from a Hopf point.
 
 use super::arc::Tracer;
-use super::family::{Family, OverLoadings};
-use super::polygon::Polygon;
+use super::family::{OverLoadings, ParametrisedField};
+use super::interface_system::InterfaceSystem;
 use super::settle::{passages, settle};
 use super::shooting::close;
-use super::slab::Slab;
-use super::solve::{Accuracy, Orbit, orbit, traversals};
+use super::shooting_nodes::ShootingNodes;
+use super::solve::{Orbit, OrbitAccuracy, orbit, traversals};
 use super::space::{Plane, Space, Whole};
 use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
@@ -20,13 +20,13 @@ pub struct Query {
     /// Whether both interfaces move alike; a single one always does.
     pub symmetry: Symmetry,
     /// Where the search begins.
-    pub begin: Begin,
+    pub begin: InitialGuess,
 }
 
 /// Where a search for an orbit begins.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Begin {
-    /// With runs from several starts; where they lead to no orbit of the symmetry, as from [`Begin::Hopf`].
+pub enum InitialGuess {
+    /// With runs from several starts; where they lead to no orbit of the symmetry, as from [`InitialGuess::Hopf`].
     Anywhere,
     /// At the nearest Hopf point along V_H, whose branch is followed, past its folds, to the slab's V_H.
     Hopf,
@@ -41,7 +41,7 @@ pub enum Begin {
 
 /// What was found.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found {
+pub struct FoundOrbit {
     /// The orbit asked for; where several have the symmetry, a stable one.
     pub orbit: Orbit,
     /// The others of that symmetry that were met.
@@ -64,7 +64,7 @@ const SAME_PERIOD: f64 = 1e-7;
 ///
 /// # Errors
 /// [`Error::NoOrbit`] says what was found instead; [`Error::NotConverged`]; those of the flow.
-pub fn find(slab: &Slab, query: &Query, accuracy: &Accuracy) -> Result<Found> {
+pub fn find(slab: &InterfaceSystem, query: &Query, accuracy: &OrbitAccuracy) -> Result<FoundOrbit> {
     if query.symmetry == Symmetry::Asymmetric && slab.interfaces == 1 {
         return Err(Error::Input(
             "a single interface has no asymmetric orbit; ask for the symmetric one".into(),
@@ -92,7 +92,7 @@ pub(super) fn whole_of(whole: &dyn Driven<3>) -> Whole<'_> {
 
 /// The space of symmetric orbits, within that of all where there are two interfaces.
 pub(super) fn plane_of<'a>(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     plane: &'a dyn Driven<2>,
     whole: &'a dyn Driven<3>,
 ) -> Plane<'a> {
@@ -103,7 +103,7 @@ pub(super) fn plane_of<'a>(
 }
 
 /// Starts from which asymmetric runs are made: beside the symmetric equilibrium and far from it.
-fn asymmetric_starts(slab: &Slab) -> [State<3>; 3] {
+fn asymmetric_starts(slab: &InterfaceSystem) -> [State<3>; 3] {
     let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
     [
         State::<3>::new(tau, w, w + 0.3),
@@ -113,15 +113,15 @@ fn asymmetric_starts(slab: &Slab) -> [State<3>; 3] {
 }
 
 fn search<const N: usize>(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     space: &impl Space<N>,
     query: &Query,
-    accuracy: &Accuracy,
+    accuracy: &OrbitAccuracy,
     chart: &dyn Fn((f64, [f64; 2])) -> State<N>,
     starts: &[State<N>],
-) -> Result<Found>
+) -> Result<FoundOrbit>
 where
-    OverLoadings: Family<N>,
+    OverLoadings: ParametrisedField<N>,
 {
     let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
     let mut guesses = Guesses {
@@ -131,21 +131,21 @@ where
         otherwise: None,
     };
     match query.begin {
-        Begin::At { start, period } => match period {
+        InitialGuess::At { start, period } => match period {
             Some(period) => guesses.over(period, &mut tracer, &chart(start))?,
             None => guesses.near(slab, &mut tracer, &chart(start))?,
         },
-        Begin::Anywhere => {
+        InitialGuess::Anywhere => {
             for start in starts {
                 guesses.settled(slab, &mut tracer, start);
             }
         }
-        Begin::Hopf => {}
+        InitialGuess::Hopf => {}
     }
-    let at = matches!(query.begin, Begin::At { .. });
+    let at = matches!(query.begin, InitialGuess::At { .. });
     if guesses.closed.is_empty() && !at && tracer.used_up().is_none() {
-        for polygon in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
-            guesses.take(polygon);
+        for shooting in branch::from_hopf(slab, query.symmetry, space, &mut tracer)? {
+            guesses.take(shooting);
         }
     }
     if guesses.closed.is_empty() && tracer.used_up().is_some() {
@@ -164,20 +164,20 @@ where
     }
     let mut orbits = Vec::new();
     let mut fine = Tracer::taylor(FINE)?;
-    for mut polygon in guesses.closed {
+    for mut shooting in guesses.closed {
         let whole_cycle = matches!(
             query.begin,
-            Begin::At {
+            InitialGuess::At {
                 period: Some(_),
                 ..
             }
         );
         if !whole_cycle {
             // Close to a period doubling only the last digits tell a cycle from one traversed twice.
-            polygon = close(&mut fine, space.field(), polygon)?.polygon;
-            polygon = once_around(&mut fine, space.field(), polygon)?;
+            shooting = close(&mut fine, space.field(), shooting)?.shooting;
+            shooting = once_around(&mut fine, space.field(), shooting)?;
         }
-        let orbit = orbit(slab, space, accuracy, polygon)?;
+        let orbit = orbit(slab, space, accuracy, shooting)?;
         let period = orbit.period.value;
         let known = |other: &Orbit| (other.period.value / period - 1.0).abs() < SAME_PERIOD;
         if !orbits.iter().any(known) {
@@ -188,7 +188,7 @@ where
         .iter()
         .position(|orbit| orbit.verdict() == Verdict::Stable);
     let orbit = orbits.remove(stable.unwrap_or(0));
-    Ok(Found {
+    Ok(FoundOrbit {
         orbit,
         others: orbits,
     })
@@ -198,26 +198,26 @@ where
 struct Guesses<'a, S, const N: usize> {
     space: &'a S,
     wanted: Symmetry,
-    closed: Vec<Polygon<N>>,
+    closed: Vec<ShootingNodes<N>>,
     /// Why there is none, so far.
     otherwise: Option<Error>,
 }
 
 impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
-    /// Keeps a closed polygon if it has the symmetry and is new.
-    fn take(&mut self, polygon: Polygon<N>) -> bool {
-        if self.space.symmetry(&polygon) != self.wanted {
+    /// Keeps a closed shooting if it has the symmetry and is new.
+    fn take(&mut self, shooting: ShootingNodes<N>) -> bool {
+        if self.space.symmetry(&shooting) != self.wanted {
             self.otherwise = Some(other_orbit(
                 "the search ended on the symmetric orbit".into(),
-                polygon.period(),
+                shooting.period(),
                 "give a --start near an asymmetric one, or ask for --symmetry symmetric",
             ));
             return false;
         }
-        let period = polygon.period();
-        let known = |other: &Polygon<N>| (other.period() / period - 1.0).abs() < SAME_PERIOD;
+        let period = shooting.period();
+        let known = |other: &ShootingNodes<N>| (other.period() / period - 1.0).abs() < SAME_PERIOD;
         if !self.closed.iter().any(known) {
-            self.closed.push(polygon);
+            self.closed.push(shooting);
         }
         true
     }
@@ -252,10 +252,10 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     /// Whether Newton's method on the cycle of this duration from this point leads to an orbit of the symmetry.
     fn closes(&mut self, tracer: &mut Tracer<N>, begin: &State<N>, period: f64) -> bool {
         let field = self.space.field();
-        let closed = Polygon::along(tracer, field, begin, period)
-            .and_then(|polygon| close(tracer, field, polygon));
+        let closed = ShootingNodes::along(tracer, field, begin, period)
+            .and_then(|shooting| close(tracer, field, shooting));
         match closed {
-            Ok(closed) => self.take(closed.polygon),
+            Ok(closed) => self.take(closed.shooting),
             Err(error) => {
                 self.otherwise.get_or_insert(error);
                 false
@@ -264,7 +264,12 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     }
 
     /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.
-    fn near(&mut self, slab: &Slab, tracer: &mut Tracer<N>, start: &State<N>) -> Result<()> {
+    fn near(
+        &mut self,
+        slab: &InterfaceSystem,
+        tracer: &mut Tracer<N>,
+        start: &State<N>,
+    ) -> Result<()> {
         /// Rough periods that the returns are looked for in; returns; those that a cycle may begin with; cycles tried.
         const LONG: f64 = 30.0;
         const RETURNS: usize = 8;
@@ -301,7 +306,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     }
 
     /// What a run from this start settles on.
-    fn settled(&mut self, slab: &Slab, tracer: &mut Tracer<N>, start: &State<N>) {
+    fn settled(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer<N>, start: &State<N>) {
         let field = self.space.field();
         let mut polygons = Vec::new();
         let run = settle(
@@ -309,15 +314,15 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
             field,
             start,
             slab.rough_period(),
-            &mut |tracer, polygon| match close(tracer, field, polygon) {
-                Ok(closed) => once_around(tracer, field, closed.polygon)
-                    .map(|polygon| polygons.push(polygon))
+            &mut |tracer, shooting| match close(tracer, field, shooting) {
+                Ok(closed) => once_around(tracer, field, closed.shooting)
+                    .map(|shooting| polygons.push(shooting))
                     .is_ok(),
                 Err(_) => false,
             },
         );
-        for polygon in polygons {
-            self.take(polygon);
+        for shooting in polygons {
+            self.take(shooting);
         }
         if let Err(error) = run {
             self.otherwise.get_or_insert(error);
@@ -329,12 +334,12 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
 fn once_around<const N: usize>(
     tracer: &mut Tracer<N>,
     field: &dyn VectorField<N>,
-    mut polygon: Polygon<N>,
-) -> Result<Polygon<N>> {
-    while let Some(times) = traversals(tracer, field, &polygon)? {
-        let part = polygon.period() / f64::from(times);
-        let once = Polygon::along(tracer, field, &polygon.nodes[0], part)?;
-        polygon = close(tracer, field, once)?.polygon;
+    mut shooting: ShootingNodes<N>,
+) -> Result<ShootingNodes<N>> {
+    while let Some(times) = traversals(tracer, field, &shooting)? {
+        let part = shooting.period() / f64::from(times);
+        let once = ShootingNodes::along(tracer, field, &shooting.nodes[0], part)?;
+        shooting = close(tracer, field, once)?.shooting;
     }
-    Ok(polygon)
+    Ok(shooting)
 }

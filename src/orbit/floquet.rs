@@ -1,4 +1,4 @@
-//! Floquet multipliers of a closed polygon, by their logarithms.
+//! Floquet multipliers of a closed shooting, by their logarithms.
 //!
 //! A plain monodromy matrix is noise below 1e-14 of its norm, where relaxation orbits have multipliers of 1e-22 and 1e-75.
 //! So the maps of the arcs are kept apart. Their determinants come from Liouville's theorem, ln det = integral of tr J, a
@@ -156,7 +156,7 @@ fn noise<const N: usize>(arcs: &[Arc<N>]) -> f64 {
 
 /// f at the next node over f carried there: the trivial multiplier of every arc, and their product minus 1.
 fn trivial_defect<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> f64 {
-    let nodes = &closed.polygon.nodes;
+    let nodes = &closed.shooting.nodes;
     let logs = closed.arcs().iter().enumerate().map(|(k, arc)| {
         let next = f(&nodes[(k + 1) % nodes.len()]);
         let carried = arc.tangent * f(&nodes[k]);

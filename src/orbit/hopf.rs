@@ -1,7 +1,7 @@
 //! Hopf points of a slab along V_H, and the small orbits beside them.
 
-use super::polygon::Polygon;
-use super::slab::Slab;
+use super::interface_system::InterfaceSystem;
+use super::shooting_nodes::ShootingNodes;
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, eigenvalues, steady_states};
 use crate::error::Result;
 use crate::field::{State, VectorField};
@@ -31,7 +31,7 @@ const TRIED: usize = 400;
 const BISECTIONS: usize = 60;
 
 /// The equilibrium of a symmetry with its eigenvalues. Of several asymmetric ones that of the largest stress.
-fn spectrum(slab: &Slab, symmetry: Symmetry) -> Result<Option<(Equilibrium, Vec<C>)>> {
+fn spectrum(slab: &InterfaceSystem, symmetry: Symmetry) -> Result<Option<(Equilibrium, Vec<C>)>> {
     let states = steady_states(
         &slab.law,
         slab.loading.driving,
@@ -74,7 +74,11 @@ fn frequency(eigenvalues: &[C]) -> Option<f64> {
 ///
 /// # Errors
 /// Those of [`steady_states`] and [`eigenvalues`].
-pub fn hopf_points(slab: &Slab, symmetry: Symmetry, along: Parameter) -> Result<Vec<HopfPoint>> {
+pub fn hopf_points(
+    slab: &InterfaceSystem,
+    symmetry: Symmetry,
+    along: Parameter,
+) -> Result<Vec<HopfPoint>> {
     let there = |log: f64| match along {
         Parameter::Driving => slab.driven_at(log.exp()),
         Parameter::Stiffness => slab.of_stiffness(log.exp()),
@@ -155,7 +159,11 @@ impl HopfPoint {
     /// The ellipse of this size around the equilibrium on which the linearised system turns.
     ///
     /// With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and there J^2 = -omega^2.
-    pub fn ellipse<const N: usize>(&self, field: &dyn VectorField<N>, size: f64) -> Polygon<N> {
+    pub fn ellipse<const N: usize>(
+        &self,
+        field: &dyn VectorField<N>,
+        size: f64,
+    ) -> ShootingNodes<N> {
         /// Nodes.
         const NODES: usize = 12;
         const { assert!(N == 2 || N == 3, "a pair and at most one more eigenvalue") };
@@ -176,7 +184,7 @@ impl HopfPoint {
             let (sin, cos) = (turn * k as f64).sin_cos();
             y + (along * cos + across * sin) * scale
         });
-        Polygon {
+        ShootingNodes {
             nodes: nodes.collect(),
             durations: vec![turn / self.frequency; NODES],
         }

@@ -1,12 +1,12 @@
-//! The maps from plane to plane around an orbit, with their derivatives up to the third.
+//! Jets of the Poincare maps from plane to plane around an orbit: their derivatives up to the third.
 
 use super::arc::Tracer;
-use super::family::Family;
+use super::continuation_point::ContinuationPoint;
+use super::family::ParametrisedField;
 use super::linear::{Linear, frame};
-use super::motion::Site;
 use crate::field::{Jacobian, State};
 use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
-use crate::series::Cubic;
+use crate::series::Jet3;
 use nalgebra::{Complex, Matrix2, Vector2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
@@ -21,8 +21,8 @@ const FINE: f64 = 1e-16;
 
 /// A map from plane to plane at a node, to third order in orthonormal coordinates of the planes.
 #[derive(Debug, Clone)]
-pub struct Jet {
-    components: [Cubic; 2],
+pub struct PoincareJet {
+    components: [Jet3; 2],
 }
 
 /// The coordinates in the planes.
@@ -35,15 +35,15 @@ pub enum Axes {
 }
 
 /// The maps from node to node of an orbit, by arcs of this tolerance. `None` where one can't be had.
-pub fn jets<F: Family<3>>(
+pub fn jets<F: ParametrisedField<3>>(
     family: &F,
-    site: &Site<3>,
+    site: &ContinuationPoint<3>,
     axes: Axes,
     tolerance: f64,
-) -> Option<Vec<Jet>> {
+) -> Option<Vec<PoincareJet>> {
     let field = family.field(site.at);
     let mut taylor = Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?;
-    let nodes = &site.polygon.nodes;
+    let nodes = &site.shooting.nodes;
     let frames: Vec<Jacobian<3>> = nodes
         .iter()
         .map(|x| plane(family, &field.f(x), axes))
@@ -52,18 +52,18 @@ pub fn jets<F: Family<3>>(
         let next = (k + 1) % nodes.len();
         let (from, onto) = (&frames[k], &frames[next]);
         let start =
-            std::array::from_fn(|i| Cubic::linear(nodes[k][i], [from[(i, 1)], from[(i, 2)]]));
-        let span = (0.0, site.polygon.durations[k]);
+            std::array::from_fn(|i| Jet3::linear(nodes[k][i], [from[(i, 1)], from[(i, 2)]]));
+        let span = (0.0, site.shooting.durations[k]);
         let target = (&onto.column(0).into_owned(), &nodes[next]);
         let (_, end) = taylor.transport_onto(&*field, span, start, target).ok()?;
         let component = |j: usize| {
-            let mut sum = Cubic::default();
+            let mut sum = Jet3::default();
             for i in 0..3 {
-                sum = sum + (end[i] - Cubic::constant(nodes[next][i])).scaled(onto[(i, j)]);
+                sum = sum + (end[i] - Jet3::constant(nodes[next][i])).scaled(onto[(i, j)]);
             }
             sum
         };
-        Some(Jet {
+        Some(PoincareJet {
             components: [component(1), component(2)],
         })
     };
@@ -72,7 +72,11 @@ pub fn jets<F: Family<3>>(
 
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
 /// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane.
-pub fn squares<F: Family<3>>(family: &F, site: &Site<3>, axes: Axes) -> Option<Vec<Matrix2<f64>>> {
+pub fn squares<F: ParametrisedField<3>>(
+    family: &F,
+    site: &ContinuationPoint<3>,
+    axes: Axes,
+) -> Option<Vec<Matrix2<f64>>> {
     /// Points and weights of Gauss on (0, 1).
     const POINTS: [(f64, f64); 6] = [
         (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
@@ -107,17 +111,17 @@ pub fn squares<F: Family<3>>(family: &F, site: &Site<3>, axes: Axes) -> Option<V
         }
         Some(sum)
     };
-    let polygon = &site.polygon;
-    polygon
+    let shooting = &site.shooting;
+    shooting
         .nodes
         .iter()
-        .zip(&polygon.durations)
+        .zip(&shooting.durations)
         .map(&mut arc)
         .collect()
 }
 
 /// The plane's coordinates: its normal, and the two directions in it.
-fn plane<F: Family<3>>(family: &F, flow: &State<3>, axes: Axes) -> Jacobian<3> {
+fn plane<F: ParametrisedField<3>>(family: &F, flow: &State<3>, axes: Axes) -> Jacobian<3> {
     let normal = family.normal(*flow);
     match axes {
         Axes::Any => frame(&normal),
@@ -133,36 +137,43 @@ fn symmetric_frame(normal: &State<3>) -> Jacobian<3> {
 }
 
 /// The same orbit with so many nodes that along no arc anything grows by much.
-pub fn finely_cut<F: Family<3>>(family: &F, site: &Site<3>) -> Option<Site<3>> {
+pub fn finely_cut<F: ParametrisedField<3>>(
+    family: &F,
+    site: &ContinuationPoint<3>,
+) -> Option<ContinuationPoint<3>> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
-    let mut polygon = site.polygon.clone();
+    let mut shooting = site.shooting.clone();
     for _ in 0..SPLITS {
-        let linear = Linear::of(&mut tracer, family, &*field, &polygon).ok()?;
+        let linear = Linear::of(&mut tracer, family, &*field, &shooting).ok()?;
         if linear.growth().all(|growth| growth < GROWTH) {
             break;
         }
         let parts = linear.parts(GROWTH);
-        polygon = polygon.split(&mut tracer, &*field, &parts).ok()?;
+        shooting = shooting.split(&mut tracer, &*field, &parts).ok()?;
     }
-    Some(Site {
-        polygon,
+    Some(ContinuationPoint {
+        shooting,
         at: site.at,
     })
 }
 
 /// The same orbit with every arc cut into so many parts of equal duration.
-pub fn cut_into<F: Family<3>>(parts: usize, family: &F, site: &Site<3>) -> Option<Site<3>> {
+pub fn cut_into<F: ParametrisedField<3>>(
+    parts: usize,
+    family: &F,
+    site: &ContinuationPoint<3>,
+) -> Option<ContinuationPoint<3>> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
-    let counts = vec![parts; site.polygon.nodes.len()];
-    Some(Site {
-        polygon: site.polygon.split(&mut tracer, &*field, &counts).ok()?,
+    let counts = vec![parts; site.shooting.nodes.len()];
+    Some(ContinuationPoint {
+        shooting: site.shooting.split(&mut tracer, &*field, &counts).ok()?,
         at: site.at,
     })
 }
 
-impl Jet {
+impl PoincareJet {
     /// The first derivative.
     pub fn linear(&self) -> Matrix2<f64> {
         let [p, q] = self.components.map(|c| c.0);

@@ -5,10 +5,10 @@
 //! the trivial one is gone.
 
 use super::arc::{Arc, Tracer};
+use super::continuation_point::TangentVector;
 use super::cyclic;
-use super::family::Family;
-use super::motion::Motion;
-use super::polygon::Polygon;
+use super::family::ParametrisedField;
+use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
 use nalgebra::{DMatrix, DVector, SMatrix, SVector};
@@ -33,22 +33,22 @@ impl<const N: usize> Linear<N> {
     pub fn new(
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
-        polygon: &Polygon<N>,
+        shooting: &ShootingNodes<N>,
     ) -> Result<Self> {
-        let frames = polygon.nodes.iter().map(|x| frame(&field.f(x))).collect();
-        Self::in_frames(tracer, field, polygon, false, frames)
+        let frames = shooting.nodes.iter().map(|x| frame(&field.f(x))).collect();
+        Self::in_frames(tracer, field, shooting, false, frames)
     }
 
     /// In the family's planes, with the derivatives in the parameters.
-    pub fn of<F: Family<N>>(
+    pub fn of<F: ParametrisedField<N>>(
         tracer: &mut Tracer<N>,
         family: &F,
         field: &dyn VectorField<N>,
-        polygon: &Polygon<N>,
+        shooting: &ShootingNodes<N>,
     ) -> Result<Self> {
         let normal = |x: &State<N>| frame(&family.normal(field.f(x)));
-        let frames = polygon.nodes.iter().map(normal).collect();
-        Self::in_frames(tracer, field, polygon, true, frames)
+        let frames = shooting.nodes.iter().map(normal).collect();
+        Self::in_frames(tracer, field, shooting, true, frames)
     }
 
     /// The same in the planes of another linearisation nearby, so that the maps can be compared.
@@ -56,19 +56,19 @@ impl<const N: usize> Linear<N> {
         &self,
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
-        polygon: &Polygon<N>,
+        shooting: &ShootingNodes<N>,
     ) -> Result<Self> {
-        Self::in_frames(tracer, field, polygon, false, self.frames.clone())
+        Self::in_frames(tracer, field, shooting, false, self.frames.clone())
     }
 
     fn in_frames(
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
-        polygon: &Polygon<N>,
+        shooting: &ShootingNodes<N>,
         parameters: bool,
         frames: Vec<Jacobian<N>>,
     ) -> Result<Self> {
-        let count = polygon.nodes.len();
+        let count = shooting.nodes.len();
         let mut linear = Linear {
             arcs: Vec::with_capacity(count),
             frames,
@@ -77,7 +77,7 @@ impl<const N: usize> Linear<N> {
             inflow: Vec::with_capacity(count),
             slowness: Vec::with_capacity(count),
         };
-        for (k, (x, &duration)) in polygon.nodes.iter().zip(&polygon.durations).enumerate() {
+        for (k, (x, &duration)) in shooting.nodes.iter().zip(&shooting.durations).enumerate() {
             let arc = tracer.arc(field, x, duration, parameters)?;
             let next = (k + 1) % count;
             let onto = linear.frames[next];
@@ -91,7 +91,7 @@ impl<const N: usize> Linear<N> {
             map.column_mut(0).fill(0.0);
             map.row_mut(0).fill(0.0);
             linear.maps.push(map);
-            linear.gaps.push(arc.end - polygon.nodes[next]);
+            linear.gaps.push(arc.end - shooting.nodes[next]);
             linear.inflow.push(inflow);
             linear.slowness.push(slowness);
             linear.arcs.push(arc);
@@ -137,16 +137,20 @@ impl<const N: usize> Linear<N> {
         let count = self.frames.len();
         let seen: Vec<_> = (0..count).map(|k| self.seen(k, &gaps[k])).collect();
         let u = cyclic::solve(&self.maps, &seen)?;
-        Some(self.motion(&u, |k| gaps[k]))
+        Some(self.displacement(&u, |k| gaps[k]))
     }
 
     /// Nodes and durations from displacements in the planes that the maps carry from one to the next.
     pub fn carried(&self, u: &[State<N>]) -> (Vec<State<N>>, Vec<f64>) {
-        self.motion(u, |_| State::zeros())
+        self.displacement(u, |_| State::zeros())
     }
 
     /// Nodes and durations from the displacements in the planes.
-    fn motion(&self, u: &[State<N>], gap: impl Fn(usize) -> State<N>) -> (Vec<State<N>>, Vec<f64>) {
+    fn displacement(
+        &self,
+        u: &[State<N>],
+        gap: impl Fn(usize) -> State<N>,
+    ) -> (Vec<State<N>>, Vec<f64>) {
         let count = self.frames.len();
         let nodes: Vec<State<N>> = (0..count).map(|k| self.frames[k] * u[k]).collect();
         let durations = (0..count).map(|k| {
@@ -167,7 +171,7 @@ impl<const N: usize> Linear<N> {
         &self,
         free: &[usize],
         scale: [f64; 2],
-    ) -> Option<(Motion<N>, Vec<Motion<N>>)> {
+    ) -> Option<(TangentVector<N>, Vec<TangentVector<N>>)> {
         let count = self.frames.len();
         // What the parameters add to the gaps.
         let pulls = |k: usize| {
@@ -185,23 +189,23 @@ impl<const N: usize> Linear<N> {
             .collect();
         let reduced = cyclic::reduce(&self.maps, &right);
         let (particular, kernel) = underdetermined(&reduced.closing, &reduced.right, free)?;
-        let motion = |(start, parameters): &(State<N>, [f64; 2]), closing: f64| {
+        let tangent = |(start, parameters): &(State<N>, [f64; 2]), closing: f64| {
             let combination = SVector::<f64, 3>::new(closing, parameters[0], parameters[1]);
             let u = reduced.extended(start, &combination)?;
-            let (nodes, durations) = self.motion(&u, |k| {
+            let (nodes, durations) = self.displacement(&u, |k| {
                 let [first, second] = pulls(k);
                 self.gaps[k] * closing + first * parameters[0] + second * parameters[1]
             });
-            Some(Motion {
+            Some(TangentVector {
                 nodes,
                 durations,
                 parameters: *parameters,
             })
         };
-        let mut closing = motion(&particular, 1.0)?;
-        let mut along: Vec<Motion<N>> = Vec::with_capacity(kernel.len());
+        let mut closing = tangent(&particular, 1.0)?;
+        let mut along: Vec<TangentVector<N>> = Vec::with_capacity(kernel.len());
         for direction in &kernel {
-            let mut direction = motion(direction, 0.0)?.normalised()?;
+            let mut direction = tangent(direction, 0.0)?.normalised()?;
             // Twice is enough.
             for _ in 0..2 {
                 for other in &along {
@@ -225,14 +229,14 @@ impl<const N: usize> Linear<N> {
 }
 
 /// A displacement of the first node and of the parameters.
-type Start<const N: usize> = (State<N>, [f64; 2]);
+type Displacement<const N: usize> = (State<N>, [f64; 2]);
 
 /// Of closing u = right_0 + p_0 right_1 + p_1 right_2 in (u, p) with these p free: the shortest solution, and the kernel.
 fn underdetermined<const N: usize>(
     closing: &Jacobian<N>,
     right: &SMatrix<f64, N, 3>,
     free: &[usize],
-) -> Option<(Start<N>, Vec<Start<N>>)> {
+) -> Option<(Displacement<N>, Vec<Displacement<N>>)> {
     /// A pivot below this part of the largest is zero.
     const SINGULAR: f64 = 1e-13;
     let unknowns = N + free.len();

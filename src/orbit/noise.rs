@@ -5,13 +5,13 @@
 //! the conditions are that the orbit meets. Of the truncation error, which is no noise, this knows nothing: the tolerance must
 //! be of the order of rounding, or a second solution must tell.
 
+use super::continuation_point::TangentVector;
 use super::correct::{Condition, Corrector, Regular, combination};
-use super::family::Family;
-use super::indicator::{Indicator, Spectrum};
+use super::family::ParametrisedField;
 use super::linear::Linear;
-use super::motion::Motion;
-use super::polygon::Polygon;
 use super::shooting::relative;
+use super::shooting_nodes::ShootingNodes;
+use super::test_function::{Spectrum, TestFunction};
 use crate::field::{Jacobian, State};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
@@ -60,13 +60,13 @@ impl Signs {
 
 impl<const N: usize> Linear<N> {
     /// The same with errors of random sign: of the ends of all arcs in place of the gaps, and of their derivatives.
-    pub(super) fn noisy(&self, polygon: &Polygon<N>, signs: &mut Signs) -> Self {
+    pub(super) fn noisy(&self, shooting: &ShootingNodes<N>, signs: &mut Signs) -> Self {
         let mut noisy = self.clone();
         let count = self.arcs.len();
         for k in 0..count {
             let arc = &mut noisy.arcs[k];
             let size = arc.rounding();
-            let next = &polygon.nodes[(k + 1) % count];
+            let next = &shooting.nodes[(k + 1) % count];
             noisy.gaps[k] = State::from_fn(|i, _| size * (1.0 + next[i].abs()) * signs.next());
             let sizes = graded(&self.maps[k]);
             for i in 1..N {
@@ -77,7 +77,7 @@ impl<const N: usize> Linear<N> {
             if let Some(log) = &mut arc.log_determinant {
                 *log += TANGENT * size * log.abs() * signs.next();
             }
-            if let Some(log) = &mut arc.log_across {
+            if let Some(log) = &mut arc.log_transverse {
                 *log += TANGENT * size * log.abs() * signs.next();
             }
         }
@@ -93,7 +93,7 @@ fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
     passed.sup(&sizes)
 }
 
-impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {
+impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     /// What the errors of the flow make of an orbit that meets these conditions, which it was corrected to. `None` where they do
     /// not determine it.
     pub fn noise(
@@ -102,19 +102,19 @@ impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {
         free: &[usize],
         conditions: &[Condition<'_, N>],
     ) -> Option<Noise> {
-        let polygon = &orbit.site.polygon;
+        let shooting = &orbit.site.shooting;
         let mut squares = Noise::default();
-        let mut nodes = vec![0.0; polygon.nodes.len()];
+        let mut nodes = vec![0.0; shooting.nodes.len()];
         let mut signs = Signs::new();
         for _ in 0..PROBES {
-            let noisy = orbit.linear.noisy(polygon, &mut signs);
-            let motion = self.answer(orbit, &noisy, free, conditions)?;
+            let noisy = orbit.linear.noisy(shooting, &mut signs);
+            let tangent = self.answer(orbit, &noisy, free, conditions)?;
             for i in 0..2 {
-                squares.parameters[i] += motion.parameters[i].powi(2);
+                squares.parameters[i] += tangent.parameters[i].powi(2);
             }
-            let [_, _, of_period] = motion.seen_from_afar(polygon);
+            let [_, _, of_period] = tangent.seen_from_afar(shooting);
             squares.period += of_period * of_period;
-            let moved = motion.nodes.iter().zip(&polygon.nodes);
+            let moved = tangent.nodes.iter().zip(&shooting.nodes);
             for (sum, (dx, x)) in nodes.iter_mut().zip(moved) {
                 *sum += relative(dx, x).powi(2);
             }
@@ -126,20 +126,20 @@ impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {
         })
     }
 
-    /// The same of an indicator at an orbit in this plane.
+    /// The same of a test function at an orbit in this plane.
     pub fn noise_of(
         &mut self,
-        indicator: Indicator,
+        test_function: TestFunction,
         orbit: &Regular<N>,
         free: &[usize],
         plane: Condition<'_, N>,
     ) -> Option<f64> {
         let (mut sum, mut signs) = (0.0, Signs::new());
         for _ in 0..PROBES {
-            let noisy = orbit.linear.noisy(&orbit.site.polygon, &mut signs);
-            let motion = self.answer(orbit, &noisy, free, &[plane])?;
-            let changes = [orbit.direct(&noisy), self.by_motion(orbit, &motion)?];
-            let change = changes.map(|by| indicator.change_along::<N>(&orbit.spectrum, &by));
+            let noisy = orbit.linear.noisy(&orbit.site.shooting, &mut signs);
+            let tangent = self.answer(orbit, &noisy, free, &[plane])?;
+            let changes = [orbit.direct(&noisy), self.by_tangent(orbit, &tangent)?];
+            let change = changes.map(|by| test_function.change_along::<N>(&orbit.spectrum, &by));
             sum += (change[0] + change[1]).powi(2);
         }
         Some(deviation(sum))
@@ -152,42 +152,42 @@ impl<F: Family<N>, const N: usize> Corrector<'_, F, N> {
         noisy: &Linear<N>,
         free: &[usize],
         conditions: &[Condition<'_, N>],
-    ) -> Option<Motion<N>> {
+    ) -> Option<TangentVector<N>> {
         // The directions are those without errors.
         let mut linear = orbit.linear.clone();
         linear.gaps.clone_from(&noisy.gaps);
         let (closing, along) = linear.solutions(free, self.family.scale(orbit.site.at))?;
-        let indicators = conditions
+        let test_functions = conditions
             .iter()
-            .any(|condition| matches!(condition, Condition::Indicator(_)));
-        let of_spectrum = if indicators {
-            vec![orbit.direct(noisy), self.by_motion(orbit, &closing)?]
+            .any(|condition| matches!(condition, Condition::TestFunction(_)));
+        let of_spectrum = if test_functions {
+            vec![orbit.direct(noisy), self.by_tangent(orbit, &closing)?]
         } else {
             Vec::new()
         };
         let mut gradients = orbit.gradients.iter();
         let mut rows = Vec::with_capacity(conditions.len());
         for condition in conditions {
-            let slopes = |of: &dyn Fn(&Motion<N>) -> f64| along.iter().map(of).collect();
+            let slopes = |of: &dyn Fn(&TangentVector<N>) -> f64| along.iter().map(of).collect();
             rows.push(match condition {
                 Condition::Plane(across, _) => (slopes(&|t| across.dot(t)), -across.dot(&closing)),
                 Condition::Parameter(i, _) => {
                     (slopes(&|t| t.parameters[*i]), -closing.parameters[*i])
                 }
-                Condition::Indicator(indicator) => {
+                Condition::TestFunction(test_function) => {
                     let gradient = gradients.next()?;
-                    let change = |by| indicator.change_along::<N>(&orbit.spectrum, by);
+                    let change = |by| test_function.change_along::<N>(&orbit.spectrum, by);
                     let change: f64 = of_spectrum.iter().map(change).sum();
                     (slopes(&|t| gradient.dot(t)), -change)
                 }
             });
         }
         let weights = combination(&rows)?;
-        let mut motion = closing;
+        let mut tangent = closing;
         for (weight, direction) in weights.iter().zip(&along) {
-            motion = motion.plus(*weight, direction);
+            tangent = tangent.plus(*weight, direction);
         }
-        Some(motion)
+        Some(tangent)
     }
 }
 

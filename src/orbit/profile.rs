@@ -1,8 +1,8 @@
 //! An orbit in a few numbers: what a diagram of a branch shows of it.
 
 use super::arc::Tracer;
-use super::polygon::Polygon;
-use super::slab::Slab;
+use super::interface_system::InterfaceSystem;
+use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::State;
 use crate::integrate::Control;
@@ -26,54 +26,57 @@ pub struct Profile {
 ///
 /// # Errors
 /// Those of the flow.
-pub fn profile<const N: usize>(slab: &Slab, polygon: &Polygon<N>) -> Result<Profile> {
+pub fn profile<const N: usize>(
+    slab: &InterfaceSystem,
+    shooting: &ShootingNodes<N>,
+) -> Result<Profile> {
     /// Tolerance of the run.
     const ROUGH: f64 = 1e-7;
     const { assert!(N == 2 || N == 3, "a slab's variables") };
-    let mut seen = Seen {
+    let mut seen = Extent {
         top: (f64::NEG_INFINITY, [0.0; 2]),
         bottom: f64::INFINITY,
         integral: 0.0,
     };
     let field = slab.whole();
     if N == 3 {
-        let whole = polygon
+        let whole = shooting
             .nodes
             .iter()
             .map(|x| State::<3>::new(x[0], x[1], x[N - 1]));
         seen.go(
             &*field,
             whole,
-            &polygon.durations,
+            &shooting.durations,
             &mut Tracer::taylor(ROUGH)?,
         )?;
     } else {
         let inner = slab.plane();
-        let plane = polygon.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
+        let plane = shooting.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
         seen.go(
             &*inner,
             plane,
-            &polygon.durations,
+            &shooting.durations,
             &mut Tracer::taylor(ROUGH)?,
         )?;
     }
     let (top, w) = seen.top;
     Ok(Profile {
-        mean_stress: seen.integral / polygon.period(),
+        mean_stress: seen.integral / shooting.period(),
         stress_range: (seen.bottom, top),
         state: w.map(f64::exp),
         slip_rate: field.slip_rates(&State::<3>::new(top, w[0], w[1])),
     })
 }
 
-struct Seen {
+struct Extent {
     /// tau and ln psi.
     top: (f64, [f64; 2]),
     bottom: f64,
     integral: f64,
 }
 
-impl Seen {
+impl Extent {
     fn see<const N: usize>(&mut self, y: &State<N>) {
         if y[0] > self.top.0 {
             self.top = (y[0], [y[1], y[N - 1]]);

@@ -1,8 +1,8 @@
-//! Where runs end up: from a start to a guess of the periodic orbit that it settles on.
+//! Initial guesses by simulation: from a start to a guess of the periodic orbit that a run settles on.
 
 use super::arc::Tracer;
 use super::no_orbit;
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::{State, VectorField};
 use crate::integrate::Control;
@@ -87,7 +87,7 @@ pub(super) fn settle<const N: usize>(
     field: &dyn VectorField<N>,
     start: &State<N>,
     rough_period: f64,
-    accept: &mut dyn FnMut(&mut Tracer<N>, Polygon<N>) -> bool,
+    accept: &mut dyn FnMut(&mut Tracer<N>, ShootingNodes<N>) -> bool,
 ) -> Result<()> {
     let mut y = *start;
     for stretch in 0..STRETCHES {
@@ -126,8 +126,8 @@ pub(super) fn settle<const N: usize>(
                 .then(a.1.total_cmp(&b.1))
         });
         for (_, period) in returns.into_iter().take(3) {
-            if let Ok(polygon) = Polygon::along(tracer, field, last, period)
-                && accept(tracer, polygon)
+            if let Ok(shooting) = ShootingNodes::along(tracer, field, last, period)
+                && accept(tracer, shooting)
             {
                 return Ok(());
             }

@@ -1,19 +1,19 @@
-//! Periodic orbits by Newton's method on many nodes at once (multiple shooting).
+//! Multiple shooting: periodic orbits by Newton's method on many nodes at once.
 
 use super::arc::{Arc, Tracer};
 use super::linear::Linear;
 use super::no_orbit;
 use super::noise::{PROBES, Signs};
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use crate::number::Uncertain;
 
-/// A closed polygon: a periodic orbit, with the derivatives along it.
+/// A closed shooting: a periodic orbit, with the derivatives along it.
 #[derive(Debug, Clone)]
 pub struct Closed<const N: usize> {
     /// The nodes and durations.
-    pub polygon: Polygon<N>,
+    pub shooting: ShootingNodes<N>,
     /// Iterations made.
     pub iterations: usize,
     pub(super) linear: Linear<N>,
@@ -39,16 +39,16 @@ impl<const N: usize> Closed<N> {
         /// Standard deviations that are claimed.
         const DEVIATIONS: f64 = 3.0;
         const ROUNDING: f64 = 4.0 * f64::EPSILON;
-        let (mut of_period, mut of_nodes) = (0.0, vec![0.0; self.polygon.nodes.len()]);
-        let period = self.polygon.period();
+        let (mut of_period, mut of_nodes) = (0.0, vec![0.0; self.shooting.nodes.len()]);
+        let period = self.shooting.period();
         let mut signs = Signs::new();
         for _ in 0..PROBES {
-            let noisy = self.linear.noisy(&self.polygon, &mut signs);
+            let noisy = self.linear.noisy(&self.shooting, &mut signs);
             let Some((nodes, durations)) = self.linear.correction(&noisy.gaps) else {
                 return (Uncertain::new(period, f64::INFINITY), f64::INFINITY);
             };
             of_period += durations.iter().sum::<f64>().powi(2);
-            let moved = nodes.iter().zip(&self.polygon.nodes);
+            let moved = nodes.iter().zip(&self.shooting.nodes);
             for (sum, (dx, x)) in of_nodes.iter_mut().zip(moved) {
                 *sum += relative(dx, x).powi(2);
             }
@@ -75,7 +75,7 @@ impl<const N: usize> Closed<N> {
 const SHRUNK: f64 = 1e-7;
 /// Newton iterations, at most.
 const ITERATIONS: usize = 30;
-/// Relative size of a correction from which on the polygon is closed.
+/// Relative size of a correction from which on the shooting is closed.
 const CLOSED: f64 = 4e-15;
 /// The same where corrections have ceased to shrink: the flow's own noise.
 const NOISE: f64 = 1e-6;
@@ -98,9 +98,9 @@ pub(super) fn relative<const N: usize>(dx: &State<N>, x: &State<N>) -> f64 {
 pub fn newton_step<const N: usize>(
     tracer: &mut Tracer<N>,
     field: &dyn VectorField<N>,
-    polygon: &Polygon<N>,
-) -> Result<Polygon<N>> {
-    let linear = Linear::new(tracer, field, polygon)?;
+    shooting: &ShootingNodes<N>,
+) -> Result<ShootingNodes<N>> {
+    let linear = Linear::new(tracer, field, shooting)?;
     let correction = linear.correction(&linear.gaps);
     let (nodes, durations) = correction.ok_or(Error::NotConverged {
         what: "the periodic orbit",
@@ -108,20 +108,20 @@ pub fn newton_step<const N: usize>(
         residual: f64::INFINITY,
         tolerance: CLOSED,
     })?;
-    Ok(polygon.moved(&nodes, &durations, 1.0))
+    Ok(shooting.moved(&nodes, &durations, 1.0))
 }
 
-/// Closes a polygon.
+/// Closes a shooting.
 ///
 /// # Errors
 /// [`Error::NotConverged`] where Newton's method does not; those of the flow where no shorter step avoids them.
 pub fn close<const N: usize>(
     tracer: &mut Tracer<N>,
     field: &dyn VectorField<N>,
-    guess: Polygon<N>,
+    guess: ShootingNodes<N>,
 ) -> Result<Closed<N>> {
-    let mut polygon = guess;
-    let mut linear = Linear::new(tracer, field, &polygon)?;
+    let mut shooting = guess;
+    let mut linear = Linear::new(tracer, field, &shooting)?;
     let mut last = f64::INFINITY;
     for iterations in 1..=ITERATIONS {
         let failed = |residual: f64| Error::NotConverged {
@@ -133,28 +133,28 @@ pub fn close<const N: usize>(
         let Some((nodes, durations)) = linear.correction(&linear.gaps) else {
             return Err(failed(last));
         };
-        if polygon.extent() < SHRUNK {
+        if shooting.extent() < SHRUNK {
             return Err(no_orbit(
                 format!(
                     "Newton's method shrank the orbit to an equilibrium, to {:e} of its size",
-                    polygon.extent()
+                    shooting.extent()
                 ),
                 "give a --start farther from the equilibrium, or a --period-guess",
             ));
         }
-        let period = polygon.period();
-        let moved = nodes.iter().zip(&polygon.nodes);
+        let period = shooting.period();
+        let moved = nodes.iter().zip(&shooting.nodes);
         let of_nodes = moved.map(|(dx, x)| relative(dx, x)).fold(0.0, f64::max);
         let of_durations = durations
             .iter()
-            .zip(&polygon.durations)
+            .zip(&shooting.durations)
             .map(|(dt, t)| (dt / t).abs());
         let stretch = of_durations.fold(0.0, f64::max);
         let of_period = durations.iter().sum::<f64>().abs() / period.abs();
         let size = of_nodes.max(of_period);
         if size < CLOSED || (size < NOISE && size > 0.3 * last) {
             return Ok(Closed {
-                polygon,
+                shooting,
                 iterations,
                 linear,
                 residual: (of_nodes, of_period),
@@ -164,10 +164,10 @@ pub fn close<const N: usize>(
         let mut part = (TRUSTED / of_nodes.max(stretch)).min(1.0);
         let mut halvings = 0;
         linear = loop {
-            let trial = polygon.moved(&nodes, &durations, part);
+            let trial = shooting.moved(&nodes, &durations, part);
             match Linear::new(tracer, field, &trial) {
                 Ok(next) => {
-                    polygon = trial;
+                    shooting = trial;
                     break next;
                 }
                 Err(error) if halvings == HALVINGS => return Err(error),

@@ -3,10 +3,10 @@
 use super::arc::Tracer;
 use super::extremes::{Extremes, extremes};
 use super::floquet::Floquet;
+use super::interface_system::InterfaceSystem;
 use super::other_orbit;
-use super::polygon::Polygon;
 use super::shooting::{Closed, close, relative};
-use super::slab::Slab;
+use super::shooting_nodes::ShootingNodes;
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
@@ -56,7 +56,7 @@ impl Orbit {
 
 /// What an orbit is computed with.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Accuracy {
+pub struct OrbitAccuracy {
     /// The method that makes the flow and its derivatives.
     pub method: Choice,
     /// What it is asked for in a step.
@@ -68,14 +68,14 @@ pub struct Accuracy {
     pub checked: bool,
 }
 
-impl Accuracy {
+impl OrbitAccuracy {
     /// What a method is asked for where nobody says otherwise: all digits of Taylor, what the others reach in their time.
     pub fn of(method: Choice) -> Self {
         let tolerance = match method {
             Choice::Auto | Choice::Taylor => 1e-15,
             _ => 1e-11,
         };
-        Accuracy {
+        OrbitAccuracy {
             method,
             tolerances: Tolerances {
                 rtol: tolerance,
@@ -88,7 +88,7 @@ impl Accuracy {
 
     pub(super) fn looser(self) -> Self {
         let Tolerances { rtol, atol } = self.tolerances;
-        Accuracy {
+        OrbitAccuracy {
             tolerances: Tolerances {
                 rtol: LOOSER * rtol,
                 atol: LOOSER * atol,
@@ -105,7 +105,7 @@ const SHIFTS: [f64; 2] = [0.37, 0.71];
 /// What the period differs by counts so many times.
 const SPREAD: f64 = 2.0;
 
-/// A closed polygon of either dimension with its multipliers.
+/// A closed shooting of either dimension with its multipliers.
 pub(super) struct Solved<const N: usize> {
     pub closed: Closed<N>,
     pub floquet: Floquet,
@@ -116,12 +116,12 @@ pub(super) struct Solved<const N: usize> {
 pub(super) fn solve<const N: usize>(
     space: &impl Space<N>,
     tracers: &mut Tracers<N>,
-    guess: Polygon<N>,
+    guess: ShootingNodes<N>,
 ) -> Result<Solved<N>> {
     let field = space.field();
     let first = close(&mut tracers.here, field, guess)?;
-    if let Some(times) = traversals(&mut tracers.here, field, &first.polygon)? {
-        let period = first.polygon.period();
+    if let Some(times) = traversals(&mut tracers.here, field, &first.shooting)? {
+        let period = first.shooting.period();
         return Err(other_orbit(
             format!("the cycle found is a shorter one traversed {times} times"),
             period,
@@ -129,7 +129,7 @@ pub(super) fn solve<const N: usize>(
         ));
     }
     let finer = first
-        .polygon
+        .shooting
         .refined(&mut |x, duration| space.loss(tracers, x, duration))?;
     let closed = close(&mut tracers.here, field, finer)?;
     let floquet = space.floquet(tracers, &closed)?;
@@ -144,26 +144,26 @@ pub(super) fn solve<const N: usize>(
 pub(super) fn traversals<const N: usize>(
     tracer: &mut Tracer<N>,
     field: &dyn VectorField<N>,
-    polygon: &Polygon<N>,
+    shooting: &ShootingNodes<N>,
 ) -> Result<Option<u32>> {
     /// Times around that are looked for, and how near the beginning such a part ends, in units of the extent.
     const TIMES: [u32; 5] = [2, 3, 5, 7, 11];
     const SAME: f64 = 1e-5;
-    let (period, extent) = (polygon.period(), polygon.extent());
+    let (period, extent) = (shooting.period(), shooting.extent());
     for times in TIMES {
         // From the node before such a part's end.
         let part = period / f64::from(times);
         let (mut before, mut k) = (0.0, 0);
-        while k + 1 < polygon.nodes.len() && before + polygon.durations[k] <= part {
-            before += polygon.durations[k];
+        while k + 1 < shooting.nodes.len() && before + shooting.durations[k] <= part {
+            before += shooting.durations[k];
             k += 1;
         }
         let there = if part == before {
-            polygon.nodes[k]
+            shooting.nodes[k]
         } else {
-            tracer.flow(field, &polygon.nodes[k], part - before, None)?
+            tracer.flow(field, &shooting.nodes[k], part - before, None)?
         };
-        if (there - polygon.nodes[0]).amax() < SAME * extent {
+        if (there - shooting.nodes[0]).amax() < SAME * extent {
             return Ok(Some(times));
         }
     }
@@ -172,10 +172,10 @@ pub(super) fn traversals<const N: usize>(
 
 /// The orbit near a guess, with everything.
 pub(super) fn orbit<const N: usize>(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     space: &impl Space<N>,
-    accuracy: &Accuracy,
-    guess: Polygon<N>,
+    accuracy: &OrbitAccuracy,
+    guess: ShootingNodes<N>,
 ) -> Result<Orbit> {
     let mut tracers = Tracers::new(accuracy)?;
     let Solved {
@@ -183,7 +183,7 @@ pub(super) fn orbit<const N: usize>(
         mut floquet,
         iterations,
     } = solve(space, &mut tracers, guess)?;
-    let polygon = &closed.polygon;
+    let shooting = &closed.shooting;
     let (mut period, node_error) = closed.budget(!accuracy.checked);
     let mut work = tracers.work();
     let level = slab.steady_stress();
@@ -194,13 +194,13 @@ pub(super) fn orbit<const N: usize>(
         let mut apart = 0.0_f64;
         for shift in SHIFTS {
             let mut other = Tracers::new(&accuracy.looser())?;
-            let moved = polygon.shifted(&mut other.here, space.field(), shift);
+            let moved = shooting.shifted(&mut other.here, space.field(), shift);
             match moved.and_then(|moved| solve(space, &mut other, moved)) {
                 Ok(again) => {
                     floquet.widened_by(&again.floquet);
-                    let polygon = &again.closed.polygon;
-                    apart = apart.max((period.value - polygon.period()).abs());
-                    others.push(extremes(space.field(), polygon, level)?);
+                    let shooting = &again.closed.shooting;
+                    apart = apart.max((period.value - shooting.period()).abs());
+                    others.push(extremes(space.field(), shooting, level)?);
                 }
                 // Nothing is claimed that could not be done again.
                 Err(_) => {
@@ -212,8 +212,8 @@ pub(super) fn orbit<const N: usize>(
         }
         period.uncertainty += SPREAD * apart;
     }
-    let extremes = extremes(space.field(), polygon, level)?;
-    let point = extremes.passage.unwrap_or(polygon.nodes[0]);
+    let extremes = extremes(space.field(), shooting, level)?;
+    let point = extremes.passage.unwrap_or(shooting.nodes[0]);
     // What others differ by, and within a stress extreme's rounding as well.
     let of_stress = |of: &dyn Fn(&Extremes<N>) -> f64| {
         let stress = of(&extremes);
@@ -228,7 +228,7 @@ pub(super) fn orbit<const N: usize>(
     let of_point = of_point.filter(|&off| off < SAME);
     let point_uncertainty = node_error + SPREAD * of_point.fold(0.0, f64::max);
     Ok(Orbit {
-        symmetry: space.symmetry(polygon),
+        symmetry: space.symmetry(shooting),
         period,
         point: point.iter().copied().collect(),
         point_uncertainty,
@@ -238,12 +238,12 @@ pub(super) fn orbit<const N: usize>(
         state_min: extremes.state_min,
         floquet,
         method: tracers.here.name(),
-        nodes: polygon
+        nodes: shooting
             .nodes
             .iter()
             .map(|x| x.iter().copied().collect())
             .collect(),
-        durations: polygon.durations.clone(),
+        durations: shooting.durations.clone(),
         iterations,
         work,
     })

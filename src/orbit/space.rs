@@ -2,9 +2,9 @@
 
 use super::arc::{Arc, Tracer};
 use super::floquet::{Floquet, floquet, symmetric_floquet};
-use super::polygon::Polygon;
 use super::shooting::Closed;
-use super::solve::Accuracy;
+use super::shooting_nodes::ShootingNodes;
+use super::solve::OrbitAccuracy;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::{State, VectorField};
@@ -24,7 +24,7 @@ pub(super) trait Space<const N: usize> {
     /// The multipliers.
     fn floquet(&self, tracers: &mut Tracers<N>, closed: &Closed<N>) -> Result<Floquet>;
     /// Whether both interfaces move alike.
-    fn symmetry(&self, polygon: &Polygon<N>) -> Symmetry;
+    fn symmetry(&self, shooting: &ShootingNodes<N>) -> Symmetry;
 }
 
 /// The tracers of one accuracy.
@@ -35,8 +35,8 @@ pub(super) struct Tracers<const N: usize> {
 }
 
 impl<const N: usize> Tracers<N> {
-    pub fn new(accuracy: &Accuracy) -> Result<Self> {
-        let Accuracy {
+    pub fn new(accuracy: &OrbitAccuracy) -> Result<Self> {
+        let OrbitAccuracy {
             method,
             tolerances,
             max_steps,
@@ -77,10 +77,10 @@ impl Space<3> for Whole<'_> {
         Ok(floquet(closed, &|x| self.0.f(x)))
     }
 
-    fn symmetry(&self, polygon: &Polygon<3>) -> Symmetry {
+    fn symmetry(&self, shooting: &ShootingNodes<3>) -> Symmetry {
         /// Interfaces that differ by less move alike: they would by rounding.
         const ALIKE: f64 = 1e-9;
-        let apart = polygon.nodes.iter().map(|x| (x[1] - x[2]).abs());
+        let apart = shooting.nodes.iter().map(|x| (x[1] - x[2]).abs());
         if apart.fold(0.0, f64::max) < ALIKE {
             Symmetry::Symmetric
         } else {
@@ -134,15 +134,15 @@ impl Space<2> for Plane<'_> {
         if self.whole.is_none() {
             return Ok(floquet(closed, &f));
         }
-        let polygon = &closed.polygon;
-        let mut arcs = Vec::with_capacity(polygon.nodes.len());
-        for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
+        let shooting = &closed.shooting;
+        let mut arcs = Vec::with_capacity(shooting.nodes.len());
+        for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             arcs.extend(self.across(tracers, x, duration)?);
         }
         Ok(symmetric_floquet(closed, &f, &arcs))
     }
 
-    fn symmetry(&self, _: &Polygon<2>) -> Symmetry {
+    fn symmetry(&self, _: &ShootingNodes<2>) -> Symmetry {
         Symmetry::Symmetric
     }
 }

@@ -1,15 +1,15 @@
-//! Onto the branches that bifurcate: from an orbit onto those of twice the period, from a symmetric one onto asymmetric ones.
+//! Branch switching: from an orbit onto those of twice the period, from a symmetric one onto asymmetric ones.
 
+use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Regular;
-use super::motion::{Motion, Site};
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
 use crate::field::State;
 
 /// A place to begin a branch, and its direction there.
-pub type Switch<const N: usize> = (Site<N>, Motion<N>);
+pub type Switch<const N: usize> = (ContinuationPoint<N>, TangentVector<N>);
 
 impl Regular<3> {
-    /// At a period doubling: the orbit traversed twice, and the motion that makes both rounds differ. `None` where no
+    /// At a period doubling: the orbit traversed twice, and the tangent vector that makes both rounds differ. `None` where no
     /// multiplier is near -1.
     pub fn doubled(&self) -> Option<Switch<3>> {
         let maps = &self.linear.maps;
@@ -37,21 +37,21 @@ impl Regular<3> {
             u = map * u;
         }
         let (nodes, durations) = self.linear.carried(&round);
-        let polygon = &self.site.polygon;
+        let shooting = &self.site.shooting;
         let twice = |x: &[State<3>], sign: f64| -> Vec<State<3>> {
             x.iter()
                 .copied()
                 .chain(x.iter().map(|x| x * sign))
                 .collect()
         };
-        let site = Site {
-            polygon: Polygon {
-                nodes: twice(&polygon.nodes, 1.0),
-                durations: polygon.durations.repeat(2),
+        let site = ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes: twice(&shooting.nodes, 1.0),
+                durations: shooting.durations.repeat(2),
             },
             at: self.site.at,
         };
-        let motion = Motion {
+        let tangent = TangentVector {
             nodes: twice(&nodes, -1.0),
             durations: durations
                 .iter()
@@ -60,37 +60,37 @@ impl Regular<3> {
                 .collect(),
             parameters: [0.0; 2],
         };
-        Some((site, motion.normalised()?))
+        Some((site, tangent.normalised()?))
     }
 }
 
 impl Regular<2> {
-    /// At a pitchfork: the orbit among all states, and the motion in which both interfaces part. `None` where the arcs do not
+    /// At a pitchfork: the orbit among all states, and the tangent vector in which both interfaces part. `None` where the arcs do not
     /// say how they do.
-    pub fn parted(&self) -> Option<Switch<3>> {
-        let Site { polygon, at } = &self.site;
+    pub fn asymmetric(&self) -> Option<Switch<3>> {
+        let ContinuationPoint { shooting, at } = &self.site;
         let mut apart = 1.0;
-        let mut nodes = Vec::with_capacity(polygon.nodes.len());
+        let mut nodes = Vec::with_capacity(shooting.nodes.len());
         for arc in &self.linear.arcs {
             nodes.push(State::<3>::new(0.0, apart, -apart));
-            apart *= arc.log_across?.exp();
+            apart *= arc.log_transverse?.exp();
         }
-        let motion = Motion {
+        let tangent = TangentVector {
             nodes,
-            durations: vec![0.0; polygon.durations.len()],
+            durations: vec![0.0; shooting.durations.len()],
             parameters: [0.0; 2],
         };
-        let embedded = polygon
+        let embedded = shooting
             .nodes
             .iter()
             .map(|x| State::<3>::new(x[0], x[1], x[1]));
-        let site = Site {
-            polygon: Polygon {
+        let site = ContinuationPoint {
+            shooting: ShootingNodes {
                 nodes: embedded.collect(),
-                durations: polygon.durations.clone(),
+                durations: shooting.durations.clone(),
             },
             at: *at,
         };
-        Some((site, motion.normalised()?))
+        Some((site, tangent.normalised()?))
     }
 }

@@ -15,6 +15,6 @@ mod sheet;
 
 pub use pieces::{Branches, Curves, Going, Map, Pieces, Reached, Run};
 pub use product::{Made, Make, PRODUCTS, Product};
-pub use record::{Entry, Record, Written, hash};
-pub use run::{Done, Order, Told, reproduce};
-pub use sheet::{Part, Sheet};
+pub use record::{ProductEntry, Record, Written, hash};
+pub use run::{Done, RunEvent, Selection, reproduce};
+pub use sheet::{Sheet, SheetPart};

@@ -5,10 +5,11 @@ use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Special};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Parameters};
 use crate::integrate::Control;
-use crate::output::Rows;
+use crate::output::RowList;
 use crate::scene::{
-    BranchPlan, Column, Command, LocusPlan, Of, Outcome, Plan, Sampling, SceneFile, SectionColumn,
-    SectionOutcome, SectionPlan, Sink, run, run_section, shipped, shipped_names,
+    BranchKind, BranchPlan, Command, LocusPlan, OutputColumn, Plan, RunOutcome, Sampling,
+    SceneFile, SectionColumn, SectionOutcome, SectionPlan, Sink, run, run_section, shipped,
+    shipped_names,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -21,10 +22,10 @@ use std::time::Duration;
 pub struct Run {
     /// What was run.
     pub plan: Plan,
-    /// In the columns of [`Column::pictured`].
-    pub rows: Rows,
+    /// In the columns of [`OutputColumn::pictured`].
+    pub rows: RowList,
     /// What it came to.
-    pub outcome: Outcome,
+    pub outcome: RunOutcome,
 }
 
 /// The returns of a run.
@@ -33,7 +34,7 @@ pub struct Map {
     /// What was run.
     pub plan: SectionPlan,
     /// In the columns of [`SectionColumn::all`].
-    pub rows: Rows,
+    pub rows: RowList,
     /// What it came to.
     pub outcome: SectionOutcome,
 }
@@ -220,9 +221,13 @@ impl<'a> Pieces<'a> {
             picture: true,
             ..plan
         };
-        let columns = Column::pictured(plan.system.interfaces);
+        let columns = OutputColumn::pictured(plan.system.interfaces);
         let voice = self.voice(name, "a run in time");
-        let mut kept = self.keep(columns.iter().map(Column::name).collect(), true, &voice);
+        let mut kept = self.keep(
+            columns.iter().map(OutputColumn::name).collect(),
+            true,
+            &voice,
+        );
         let outcome = run(&plan, &mut kept)?;
         self.ended(&outcome.failure)?;
         let rows = kept.rows;
@@ -255,8 +260,8 @@ impl<'a> Pieces<'a> {
         let voice = self.voice(
             name,
             match plan.of {
-                Of::Equilibria => "branches of equilibria",
-                Of::Orbits => "branches of orbits",
+                BranchKind::Equilibria => "branches of equilibria",
+                BranchKind::Orbits => "branches of orbits",
             },
         );
         voice.says(Reached::Points(0));
@@ -309,7 +314,7 @@ impl<'a> Pieces<'a> {
     fn keep<'b>(&'b self, columns: Vec<String>, pictured: bool, voice: &'b Voice<'b>) -> Kept<'b> {
         voice.says(Reached::Percent(0));
         Kept {
-            rows: Rows::new(columns),
+            rows: RowList::new(columns),
             pictured,
             stop: self.stop,
             voice,
@@ -372,7 +377,7 @@ impl Voice<'_> {
 
 /// Keeps what a run yields.
 struct Kept<'a> {
-    rows: Rows,
+    rows: RowList,
     /// Points of the picture are kept and not rows.
     pictured: bool,
     stop: &'a AtomicBool,

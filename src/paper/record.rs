@@ -19,12 +19,12 @@ pub struct Record {
     /// What made it.
     pub machine: BTreeMap<String, String>,
     /// By the product's name.
-    pub products: BTreeMap<String, Entry>,
+    pub products: BTreeMap<String, ProductEntry>,
 }
 
 /// One product.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct ProductEntry {
     /// Scenes, program and numerics in one number: where it differs, the product is out of date.
     pub key: String,
     /// How it was computed.

@@ -1,7 +1,7 @@
 //! The report: one page of all that lies complete in the directory, made of the files themselves.
 
 use super::product::{Make, PRODUCTS, Product};
-use super::record::{Entry, Record};
+use super::record::{ProductEntry, Record};
 use crate::error::Result;
 use crate::output::Head;
 use crate::output::page::{Figure, FileRow, Page, Score, Table, percent};
@@ -124,7 +124,7 @@ fn manifest(record: &Record) -> Vec<(String, String)> {
     manifest
 }
 
-fn figure(dir: &Path, product: &Product, entry: &Entry) -> Figure {
+fn figure(dir: &Path, product: &Product, entry: &ProductEntry) -> Figure {
     let scenes = product.scenes.iter().map(|scene| {
         let text = shipped(scene).unwrap_or_default();
         (format!("{scene}.toml"), text.to_owned())

@@ -4,7 +4,7 @@
 use super::clock::timed;
 use super::pieces::{Going, Pieces};
 use super::product::{Made, Make, Product};
-use super::record::{self, Entry, Record, Written};
+use super::record::{self, ProductEntry, Record, Written};
 use super::{report, scorecard};
 use crate::error::{Error, Result};
 use crate::output::{Place, write_whole};
@@ -28,7 +28,7 @@ const LONG: &[&str] = &[
 
 /// What is to be made.
 #[derive(Debug, Clone)]
-pub struct Order {
+pub struct Selection {
     /// The directory.
     pub out: PathBuf,
     /// The products, in the order of the paper.
@@ -50,7 +50,7 @@ pub struct Order {
 
 /// What happens on the way.
 #[derive(Debug, Clone, Copy)]
-pub enum Told<'a> {
+pub enum RunEvent<'a> {
     /// What will be made; the others stand.
     Begun {
         /// So many products.
@@ -82,9 +82,9 @@ pub struct Done {
 /// # Errors
 /// [`Error::File`] if the directory can't be written; of products, see [`Done::failed`].
 pub fn reproduce(
-    order: &Order,
+    order: &Selection,
     stop: &AtomicBool,
-    told: &(dyn Fn(Told<'_>) + Sync),
+    told: &(dyn Fn(RunEvent<'_>) + Sync),
 ) -> Result<Done> {
     let failed = |error: std::io::Error| file_error("create", &order.out, error);
     std::fs::create_dir_all(&order.out).map_err(failed)?;
@@ -112,11 +112,11 @@ pub fn reproduce(
         }
     }
     let scenes = scenes(&wanted);
-    told(Told::Begun {
+    told(RunEvent::Begun {
         products: wanted.len(),
         pieces: scenes.len(),
     });
-    let hears = |going: Going<'_>| told(Told::Piece(going));
+    let hears = |going: Going<'_>| told(RunEvent::Piece(going));
     let workshop = Workshop {
         order,
         stop,
@@ -187,9 +187,9 @@ fn scenes(wanted: &[Wanted]) -> Vec<&'static str> {
 }
 
 struct Workshop<'a> {
-    order: &'a Order,
+    order: &'a Selection,
     stop: &'a AtomicBool,
-    told: &'a (dyn Fn(Told<'_>) + Sync),
+    told: &'a (dyn Fn(RunEvent<'_>) + Sync),
     pieces: Pieces<'a>,
     record: Mutex<Record>,
     done: Mutex<Done>,
@@ -221,7 +221,7 @@ impl Workshop<'_> {
 
     fn make(&self, wanted: &Wanted) {
         let product = wanted.product;
-        (self.told)(Told::Making(product));
+        (self.told)(RunEvent::Making(product));
         let made = self.contents(product).and_then(|contents| {
             self.pieces.going_on()?;
             let pieces = product
@@ -240,7 +240,7 @@ impl Workshop<'_> {
         match made {
             Ok(seconds) => {
                 done.made.push((product, seconds));
-                (self.told)(Told::Made(product, seconds));
+                (self.told)(RunEvent::Made(product, seconds));
             }
             Err(error) => done.failed.push((product, error)),
         }
@@ -298,7 +298,7 @@ impl Workshop<'_> {
             write(&self.order.out.join(&name), &bytes)?;
             written.push(Written::new(name, &bytes));
         }
-        let entry = Entry {
+        let entry = ProductEntry {
             key: wanted.key.clone(),
             method: contents.method,
             seconds,

@@ -3,20 +3,20 @@
 use super::pieces::{Branches, Curves, Map, Run};
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
-use crate::output::{Cell, CsvRows, RowWriter, Rows};
-use crate::scene::{Of, Units};
+use crate::output::{Cell, CsvRows, RowList, RowWriter};
+use crate::scene::{BranchKind, Units};
 use crate::views::{self, Column, branch_columns, locus_columns, special_columns};
 
 /// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Sheet {
     /// From top to bottom.
-    pub parts: Vec<Part>,
+    pub parts: Vec<SheetPart>,
 }
 
 /// A set of rows with equal columns.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Part {
+pub struct SheetPart {
     /// What it is.
     pub name: String,
     /// The names of its columns.
@@ -33,7 +33,7 @@ impl Sheet {
 
     /// Adds a set of rows.
     pub fn add(&mut self, name: impl Into<String>, columns: &[&str], rows: Vec<Vec<Cell>>) {
-        self.parts.push(Part {
+        self.parts.push(SheetPart {
             name: name.into(),
             columns: columns.iter().map(|&column| column.to_owned()).collect(),
             rows,
@@ -41,9 +41,9 @@ impl Sheet {
     }
 
     /// Adds rows of numbers as they are.
-    pub fn add_numbers(&mut self, name: impl Into<String>, rows: &Rows) {
+    pub fn add_numbers(&mut self, name: impl Into<String>, rows: &RowList) {
         let cells = |row: &[f64]| row.iter().map(|&x| Cell::Number(x)).collect();
-        self.parts.push(Part {
+        self.parts.push(SheetPart {
             name: name.into(),
             columns: rows.columns.clone(),
             rows: rows.iter().map(cells).collect(),
@@ -63,7 +63,7 @@ impl Sheet {
     /// Adds branches, in the columns of the command `branch`, and their special points.
     pub fn add_branches(&mut self, name: &str, branches: &Branches) {
         let plan = &branches.plan;
-        let columns = branch_columns(plan.of == Of::Orbits, plan.system.interfaces);
+        let columns = branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces);
         self.add_rows(name.into(), &columns, &branches.rows, &plan.system.units);
         self.add_special(name, &branches.special, &plan.system.units);
     }
@@ -83,7 +83,7 @@ impl Sheet {
     fn add_rows<R>(&mut self, name: String, columns: &[Column<R>], rows: &[R], units: &Units) {
         let names = views::names(columns, false);
         let cells = |row| views::cells(columns, row, units, false);
-        self.parts.push(Part {
+        self.parts.push(SheetPart {
             name,
             columns: names.into_iter().map(|(name, _)| name).collect(),
             rows: rows.iter().map(cells).collect(),

@@ -4,31 +4,33 @@ use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{BranchRequest, BranchRow, Parameter, Seen, equilibria, orbits, within};
+use crate::bifurcation::{
+    BranchRequest, BranchRow, EventObserver, Parameter, equilibria, orbits, within,
+};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 use serde_json::{Value, json};
 
 /// Of what the branches are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Of {
+pub enum BranchKind {
     /// Steady states.
     Equilibria,
     /// Periodic orbits.
     Orbits,
 }
 
-impl Of {
+impl BranchKind {
     /// What branches there are.
     pub(super) const NAMES: [&'static str; 2] = ["equilibria", "orbits"];
 
     fn named(name: Option<&str>) -> Result<Self> {
         match name {
-            Some("equilibria") => Ok(Of::Equilibria),
-            Some("orbits") => Ok(Of::Orbits),
-            Some(other) => Err(Error::unknown("branch", other, &Of::NAMES)),
+            Some("equilibria") => Ok(BranchKind::Equilibria),
+            Some("orbits") => Ok(BranchKind::Orbits),
+            Some(other) => Err(Error::unknown("branch", other, &BranchKind::NAMES)),
             None => Err(Error::Input(
                 "say what to follow: twinslip branch equilibria, or twinslip branch orbits".into(),
             )),
@@ -37,15 +39,15 @@ impl Of {
 
     fn name(self) -> &'static str {
         match self {
-            Of::Equilibria => "equilibria",
-            Of::Orbits => "orbits",
+            BranchKind::Equilibria => "equilibria",
+            BranchKind::Orbits => "orbits",
         }
     }
 }
 
 /// What varies, with its name and its default range.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Along {
+pub struct BranchParameter {
     /// Which parameter.
     pub parameter: Parameter,
     name: &'static str,
@@ -54,25 +56,25 @@ pub struct Along {
     range: (f64, f64),
 }
 
-impl Along {
+impl BranchParameter {
     /// What may vary.
     pub(super) const NAMES: [&'static str; 2] = ["driving", "stiffness"];
 
     fn named(name: &str) -> Result<Self> {
         match name {
-            "driving" => Ok(Along {
+            "driving" => Ok(BranchParameter {
                 parameter: Parameter::Driving,
                 name: "driving",
                 quantity: Quantity::SlipRate,
                 range: following::DRIVING,
             }),
-            "stiffness" => Ok(Along {
+            "stiffness" => Ok(BranchParameter {
                 parameter: Parameter::Stiffness,
                 name: "stiffness",
                 quantity: Quantity::Stiffness,
                 range: following::STIFFNESS,
             }),
-            other => Err(Error::unknown("along", other, &Along::NAMES)),
+            other => Err(Error::unknown("along", other, &BranchParameter::NAMES)),
         }
     }
 
@@ -106,9 +108,9 @@ impl Along {
 #[derive(Debug, Clone, PartialEq)]
 pub struct BranchPlan {
     /// Of what.
-    pub of: Of,
+    pub of: BranchKind,
     /// What varies.
-    pub along: Along,
+    pub along: BranchParameter,
     /// What slides.
     pub system: System,
     /// What is followed.
@@ -125,13 +127,13 @@ impl BranchPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &BranchOptions) -> Result<Self> {
-        let of = Of::named(options.of.as_deref())?;
-        let along = Along::named(&options.along)?;
+        let of = BranchKind::named(options.of.as_deref())?;
+        let along = BranchParameter::named(&options.along)?;
         let system = System::new(&options.model)?;
         let units = &system.units;
         let ends = along.ends(options, units)?;
         let loading = loading(&system, &along, ends.0)?;
-        let following = Following::new(&options.continuation, of == Of::Orbits)?;
+        let following = Following::new(&options.continuation, of == BranchKind::Orbits)?;
         let out = |x| units.outward(along.quantity, x);
         let at = landings("at", options.at.as_deref(), (along.quantity, units), ends)?;
         let numerics = json!({
@@ -147,7 +149,7 @@ impl BranchPlan {
             "crosscheck": following.second.map(|second| second.name()),
         });
         let request = BranchRequest {
-            slab: Slab {
+            slab: InterfaceSystem {
                 law: system.law,
                 interfaces: system.interfaces,
                 loading,
@@ -177,10 +179,12 @@ impl BranchPlan {
         let out = |x| self.system.units.outward(self.along.quantity, x);
         let (from, to) = self.request.range;
         let method = match self.of {
-            Of::Equilibria => {
+            BranchKind::Equilibria => {
                 "all steady states in closed form or from certain brackets; the characteristic polynomials"
             }
-            Of::Orbits => "taylor, tangents on, multiple shooting; begins at the Hopf points",
+            BranchKind::Orbits => {
+                "taylor, tangents on, multiple shooting; begins at the Hopf points"
+            }
         };
         format!(
             "plan of this command\n{}  range             {} from {:e} to {:e}\n  method            {method}\n{}",
@@ -196,20 +200,20 @@ impl BranchPlan {
     ///
     /// # Errors
     /// Those of the branches.
-    pub fn follow(&self, known: &[usize], seen: Seen<'_>) -> Result<()> {
+    pub fn follow(&self, known: &[usize], seen: EventObserver<'_>) -> Result<()> {
         let request = BranchRequest {
             skip: known.to_vec(),
             ..self.request.clone()
         };
         within(request.max_points, seen, |seen| match self.of {
-            Of::Equilibria => equilibria::branch(&request, seen),
-            Of::Orbits => orbits::branch(&request, seen),
+            BranchKind::Equilibria => equilibria::branch(&request, seen),
+            BranchKind::Orbits => orbits::branch(&request, seen),
         })
     }
 }
 
 /// V_H and K; what varies begins at `from` and must not be given.
-fn loading(system: &System, along: &Along, from: f64) -> Result<Loading> {
+fn loading(system: &System, along: &BranchParameter, from: f64) -> Result<Loading> {
     let twice = |given: Option<f64>| match given {
         None => Ok(()),
         Some(_) => Err(Error::Input(format!(

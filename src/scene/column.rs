@@ -33,7 +33,7 @@ impl Instant {
 
 /// One column of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Column {
+pub enum OutputColumn {
     /// `time`
     Time,
     /// `stress`
@@ -48,15 +48,15 @@ pub enum Column {
     Slip(usize),
 }
 
-impl Column {
+impl OutputColumn {
     /// All columns of a system of one or two interfaces, in the order of the output.
-    pub fn all(interfaces: usize) -> Vec<Column> {
-        let mut all = vec![Column::Time, Column::Stress];
+    pub fn all(interfaces: usize) -> Vec<OutputColumn> {
+        let mut all = vec![OutputColumn::Time, OutputColumn::Stress];
         for column in [
-            Column::State,
-            Column::LogState,
-            Column::SlipRate,
-            Column::Slip,
+            OutputColumn::State,
+            OutputColumn::LogState,
+            OutputColumn::SlipRate,
+            OutputColumn::Slip,
         ] {
             all.extend((0..interfaces).map(column));
         }
@@ -64,24 +64,29 @@ impl Column {
     }
 
     /// The columns that a picture shows.
-    pub fn pictured(interfaces: usize) -> Vec<Column> {
-        let shown = |column: &Column| !matches!(column, Column::LogState(_) | Column::Slip(_));
-        Column::all(interfaces).into_iter().filter(shown).collect()
+    pub fn pictured(interfaces: usize) -> Vec<OutputColumn> {
+        let shown = |column: &OutputColumn| {
+            !matches!(column, OutputColumn::LogState(_) | OutputColumn::Slip(_))
+        };
+        OutputColumn::all(interfaces)
+            .into_iter()
+            .filter(shown)
+            .collect()
     }
 
     /// The columns of a comma-separated list of names.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a name that is none, with the nearest that is one.
-    pub fn listed(names: &str, interfaces: usize) -> Result<Vec<Column>> {
-        let all = Column::all(interfaces);
+    pub fn listed(names: &str, interfaces: usize) -> Result<Vec<OutputColumn>> {
+        let all = OutputColumn::all(interfaces);
         names
             .split(',')
             .map(str::trim)
             .map(|name| {
                 let found = all.iter().copied().find(|column| column.name() == name);
                 found.ok_or_else(|| {
-                    let known: Vec<String> = all.iter().map(Column::name).collect();
+                    let known: Vec<String> = all.iter().map(OutputColumn::name).collect();
                     let known: Vec<&str> = known.iter().map(String::as_str).collect();
                     Error::unknown("columns", name, &known)
                 })
@@ -92,42 +97,44 @@ impl Column {
     /// The name in CSV and JSON.
     pub fn name(&self) -> String {
         match self {
-            Column::Time => "time".into(),
-            Column::Stress => "stress".into(),
-            Column::State(i) => format!("state_{}", i + 1),
-            Column::LogState(i) => format!("log_state_{}", i + 1),
-            Column::SlipRate(i) => format!("slip_rate_{}", i + 1),
-            Column::Slip(i) => format!("slip_{}", i + 1),
+            OutputColumn::Time => "time".into(),
+            OutputColumn::Stress => "stress".into(),
+            OutputColumn::State(i) => format!("state_{}", i + 1),
+            OutputColumn::LogState(i) => format!("log_state_{}", i + 1),
+            OutputColumn::SlipRate(i) => format!("slip_rate_{}", i + 1),
+            OutputColumn::Slip(i) => format!("slip_{}", i + 1),
         }
     }
 
     /// What it measures.
     pub fn quantity(&self) -> Quantity {
         match self {
-            Column::Time => Quantity::Time,
-            Column::Stress => Quantity::Stress,
-            Column::State(_) => Quantity::State,
-            Column::LogState(_) => Quantity::LogState,
-            Column::SlipRate(_) => Quantity::SlipRate,
-            Column::Slip(_) => Quantity::Length,
+            OutputColumn::Time => Quantity::Time,
+            OutputColumn::Stress => Quantity::Stress,
+            OutputColumn::State(_) => Quantity::State,
+            OutputColumn::LogState(_) => Quantity::LogState,
+            OutputColumn::SlipRate(_) => Quantity::SlipRate,
+            OutputColumn::Slip(_) => Quantity::Length,
         }
     }
 
     fn value(&self, law: &AnyLaw, units: &Units, at: &Instant) -> f64 {
         let x = match *self {
-            Column::Time => at.time,
-            Column::Stress => at.stress,
-            Column::State(i) => at.log_state[i].exp(),
-            Column::LogState(i) => at.log_state[i],
-            Column::SlipRate(i) => law.slip_rate(law.activation(at.stress), at.log_state[i].exp()),
-            Column::Slip(i) => at.slip[i],
+            OutputColumn::Time => at.time,
+            OutputColumn::Stress => at.stress,
+            OutputColumn::State(i) => at.log_state[i].exp(),
+            OutputColumn::LogState(i) => at.log_state[i],
+            OutputColumn::SlipRate(i) => {
+                law.slip_rate(law.activation(at.stress), at.log_state[i].exp())
+            }
+            OutputColumn::Slip(i) => at.slip[i],
         };
         units.outward(self.quantity(), x)
     }
 }
 
 /// Fills a row with the columns at an instant, in the user's units.
-pub(super) fn fill(row: &mut Vec<f64>, columns: &[Column], system: &System, at: &Instant) {
+pub(super) fn fill(row: &mut Vec<f64>, columns: &[OutputColumn], system: &System, at: &Instant) {
     row.clear();
     row.extend(
         columns

@@ -42,7 +42,7 @@ pub enum Command {
 
 #[derive(Debug, Parser)]
 #[command(name = "twinslip")]
-struct Line {
+struct SceneLine {
     #[command(subcommand)]
     command: Command,
 }
@@ -65,7 +65,7 @@ impl Command {
 
     /// The command line that scene files are read against.
     pub fn program() -> clap::Command {
-        Line::command()
+        SceneLine::command()
     }
 
     /// A scene's command line, parsed like one that was typed; flags in `replaced` are left out, and those in `added` are put in.
@@ -76,7 +76,7 @@ impl Command {
         let mut arguments = vec!["twinslip".to_owned()];
         arguments.extend(scene.arguments(replaced));
         arguments.extend(added.iter().cloned());
-        let line = Line::try_parse_from(arguments).map_err(|error| {
+        let line = SceneLine::try_parse_from(arguments).map_err(|error| {
             // The first line is the sentence; what follows is advice on flags, which a scene does not have.
             let text = error.to_string();
             let sentence = text.lines().next().unwrap_or_default();

@@ -1,8 +1,8 @@
 //! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
 
-use super::branch::{Along, Of};
+use super::branch::{BranchKind, BranchParameter};
 use super::following::SYMMETRIES;
-use super::locus::Curve;
+use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use crate::bifurcation::MAX_POINTS;
 use crate::integrate::Choice;
@@ -36,7 +36,7 @@ pub struct ContinuationOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct BranchOptions {
     /// What is followed: equilibria or orbits; in a scene file the key `of`
-    #[arg(value_name = "equilibria|orbits", value_parser = Names::of(Of::NAMES), hide_possible_values = true)]
+    #[arg(value_name = "equilibria|orbits", value_parser = Names::of(BranchKind::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
     #[command(flatten)]
@@ -46,7 +46,7 @@ pub struct BranchOptions {
         long,
         value_name = "PARAMETER",
         default_value = "driving",
-        value_parser = Names::of(Along::NAMES),
+        value_parser = Names::of(BranchParameter::NAMES),
         hide_possible_values = true,
         help_heading = "Branch"
     )]
@@ -97,7 +97,7 @@ pub struct BranchOptions {
 pub struct LocusOptions {
     /// The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-pitchfork, orbit-saddle-node,
     /// period-doubling or torus of periodic orbits; in a scene file the key `of`
-    #[arg(value_name = "BIFURCATION", value_parser = Names::of(Curve::NAMES), hide_possible_values = true)]
+    #[arg(value_name = "BIFURCATION", value_parser = Names::of(CurveChoice::NAMES), hide_possible_values = true)]
     pub of: Option<String>,
     /// What slides; both V_H and K vary and are not given.
     #[command(flatten)]

@@ -1,7 +1,7 @@
 //! The global error at the end of a run, from a second one.
 
 use super::plan::Plan;
-use super::run::{Outcome, Sink};
+use super::run::{RunOutcome, Sink};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances};
@@ -60,7 +60,7 @@ pub(super) fn estimate<const N: usize>(
     field: &dyn VectorField<N>,
     y0: &State<N>,
     end: &State<N>,
-    outcome: &mut Outcome,
+    outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<()> {
     let mut integrator = companion.integrator::<N>(plan.max_steps)?;
@@ -105,7 +105,7 @@ fn rounding_of_start<const N: usize>(
     field: &dyn VectorField<N>,
     y0: &State<N>,
     end: &State<N>,
-    outcome: &mut Outcome,
+    outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Option<f64>> {
     let mut integrator =
@@ -136,7 +136,7 @@ pub(super) fn timed<const N: usize>(
     plan: &Plan,
     field: &dyn VectorField<N>,
     y0: &State<N>,
-    outcome: &mut Outcome,
+    outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Error> {
     let companion = Companion::of(plan.tolerances, false);

@@ -4,16 +4,16 @@ use super::continuation::LocusOptions;
 use super::following::{self, Following, landings, number, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{LocusKind, LocusRequest, Seen, equilibria, orbits, within};
+use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits, within};
 use crate::error::{Error, Result};
 use crate::model::Loading;
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 use crate::sweep::fields;
 use serde_json::{Value, json};
 
 /// A curve that can be asked for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Curve {
+pub struct CurveChoice {
     /// As the command line has it.
     pub name: &'static str,
     /// As a picture has it.
@@ -23,8 +23,13 @@ pub struct Curve {
     orbits: bool,
 }
 
-const fn curve(name: &'static str, title: &'static str, kind: LocusKind, orbits: bool) -> Curve {
-    Curve {
+const fn curve(
+    name: &'static str,
+    title: &'static str,
+    kind: LocusKind,
+    orbits: bool,
+) -> CurveChoice {
+    CurveChoice {
         name,
         title,
         kind,
@@ -32,7 +37,7 @@ const fn curve(name: &'static str, title: &'static str, kind: LocusKind, orbits:
     }
 }
 
-const CURVES: [Curve; 7] = [
+const CURVES: [CurveChoice; 7] = [
     curve(
         "pitchfork",
         "pitchforks of equilibria",
@@ -71,7 +76,7 @@ const CURVES: [Curve; 7] = [
 #[derive(Debug, Clone, PartialEq)]
 pub struct LocusPlan {
     /// Of what.
-    pub curve: Curve,
+    pub curve: CurveChoice,
     /// What slides.
     pub system: System,
     /// What is followed.
@@ -82,7 +87,7 @@ pub struct LocusPlan {
     pub numerics: Value,
 }
 
-impl Curve {
+impl CurveChoice {
     /// The names of all.
     pub(super) const NAMES: [&'static str; CURVES.len()] = {
         let mut names = [""; CURVES.len()];
@@ -98,11 +103,11 @@ impl Curve {
         let name = name.ok_or_else(|| {
             Error::Input(format!(
                 "say which bifurcation to follow: twinslip locus followed by one of {}",
-                Curve::NAMES.join(", ")
+                CurveChoice::NAMES.join(", ")
             ))
         })?;
         let found = CURVES.into_iter().find(|curve| curve.name == name);
-        found.ok_or_else(|| Error::unknown("bifurcation", name, &Curve::NAMES))
+        found.ok_or_else(|| Error::unknown("bifurcation", name, &CurveChoice::NAMES))
     }
 }
 
@@ -149,7 +154,7 @@ impl LocusPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LocusOptions) -> Result<Self> {
-        let curve = Curve::named(options.of.as_deref())?;
+        let curve = CurveChoice::named(options.of.as_deref())?;
         not_fixed(options)?;
         let system = System::new(&options.model)?;
         let rates = (Quantity::SlipRate, &system.units);
@@ -168,7 +173,7 @@ impl LocusPlan {
         )?;
         let following = Following::new(&options.continuation, curve.orbits)?;
         let request = LocusRequest {
-            slab: Slab {
+            slab: InterfaceSystem {
                 law: system.law,
                 interfaces: system.interfaces,
                 loading: Loading::new(driving.0, stiffness.0)?,
@@ -234,7 +239,7 @@ impl LocusPlan {
     ///
     /// # Errors
     /// Those of the curves.
-    pub fn follow(&self, known: &[usize], seen: Seen<'_>) -> Result<()> {
+    pub fn follow(&self, known: &[usize], seen: EventObserver<'_>) -> Result<()> {
         let request = LocusRequest {
             skip: known.to_vec(),
             ..self.request.clone()

@@ -45,23 +45,23 @@ mod sweep;
 mod system;
 mod units;
 
-pub use branch::{Along, BranchPlan, Of};
-pub use column::{Column, Instant};
+pub use branch::{BranchKind, BranchParameter, BranchPlan};
+pub use column::{Instant, OutputColumn};
 pub use command::Command;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions};
-pub use event::Event;
+pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use following::Following;
-pub use locus::{Curve, LocusPlan};
+pub use locus::{CurveChoice, LocusPlan};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,
 };
 pub use plan::{Dimension, Plan, Sampling, start, tolerances};
-pub use run::{Outcome, Sink, run};
+pub use run::{RunOutcome, Sink, run};
 pub use section::{
-    Lyapunov, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
+    CheckedExponents, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
 };
 pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};

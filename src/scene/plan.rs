@@ -1,7 +1,7 @@
 //! From options to a plan: what is integrated, in which dimension, and which extras the outputs need. What no output needs
 //! is not in the plan, and so is not done.
 
-use super::column::Column;
+use super::column::OutputColumn;
 use super::estimate::Companion;
 use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
@@ -78,7 +78,7 @@ pub struct Plan {
     /// When there are rows.
     pub sampling: Sampling,
     /// What a row holds.
-    pub columns: Vec<Column>,
+    pub columns: Vec<OutputColumn>,
     /// The threshold of stick-slip events over V_H, where they are asked for.
     pub events: Option<f64>,
     /// Whether the run is drawn, which takes points between the steps and whatever rows are asked for.
@@ -113,8 +113,8 @@ impl Plan {
             .inward(Quantity::Time, positive("until", until)?);
         let sampling = sampling(options, &system, until)?;
         let columns = match &options.columns {
-            Some(names) => Column::listed(names, system.interfaces)?,
-            None => Column::all(system.interfaces),
+            Some(names) => OutputColumn::listed(names, system.interfaces)?,
+            None => OutputColumn::all(system.interfaces),
         };
         let (method, tolerances) = numerics(&options.numerics)?;
         Ok(Plan {
@@ -155,7 +155,11 @@ impl Plan {
 
     /// Whether a column or the events need the slip, and with it a quadrature along every step.
     pub fn needs_slip(&self) -> bool {
-        self.events.is_some() || self.columns.iter().any(|c| matches!(c, Column::Slip(_)))
+        self.events.is_some()
+            || self
+                .columns
+                .iter()
+                .any(|c| matches!(c, OutputColumn::Slip(_)))
     }
 
     /// Whether anything must be seen between start and end.

@@ -1,8 +1,8 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
-use super::column::{Column, Instant, fill};
+use super::column::{Instant, OutputColumn, fill};
 use super::estimate::{estimate, timed};
-use super::event::{Detector, Event};
+use super::event::{Detector, SlipEvent};
 use super::plan::{Dimension, Plan, Sampling};
 use super::slip::{Slips, at, slips};
 use crate::error::{Error, Result};
@@ -18,7 +18,7 @@ const PICTURED: usize = 4;
 pub trait Sink {
     /// A row, in the plan's columns and the user's units.
     fn row(&mut self, row: &[f64]) -> Control;
-    /// A point of the picture, in the columns [`Column::pictured`] and the user's units.
+    /// A point of the picture, in the columns [`OutputColumn::pictured`] and the user's units.
     fn drawn(&mut self, _point: &[f64]) {}
     /// The run has come to this fraction of its time.
     fn reached(&mut self, fraction: f64) -> Control;
@@ -26,11 +26,11 @@ pub trait Sink {
 
 /// What a run came to.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Outcome {
+pub struct RunOutcome {
     /// The last row, in all columns asked for; `None` if a run that nobody watched failed.
     pub last: Option<Vec<f64>>,
     /// The events, dimensionless.
-    pub events: Vec<Event>,
+    pub events: Vec<SlipEvent>,
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
     /// Estimate of the relative global error of the last row, largest of stress and states, not below it; `None` where not
@@ -47,8 +47,8 @@ pub struct Outcome {
 /// Runs a plan.
 ///
 /// # Errors
-/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`Outcome::failure`].
-pub fn run(plan: &Plan, sink: &mut dyn Sink) -> Result<Outcome> {
+/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`RunOutcome::failure`].
+pub fn run(plan: &Plan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     let (law, loading) = (plan.system.law, plan.loading);
     let (tau, [first, second]) = plan.start;
     let y = State::<2>::new(tau, first);
@@ -67,11 +67,11 @@ fn flow<const N: usize>(
     field: &dyn Driven<N>,
     y0: State<N>,
     sink: &mut dyn Sink,
-) -> Result<Outcome> {
+) -> Result<RunOutcome> {
     let mut integrator = plan
         .method
         .integrator::<N>(plan.tolerances, plan.max_steps)?;
-    let mut watch = Watch::new(plan, field, &y0, &mut *sink);
+    let mut watch = RunObserver::new(plan, field, &y0, &mut *sink);
     watch.start();
     let span = (0.0, plan.until);
     let end = if plan.observed() {
@@ -109,7 +109,7 @@ fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorF
 }
 
 /// Sees the steps of a run and makes rows, slips and events of them.
-struct Watch<'a, const N: usize> {
+struct RunObserver<'a, const N: usize> {
     plan: &'a Plan,
     field: &'a dyn Driven<N>,
     sink: &'a mut dyn Sink,
@@ -119,20 +119,20 @@ struct Watch<'a, const N: usize> {
     /// The slips there, in all digits.
     slips: Slips,
     row: Vec<f64>,
-    pictured: Vec<Column>,
+    pictured: Vec<OutputColumn>,
     /// Rows at fixed times made so far.
     sampled: usize,
     stopped: bool,
 }
 
-impl<'a, const N: usize> Watch<'a, N> {
+impl<'a, const N: usize> RunObserver<'a, N> {
     fn new(
         plan: &'a Plan,
         field: &'a dyn Driven<N>,
         y0: &State<N>,
         sink: &'a mut dyn Sink,
     ) -> Self {
-        Watch {
+        RunObserver {
             plan,
             field,
             sink,
@@ -142,7 +142,7 @@ impl<'a, const N: usize> Watch<'a, N> {
             here: Instant::new(0.0, y0, [0.0; 2]),
             slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
-            pictured: Column::pictured(plan.system.interfaces),
+            pictured: OutputColumn::pictured(plan.system.interfaces),
             sampled: 0,
             stopped: false,
         }
@@ -236,7 +236,7 @@ impl<'a, const N: usize> Watch<'a, N> {
         }
     }
 
-    fn finish(mut self, end: &Result<State<N>>) -> Outcome {
+    fn finish(mut self, end: &Result<State<N>>) -> RunOutcome {
         let plan = self.plan;
         let known = end.is_ok() || plan.observed();
         if let Ok(y) = end
@@ -249,7 +249,7 @@ impl<'a, const N: usize> Watch<'a, N> {
             self.emit(&here);
         }
         fill(&mut self.row, &plan.columns, &plan.system, &self.here);
-        Outcome {
+        RunOutcome {
             last: known.then_some(self.row),
             events: self.detector.map_or_else(Vec::new, Detector::into_events),
             work: Work::default(),

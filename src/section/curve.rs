@@ -16,7 +16,7 @@ const ROUNDING: f64 = 1e-7;
 
 /// An invariant curve, or several that are visited in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Curve {
+pub struct InvariantCurve {
     /// How many there are.
     pub curves: usize,
     /// Turns around the centre of one of them per `curves` returns, from 0 to 1/2: the direction depends on which interface is
@@ -65,13 +65,13 @@ pub fn regularity(points: &[[f64; 2]]) -> f64 {
 
 /// The invariant curve on which the points of a planar map lie, if their angles about the centre have a cyclic order that the
 /// map keeps; `None` if not, as for chaos, for curves that bend too much, and for too few points.
-pub fn invariant_curve(points: &[[f64; 2]]) -> Option<Curve> {
+pub fn invariant_curve(points: &[[f64; 2]]) -> Option<InvariantCurve> {
     (1..=MOST_CURVES)
         .take_while(|curves| points.len() / curves >= FEWEST_POINTS)
         .find_map(|curves| {
             let one: Vec<[f64; 2]> = points.iter().step_by(curves).copied().collect();
             let rotation = rotation(&angles(&one)?)?;
-            Some(Curve { curves, rotation })
+            Some(InvariantCurve { curves, rotation })
         })
 }
 

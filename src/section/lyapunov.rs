@@ -13,7 +13,7 @@
 
 use super::curve::weighted_mean;
 use super::rest::newton_step;
-use super::returns::{Record, Return, See, Watching, record};
+use super::returns::{Return, ReturnRecord, See, Watching, record};
 use super::surface::Surface;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
@@ -42,7 +42,7 @@ const EIGENVALUES: f64 = 8.0 * f64::EPSILON;
 
 /// The Lyapunov exponents of a run, in descending order.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spectrum<const N: usize> {
+pub struct LyapunovSpectrum<const N: usize> {
     /// Exponents in one over time, each with an interval of 99 % confidence from block averages and the bias of the run. That of
     /// the flow's own direction is zero; its interval is what the run and the tangents can tell of that.
     pub exponents: [Uncertain; N],
@@ -67,7 +67,7 @@ pub struct Exponents<'a> {
     pub converged: bool,
 }
 
-impl<const N: usize> Spectrum<N> {
+impl<const N: usize> LyapunovSpectrum<N> {
     /// The largest exponent but that along the flow; `None` where there is no other.
     pub fn across_flow(&self) -> Option<Uncertain> {
         let mut others = self.exponents.iter();
@@ -85,7 +85,7 @@ impl<const N: usize> Spectrum<N> {
 
 /// What a part of the run does to the perturbations.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Leg<const N: usize> {
+pub(crate) struct GrowthSegment<const N: usize> {
     pub time: f64,
     /// Logarithms of the growth of the orthogonal perturbations, along the flow first.
     pub growth: [f64; N],
@@ -103,8 +103,8 @@ pub(crate) struct Leg<const N: usize> {
 /// of [`Taylor::derivatives`].
 pub fn spectrum<const N: usize>(
     field: &dyn VectorField<N>,
-    record: &Record<N>,
-) -> Result<Spectrum<N>> {
+    record: &ReturnRecord<N>,
+) -> Result<LyapunovSpectrum<N>> {
     let found = spectrum_watched(field, record, &mut |_| Control::Continue)?;
     Ok(found.expect("nobody stops it"))
 }
@@ -121,7 +121,7 @@ pub fn record_finely<const N: usize>(
     watching: &Watching,
     max_steps: usize,
     see: See<'_, N>,
-) -> Result<Record<N>> {
+) -> Result<ReturnRecord<N>> {
     let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, max_steps)?;
     let watching = Watching {
         skip: 0,
@@ -135,9 +135,9 @@ pub fn record_finely<const N: usize>(
 /// As [`spectrum`]; `see` is told how far it has come, after each return, and may stop it: then there is none.
 pub(crate) fn spectrum_watched<const N: usize>(
     field: &dyn VectorField<N>,
-    record: &Record<N>,
+    record: &ReturnRecord<N>,
     see: &mut dyn FnMut(f64) -> Control,
-) -> Result<Option<Spectrum<N>>> {
+) -> Result<Option<LyapunovSpectrum<N>>> {
     if record.returns.len() < FEWEST_FOR_EXPONENTS {
         return Err(Error::parameter(
             "returns",
@@ -145,16 +145,16 @@ pub(crate) fn spectrum_watched<const N: usize>(
             "at least 60 for exponents, which are means with an uncertainty",
         ));
     }
-    let Some(legs) = legs(field, record, see)? else {
+    let Some(segments) = segments(field, record, see)? else {
         return Ok(None);
     };
-    let aligned = (ALIGNMENT * legs.len() as f64) as usize;
+    let aligned = (ALIGNMENT * segments.len() as f64) as usize;
     let relative = SYSTEMATIC.max(PER_ACCURACY * record.accuracy);
     // The flow's own growth is that of |f|, which the ends of the run alone decide.
     let speed = |point: &Return<N>| field.f(&point.state).norm().ln();
     let returns = &record.returns[aligned..];
     let gained = speed(&returns[returns.len() - 1]) - speed(&returns[0]);
-    Ok(Some(summary(&legs[aligned..], relative, gained)))
+    Ok(Some(summary(&segments[aligned..], relative, gained)))
 }
 
 /// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order. They err by
@@ -203,20 +203,20 @@ fn rounding<const N: usize>(matrix: &Jacobian<N>, values: &[Complex<f64>], i: us
 }
 
 /// From each return to the next; `None` if it was stopped.
-fn legs<const N: usize>(
+fn segments<const N: usize>(
     field: &dyn VectorField<N>,
-    record: &Record<N>,
+    record: &ReturnRecord<N>,
     see: &mut dyn FnMut(f64) -> Control,
-) -> Result<Option<Vec<Leg<N>>>> {
+) -> Result<Option<Vec<GrowthSegment<N>>>> {
     let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let start = record.returns[0];
     let mut frame = beginning(&field.f(&start.state));
     orthonormalise(&mut frame, start.time)?;
     let mut points = record.waypoints.iter().peekable();
-    let mut legs = Vec::with_capacity(record.returns.len());
+    let mut segments = Vec::with_capacity(record.returns.len());
     for pair in record.returns.windows(2) {
         let (mut here, end) = (pair[0], pair[1]);
-        let mut leg = Leg {
+        let mut segment = GrowthSegment {
             time: end.time - here.time,
             growth: [0.0; N],
             log_determinant: 0.0,
@@ -225,16 +225,16 @@ fn legs<const N: usize>(
             let between = |point: &&Return<N>| point.time < end.time;
             let next = points.next_if(between).copied().unwrap_or(end);
             if next.time > here.time {
-                carry(field, &mut taylor, (&here, &next), &mut frame, &mut leg)?;
+                carry(field, &mut taylor, (&here, &next), &mut frame, &mut segment)?;
                 here = next;
             }
         }
-        legs.push(leg);
-        if see(legs.len() as f64 / record.returns.len() as f64) == Control::Stop {
+        segments.push(segment);
+        if see(segments.len() as f64 / record.returns.len() as f64) == Control::Stop {
             return Ok(None);
         }
     }
-    Ok(Some(legs))
+    Ok(Some(segments))
 }
 
 /// The flow's direction, and others that lie in no subspace that a symmetry might keep.
@@ -245,13 +245,13 @@ fn beginning<const N: usize>(f: &State<N>) -> Jacobian<N> {
     frame
 }
 
-/// Carries the perturbations over a piece of a leg.
+/// Carries the perturbations over a piece of a segment.
 fn carry<const N: usize>(
     field: &dyn VectorField<N>,
     taylor: &mut Taylor,
     (here, next): (&Return<N>, &Return<N>),
     frame: &mut Jacobian<N>,
-    leg: &mut Leg<N>,
+    segment: &mut GrowthSegment<N>,
 ) -> Result<()> {
     let span = (0.0, next.time - here.time);
     let (end, tangent) = taylor.derivatives(field, span, &here.state, false)?;
@@ -261,10 +261,10 @@ fn carry<const N: usize>(
     frame.set_column(0, &field.f(&end));
     let mut growth = orthonormalise(frame, next.time)?;
     growth[0] = along;
-    for (sum, growth) in leg.growth.iter_mut().zip(growth) {
+    for (sum, growth) in segment.growth.iter_mut().zip(growth) {
         *sum += growth;
     }
-    leg.log_determinant += tangent.log_determinant;
+    segment.log_determinant += tangent.log_determinant;
     Ok(())
 }
 
@@ -297,28 +297,37 @@ fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[
 
 /// The exponents, with what these growths err by in terms of the largest of them, and what |f| gained, in the logarithm: what
 /// the growth along the flow differs from that by is the bias of the run.
-pub(crate) fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f64) -> Spectrum<N> {
-    let time: f64 = legs.iter().map(|leg| leg.time).sum();
-    let growth = |leg: &Leg<N>| leg.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
-    let size = legs.iter().map(growth).sum::<f64>() / time;
-    let along_flow = legs.iter().map(|leg| leg.growth[0]).sum::<f64>() / time;
+pub(crate) fn summary<const N: usize>(
+    segments: &[GrowthSegment<N>],
+    relative: f64,
+    gained: f64,
+) -> LyapunovSpectrum<N> {
+    let time: f64 = segments.iter().map(|segment| segment.time).sum();
+    let growth =
+        |segment: &GrowthSegment<N>| segment.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+    let size = segments.iter().map(growth).sum::<f64>() / time;
+    let along_flow = segments
+        .iter()
+        .map(|segment| segment.growth[0])
+        .sum::<f64>()
+        / time;
     let systematic = relative * size + BIAS * (along_flow - gained / time).abs();
     let mut converged = true;
     let mut exponents: [Uncertain; N] = std::array::from_fn(|i| {
         if i == 0 && N > 1 {
             return Uncertain::new(along_flow, gained.abs() / time + systematic);
         }
-        let of = |leg: &Leg<N>| {
+        let of = |segment: &GrowthSegment<N>| {
             if i + 1 == N {
-                leg.log_determinant - leg.growth[..i].iter().sum::<f64>()
+                segment.log_determinant - segment.growth[..i].iter().sum::<f64>()
             } else {
-                leg.growth[i]
+                segment.growth[i]
             }
         };
-        let blocks = block_means(legs, of);
+        let blocks = block_means(segments, of);
         let (value, interval) = mean_with_interval(&blocks);
         // Blocks as long as a beat of a torus all err alike; the plain mean errs otherwise.
-        let plain = legs.iter().map(of).sum::<f64>() / time;
+        let plain = segments.iter().map(of).sum::<f64>() / time;
         let uncertainty = interval + (plain - value).abs() + systematic;
         let (first, second) = blocks.split_at(BLOCKS / 2);
         let drift = (mean_with_interval(first).0 - mean_with_interval(second).0).abs();
@@ -328,29 +337,39 @@ pub(crate) fn summary<const N: usize>(legs: &[Leg<N>], relative: f64, gained: f6
     });
     if N > 1 {
         // The sum of all is the mean of the trace, exactly.
-        let trace = legs.iter().map(|leg| leg.log_determinant).sum::<f64>() / time;
+        let trace = segments
+            .iter()
+            .map(|segment| segment.log_determinant)
+            .sum::<f64>()
+            / time;
         let others: f64 = exponents[..N - 1].iter().map(|x| x.value).sum();
         let last = &mut exponents[N - 1];
         last.uncertainty += (trace - others - last.value).abs();
         last.value = trace - others;
     }
     exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
-    let defect = |leg: &Leg<N>| leg.growth.iter().sum::<f64>() - leg.log_determinant;
-    Spectrum {
+    let defect =
+        |segment: &GrowthSegment<N>| segment.growth.iter().sum::<f64>() - segment.log_determinant;
+    LyapunovSpectrum {
         exponents,
         converged,
         along_flow,
-        liouville_defect: legs.iter().map(defect).sum::<f64>() / time,
+        liouville_defect: segments.iter().map(defect).sum::<f64>() / time,
         time,
     }
 }
 
-/// The rates over blocks of as many legs, with what is left over in the last.
-fn block_means<const N: usize>(legs: &[Leg<N>], of: impl Fn(&Leg<N>) -> f64) -> Vec<f64> {
+/// The rates over blocks of as many segments, with what is left over in the last.
+fn block_means<const N: usize>(
+    segments: &[GrowthSegment<N>],
+    of: impl Fn(&GrowthSegment<N>) -> f64,
+) -> Vec<f64> {
     (0..BLOCKS)
         .map(|block| {
-            let block = &legs[block * legs.len() / BLOCKS..(block + 1) * legs.len() / BLOCKS];
-            weighted_mean(block.iter().map(&of)) / weighted_mean(block.iter().map(|leg| leg.time))
+            let block =
+                &segments[block * segments.len() / BLOCKS..(block + 1) * segments.len() / BLOCKS];
+            weighted_mean(block.iter().map(&of))
+                / weighted_mean(block.iter().map(|segment| segment.time))
         })
         .collect()
 }

@@ -9,17 +9,17 @@ mod rest;
 mod returns;
 mod surface;
 
-pub use curve::{Curve, invariant_curve, regularity, weighted_mean};
-pub(crate) use lyapunov::{ALIGNMENT, Leg, spectrum_watched, summary};
+pub use curve::{InvariantCurve, invariant_curve, regularity, weighted_mean};
+pub(crate) use lyapunov::{ALIGNMENT, GrowthSegment, spectrum_watched, summary};
 pub use lyapunov::{
-    Exponents, FEWEST_FOR_EXPONENTS, Spectrum, at_equilibrium, record_finely, spectrum,
+    Exponents, FEWEST_FOR_EXPONENTS, LyapunovSpectrum, at_equilibrium, record_finely, spectrum,
 };
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
-pub(crate) use periodicity::{Search, reduce};
-pub use regime::{FEWEST_RETURNS, Regime, Verdict, verdict};
+pub(crate) use periodicity::{PeriodicSearch, reduce};
+pub use regime::{FEWEST_RETURNS, Regime, RegimeVerdict, verdict};
 pub(crate) use regime::{IRREGULAR, REGULAR, aperiodic, points};
 pub(crate) use rest::{equilibrium_near, growth, newton_step};
 pub(crate) use returns::{AT_START, Recorder, Watched};
-pub use returns::{Ended, Record, Return, See, Watching, record, usual_patience};
-pub use surface::{Chart, Landing, Surface, half_driving_stress, return_map};
+pub use returns::{Ended, Return, ReturnRecord, See, Watching, record, usual_patience};
+pub use surface::{Landing, SeriesVariables, Surface, half_driving_stress, return_map};
 pub(crate) use surface::{STEPS_OF_PIECE, derivative_along};

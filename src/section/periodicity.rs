@@ -5,7 +5,7 @@
 //! point must attract, and the returns must have come closer to it.
 
 use super::rest::equilibrium_near;
-use super::returns::{Record, Return};
+use super::returns::{Return, ReturnRecord};
 use super::surface::{Landing, Surface, return_map};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
@@ -61,7 +61,7 @@ pub struct Periodic<const N: usize> {
 pub fn periodicity<const N: usize>(
     field: &dyn VectorField<N>,
     surface: &Surface<N>,
-    record: &Record<N>,
+    record: &ReturnRecord<N>,
 ) -> Result<Option<Periodic<N>>> {
     let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let returns = &record.returns[..];
@@ -74,9 +74,10 @@ pub fn periodicity<const N: usize>(
         // No need to ask where they neither are near nor come nearer; only the search takes time.
         let closing = near < arrived || near < SHRUNK.sqrt() * before.fold(0.0, f64::max);
         if near < NEAR && closing {
-            let found = Search::new(field, surface, &mut taylor, returns, (record.accuracy, q))
-                .point()
-                .filter(Periodic::attracts);
+            let found =
+                PeriodicSearch::new(field, surface, &mut taylor, returns, (record.accuracy, q))
+                    .point()
+                    .filter(Periodic::attracts);
             if found.is_some() {
                 return Ok(found);
             }
@@ -93,7 +94,7 @@ impl<const N: usize> Periodic<N> {
 }
 
 /// The search for a q-periodic point, attracting or not, that returns have come closer to or arrived at.
-pub(crate) struct Search<'a, const N: usize> {
+pub(crate) struct PeriodicSearch<'a, const N: usize> {
     field: &'a dyn VectorField<N>,
     surface: &'a Surface<N>,
     taylor: &'a mut Taylor,
@@ -109,7 +110,7 @@ pub(crate) struct Search<'a, const N: usize> {
     pub shrunk: f64,
 }
 
-impl<'a, const N: usize> Search<'a, N> {
+impl<'a, const N: usize> PeriodicSearch<'a, N> {
     /// Near the last of these returns, which are good to `accuracy` times a thousand; and q.
     pub fn new(
         field: &'a dyn VectorField<N>,
@@ -118,7 +119,7 @@ impl<'a, const N: usize> Search<'a, N> {
         returns: &'a [Return<N>],
         (accuracy, q): (f64, usize),
     ) -> Self {
-        Search {
+        PeriodicSearch {
             field,
             surface,
             taylor,

@@ -1,9 +1,9 @@
 //! What a run has settled on: an equilibrium, a periodic orbit, a torus, chaos; or that it cannot be told.
 
-use super::curve::{Curve, invariant_curve, regularity};
+use super::curve::{InvariantCurve, invariant_curve, regularity};
 use super::lyapunov::Exponents;
 use super::periodicity::{Periodic, periodicity};
-use super::returns::{Ended, Record, Return};
+use super::returns::{Ended, Return, ReturnRecord};
 use super::surface::Surface;
 use crate::error::Result;
 use crate::field::VectorField;
@@ -60,20 +60,20 @@ impl Regime {
 
 /// A regime, with what it rests on.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Verdict<const N: usize> {
+pub struct RegimeVerdict<const N: usize> {
     /// The regime.
     pub regime: Regime,
     /// The periodic point that the returns close in on.
     pub periodic: Option<Periodic<N>>,
     /// The closed curves on which the returns of a torus lie, where they bend little enough to be seen.
-    pub curve: Option<Curve>,
+    pub curve: Option<InvariantCurve>,
     /// Why nothing can be said, and what to try.
     pub why: Option<&'static str>,
 }
 
-impl<const N: usize> Verdict<N> {
+impl<const N: usize> RegimeVerdict<N> {
     fn of(regime: Regime) -> Self {
-        Verdict {
+        RegimeVerdict {
             regime,
             periodic: None,
             curve: None,
@@ -82,7 +82,7 @@ impl<const N: usize> Verdict<N> {
     }
 
     fn undecided(why: &'static str) -> Self {
-        Verdict {
+        RegimeVerdict {
             why: Some(why),
             ..Self::of(Regime::Undecided)
         }
@@ -98,26 +98,26 @@ impl<const N: usize> Verdict<N> {
 pub fn verdict<const N: usize>(
     field: &dyn VectorField<N>,
     surface: &Surface<N>,
-    record: &Record<N>,
+    record: &ReturnRecord<N>,
     exponents: Option<Exponents<'_>>,
-) -> Result<Verdict<N>> {
+) -> Result<RegimeVerdict<N>> {
     if let Ended::Steady { .. } = record.ended {
-        return Ok(Verdict::of(Regime::Steady));
+        return Ok(RegimeVerdict::of(Regime::Steady));
     }
     let returns = &record.returns;
     if let Some(periodic) = periodicity(field, surface, record)? {
-        return Ok(Verdict {
+        return Ok(RegimeVerdict {
             periodic: Some(periodic),
-            ..Verdict::of(Regime::Periodic)
+            ..RegimeVerdict::of(Regime::Periodic)
         });
     }
     if N != 3 {
-        return Ok(Verdict::undecided(
+        return Ok(RegimeVerdict::undecided(
             "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more",
         ));
     }
     if returns.len() < FEWEST_RETURNS {
-        return Ok(Verdict::undecided(
+        return Ok(RegimeVerdict::undecided(
             "fewer than 200 returns that do not close in on a periodic point; record more, or skip more",
         ));
     }
@@ -130,7 +130,7 @@ pub(crate) fn aperiodic<const N: usize>(
     returns: &[Return<N>],
     accuracy: f64,
     exponents: Option<Exponents<'_>>,
-) -> Verdict<N> {
+) -> RegimeVerdict<N> {
     let duration = returns[returns.len() - 1].time - returns[0].time;
     let points = points(surface, returns);
     let mut verdict = wandering(&points, (duration, accuracy), exponents);
@@ -145,14 +145,14 @@ fn wandering<const N: usize>(
     points: &[[f64; 2]],
     (duration, accuracy): (f64, f64),
     exponents: Option<Exponents<'_>>,
-) -> Verdict<N> {
+) -> RegimeVerdict<N> {
     let disorder = regularity(points);
     let holds_zero = |x: &Uncertain| x.value.abs() <= x.uncertainty;
     // A run that slowly leaves an equilibrium or an orbit has a positive exponent too, but little comes of it.
     let positive = |x: &Uncertain| (x.value - x.uncertainty) * duration > GROWN;
     if disorder < REGULAR {
         if repeats(points, accuracy) {
-            return Verdict::undecided(
+            return RegimeVerdict::undecided(
                 "the returns repeat; a long period, or one that drowns in the error of the run, cannot be told from a torus: lower --rtol",
             );
         }
@@ -163,31 +163,31 @@ fn wandering<const N: usize>(
         let known = |x: &Uncertain| (x.value.abs() + x.uncertainty) * duration < STAYED;
         let surely = exponents.map(|x| x.values.len() > 1 && x.values[..2].iter().all(known));
         return match (two_vanish, curve) {
-            (Some(true), None) if surely == Some(false) => Verdict::undecided(
+            (Some(true), None) if surely == Some(false) => RegimeVerdict::undecided(
                 "the returns look quasi-periodic on no simple curve, and exponents that may vanish are not known well enough; record more",
             ),
-            (Some(false), _) => Verdict::undecided(
+            (Some(false), _) => RegimeVerdict::undecided(
                 "the returns look quasi-periodic but no second exponent vanishes; record more",
             ),
-            (None, None) => Verdict::undecided(
+            (None, None) => RegimeVerdict::undecided(
                 "the returns look quasi-periodic on no simple curve; the exponents (--lyapunov) may tell",
             ),
-            (Some(true), _) | (None, Some(_)) => Verdict {
+            (Some(true), _) | (None, Some(_)) => RegimeVerdict {
                 curve,
-                ..Verdict::of(Regime::Torus)
+                ..RegimeVerdict::of(Regime::Torus)
             },
         };
     }
     let Some(exponents) = exponents else {
-        return Verdict::undecided(
+        return RegimeVerdict::undecided(
             "the returns are neither periodic nor quasi-periodic; the exponents (--lyapunov) may tell, or skip more",
         );
     };
     if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR
     {
-        return Verdict::of(Regime::Chaotic);
+        return RegimeVerdict::of(Regime::Chaotic);
     }
-    Verdict::undecided(
+    RegimeVerdict::undecided(
         "no exponent is positive beyond its interval, and the returns have not settled; skip and record more",
     )
 }

@@ -77,7 +77,7 @@ pub enum Ended<const N: usize> {
 
 /// What was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Record<const N: usize> {
+pub struct ReturnRecord<const N: usize> {
     /// The returns after those that were let pass.
     pub returns: Vec<Return<N>>,
     /// Points of the run between the first and the last of these, both included, a few steps apart.
@@ -100,9 +100,9 @@ pub fn record<const N: usize>(
     surface: &Surface<N>,
     watching: &Watching,
     see: See<'_, N>,
-) -> Record<N> {
+) -> ReturnRecord<N> {
     if let Some((equilibrium, stable)) = equilibrium_near(field, start, AT_START) {
-        return Record {
+        return ReturnRecord {
             returns: Vec::new(),
             waypoints: Vec::new(),
             ended: Ended::Steady {
@@ -133,7 +133,7 @@ pub fn record<const N: usize>(
     if let Some(last) = recorder.returns.last() {
         waypoints.retain(|point| point.time <= last.time);
     }
-    Record {
+    ReturnRecord {
         returns: recorder.returns,
         waypoints,
         ended,

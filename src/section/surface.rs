@@ -1,4 +1,4 @@
-//! Sections of the phase space by a plane, and the map from the section to itself that a flow makes.
+//! Poincare sections of the phase space by a plane, and the return map from the section to itself that a flow makes.
 //!
 //! The plane lies in the variables x that power series are made in, (tau, psi) for the interfaces, where a crossing is a root
 //! of a polynomial: it is landed on to the last digits, and none is missed. The paper's section is tau = tau_ss(V_H/2) (4.3.1).
@@ -13,14 +13,14 @@ use nalgebra::DMatrix;
 
 /// From the state that a field is integrated in to the variables of its series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Chart {
+pub enum SeriesVariables {
     /// They are the same.
     Plain,
     /// (tau, ln psi, ..) to (tau, psi, ..).
     LogStates,
 }
 
-impl Chart {
+impl SeriesVariables {
     /// The variables at a state.
     pub fn variables<const N: usize>(self, y: &State<N>) -> State<N> {
         State::from_fn(|i, _| self.variable(y, i))
@@ -28,7 +28,7 @@ impl Chart {
 
     fn variable<const N: usize>(self, y: &State<N>, i: usize) -> f64 {
         match self {
-            Chart::LogStates if i > 0 => y[i].exp(),
+            SeriesVariables::LogStates if i > 0 => y[i].exp(),
             _ => y[i],
         }
     }
@@ -36,7 +36,7 @@ impl Chart {
     /// The derivative of each variable in its component of the state.
     fn slopes<const N: usize>(self, y: &State<N>) -> State<N> {
         State::from_fn(|i, _| match self {
-            Chart::LogStates if i > 0 => y[i].exp(),
+            SeriesVariables::LogStates if i > 0 => y[i].exp(),
             _ => 1.0,
         })
     }
@@ -52,7 +52,7 @@ pub struct Surface<const N: usize> {
     /// [`Crossing::Upwards`] or [`Crossing::Downwards`] along the normal.
     pub direction: Crossing,
     /// What the variables are.
-    pub chart: Chart,
+    pub chart: SeriesVariables,
 }
 
 /// tau_ss of the mean slip rate: the stress of the symmetric steady state, and the section of the paper.
@@ -69,7 +69,7 @@ impl<const N: usize> Surface<N> {
             normal,
             offset: tau,
             direction,
-            chart: Chart::LogStates,
+            chart: SeriesVariables::LogStates,
         }
     }
 

@@ -2,12 +2,12 @@
 //!
 //! SUNDIALS copies its user-data pointer into several of its own structures, some of them only when they are made, so the
 //! pointer must never change. It is the address of a [`Slot`], which lives as long as the solver; the slot points at the
-//! [`Frame`] on the stack of the one method that is inside C, and at nothing otherwise.
+//! [`UserData`] on the stack of the one method that is inside C, and at nothing otherwise.
 #![allow(unsafe_code)]
 
 use super::kinsol::Residual;
 use super::linear_solver::newton;
-use super::vector::{Fixed, Storage, read, write};
+use super::vector::{OwnVectors, Storage, read, write};
 use crate::field::{Jacobian, State, VectorField};
 use std::any::Any;
 use std::cell::Cell;
@@ -132,7 +132,7 @@ impl Guard {
 }
 
 /// What CVODES's callbacks work with.
-pub(super) struct Frame<'a, const N: usize> {
+pub(super) struct UserData<'a, const N: usize> {
     pub problem: Problem<'a, N>,
     pub event_count: usize,
     pub guard: Guard,
@@ -140,9 +140,9 @@ pub(super) struct Frame<'a, const N: usize> {
     pub tangents: Cell<usize>,
 }
 
-impl<'a, const N: usize> Frame<'a, N> {
+impl<'a, const N: usize> UserData<'a, N> {
     pub fn new(problem: Problem<'a, N>, event_count: usize) -> Self {
-        Frame {
+        UserData {
             problem,
             event_count,
             guard: Guard::default(),
@@ -198,7 +198,7 @@ pub(super) unsafe extern "C" fn right_hand_side<S: Storage, const N: usize>(
 ) -> c_int {
     // SAFETY: CVODES passes live vectors like the one it was given at first, and the solver's slot.
     unsafe {
-        let Some(frame) = frame::<Frame<'_, N>>(user_data) else {
+        let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
         let y = read::<S, N>(y);
@@ -230,7 +230,7 @@ pub(super) unsafe extern "C" fn dense_jacobian<S: Storage, const N: usize>(
     // SAFETY: CVODES passes live objects like those it was given at first, and the solver's slot; the dense matrix has N
     // columns of N numbers one after the other, as nalgebra's.
     unsafe {
-        let Some(frame) = frame::<Frame<'_, N>>(user_data) else {
+        let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
         match frame.jacobian(&read::<S, N>(y)) {
@@ -263,13 +263,13 @@ pub(super) unsafe extern "C" fn linear_system<const N: usize>(
 ) -> c_int {
     // SAFETY: CVODES passes live objects like those it was given at first, the solver's slot, and a place for the flag.
     unsafe {
-        let Some(frame) = frame::<Frame<'_, N>>(user_data) else {
+        let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
         let content = newton::<N>(a);
         *current = c_int::from(keep == 0);
         if keep == 0 {
-            match frame.jacobian(&read::<Fixed, N>(y)) {
+            match frame.jacobian(&read::<OwnVectors, N>(y)) {
                 Err(code) => return code,
                 Ok(j) => content.jacobian = j,
             }
@@ -294,7 +294,7 @@ pub(super) unsafe extern "C" fn events<S: Storage, const N: usize>(
 ) -> c_int {
     // SAFETY: CVODES passes a live vector, the solver's slot, and an array for as many values as CVodeRootInit was told.
     unsafe {
-        let Some(frame) = frame::<Frame<'_, N>>(user_data) else {
+        let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
         let Some(events) = frame.problem.events else {
@@ -327,7 +327,7 @@ pub(super) unsafe extern "C" fn sensitivity_right_hand_side<S: Storage, const N:
 ) -> c_int {
     // SAFETY: CVODES passes live vectors like the ones it was given at first, arrays of `count` of them, and the slot.
     unsafe {
-        let Some(frame) = frame::<Frame<'_, N>>(user_data) else {
+        let Some(frame) = frame::<UserData<'_, N>>(user_data) else {
             return FATAL;
         };
         let y = read::<S, N>(y);
@@ -369,12 +369,12 @@ pub(super) unsafe extern "C" fn residual<const N: usize>(
         let Some(frame) = frame::<ResidualFrame<'_, N>>(user_data) else {
             return FATAL;
         };
-        let u = read::<Fixed, N>(u);
+        let u = read::<OwnVectors, N>(u);
         match frame.guard.run(|| frame.residual.residual(&u)) {
             None => FATAL,
             Some(value) if !all_finite(value.as_slice()) => frame.guard.refuse("the residual"),
             Some(value) => {
-                write::<Fixed, N>(f, &value);
+                write::<OwnVectors, N>(f, &value);
                 GOOD
             }
         }
@@ -398,7 +398,7 @@ pub(super) unsafe extern "C" fn residual_jacobian<const N: usize>(
         let Some(frame) = frame::<ResidualFrame<'_, N>>(user_data) else {
             return FATAL;
         };
-        let u = read::<Fixed, N>(u);
+        let u = read::<OwnVectors, N>(u);
         match frame.guard.run(|| frame.residual.jacobian(&u)) {
             None => FATAL,
             Some(j) if !all_finite(j.as_slice()) => {

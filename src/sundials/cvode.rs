@@ -1,10 +1,10 @@
 //! CVODES: dy/dt = f(y) by BDF or Adams formulas of variable order and step, with an analytic Jacobian.
 #![allow(unsafe_code)]
 
-use super::callback::{self, Frame, Problem, Slot, all_finite};
+use super::callback::{self, Problem, Slot, UserData, all_finite};
 use super::linear_solver::{LinearSolver, Matrix};
-use super::sensitivity::Columns;
-use super::vector::{Fixed, Serial, Vector};
+use super::sensitivity::SensitivityVectors;
+use super::vector::{NVector, OwnVectors, Serial};
 use super::{Context, Messages, Stable, check, failure, flags, native, null};
 use crate::contract::{MAX_STEPS, Tolerances};
 use crate::error::{Error, Result};
@@ -14,7 +14,7 @@ use std::ptr::NonNull;
 
 /// The family of formulas.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Method {
+pub enum MultistepMethod {
     /// Backward differentiation, orders 1 to 5: for stiff systems.
     Bdf,
     /// Adams-Moulton, orders 1 to 12: cheaper where the system is not stiff, here along stick-slip cycles.
@@ -72,17 +72,17 @@ const WATCH: usize = 50;
 const STANDSTILL: usize = 200;
 
 /// The owner of a CVODES memory.
-pub(super) struct Memory(NonNull<c_void>);
+pub(super) struct CvodeMemory(NonNull<c_void>);
 
-impl Memory {
-    fn new(method: Method, context: &Context) -> Result<Self> {
+impl CvodeMemory {
+    fn new(method: MultistepMethod, context: &Context) -> Result<Self> {
         let lmm = match method {
-            Method::Bdf => sundials_sys::CV_BDF,
-            Method::Adams => sundials_sys::CV_ADAMS,
+            MultistepMethod::Bdf => sundials_sys::CV_BDF,
+            MultistepMethod::Adams => sundials_sys::CV_ADAMS,
         };
         // SAFETY: a live context, which the solver keeps longer.
         let memory = unsafe { sundials_sys::CVodeCreate(lmm, context.as_ptr()) };
-        Ok(Memory(
+        Ok(CvodeMemory(
             NonNull::new(memory).ok_or_else(|| null("CVodeCreate"))?,
         ))
     }
@@ -92,7 +92,7 @@ impl Memory {
     }
 }
 
-impl Drop for Memory {
+impl Drop for CvodeMemory {
     fn drop(&mut self) {
         let mut memory = self.as_ptr();
         // SAFETY: a live memory that this value alone owns.
@@ -124,12 +124,12 @@ impl Drop for Memory {
 /// ```
 pub struct Cvode<const N: usize> {
     // In the order in which they must go.
-    pub(super) memory: Memory,
+    pub(super) memory: CvodeMemory,
     _solver: LinearSolver,
     _matrix: Matrix,
-    pub(super) state: Vector,
-    pub(super) dense: Vector,
-    pub(super) columns: Option<Columns>,
+    pub(super) state: NVector,
+    pub(super) dense: NVector,
+    pub(super) columns: Option<SensitivityVectors>,
     pub(super) context: Context,
     slot: Stable<Slot>,
     pub(super) messages: Stable<Messages>,
@@ -157,7 +157,7 @@ impl<const N: usize> Cvode<N> {
     ///
     /// # Errors
     /// [`Error::Sundials`] if SUNDIALS can't allocate, or is not of the version of its headers.
-    pub fn new(method: Method, operations: Operations) -> Result<Self> {
+    pub fn new(method: MultistepMethod, operations: Operations) -> Result<Self> {
         let messages = Stable::new(Messages::default());
         let slot = Stable::new(Slot::new());
         let context = Context::new(&messages)?;
@@ -174,7 +174,7 @@ impl<const N: usize> Cvode<N> {
                 (matrix, solver)
             }
         };
-        let memory = Memory::new(method, &context)?;
+        let memory = CvodeMemory::new(method, &context)?;
         let tolerances = Tolerances {
             rtol: 1e-8,
             atol: 1e-8,
@@ -187,7 +187,7 @@ impl<const N: usize> Cvode<N> {
             // Before everything that copies the user data.
             check!(CV, &messages, CVodeSetUserData(m, slot.as_ptr()))?;
             let f = match operations {
-                Operations::Fixed => callback::right_hand_side::<Fixed, N>,
+                Operations::Fixed => callback::right_hand_side::<OwnVectors, N>,
                 Operations::Stock => callback::right_hand_side::<Serial, N>,
             };
             check!(CV, &messages, CVodeInit(m, Some(f), 0.0, state.as_ptr()))?;
@@ -311,7 +311,7 @@ impl<const N: usize> Cvode<N> {
         if self.steps()? == 0 {
             self.set_first_step(problem, to)?;
         }
-        let frame = Frame::new(*problem, self.event_count);
+        let frame = UserData::new(*problem, self.event_count);
         loop {
             let before = self.steps()?;
             let left = self.max_steps.saturating_sub(before);
@@ -348,7 +348,7 @@ impl<const N: usize> Cvode<N> {
     /// One stay in C, of at most `steps` steps: the time reached and the flag.
     fn enter(
         &mut self,
-        frame: &Frame<'_, N>,
+        frame: &UserData<'_, N>,
         to: f64,
         mode: Mode,
         steps: usize,
@@ -428,7 +428,7 @@ impl<const N: usize> Cvode<N> {
         too_long
     }
 
-    fn explain(&self, code: c_int, t: f64, frame: &Frame<'_, N>) -> Error {
+    fn explain(&self, code: c_int, t: f64, frame: &UserData<'_, N>) -> Error {
         use sundials_sys::{
             CV_CONV_FAILURE, CV_FIRST_RHSFUNC_ERR, CV_FIRST_SRHSFUNC_ERR, CV_REPTD_RHSFUNC_ERR,
             CV_REPTD_SRHSFUNC_ERR, CV_RTFUNC_FAIL, CV_UNREC_RHSFUNC_ERR, CV_UNREC_SRHSFUNC_ERR,
@@ -451,9 +451,9 @@ impl<const N: usize> Cvode<N> {
     }
 }
 
-pub(super) fn vector<const N: usize>(operations: Operations, context: &Context) -> Result<Vector> {
+pub(super) fn vector<const N: usize>(operations: Operations, context: &Context) -> Result<NVector> {
     match operations {
-        Operations::Fixed => Vector::fixed::<N>(context),
-        Operations::Stock => Vector::serial::<N>(context),
+        Operations::Fixed => NVector::fixed::<N>(context),
+        Operations::Stock => NVector::serial::<N>(context),
     }
 }

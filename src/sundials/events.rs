@@ -2,7 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::cvode::{Cvode, Operations};
-use super::vector::{Fixed, Serial};
+use super::vector::{OwnVectors, Serial};
 use super::{callback, check, counted};
 use crate::error::Result;
 use std::ffi::c_int;
@@ -17,7 +17,7 @@ impl<const N: usize> Cvode<N> {
         let counted = counted("the number of events", count)?;
         let m = self.memory.as_ptr();
         let g = match self.operations {
-            Operations::Fixed => callback::events::<Fixed, N>,
+            Operations::Fixed => callback::events::<OwnVectors, N>,
             Operations::Stock => callback::events::<Serial, N>,
         };
         let mut direction: Vec<c_int> = directions.to_vec();

@@ -3,7 +3,7 @@
 
 use super::callback::{self, ResidualFrame, Slot};
 use super::linear_solver::{LinearSolver, Matrix};
-use super::vector::Vector;
+use super::vector::NVector;
 use super::{Context, Messages, Stable, check, failure, flags, native, null};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State};
@@ -144,19 +144,19 @@ pub struct KinsolWork {
 }
 
 /// The owner of a KINSOL memory.
-struct Memory(NonNull<c_void>);
+struct KinsolMemory(NonNull<c_void>);
 
-impl Memory {
+impl KinsolMemory {
     fn new(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer.
         let memory = unsafe { sundials_sys::KINCreate(context.as_ptr()) };
-        Ok(Memory(
+        Ok(KinsolMemory(
             NonNull::new(memory).ok_or_else(|| null("KINCreate"))?,
         ))
     }
 }
 
-impl Drop for Memory {
+impl Drop for KinsolMemory {
     fn drop(&mut self) {
         let mut memory = self.0.as_ptr();
         // SAFETY: a live memory that this value alone owns.
@@ -171,13 +171,13 @@ pub struct Kinsol<const N: usize> {
     applied: Option<KinsolSettings<N>>,
     constrained: bool,
     // In the order in which they must go.
-    memory: Memory,
+    memory: KinsolMemory,
     _solver: LinearSolver,
     _matrix: Matrix,
-    unknown: Vector,
-    unknown_scale: Vector,
-    residual_scale: Vector,
-    constraints: Vector,
+    unknown: NVector,
+    unknown_scale: NVector,
+    residual_scale: NVector,
+    constraints: NVector,
     _context: Context,
     slot: Stable<Slot>,
     messages: Stable<Messages>,
@@ -196,13 +196,13 @@ impl<const N: usize> Kinsol<N> {
         let messages = Stable::new(Messages::default());
         let slot = Stable::new(Slot::new());
         let context = Context::new(&messages)?;
-        let unknown = Vector::fixed::<N>(&context)?;
-        let unknown_scale = Vector::fixed::<N>(&context)?;
-        let residual_scale = Vector::fixed::<N>(&context)?;
-        let constraints = Vector::fixed::<N>(&context)?;
+        let unknown = NVector::fixed::<N>(&context)?;
+        let unknown_scale = NVector::fixed::<N>(&context)?;
+        let residual_scale = NVector::fixed::<N>(&context)?;
+        let constraints = NVector::fixed::<N>(&context)?;
         let matrix = Matrix::fixed::<N>(&context)?;
         let solver = LinearSolver::fixed::<N>(&context)?;
-        let memory = Memory::new(&context)?;
+        let memory = KinsolMemory::new(&context)?;
         let m = memory.0.as_ptr();
         // SAFETY: live objects of one context, kept by the solver longer than the memory; the callbacks are of this N for
         // our vectors and matrix, and the user data are the slot, whose address never changes.

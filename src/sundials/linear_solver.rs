@@ -4,7 +4,7 @@
 //! Jacobian of the last evaluation beside the system M = I - gamma J, so that CVODE can ask for another gamma alone.
 #![allow(unsafe_code)]
 
-use super::vector::{self, Fixed, Vector};
+use super::vector::{self, NVector, OwnVectors};
 use super::{Context, null};
 use crate::error::Result;
 use crate::field::Jacobian;
@@ -64,7 +64,7 @@ pub(super) struct LinearSolver(NonNull<sundials_sys::_generic_SUNLinearSolver>);
 
 impl LinearSolver {
     /// SUNDIALS's dense direct solver.
-    pub fn dense(context: &Context, y: &Vector, a: &Matrix) -> Result<Self> {
+    pub fn dense(context: &Context, y: &NVector, a: &Matrix) -> Result<Self> {
         // SAFETY: live objects of one context, which the solver keeps longer.
         let s = unsafe { sundials_sys::SUNLinSol_Dense(y.as_ptr(), a.as_ptr(), context.as_ptr()) };
         Ok(LinearSolver(
@@ -248,7 +248,7 @@ unsafe extern "C" fn substitute<const N: usize>(
         (
             &newton::<N>(a).system,
             &*(*s).content.cast::<[usize; N]>(),
-            vector::read::<Fixed, N>(b),
+            vector::read::<OwnVectors, N>(b),
         )
     };
     for (k, pivot) in pivots.iter().enumerate() {
@@ -266,6 +266,6 @@ unsafe extern "C" fn substitute<const N: usize>(
         }
     }
     // SAFETY: a live vector of ours.
-    unsafe { vector::write::<Fixed, N>(x, &y) };
+    unsafe { vector::write::<OwnVectors, N>(x, &y) };
     0
 }

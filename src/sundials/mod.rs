@@ -24,10 +24,10 @@ mod start;
 mod vector;
 
 pub use callback::{Events, Forcing, Problem};
-pub use cvode::{Arrival, Cvode, Method, Mode, Operations, Reason};
+pub use cvode::{Arrival, Cvode, Mode, MultistepMethod, Operations, Reason};
 pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residual, Strategy};
 
-pub use sensitivity::{ErrorControl, Scheme, Sensitivity};
+pub use sensitivity::{ErrorControl, Sensitivity, SensitivityMethod};
 
 use crate::error::{Error, Result};
 use std::cell::{Cell, RefCell};

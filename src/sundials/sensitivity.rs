@@ -3,7 +3,7 @@
 
 use super::callback::{self, all_finite};
 use super::cvode::{Cvode, Operations, vector};
-use super::vector::{Fixed, Serial, Vector};
+use super::vector::{NVector, OwnVectors, Serial};
 use super::{Context, Messages, check, counted, failure, flags};
 use crate::contract::Tolerances;
 use crate::error::{Error, Result};
@@ -13,7 +13,7 @@ use sundials_sys::N_Vector;
 
 /// How the nonlinear systems of state and sensitivities are solved.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Scheme {
+pub enum SensitivityMethod {
     /// In one iteration (CV_SIMULTANEOUS).
     #[default]
     Simultaneous,
@@ -21,11 +21,11 @@ pub enum Scheme {
     Staggered,
 }
 
-impl Scheme {
+impl SensitivityMethod {
     fn flag(self) -> c_int {
         match self {
-            Scheme::Simultaneous => sundials_sys::CV_SIMULTANEOUS,
-            Scheme::Staggered => sundials_sys::CV_STAGGERED,
+            SensitivityMethod::Simultaneous => sundials_sys::CV_SIMULTANEOUS,
+            SensitivityMethod::Staggered => sundials_sys::CV_STAGGERED,
         }
     }
 }
@@ -45,7 +45,7 @@ pub enum ErrorControl {
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sensitivity {
     /// Together with the state or after it.
-    pub scheme: Scheme,
+    pub scheme: SensitivityMethod,
     /// Their own tolerances; `None` for those of the state.
     pub tolerances: Option<Tolerances>,
     /// Leave it on.
@@ -53,13 +53,13 @@ pub struct Sensitivity {
 }
 
 /// The vectors of the sensitivities.
-pub(super) struct Columns {
-    vectors: Vec<Vector>,
+pub(super) struct SensitivityVectors {
+    vectors: Vec<NVector>,
     // What C reads: the same vectors.
     pointers: Vec<N_Vector>,
 }
 
-impl Columns {
+impl SensitivityVectors {
     fn new<const N: usize>(
         count: usize,
         operations: Operations,
@@ -68,12 +68,12 @@ impl Columns {
         let vectors = (0..count)
             .map(|_| vector::<N>(operations, context))
             .collect::<Result<Vec<_>>>()?;
-        let pointers = vectors.iter().map(Vector::as_ptr).collect();
-        Ok(Columns { vectors, pointers })
+        let pointers = vectors.iter().map(NVector::as_ptr).collect();
+        Ok(SensitivityVectors { vectors, pointers })
     }
 
     fn get<const N: usize>(&self, t: f64) -> Result<Vec<State<N>>> {
-        let columns: Vec<State<N>> = self.vectors.iter().map(Vector::get).collect();
+        let columns: Vec<State<N>> = self.vectors.iter().map(NVector::get).collect();
         if columns.iter().all(|s| all_finite(s.as_slice())) {
             Ok(columns)
         } else {
@@ -125,7 +125,7 @@ impl<const N: usize> Cvode<N> {
             self.free_sensitivities();
         }
         if self.columns.is_none() {
-            let made = Columns::new::<N>(columns.len(), self.operations, &self.context)?;
+            let made = SensitivityVectors::new::<N>(columns.len(), self.operations, &self.context)?;
             self.columns = Some(made);
         }
         let kept = self.columns.as_mut().expect("made above");
@@ -143,7 +143,7 @@ impl<const N: usize> Cvode<N> {
                 check!(CV, messages, CVodeSensReInit(m, ism, pointers))?;
             } else {
                 let f = match self.operations {
-                    Operations::Fixed => callback::sensitivity_right_hand_side::<Fixed, N>,
+                    Operations::Fixed => callback::sensitivity_right_hand_side::<OwnVectors, N>,
                     Operations::Stock => callback::sensitivity_right_hand_side::<Serial, N>,
                 };
                 let begun = check!(

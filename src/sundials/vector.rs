@@ -20,9 +20,9 @@ pub(super) trait Storage {
 }
 
 /// Our own vectors.
-pub(super) struct Fixed;
+pub(super) struct OwnVectors;
 
-impl Storage for Fixed {
+impl Storage for OwnVectors {
     #[inline(always)]
     unsafe fn data(v: N_Vector) -> *mut f64 {
         // SAFETY: the content of our vectors is the array.
@@ -58,14 +58,14 @@ pub(super) unsafe fn write<S: Storage, const N: usize>(v: N_Vector, y: &State<N>
 }
 
 /// The owner of a vector.
-pub(super) struct Vector(NonNull<sundials_sys::_generic_N_Vector>);
+pub(super) struct NVector(NonNull<sundials_sys::_generic_N_Vector>);
 
-impl Vector {
+impl NVector {
     /// A vector of SUNDIALS's own, zero.
     pub fn serial<const N: usize>(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer than its vectors.
         let v = unsafe { sundials_sys::N_VNew_Serial(N as sunindextype, context.as_ptr()) };
-        let mut vector = Vector(NonNull::new(v).ok_or_else(|| null("N_VNew_Serial"))?);
+        let mut vector = NVector(NonNull::new(v).ok_or_else(|| null("N_VNew_Serial"))?);
         vector.set(&State::<N>::zeros());
         Ok(vector)
     }
@@ -74,7 +74,7 @@ impl Vector {
     pub fn fixed<const N: usize>(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer than its vectors.
         let v = unsafe { sundials_sys::N_VNewEmpty(context.as_ptr()) };
-        let vector = Vector(NonNull::new(v).ok_or_else(|| null("N_VNewEmpty"))?);
+        let vector = NVector(NonNull::new(v).ok_or_else(|| null("N_VNewEmpty"))?);
         // SAFETY: N_VNewEmpty made the table of operations, all NULL, and this vector is ours alone. The content is
         // freed by `destroy`, which is in the table from here on.
         unsafe {
@@ -103,7 +103,7 @@ impl Vector {
     }
 }
 
-impl Drop for Vector {
+impl Drop for NVector {
     fn drop(&mut self) {
         // SAFETY: a live vector that this value alone owns.
         unsafe { sundials_sys::N_VDestroy(self.as_ptr()) };
@@ -223,7 +223,7 @@ unsafe extern "C" fn length<const N: usize>(_: N_Vector) -> sunindextype {
 
 unsafe extern "C" fn array_pointer(v: N_Vector) -> *mut f64 {
     // SAFETY: one of our vectors.
-    unsafe { Fixed::data(v) }
+    unsafe { OwnVectors::data(v) }
 }
 
 operations! {

@@ -11,10 +11,10 @@ use crate::model::two_interfaces;
 /// What advances runs with one law.
 pub(super) struct Flows {
     law: AnyLaw,
-    way: Way,
+    way: Backend,
 }
 
-enum Way {
+enum Backend {
     Lanes(Batch),
     OneByOne(Taylor),
 }
@@ -22,13 +22,13 @@ enum Way {
 impl Flows {
     pub fn lanes(law: AnyLaw, rtol: f64, max_steps: usize) -> Result<Self> {
         let batch = Batch::new(law, Tolerances::equal(rtol)?, max_steps)?;
-        let way = Way::Lanes(batch);
+        let way = Backend::Lanes(batch);
         Ok(Flows { law, way })
     }
 
     pub fn one_by_one(law: AnyLaw, rtol: f64, max_steps: usize) -> Result<Self> {
         let taylor = Taylor::new(Tolerances::equal(rtol)?, max_steps)?;
-        let way = Way::OneByOne(taylor);
+        let way = Backend::OneByOne(taylor);
         Ok(Flows { law, way })
     }
 
@@ -39,8 +39,8 @@ impl Flows {
         observer: BatchObserver<'_>,
     ) -> Vec<Result<State<3>>> {
         let taylor = match &mut self.way {
-            Way::Lanes(batch) => return batch.flow(runs, Some(observer)),
-            Way::OneByOne(taylor) => taylor,
+            Backend::Lanes(batch) => return batch.flow(runs, Some(observer)),
+            Backend::OneByOne(taylor) => taylor,
         };
         let mut one = |(k, run): (usize, &BatchRun)| {
             let field = two_interfaces(self.law, run.loading);

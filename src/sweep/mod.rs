@@ -7,20 +7,20 @@
 //! A run is followed only as long as its verdict is open: to a stable steady state's neighbourhood that no run leaves; to a
 //! periodic point of the return map that attracts; or through enough returns to tell a torus or chaos.
 
+mod aperiodic;
 mod capture;
-mod creep;
+mod classify;
+mod finite_difference_exponent;
 mod flows;
-mod judge;
 mod range;
 mod run;
+mod slow_convergence;
 mod start;
-mod stretch;
 mod sweeper;
-mod wander;
 mod watch;
 
 pub use range::{Range, fields};
-pub use run::{Units, run, threads_checked};
+pub use run::{UnitShare, run, threads_checked};
 pub use sweeper::Sweeper;
 
 use crate::equilibrium::Symmetry;
@@ -73,7 +73,7 @@ impl Grid {
 /// What a sweep computes. The point of number k = (j N + i) S + s is the i-th of N in the inner range, the j-th in the outer one,
 /// with the s-th of S starts.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Settings {
+pub struct SweepSettings {
     /// The interfaces' law.
     pub law: AnyLaw,
     /// The points.
@@ -97,7 +97,7 @@ pub struct Settings {
     pub max_steps: usize,
 }
 
-impl Settings {
+impl SweepSettings {
     /// How many points there are, starts counted.
     pub fn points(&self) -> usize {
         let [inner, outer] = self.grid.ranges();
@@ -164,7 +164,7 @@ impl Settings {
 
 /// What was found at a point.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct SweepRow {
     /// The point's number.
     pub number: usize,
     /// V_H in V*.

@@ -1,6 +1,6 @@
 //! All units of a sweep, over the cores of a machine, handed on in order.
 
-use super::{Row, Settings, Sweeper};
+use super::{SweepRow, SweepSettings, Sweeper};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::num::NonZero;
@@ -17,22 +17,22 @@ const MOST_THREADS: usize = 1024;
 
 /// Which units: `first`, and then every `every`-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Units {
+pub struct UnitShare {
     /// The first one.
     pub first: usize,
     /// From one to the next, at least 1.
     pub every: usize,
 }
 
-impl Units {
+impl UnitShare {
     /// All from the first one on.
     pub fn from(first: usize) -> Self {
-        Units { first, every: 1 }
+        UnitShare { first, every: 1 }
     }
 
     /// Those of the shard number `index` of `count`, counted from 1, without the first `done` of them.
     pub fn shard(index: usize, count: usize, done: usize) -> Self {
-        Units {
+        UnitShare {
             first: index - 1 + done * count,
             every: count,
         }
@@ -64,13 +64,13 @@ pub fn threads_checked(threads: Option<usize>) -> Result<()> {
 /// that are on their way. Rows held back for their order are bounded in number.
 ///
 /// # Errors
-/// Those of [`Settings::checked`] and [`threads_checked`]. What fails at a point is in its row.
+/// Those of [`SweepSettings::checked`] and [`threads_checked`]. What fails at a point is in its row.
 pub fn run(
-    settings: &Settings,
-    units: Units,
+    settings: &SweepSettings,
+    units: UnitShare,
     threads: Option<usize>,
     stop: &AtomicBool,
-    seen: &mut dyn FnMut(&[Row]) -> ControlFlow<()>,
+    seen: &mut dyn FnMut(&[SweepRow]) -> ControlFlow<()>,
 ) -> Result<()> {
     settings.checked()?;
     if units.every == 0 {
@@ -88,7 +88,7 @@ pub fn run(
     let chunks = all.div_ceil(size);
     // One for each thread that is at work at the same time.
     let idle: Mutex<Vec<Sweeper>> = Mutex::default();
-    let compute = |index: usize| -> Result<Vec<Row>> {
+    let compute = |index: usize| -> Result<Vec<SweepRow>> {
         let mut rows = Vec::new();
         if stop.load(Ordering::Relaxed) {
             return Ok(rows);
@@ -121,7 +121,7 @@ pub fn run(
                 };
                 waiting.insert(index, rows);
             };
-            let rows: Vec<Row> = rows?;
+            let rows: Vec<SweepRow> = rows?;
             if rows.is_empty() || seen(&rows).is_break() {
                 stop.store(true, Ordering::Relaxed);
                 return Ok(());
@@ -132,7 +132,7 @@ pub fn run(
 }
 
 /// Units of a chunk: fewer where there are few, so that no thread is without.
-fn chunk(settings: &Settings, all: usize, threads: usize) -> usize {
+fn chunk(settings: &SweepSettings, all: usize, threads: usize) -> usize {
     /// Chunks for each thread, where there are not enough for full ones.
     const SHARES: usize = 4;
     let full = CHUNK.div_ceil(settings.points_per_unit());

@@ -1,6 +1,6 @@
 //! Where the runs of a sweep start.
 
-use super::{Grid, Settings};
+use super::{Grid, SweepSettings};
 use crate::field::State;
 use crate::friction::{Law, beside};
 use crate::model::Loading;
@@ -20,7 +20,7 @@ const RANDOM_LOG_STATE: (f64, f64) = (-5.0, 1.0);
 
 /// A run of a sweep: where, and from which state.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Point {
+pub(super) struct SweepStart {
     pub number: usize,
     pub loading: Loading,
     /// (tau, ln psi_1, ln psi_2)
@@ -28,7 +28,7 @@ pub(super) struct Point {
 }
 
 /// The point of that number.
-pub(super) fn point(settings: &Settings, number: usize) -> Point {
+pub(super) fn point(settings: &SweepSettings, number: usize) -> SweepStart {
     let starts = settings.starts;
     let (k, s) = (number / starts, number % starts);
     let stress = |driving: f64| half_driving_stress(&settings.law, driving, 2);
@@ -46,7 +46,7 @@ pub(super) fn point(settings: &Settings, number: usize) -> Point {
                 2 => State::<3>::new(tau + FAR.0, w, w + FAR.1),
                 _ => random(settings.seed, number, (tau, w)),
             };
-            Point {
+            SweepStart {
                 number,
                 loading,
                 start,
@@ -59,7 +59,7 @@ pub(super) fn point(settings: &Settings, number: usize) -> Point {
         } => {
             let first = state_1.value(k % state_1.count).ln();
             let second = state_2.value(k / state_1.count).ln();
-            Point {
+            SweepStart {
                 number,
                 loading: *loading,
                 start: State::<3>::new(stress(loading.driving), first, second),

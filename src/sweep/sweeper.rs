@@ -1,10 +1,10 @@
-//! What runs settle on at points of a grid: runs in lanes, judged one by one.
+//! What runs settle on at points of a grid: runs in lanes, classified one by one.
 
+use super::classify::{Classified, Classifier, FIRST_STAGE, undecided};
 use super::flows::Flows;
-use super::judge::{FIRST_STAGE, Judge, Told, undecided};
-use super::start::{Point, point};
-use super::watch::Run;
-use super::{Row, Settings};
+use super::start::{SweepStart, point};
+use super::watch::SweepRun;
+use super::{SweepRow, SweepSettings};
 use crate::error::Result;
 use crate::field::State;
 use crate::integrate::{BatchRun, Step};
@@ -45,20 +45,20 @@ const APART: f64 = 1e-4;
 /// # }
 /// ```
 pub struct Sweeper {
-    settings: Settings,
+    settings: SweepSettings,
     flows: Flows,
-    judge: Judge,
+    classify: Classifier,
 }
 
 impl Sweeper {
     /// # Errors
-    /// Those of [`Settings::checked`].
-    pub fn new(settings: &Settings) -> Result<Self> {
+    /// Those of [`SweepSettings::checked`].
+    pub fn new(settings: &SweepSettings) -> Result<Self> {
         settings.checked()?;
         Ok(Sweeper {
             settings: settings.clone(),
             flows: Flows::lanes(settings.law, settings.rtol, settings.max_steps)?,
-            judge: Judge::new(settings)?,
+            classify: Classifier::new(settings)?,
         })
     }
 
@@ -66,7 +66,7 @@ impl Sweeper {
     ///
     /// # Errors
     /// Those of [`Sweeper::new`].
-    pub fn one_by_one(settings: &Settings) -> Result<Self> {
+    pub fn one_by_one(settings: &SweepSettings) -> Result<Self> {
         Ok(Sweeper {
             flows: Flows::one_by_one(settings.law, settings.rtol, settings.max_steps)?,
             ..Self::new(settings)?
@@ -74,7 +74,7 @@ impl Sweeper {
     }
 
     /// Appends the rows of these units, in their order. A point that fails is a row too, undecided, with its reason.
-    pub fn rows(&mut self, units: impl IntoIterator<Item = usize>, out: &mut Vec<Row>) {
+    pub fn rows(&mut self, units: impl IntoIterator<Item = usize>, out: &mut Vec<SweepRow>) {
         let units: Vec<usize> = units.into_iter().collect();
         if self.settings.follow {
             self.lines(&units, out);
@@ -86,10 +86,10 @@ impl Sweeper {
     }
 
     /// Lines of points that follow one another, side by side.
-    fn lines(&mut self, lines: &[usize], out: &mut Vec<Row>) {
+    fn lines(&mut self, lines: &[usize], out: &mut Vec<SweepRow>) {
         let (starts, each) = (self.settings.starts, self.settings.points_per_unit());
         let mut attractors: Vec<Option<State<3>>> = vec![None; lines.len() * starts];
-        let mut columns: Vec<Vec<Told>> = Vec::new();
+        let mut columns: Vec<Vec<Classified>> = Vec::new();
         for column in (0..each).step_by(starts) {
             let mut points = Vec::with_capacity(attractors.len());
             for (l, line) in lines.iter().enumerate() {
@@ -122,7 +122,7 @@ impl Sweeper {
 
     /// What these points' runs settle on: all go on side by side until each is to be judged, and those that are not settled then go
     /// round again.
-    fn settle(&mut self, points: Vec<Point>) -> Vec<Told> {
+    fn settle(&mut self, points: Vec<SweepStart>) -> Vec<Classified> {
         let settings = &self.settings;
         let watching = Watching {
             skip: 0,
@@ -132,11 +132,11 @@ impl Sweeper {
             waypoints: false,
         };
         let stage = FIRST_STAGE.min(settings.max_returns);
-        let mut runs: Vec<Run> = points
+        let mut runs: Vec<SweepRun> = points
             .into_iter()
-            .map(|point| Run::new(settings.law, point, watching, stage))
+            .map(|point| SweepRun::new(settings.law, point, watching, stage))
             .collect();
-        let mut told: Vec<Option<Told>> = runs.iter().map(|_| None).collect();
+        let mut told: Vec<Option<Classified>> = runs.iter().map(|_| None).collect();
         let mut active: Vec<usize> = (0..runs.len()).collect();
         loop {
             active.retain(|&i| told[i].is_none());
@@ -147,16 +147,16 @@ impl Sweeper {
             for (&i, failed) in active.iter().zip(failed) {
                 told[i] = match failed {
                     Some(why) => Some(undecided(&runs[i], why)),
-                    None => self.judge.judge(&mut runs[i], &mut self.flows),
+                    None => self.classify.classify(&mut runs[i], &mut self.flows),
                 };
             }
         }
     }
 
     /// Takes the runs to where they are to be judged; what failed, in words.
-    fn advance(&mut self, runs: &mut [Run], active: &[usize]) -> Vec<Option<String>> {
+    fn advance(&mut self, runs: &mut [SweepRun], active: &[usize]) -> Vec<Option<String>> {
         // A run that has ended at its start has no way to go.
-        let span = |run: &Run| match run.recorder.ended {
+        let span = |run: &SweepRun| match run.recorder.ended {
             Some(_) => (run.time, run.time),
             None => (run.time, run.end()),
         };

@@ -1,7 +1,7 @@
 //! A run on its way: its returns, and whether they tell yet what it settles on.
 
 use super::capture::Capture;
-use super::start::Point;
+use super::start::SweepStart;
 use crate::error::Result;
 use crate::field::State;
 use crate::friction::AnyLaw;
@@ -38,8 +38,8 @@ const WINDOW: usize = 3;
 const WORTH_WAITING: f64 = 30.0;
 
 /// A run of a sweep.
-pub(super) struct Run {
-    pub point: Point,
+pub(super) struct SweepRun {
+    pub point: SweepStart,
     pub field: Box<dyn Driven<3>>,
     pub surface: Surface<3>,
     pub watching: Watching,
@@ -66,11 +66,11 @@ pub(super) struct Run {
     waited: bool,
 }
 
-impl Run {
-    pub fn new(law: AnyLaw, point: Point, watching: Watching, stage: usize) -> Self {
+impl SweepRun {
+    pub fn new(law: AnyLaw, point: SweepStart, watching: Watching, stage: usize) -> Self {
         let field = two_interfaces(law, point.loading);
         let tau = half_driving_stress(&law, point.loading.driving, 2);
-        let mut run = Run {
+        let mut run = SweepRun {
             field,
             surface: Surface::stress(tau, Crossing::Downwards),
             watching: Watching {
@@ -168,7 +168,7 @@ impl Run {
         true
     }
 
-    /// Waits as long as it is usual, once: close to a bifurcation a run may creep.
+    /// Waits as long as it is usual, once: close to a bifurcation a run may slow_convergence.
     pub fn waits_longer(&mut self) -> bool {
         let longer = !self.waited;
         if longer {

@@ -1,6 +1,6 @@
 //! What the rows of branches and curves, and special points, show.
 
-use super::{Column, Entry};
+use super::{CellValue, Column};
 use crate::bifurcation::{BranchRow, Criticality, Label, LocusRow, Special};
 use crate::equilibrium::Symmetry;
 use crate::scene::Quantity;
@@ -103,7 +103,7 @@ pub fn special_columns() -> Vec<Column<Special>> {
         Column::new("coefficient", Number, |one| one.coefficient.into()),
         Column::new("note", Number, |one| {
             // A row is a line, whatever the reason says.
-            Entry::Word(one.note.as_ref().map(|note| note.replace('\n', " ")))
+            CellValue::Word(one.note.as_ref().map(|note| note.replace('\n', " ")))
         }),
         Column::new("coefficient_uncertainty", Number, |one| {
             one.coefficient_uncertainty.into()

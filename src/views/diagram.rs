@@ -2,17 +2,22 @@
 
 use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
 use crate::equilibrium::Verdict;
-use crate::orbit::Slab;
-use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
+use crate::orbit::InterfaceSystem;
+use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 use crate::output::seven_digits;
-use crate::scene::{Along, Quantity, System, Units};
+use crate::scene::{BranchParameter, Quantity, System, Units};
 
 /// Colours of branches on which both interfaces move alike, and of the others.
 const ALIKE: usize = 0;
 const APART: usize = 1;
 
 /// Stress against the parameter, of orbits the least and the largest, with the period beside.
-pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System) -> Drawing {
+pub fn branches(
+    rows: &[BranchRow],
+    along: &BranchParameter,
+    slab: &InterfaceSystem,
+    system: &System,
+) -> Drawing {
     let units = &system.units;
     let orbits = rows.iter().any(|row| row.period.is_some());
     let stress = |x| units.outward(Quantity::Stress, x);
@@ -65,7 +70,7 @@ pub fn branches(rows: &[BranchRow], along: &Along, slab: &Slab, system: &System)
 }
 
 /// The parameter that stays fixed, with its value.
-fn fixed(along: &Along, slab: &Slab, units: &Units) -> String {
+fn fixed(along: &BranchParameter, slab: &InterfaceSystem, units: &Units) -> String {
     match along.parameter {
         Parameter::Driving => value("K", Quantity::Stiffness, slab.loading.stiffness, units),
         Parameter::Stiffness => value("V_H", Quantity::SlipRate, slab.loading.driving, units),
@@ -117,7 +122,7 @@ pub fn branch_lines(
     x: &dyn Fn(&BranchRow) -> f64,
     y: &dyn Fn(&BranchRow) -> f64,
     legend: bool,
-) -> Vec<Series> {
+) -> Vec<PlotSeries> {
     let kinds = [(ALIKE, true), (APART, true), (ALIKE, false), (APART, false)];
     let part = |(colour, stable): (usize, bool)| {
         let (mut xs, mut ys, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
@@ -139,13 +144,13 @@ pub fn branch_lines(
         } else {
             Stroke::Dashed
         };
-        Series {
+        PlotSeries {
             left_out,
-            ..Series::new("", xs, ys).stroke(stroke).colour(colour)
+            ..PlotSeries::new("", xs, ys).stroke(stroke).colour(colour)
         }
     };
     let series = kinds.into_iter().map(part);
-    let mut series: Vec<Series> = series.filter(|series| !series.x.is_empty()).collect();
+    let mut series: Vec<PlotSeries> = series.filter(|series| !series.x.is_empty()).collect();
     let mut known = Vec::new();
     for one in series.iter_mut().filter(|_| legend) {
         if !known.contains(&one.colour) {
@@ -162,7 +167,7 @@ pub fn branch_lines(
 }
 
 /// The legend of the strokes that occur: dashes are what is not stable, in whatever colour.
-pub fn named_strokes(series: &[Series]) -> Vec<(Stroke, String)> {
+pub fn named_strokes(series: &[PlotSeries]) -> Vec<(Stroke, String)> {
     let named = [(Stroke::Solid, "stable"), (Stroke::Dashed, "unstable")];
     let occurs = |stroke| series.iter().any(|one| one.stroke == stroke);
     let broken = occurs(Stroke::Dashed);
@@ -216,12 +221,12 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
     let driving = |x| units.outward(Quantity::SlipRate, x);
     let stiffness = |x| units.outward(Quantity::Stiffness, x);
     let x = Axis::log(axis_label("V_H", Quantity::SlipRate, units));
-    let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<Series> {
+    let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<PlotSeries> {
         let pieces = rows.chunk_by(|a, b| a.curve == b.curve);
         pieces
             .map(|curve| {
                 let driving = curve.iter().map(|row| driving(row.driving.value));
-                let series = Series::new("", driving.collect(), curve.iter().map(y).collect());
+                let series = PlotSeries::new("", driving.collect(), curve.iter().map(y).collect());
                 series.colour(curve[0].curve)
             })
             .collect()

@@ -1,7 +1,7 @@
 //! Pictures of a return map.
 
-use crate::output::plot::{Axis, Panel, Series};
-use crate::output::{self, Rows};
+use crate::output::plot::{Axis, Panel, PlotSeries};
+use crate::output::{self, RowList};
 use crate::scene::{Quantity, SectionPlan};
 use crate::views;
 
@@ -9,7 +9,7 @@ use crate::views;
 const DECADES: f64 = 30.0;
 
 /// The slip rate of both interfaces at a return against that at the next one.
-pub fn return_map(plan: &SectionPlan, rows: &Rows) -> Panel {
+pub fn return_map(plan: &SectionPlan, rows: &RowList) -> Panel {
     let units = &plan.system.units;
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let (sums, next) = (column("slip_rate_sum"), column("next_slip_rate_sum"));
@@ -39,8 +39,8 @@ pub fn return_map(plan: &SectionPlan, rows: &Rows) -> Panel {
     );
     Panel {
         series: vec![
-            Series::dots("", sums, next),
-            Series::new("diagonal", vec![least, most], vec![least, most]),
+            PlotSeries::dots("", sums, next),
+            PlotSeries::new("diagonal", vec![least, most], vec![least, most]),
         ],
         ..Panel::new(
             title,
@@ -51,10 +51,10 @@ pub fn return_map(plan: &SectionPlan, rows: &Rows) -> Panel {
 }
 
 /// The states of both interfaces at the returns.
-pub fn states_at_returns(rows: &Rows) -> Panel {
+pub fn states_at_returns(rows: &RowList) -> Panel {
     let state = |i: usize| rows.column(&format!("log_state_{i}")).unwrap_or_default();
     Panel {
-        series: vec![Series::dots("", state(1), state(2))],
+        series: vec![PlotSeries::dots("", state(1), state(2))],
         ..Panel::new(
             "states at the returns",
             Axis::linear("ln ψ₁"),

@@ -17,10 +17,10 @@ pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, par
 pub use map::{return_map, states_at_returns};
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{panels_in_time, phase_plane};
-pub use sweep::{Outcome, Side, basin_map, regime_map};
+pub use sweep::{GridSide, PointOutcome, basin_map, regime_map};
 
 /// What a row has in a column, dimensionless.
-pub enum Entry {
+pub enum CellValue {
     /// A number, where there is one.
     Number(Option<f64>),
     /// A number with its error budget.
@@ -31,45 +31,45 @@ pub enum Entry {
     Count(usize),
 }
 
-impl From<f64> for Entry {
+impl From<f64> for CellValue {
     fn from(x: f64) -> Self {
-        Entry::Number(Some(x))
+        CellValue::Number(Some(x))
     }
 }
 
-impl From<Option<f64>> for Entry {
+impl From<Option<f64>> for CellValue {
     fn from(x: Option<f64>) -> Self {
-        Entry::Number(x)
+        CellValue::Number(x)
     }
 }
 
-impl From<Uncertain> for Entry {
+impl From<Uncertain> for CellValue {
     fn from(x: Uncertain) -> Self {
-        Entry::Uncertain(Some(x))
+        CellValue::Uncertain(Some(x))
     }
 }
 
-impl From<Option<Uncertain>> for Entry {
+impl From<Option<Uncertain>> for CellValue {
     fn from(x: Option<Uncertain>) -> Self {
-        Entry::Uncertain(x)
+        CellValue::Uncertain(x)
     }
 }
 
-impl From<&'static str> for Entry {
+impl From<&'static str> for CellValue {
     fn from(word: &'static str) -> Self {
-        Entry::Word(Some(word.to_owned()))
+        CellValue::Word(Some(word.to_owned()))
     }
 }
 
-impl From<Option<&'static str>> for Entry {
+impl From<Option<&'static str>> for CellValue {
     fn from(word: Option<&'static str>) -> Self {
-        Entry::Word(word.map(str::to_owned))
+        CellValue::Word(word.map(str::to_owned))
     }
 }
 
-impl From<usize> for Entry {
+impl From<usize> for CellValue {
     fn from(n: usize) -> Self {
-        Entry::Count(n)
+        CellValue::Count(n)
     }
 }
 
@@ -84,12 +84,12 @@ pub struct Column<R> {
     /// Whether a table, which has less room, shows it.
     pub in_table: bool,
     /// What a row has in it.
-    pub entry: fn(&R) -> Entry,
+    pub entry: fn(&R) -> CellValue,
 }
 
 impl<R> Column<R> {
     /// A column that tables show too.
-    pub fn new(name: &'static str, quantity: Quantity, entry: fn(&R) -> Entry) -> Self {
+    pub fn new(name: &'static str, quantity: Quantity, entry: fn(&R) -> CellValue) -> Self {
         Column {
             name,
             quantity,
@@ -100,7 +100,7 @@ impl<R> Column<R> {
     }
 
     /// With an error budget.
-    pub fn uncertain(name: &'static str, quantity: Quantity, entry: fn(&R) -> Entry) -> Self {
+    pub fn uncertain(name: &'static str, quantity: Quantity, entry: fn(&R) -> CellValue) -> Self {
         Column {
             uncertain: true,
             ..Column::new(name, quantity, entry)
@@ -125,16 +125,16 @@ pub fn cells<R>(columns: &[Column<R>], row: &R, units: &Units, table: bool) -> V
     let mut cells = Vec::new();
     for column in columns.iter().filter(|column| column.in_table || !table) {
         match (column.entry)(row) {
-            Entry::Number(x) => cells.push(x.map(|x| units.outward(column.quantity, x)).into()),
-            Entry::Uncertain(x) => {
+            CellValue::Number(x) => cells.push(x.map(|x| units.outward(column.quantity, x)).into()),
+            CellValue::Uncertain(x) => {
                 let x = x.map(|x| units.outward_uncertain(column.quantity, x));
                 cells.push(x.map(|x| x.value).into());
                 if !table {
                     cells.push(x.map(|x| x.uncertainty).into());
                 }
             }
-            Entry::Word(word) => cells.push(word.map_or(Cell::Missing, Cell::Text)),
-            Entry::Count(n) => cells.push(Cell::Text(n.to_string())),
+            CellValue::Word(word) => cells.push(word.map_or(Cell::Missing, Cell::Text)),
+            CellValue::Count(n) => cells.push(Cell::Text(n.to_string())),
         }
     }
     cells
@@ -143,13 +143,13 @@ pub fn cells<R>(columns: &[Column<R>], row: &R, units: &Units, table: bool) -> V
 /// A row as an object.
 pub fn object<R>(columns: &[Column<R>], row: &R, units: &Units) -> Map<String, Value> {
     let value = |column: &Column<R>| match (column.entry)(row) {
-        Entry::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
-        Entry::Uncertain(x) => x.map_or(Value::Null, |x| {
+        CellValue::Number(x) => json!(x.map(|x| units.outward(column.quantity, x))),
+        CellValue::Uncertain(x) => x.map_or(Value::Null, |x| {
             let x = units.outward_uncertain(column.quantity, x);
             output::uncertain((x.value, x.uncertainty))
         }),
-        Entry::Word(word) => json!(word),
-        Entry::Count(n) => json!(n),
+        CellValue::Word(word) => json!(word),
+        CellValue::Count(n) => json!(n),
     };
     let pairs = columns.iter();
     pairs

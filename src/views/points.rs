@@ -1,11 +1,11 @@
 //! What the rows of a sweep show, and how they are read again.
 
-use super::{Column, Entry, Outcome};
+use super::{CellValue, Column, PointOutcome};
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;
 use crate::scene::{Quantity, Units};
 use crate::section::Regime;
-use crate::sweep::Row;
+use crate::sweep::SweepRow;
 
 /// The regimes in the order of summaries and legends.
 pub const REGIMES: [Regime; 5] = [
@@ -17,37 +17,41 @@ pub const REGIMES: [Regime; 5] = [
 ];
 
 /// The columns of the points of a sweep. A row's start is one that `integrate --start` takes.
-pub fn sweep_columns() -> Vec<Column<Row>> {
+pub fn sweep_columns() -> Vec<Column<SweepRow>> {
     use Quantity::{Growth, Number, SlipRate, State, Stiffness, Stress, Time};
     let mut columns = vec![
-        Column::new("driving", SlipRate, |row: &Row| row.driving.into()),
-        Column::new("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
-        Column::new("regime", Number, |row: &Row| row.regime.name().into()),
-        Column::new("symmetry", Number, |row: &Row| {
+        Column::new("driving", SlipRate, |row: &SweepRow| row.driving.into()),
+        Column::new("stiffness", Stiffness, |row: &SweepRow| {
+            row.stiffness.into()
+        }),
+        Column::new("regime", Number, |row: &SweepRow| row.regime.name().into()),
+        Column::new("symmetry", Number, |row: &SweepRow| {
             row.symmetry.map(Symmetry::name).into()
         }),
-        Column::new("period", Time, |row: &Row| row.period.into()),
-        Column::new("stress_min", Stress, |row: &Row| {
+        Column::new("period", Time, |row: &SweepRow| row.period.into()),
+        Column::new("stress_min", Stress, |row: &SweepRow| {
             row.stress_range.map(|range| range.0).into()
         }),
-        Column::new("stress_max", Stress, |row: &Row| {
+        Column::new("stress_max", Stress, |row: &SweepRow| {
             row.stress_range.map(|range| range.1).into()
         }),
-        Column::uncertain("lyapunov_max", Growth, |row: &Row| row.lyapunov_max.into()),
-        Column::new("returns", Number, |row: &Row| row.returns.into()),
-        Column::new("period_of_orbit", Number, |row: &Row| {
-            Entry::Word(row.returns_per_period.map(|q| q.to_string()))
+        Column::uncertain("lyapunov_max", Growth, |row: &SweepRow| {
+            row.lyapunov_max.into()
         }),
-        Column::new("start_stress", Stress, |row: &Row| row.start[0].into()),
-        Column::new("start_state_1", State, |row: &Row| {
+        Column::new("returns", Number, |row: &SweepRow| row.returns.into()),
+        Column::new("period_of_orbit", Number, |row: &SweepRow| {
+            CellValue::Word(row.returns_per_period.map(|q| q.to_string()))
+        }),
+        Column::new("start_stress", Stress, |row: &SweepRow| row.start[0].into()),
+        Column::new("start_state_1", State, |row: &SweepRow| {
             row.start[1].exp().into()
         }),
-        Column::new("start_state_2", State, |row: &Row| {
+        Column::new("start_state_2", State, |row: &SweepRow| {
             row.start[2].exp().into()
         }),
-        Column::new("note", Number, |row: &Row| {
+        Column::new("note", Number, |row: &SweepRow| {
             // A row is a line, whatever the reason says.
-            Entry::Word(row.note.as_ref().map(|note| note.replace('\n', " ")))
+            CellValue::Word(row.note.as_ref().map(|note| note.replace('\n', " ")))
         }),
     ];
     for column in &mut columns {
@@ -57,7 +61,11 @@ pub fn sweep_columns() -> Vec<Column<Row>> {
 }
 
 /// A row from the cells of its line, by the names of their columns; `None` if they are not those of a row.
-pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Units) -> Option<Row> {
+pub fn sweep_row<'a>(
+    number: usize,
+    cell: &dyn Fn(&str) -> &'a str,
+    units: &Units,
+) -> Option<SweepRow> {
     let maybe = |name: &str, quantity| {
         let text = cell(name);
         match text.is_empty() {
@@ -73,7 +81,7 @@ pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Unit
     let exponent = maybe("lyapunov_max", Quantity::Growth)?;
     let bound = maybe("lyapunov_max_uncertainty", Quantity::Growth)?;
     let text = |name: &str| Some(cell(name)).filter(|text| !text.is_empty());
-    Some(Row {
+    Some(SweepRow {
         number,
         driving: known("driving", Quantity::SlipRate)?,
         stiffness: known("stiffness", Quantity::Stiffness)?,
@@ -96,8 +104,8 @@ pub fn sweep_row<'a>(number: usize, cell: &dyn Fn(&str) -> &'a str, units: &Unit
 }
 
 /// What a picture shows of a row.
-pub fn outcome(row: &Row) -> Outcome {
-    Outcome {
+pub fn outcome(row: &SweepRow) -> PointOutcome {
+    PointOutcome {
         number: row.number,
         regime: row.regime,
         symmetry: row.symmetry,

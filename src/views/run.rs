@@ -1,12 +1,12 @@
 //! Pictures of a run in time.
 
-use crate::output::Rows;
-use crate::output::plot::{Axis, Panel, Series, Stroke};
+use crate::output::RowList;
+use crate::output::plot::{Axis, Panel, PlotSeries, Stroke};
 use crate::scene::{Dimension, Plan, Quantity};
 use crate::views;
 
-/// Stress, states and slip rates against time, from points in the columns [`crate::scene::Column::pictured`].
-pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
+/// Stress, states and slip rates against time, from points in the columns [`crate::scene::OutputColumn::pictured`].
+pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
     let units = &plan.system.units;
     let time = Axis::linear(format!("time t [{}]", units.short_name(Quantity::Time)));
     let state_unit = match units.short_name(Quantity::State).as_str() {
@@ -24,7 +24,7 @@ pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
         ..Panel::new(title, time.clone(), y)
     };
     let parameters = views::parameters(plan.loading.driving, plan.loading.stiffness, units);
-    let over_time = Series::new("", column("time"), column("stress"));
+    let over_time = PlotSeries::new("", column("time"), column("stress"));
     vec![
         panel(
             &format!("stress, {parameters}"),
@@ -41,7 +41,7 @@ pub fn panels_in_time(plan: &Plan, rows: &Rows) -> Vec<Panel> {
 }
 
 /// Stress against the slip rates.
-pub fn phase_plane(plan: &Plan, rows: &Rows) -> Panel {
+pub fn phase_plane(plan: &Plan, rows: &RowList) -> Panel {
     let column = |name: &str| rows.column(name).unwrap_or_default();
     let series = each(plan, rows, "v", &|i| {
         (column(&format!("slip_rate_{i}")), column("stress"))
@@ -71,13 +71,13 @@ const SLOW: usize = 0;
 /// which of both it is depends on the start, and its look doesn't.
 fn each(
     plan: &Plan,
-    rows: &Rows,
+    rows: &RowList,
     name: &str,
     of: &dyn Fn(usize) -> (Vec<f64>, Vec<f64>),
-) -> Vec<Series> {
+) -> Vec<PlotSeries> {
     let one = |i: usize, marks: &str| {
         let (x, y) = of(i);
-        Series::new(label(name, marks), x, y)
+        PlotSeries::new(label(name, marks), x, y)
     };
     let most = |name: &str| {
         let rates = rows.column(name).unwrap_or_default();
@@ -95,7 +95,7 @@ fn each(
             let named = |(i, mark): (usize, &str), role: &str| {
                 let series = one(i, mark);
                 let label = format!("{}, {role}", series.label);
-                Series { label, ..series }
+                PlotSeries { label, ..series }
             };
             vec![
                 named(fast, "fast").colour(FAST),

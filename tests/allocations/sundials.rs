@@ -5,7 +5,9 @@ use twinslip::field::{Jacobian, State};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Tolerances;
 use twinslip::model::{Driven, Loading, two_interfaces};
-use twinslip::sundials::{Cvode, Kinsol, Method, Mode, Operations, Problem, Residual, Sensitivity};
+use twinslip::sundials::{
+    Cvode, Kinsol, Mode, MultistepMethod, Operations, Problem, Residual, Sensitivity,
+};
 
 struct Equilibrium(Box<dyn Driven<3>>);
 
@@ -37,7 +39,7 @@ fn no_step_of_cvodes_allocates() {
         .map(|c| c.into_owned())
         .collect();
     for operations in [Operations::Fixed, Operations::Stock] {
-        let mut cvode = Cvode::<3>::new(Method::Bdf, operations).unwrap();
+        let mut cvode = Cvode::<3>::new(MultistepMethod::Bdf, operations).unwrap();
         cvode
             .set_tolerances(Tolerances::equal(1e-8).unwrap())
             .unwrap();

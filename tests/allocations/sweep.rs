@@ -3,7 +3,7 @@
 use allocation_counter::measure;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::section::Regime;
-use twinslip::sweep::{Grid, Range, Settings, Sweeper};
+use twinslip::sweep::{Grid, Range, SweepSettings, Sweeper};
 
 /// Allocations of a look for what a run creeps to.
 const SEARCH: u64 = 400;
@@ -11,7 +11,7 @@ const SEARCH: u64 = 400;
 #[test]
 fn no_step_allocates() {
     // Just below the Hopf point of the asymmetric steady state runs return for long.
-    let at = |text: &str| Settings {
+    let at = |text: &str| SweepSettings {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         grid: Grid::Plane {
             driving: Range::parse("driving", text).unwrap(),

@@ -2,19 +2,19 @@
 
 use std::ops::ControlFlow::{self, Continue};
 use twinslip::Result;
-use twinslip::bifurcation::{BranchRow, Event, Label, LocusRow, Seen, Special};
+use twinslip::bifurcation::{BranchRow, Event, EventObserver, Label, LocusRow, Special};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::Loading;
 use twinslip::number::Uncertain;
-use twinslip::orbit::Slab;
+use twinslip::orbit::InterfaceSystem;
 
 pub fn spinodal() -> AnyLaw {
     AnyLaw::Spinodal(Parameters::heslot_1994().spinodal())
 }
 
-pub fn slab(law: AnyLaw, interfaces: usize, driving: f64, stiffness: f64) -> Slab {
+pub fn slab(law: AnyLaw, interfaces: usize, driving: f64, stiffness: f64) -> InterfaceSystem {
     let loading = Loading::new(driving, stiffness).expect("a loading");
-    Slab {
+    InterfaceSystem {
         law,
         interfaces,
         loading,
@@ -22,7 +22,7 @@ pub fn slab(law: AnyLaw, interfaces: usize, driving: f64, stiffness: f64) -> Sla
 }
 
 /// The slab of the paper.
-pub fn two(driving: f64, stiffness: f64) -> Slab {
+pub fn two(driving: f64, stiffness: f64) -> InterfaceSystem {
     slab(spinodal(), 2, driving, stiffness)
 }
 
@@ -35,7 +35,7 @@ pub struct Heard {
 
 impl Heard {
     /// All that is told by this.
-    pub fn of_all(told: impl FnOnce(Seen<'_>) -> Result<()>) -> Self {
+    pub fn of_all(told: impl FnOnce(EventObserver<'_>) -> Result<()>) -> Self {
         let mut heard = Heard::default();
         told(&mut |event| heard.hear(event)).expect("branches or curves");
         heard

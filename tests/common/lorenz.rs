@@ -221,7 +221,7 @@ impl<Q: Quadratic> Tangent<3> for Track<Q> {
             start: self.columns,
             parameters: [[0.0; 3]; 2],
             log_determinant: self.log_determinant,
-            log_across: None,
+            log_transverse: None,
         }
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::drawn::{BLUE, Shape, alone, numbers, seen, unit};
 use std::sync::atomic::AtomicBool;
-use twinslip::output::plot::{Axis, Drawing, Mark, Note, Panel, Series};
+use twinslip::output::plot::{Axis, Drawing, Mark, Note, Panel, PlotSeries};
 use twinslip::paper::{Make, Pieces, Product};
 
 /// Where curves of a colour run: the ends of their straight pieces, in order.
@@ -57,7 +57,7 @@ fn curves_have_no_corners_at_their_points() {
     let mut panel = unit("");
     panel
         .series
-        .push(Series::new("", around(f64::cos, 0.4), around(f64::sin, 0.3)).colour(0));
+        .push(PlotSeries::new("", around(f64::cos, 0.4), around(f64::sin, 0.3)).colour(0));
     let svg = alone(panel.clone()).svg().unwrap();
     let [line] = &pieces(&svg, BLUE)[..] else {
         panic!("one curve")
@@ -80,7 +80,7 @@ fn oscillations_that_fill_an_area_are_drawn_as_their_envelope() {
     let growing = |x: &f64| 0.5 + 0.4 * x * (6000.0 * x).sin();
     let y = x.iter().map(growing).collect();
     let mut panel = unit("");
-    panel.series.push(Series::new("", x, y).colour(0));
+    panel.series.push(PlotSeries::new("", x, y).colour(0));
     let svg = alone(panel).svg().unwrap();
     assert!(
         svg.contains("fill-opacity"),
@@ -97,7 +97,7 @@ fn symbols_have_subscripts() {
         Axis::linear("driving velocity V_H [V*]").within(0.0, 1.0),
         Axis::linear("steady friction μ_ss").within(0.0, 1.0),
     );
-    let line = Series::new("τ_ss(V_H/2)", vec![0.0, 1.0], vec![0.2, 0.3]);
+    let line = PlotSeries::new("τ_ss(V_H/2)", vec![0.0, 1.0], vec![0.2, 0.3]);
     panel.series.push(line);
     panel.marks.push(Mark::new(0.5, 0.25, "k_c* < 1 & more"));
     panel.notes.push(Note::new(0.3, 0.7, "H_a"));
@@ -122,7 +122,7 @@ fn words_are_legible_where_pictures_are_shown() {
         let mut panel = unit("a title");
         panel
             .series
-            .push(Series::new("", vec![0.0, 1.0], vec![0.0, 1.0]));
+            .push(PlotSeries::new("", vec![0.0, 1.0], vec![0.0, 1.0]));
         panel
     };
     for columns in [1, 2] {
@@ -137,7 +137,7 @@ fn notes_stand_beside_curves() {
     let mut panel = unit("");
     let x = numbers(0.0, 1.0, 200);
     let y = x.iter().map(|x| 0.5 + 0.3 * (7.0 * x).sin()).collect();
-    panel.series.push(Series::new("", x, y).colour(0));
+    panel.series.push(PlotSeries::new("", x, y).colour(0));
     for i in 1..10 {
         let at = 0.1 * f64::from(i);
         panel
@@ -166,7 +166,9 @@ fn notes_stand_beside_curves() {
 fn names_of_near_points_stand_apart() {
     let mut panel = unit("");
     let x = numbers(0.0, 1.0, 100);
-    panel.series.push(Series::new("", x.clone(), x).colour(0));
+    panel
+        .series
+        .push(PlotSeries::new("", x.clone(), x).colour(0));
     let points = [
         (0.2, 0.2, "TR"),
         (0.22, 0.22, "PD"),

@@ -8,13 +8,18 @@ use twinslip::equilibrium::Symmetry;
 use twinslip::number::Uncertain;
 use twinslip::scene::Units;
 use twinslip::section::Regime;
-use twinslip::views::{Outcome, Side, basin_map, regime_map};
+use twinslip::views::{GridSide, PointOutcome, basin_map, regime_map};
 
 const TORUS: [u8; 3] = [182, 168, 113];
 const PERIOD_3: [u8; 3] = [182, 71, 132];
 
-fn outcome(number: usize, regime: Regime, symmetry: Option<Symmetry>, returns: usize) -> Outcome {
-    Outcome {
+fn outcome(
+    number: usize,
+    regime: Regime,
+    symmetry: Option<Symmetry>,
+    returns: usize,
+) -> PointOutcome {
+    PointOutcome {
         number,
         regime,
         symmetry,
@@ -25,8 +30,8 @@ fn outcome(number: usize, regime: Regime, symmetry: Option<Symmetry>, returns: u
     }
 }
 
-fn side(from: f64, to: f64, count: usize) -> Side {
-    Side {
+fn side(from: f64, to: f64, count: usize) -> GridSide {
+    GridSide {
         values: drawn::numbers(from, to, count),
         log: false,
     }
@@ -107,7 +112,7 @@ fn cells_whose_starts_differ_show_both() {
         outcome(2, Regime::Torus, None, 0),
         outcome(3, Regime::Undecided, None, 0),
     ];
-    let alone = Side {
+    let alone = GridSide {
         values: vec![0.1],
         log: true,
     };
@@ -139,16 +144,16 @@ fn cells_whose_starts_differ_show_both() {
 
 #[test]
 fn attractors_are_numbered_by_their_basins() {
-    let orbit = |number: usize, period: f64| Outcome {
+    let orbit = |number: usize, period: f64| PointOutcome {
         period: Some(period),
         ..outcome(number, Regime::Periodic, Some(Symmetry::Asymmetric), 1)
     };
-    let found: Vec<Outcome> = (0..12)
+    let found: Vec<PointOutcome> = (0..12)
         .map(|number| match number {
             0..2 => orbit(number, 300.0),
             // The same up to the accuracy of runs.
             2..7 => orbit(number, 512.25 * (1.0 + 1e-7 * number as f64)),
-            7..11 => Outcome {
+            7..11 => PointOutcome {
                 period: Some(300.0),
                 ..outcome(number, Regime::Periodic, Some(Symmetry::Symmetric), 1)
             },
@@ -184,7 +189,7 @@ fn starts_on_the_diagonal_are_no_basin() {
         };
         outcome(number, Regime::Periodic, Some(symmetry), 1)
     };
-    let found: Vec<Outcome> = (0..n * n).map(orbit).collect();
+    let found: Vec<PointOutcome> = (0..n * n).map(orbit).collect();
     let sides = (&side(0.1, 1.0, n), &side(0.1, 1.0, n));
     let map = basin_map(&found, sides, (2.0, 0.1), &Units::new(None, false));
     let seen = seen(&map);

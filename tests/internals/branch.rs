@@ -5,10 +5,10 @@ use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::internals::period_from_hopf;
 use twinslip::model::Loading;
 use twinslip::model::Parameter;
-use twinslip::orbit::{Slab, hopf_points};
+use twinslip::orbit::{InterfaceSystem, hopf_points};
 
-fn slab(driving: f64) -> Slab {
-    Slab {
+fn slab(driving: f64) -> InterfaceSystem {
+    InterfaceSystem {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         interfaces: 2,
         loading: Loading::new(driving, 0.14).unwrap(),

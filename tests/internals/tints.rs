@@ -1,19 +1,19 @@
 //! Colours of regimes.
 
-use twinslip::internals::{Kind, LIGHTEST};
+use twinslip::internals::{LIGHTEST, RegimeKind};
 use twinslip::output::plot::Shade;
-const ALL: [Kind; 11] = [
-    Kind::SteadySymmetric,
-    Kind::SteadyAsymmetric,
-    Kind::PeriodicSymmetric,
-    Kind::PeriodicAsymmetric,
-    Kind::Period2,
-    Kind::Period3,
-    Kind::Period4,
-    Kind::PeriodHigher,
-    Kind::Torus,
-    Kind::Chaotic,
-    Kind::Undecided,
+const ALL: [RegimeKind; 11] = [
+    RegimeKind::SteadySymmetric,
+    RegimeKind::SteadyAsymmetric,
+    RegimeKind::PeriodicSymmetric,
+    RegimeKind::PeriodicAsymmetric,
+    RegimeKind::Period2,
+    RegimeKind::Period3,
+    RegimeKind::Period4,
+    RegimeKind::PeriodHigher,
+    RegimeKind::Torus,
+    RegimeKind::Chaotic,
+    RegimeKind::Undecided,
 ];
 
 /// Linear light of the parts of a colour (IEC 61966-2-1).
@@ -60,8 +60,8 @@ const SEEN: [[[f64; 3]; 3]; 3] = [
 
 #[test]
 fn regimes_are_told_apart_in_grey() {
-    let mut shades = ALL.map(Kind::shade).to_vec();
-    let palest = Kind::Chaotic.shade().lighter(LIGHTEST);
+    let mut shades = ALL.map(RegimeKind::shade).to_vec();
+    let palest = RegimeKind::Chaotic.shade().lighter(LIGHTEST);
     shades.push(palest);
     for (i, &a) in shades.iter().enumerate() {
         for &b in &shades[..i] {

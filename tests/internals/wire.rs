@@ -4,11 +4,11 @@ use twinslip::equilibrium::Symmetry;
 use twinslip::internals::{pack, unpack};
 use twinslip::number::Uncertain;
 use twinslip::section::Regime;
-use twinslip::sweep::Row;
+use twinslip::sweep::SweepRow;
 
 #[test]
 fn rows_come_back_to_the_bit() {
-    let full = Row {
+    let full = SweepRow {
         number: 7,
         driving: 0.1,
         stiffness: 1.0 / 3.0,
@@ -22,7 +22,7 @@ fn rows_come_back_to_the_bit() {
         returns: 1234,
         note: Some("a note, \"quoted\": ψ".into()),
     };
-    let empty = Row {
+    let empty = SweepRow {
         number: 8,
         regime: Regime::Undecided,
         symmetry: None,

@@ -158,11 +158,11 @@ fn one<const N: usize>(
         Err(_) => Outcome::Broken("a panic".into()),
         Ok((_, steps)) if steps > MAX_STEPS => Outcome::Broken(format!("{steps} steps")),
         Ok((Err(error), steps)) => refusal(&error, steps, truth, trial.tolerance),
-        Ok((Ok(state), steps)) => judge(&state, steps, truth, trial.tolerance),
+        Ok((Ok(state), steps)) => classify(&state, steps, truth, trial.tolerance),
     }
 }
 
-fn judge<const N: usize>(
+fn classify<const N: usize>(
     state: &State<N>,
     steps: usize,
     truth: &Truth<N>,

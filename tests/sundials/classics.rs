@@ -15,7 +15,7 @@ fn check<const N: usize>(
     bound: f64,
 ) {
     for operations in OPERATIONS {
-        let mut cvode = cvode::<N>(Method::Bdf, operations, rtol, atol);
+        let mut cvode = cvode::<N>(MultistepMethod::Bdf, operations, rtol, atol);
         cvode.start(0.0, &State::from(y0)).unwrap();
         let arrival = cvode
             .advance(&Problem::new(field), end, Mode::Normal)
@@ -127,7 +127,7 @@ fn a_stop_time_is_met_exactly_never_passed_and_forgotten_when_unset() {
     let field = oscillator();
     let problem = Problem::new(&field);
     for end in [2.0, -2.0] {
-        let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-9, 1e-9);
+        let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-9, 1e-9);
         for _ in 0..2 {
             cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
             cvode.set_stop_time(Some(0.5 * end));
@@ -158,7 +158,7 @@ fn a_stop_time_is_met_exactly_never_passed_and_forgotten_when_unset() {
 #[test]
 fn a_reused_solver_repeats_itself_to_the_last_bit() {
     let field = Robertson;
-    let mut cvode = cvode::<3>(Method::Bdf, Operations::Fixed, 1e-8, 1e-14);
+    let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-14);
     let mut run = || {
         cvode.start(0.0, &State::<3>::new(1.0, 0.0, 0.0)).unwrap();
         cvode

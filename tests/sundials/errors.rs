@@ -27,7 +27,7 @@ fn wall(beyond: f64) -> impl VectorField<1> {
 }
 
 fn run(field: &dyn VectorField<1>, max_steps: usize) -> Error {
-    let mut cvode = cvode::<1>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<1>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.set_max_steps(max_steps);
     cvode.start(0.0, &State::<1>::new(0.0)).unwrap();
     let error = cvode
@@ -39,7 +39,7 @@ fn run(field: &dyn VectorField<1>, max_steps: usize) -> Error {
 
 #[test]
 fn a_repeated_error_test_failure_has_its_name_time_and_message() {
-    let mut cvode = cvode::<1>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<1>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.set_max_failures(3).unwrap();
     cvode.start(0.0, &State::<1>::new(0.0)).unwrap();
     let error = cvode
@@ -59,7 +59,7 @@ fn a_repeated_error_test_failure_has_its_name_time_and_message() {
 #[test]
 fn the_bound_on_steps_has_its_name_in_both_modes() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-10, 1e-10);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-10, 1e-10);
     cvode.set_max_steps(50);
     for mode in [Mode::Normal, Mode::OneStep] {
         cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
@@ -78,7 +78,7 @@ fn the_bound_on_steps_has_its_name_in_both_modes() {
 #[test]
 fn more_steps_than_one_portion_are_taken() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-10, 1e-10);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-10, 1e-10);
     cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
     cvode
         .advance(&Problem::new(&field), 100.0, Mode::Normal)
@@ -90,7 +90,7 @@ fn more_steps_than_one_portion_are_taken() {
 #[test]
 fn a_time_too_close_and_a_missing_sensitivity_have_their_names() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.start(1.0, &State::<2>::new(0.0, 1.0)).unwrap();
     let error = cvode
         .advance(&Problem::new(&field), 1.0, Mode::Normal)
@@ -130,7 +130,7 @@ fn a_non_finite_start_is_a_typed_error() {
             t: 0.0
         }
     );
-    let mut cvode = cvode::<1>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<1>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     for bad in [f64::NAN, f64::INFINITY] {
         assert!(matches!(
             cvode.start(0.0, &State::<1>::new(bad)),
@@ -146,7 +146,7 @@ fn a_jacobian_that_stays_non_finite_is_an_error_of_its_set_up() {
         |_: &State<1>| Jacobian::<1>::new(f64::NAN),
     );
     for operations in OPERATIONS {
-        let mut cvode = cvode::<1>(Method::Bdf, operations, 1e-8, 1e-8);
+        let mut cvode = cvode::<1>(MultistepMethod::Bdf, operations, 1e-8, 1e-8);
         cvode.start(0.0, &State::<1>::new(1.0)).unwrap();
         let error = cvode
             .advance(&Problem::new(&field), 1.0, Mode::Normal)
@@ -171,7 +171,7 @@ fn a_recoverable_excursion_is_stepped_around() {
         |y: &State<1>| State::<1>::new(-y[0].sqrt()),
         |y: &State<1>| Jacobian::<1>::new(-0.5 / y[0].sqrt()),
     );
-    let mut cvode = cvode::<1>(Method::Adams, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<1>(MultistepMethod::Adams, Operations::Fixed, 1e-8, 1e-8);
     cvode.start(0.0, &State::<1>::new(1.0)).unwrap();
     cvode
         .advance(&Problem::new(&field), 1.9, Mode::Normal)
@@ -187,7 +187,7 @@ fn provoke() {
     }
     run(&wall(1.0), 3);
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.start(1e15, &State::<2>::new(0.0, 1e-3)).unwrap();
     cvode.sensitivities().unwrap_err();
     cvode.dense(7.0).unwrap_err();

@@ -34,7 +34,7 @@ fn all_zeros_of_sine_and_cosine_are_found_in_order() {
     };
     for operations in OPERATIONS {
         for sign in [1.0, -1.0] {
-            let mut cvode = cvode::<2>(Method::Bdf, operations, 1e-9, 1e-9);
+            let mut cvode = cvode::<2>(MultistepMethod::Bdf, operations, 1e-9, 1e-9);
             cvode.watch_events(2, &[]).unwrap();
             // x = sin(t + 1/4)
             let start = State::<2>::new(0.25_f64.sin(), 0.25_f64.cos());
@@ -63,7 +63,7 @@ fn one_direction_gives_half_the_crossings() {
         ..Problem::new(&field)
     };
     for direction in [1, -1] {
-        let mut cvode = cvode::<2>(Method::Adams, Operations::Fixed, 1e-9, 1e-9);
+        let mut cvode = cvode::<2>(MultistepMethod::Adams, Operations::Fixed, 1e-9, 1e-9);
         cvode.watch_events(1, &[direction]).unwrap();
         cvode.start(0.0, &State::<2>::new(1.0, 0.0)).unwrap();
         let found = events(&mut cvode, &problem, 20.0 * PI);
@@ -85,12 +85,12 @@ fn every_crossing_of_a_stick_slip_run_is_found() {
         watched += usize::from(level(step.y0) * level(step.y1) < 0.0);
         Ok(Control::Continue)
     };
-    CvodeIntegrator::new(Method::Bdf, tolerances, MAX_STEPS)
+    CvodeIntegrator::new(MultistepMethod::Bdf, tolerances, MAX_STEPS)
         .unwrap()
         .flow(&*field, (0.0, 60.0), &y0, Some(&mut observer))
         .unwrap();
 
-    let mut cvode = cvode::<3>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.watch_events(1, &[]).unwrap();
     cvode.start(0.0, &y0).unwrap();
     let problem = Problem {
@@ -105,7 +105,7 @@ fn every_crossing_of_a_stick_slip_run_is_found() {
 #[test]
 fn watching_nothing_given_and_non_finite_events_are_errors() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.watch_events(1, &[]).unwrap();
     cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
     assert!(matches!(
@@ -127,7 +127,7 @@ fn watching_nothing_given_and_non_finite_events_are_errors() {
 
 #[test]
 fn more_events_than_c_can_count_are_refused() {
-    let mut cvode = cvode::<2>(Method::Bdf, OPERATIONS[0], 1e-9, 1e-9);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, OPERATIONS[0], 1e-9, 1e-9);
     let refused = cvode.watch_events(1 << 31, &[]);
     assert!(
         matches!(&refused, Err(Error::Parameter { value, .. }) if value.starts_with("2147483648")),

@@ -12,9 +12,9 @@ mod threads;
 
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::Tolerances;
-use twinslip::sundials::{Cvode, Method, Operations};
+use twinslip::sundials::{Cvode, MultistepMethod, Operations};
 
-const METHODS: [Method; 2] = [Method::Bdf, Method::Adams];
+const METHODS: [MultistepMethod; 2] = [MultistepMethod::Bdf, MultistepMethod::Adams];
 const OPERATIONS: [Operations; 2] = [Operations::Fixed, Operations::Stock];
 
 /// A field from two functions.
@@ -46,7 +46,12 @@ fn oscillator() -> impl VectorField<2> {
     )
 }
 
-fn cvode<const N: usize>(method: Method, operations: Operations, rtol: f64, atol: f64) -> Cvode<N> {
+fn cvode<const N: usize>(
+    method: MultistepMethod,
+    operations: Operations,
+    rtol: f64,
+    atol: f64,
+) -> Cvode<N> {
     let mut cvode = Cvode::new(method, operations).unwrap();
     cvode
         .set_tolerances(Tolerances::new(rtol, atol).unwrap())

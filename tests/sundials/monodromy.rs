@@ -6,27 +6,27 @@ use twinslip::equilibrium::Symmetry;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::Choice;
 use twinslip::model::Loading;
-use twinslip::orbit::{Accuracy, Begin, Orbit, Query, Slab, find};
-use twinslip::sundials::{ErrorControl, Mode, Problem, Scheme, Sensitivity};
+use twinslip::orbit::{InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, find};
+use twinslip::sundials::{ErrorControl, Mode, Problem, Sensitivity, SensitivityMethod};
 
-fn orbit(driving: f64, stiffness: f64) -> (Slab, Orbit) {
-    let slab = Slab {
+fn orbit(driving: f64, stiffness: f64) -> (InterfaceSystem, Orbit) {
+    let slab = InterfaceSystem {
         law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
         interfaces: 2,
         loading: Loading::new(driving, stiffness).unwrap(),
     };
     let query = Query {
         symmetry: Symmetry::Asymmetric,
-        begin: Begin::Anywhere,
+        begin: InitialGuess::Anywhere,
     };
-    let found = find(&slab, &query, &Accuracy::of(Choice::Taylor)).unwrap();
+    let found = find(&slab, &query, &OrbitAccuracy::of(Choice::Taylor)).unwrap();
     (slab, found.orbit)
 }
 
 /// The derivative of the state after so many cycles in its start, on the orbit where it is slowest: in the midst of slip the
 /// matrix is large, and its trace a small difference.
 fn monodromy(
-    slab: &Slab,
+    slab: &InterfaceSystem,
     orbit: &Orbit,
     cycles: f64,
     rtol: f64,
@@ -34,7 +34,7 @@ fn monodromy(
 ) -> Jacobian<3> {
     let field = slab.whole();
     let problem = Problem::new(&*field);
-    let mut cvode = cvode::<3>(Method::Bdf, Operations::Fixed, rtol, rtol);
+    let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, rtol, rtol);
     let nodes = orbit.nodes.iter().map(|x| State::<3>::from_fn(|i, _| x[i]));
     let speed = |x: &State<3>| field.f(x).amax();
     let start = nodes.min_by(|a, b| speed(a).total_cmp(&speed(b))).unwrap();
@@ -55,7 +55,10 @@ fn the_larger_multiplier_comes_with_the_tolerance_in_both_schemes() {
     // K = 0.14, V_H = 1: 0.767 and 9e-9, whose sum is the trace less the trivial one.
     let (slab, orbit) = orbit(1.0, 0.14);
     let exact = 0.767_210_343_340_776_4 + 9.259_333_9e-9;
-    for scheme in [Scheme::Simultaneous, Scheme::Staggered] {
+    for scheme in [
+        SensitivityMethod::Simultaneous,
+        SensitivityMethod::Staggered,
+    ] {
         let settings = Sensitivity {
             scheme,
             ..Sensitivity::default()
@@ -77,7 +80,7 @@ fn without_error_control_twenty_cycles_are_wrong_by_orders_of_magnitude() {
     // The multipliers are 0.60 and 2e-22: after twenty cycles only the trivial one is left of the trace.
     let trace = |error_control| {
         let settings = Sensitivity {
-            scheme: Scheme::Staggered,
+            scheme: SensitivityMethod::Staggered,
             error_control,
             ..Sensitivity::default()
         };

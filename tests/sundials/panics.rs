@@ -28,7 +28,7 @@ fn from_the_right_hand_side_and_no_user_code_runs_after_it() {
     );
     for operations in OPERATIONS {
         calls.store(0, Ordering::Relaxed);
-        let mut cvode = cvode::<2>(Method::Bdf, operations, 1e-8, 1e-8);
+        let mut cvode = cvode::<2>(MultistepMethod::Bdf, operations, 1e-8, 1e-8);
         cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
         let text = said(|| {
             let _ = cvode.advance(&Problem::new(&field), 10.0, Mode::Normal);
@@ -47,7 +47,7 @@ fn from_the_right_hand_side_and_no_user_code_runs_after_it() {
 fn from_the_jacobian() {
     let field = Field(|y: &State<1>| -y, |_: &State<1>| panic!("in J"));
     for operations in OPERATIONS {
-        let mut cvode = cvode::<1>(Method::Bdf, operations, 1e-8, 1e-8);
+        let mut cvode = cvode::<1>(MultistepMethod::Bdf, operations, 1e-8, 1e-8);
         cvode.start(0.0, &State::<1>::new(1.0)).unwrap();
         let text = said(|| {
             let _ = cvode.advance(&Problem::new(&field), 1.0, Mode::Normal);
@@ -59,7 +59,7 @@ fn from_the_jacobian() {
 #[test]
 fn from_an_event_and_from_a_parameter_derivative() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     cvode.watch_events(1, &[]).unwrap();
     cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
     let problem = Problem {

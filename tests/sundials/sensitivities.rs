@@ -3,11 +3,14 @@
 use super::*;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::{Loading, Parameter, two_interfaces};
-use twinslip::sundials::{ErrorControl, Mode, Problem, Scheme, Sensitivity};
+use twinslip::sundials::{ErrorControl, Mode, Problem, Sensitivity, SensitivityMethod};
 
-const SCHEMES: [Scheme; 2] = [Scheme::Simultaneous, Scheme::Staggered];
+const SCHEMES: [SensitivityMethod; 2] = [
+    SensitivityMethod::Simultaneous,
+    SensitivityMethod::Staggered,
+];
 
-fn settings(scheme: Scheme) -> Sensitivity {
+fn settings(scheme: SensitivityMethod) -> Sensitivity {
     Sensitivity {
         scheme,
         ..Sensitivity::default()
@@ -75,7 +78,7 @@ fn the_oscillator_turns_its_tangents_and_dense_ones_agree() {
     let field = oscillator();
     let problem = Problem::new(&field);
     for scheme in SCHEMES {
-        let mut cvode = cvode::<2>(Method::Adams, Operations::Fixed, 1e-10, 1e-10);
+        let mut cvode = cvode::<2>(MultistepMethod::Adams, Operations::Fixed, 1e-10, 1e-10);
         cvode
             .start_with_sensitivities(0.0, &State::<2>::new(0.3, 0.7), &unit(), &settings(scheme))
             .unwrap();
@@ -104,7 +107,7 @@ fn sensitivities_come_and_go_between_starts() {
     let field = oscillator();
     let problem = Problem::new(&field);
     let y0 = State::<2>::new(0.3, 0.7);
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-9, 1e-9);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-9, 1e-9);
     let mut plain = None;
     for count in [0, 2, 0, 1, 2, 2, 0] {
         if count == 0 {
@@ -144,7 +147,7 @@ fn stick_slip() -> (Box<dyn twinslip::model::Driven<3>>, State<3>, f64) {
 
 fn tangent(rtol: f64, settings: &Sensitivity) -> Jacobian<3> {
     let (field, y0, t) = stick_slip();
-    let mut cvode = cvode::<3>(Method::Bdf, Operations::Fixed, rtol, rtol);
+    let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, rtol, rtol);
     cvode
         .start_with_sensitivities(0.0, &y0, &unit(), settings)
         .unwrap();
@@ -157,7 +160,7 @@ fn tangent(rtol: f64, settings: &Sensitivity) -> Jacobian<3> {
 #[test]
 fn stick_slip_agrees_with_central_differences_in_state_and_parameters() {
     let (field, y0, t) = stick_slip();
-    let mut cvode = cvode::<3>(Method::Bdf, Operations::Fixed, 1e-11, 1e-11);
+    let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, 1e-11, 1e-11);
     let mut columns = unit::<3>();
     columns.extend([State::<3>::zeros(); 2]);
     let parameters = [Parameter::Driving, Parameter::Stiffness];
@@ -230,7 +233,7 @@ fn without_error_control_sensitivities_are_worse_than_their_tolerance_says() {
 
 #[test]
 fn non_finite_columns_and_no_columns_are_refused() {
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-8, 1e-8);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-8, 1e-8);
     let y0 = State::<2>::new(0.3, 0.7);
     let bad = [State::<2>::new(f64::NAN, 0.0)];
     let default = Sensitivity::default();

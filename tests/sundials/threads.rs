@@ -50,7 +50,7 @@ fn twelve_threads_give_what_one_gives() {
 #[test]
 fn a_started_solver_goes_on_in_another_thread() {
     let field = oscillator();
-    let mut cvode = cvode::<2>(Method::Bdf, Operations::Fixed, 1e-10, 1e-10);
+    let mut cvode = cvode::<2>(MultistepMethod::Bdf, Operations::Fixed, 1e-10, 1e-10);
     cvode.start(0.0, &State::<2>::new(0.0, 1.0)).unwrap();
     cvode
         .advance(&Problem::new(&field), 1.0, Mode::Normal)

@@ -3,7 +3,7 @@
 //! The trait is object-safe on purpose: static and dynamic dispatch take the same time on these systems, and an integrator
 //! then is compiled once per dimension and not once per law.
 
-use crate::series::{Cubic, Solution, Tangent, Transport};
+use crate::series::{Jet3, Solution, Tangent, TaylorMap};
 use nalgebra::{SMatrix, SVector};
 
 /// A point of the phase space.
@@ -61,7 +61,7 @@ pub trait Analytic<const N: usize> {
     fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_>;
 
     /// A solution to third order in two variations, which are those of this start; `None` where the field has none.
-    fn transport(&self, _start: [Cubic; N]) -> Option<Box<dyn Transport<N> + '_>> {
+    fn transport(&self, _start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {
         None
     }
 }

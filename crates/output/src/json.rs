@@ -29,17 +29,17 @@ pub struct Envelope<'a, R: Serialize> {
 
 /// Rows of numbers as a list of objects, kept flat and turned into objects only on the way out.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct Rows {
+pub struct RowList {
     /// Names of the columns.
     pub columns: Vec<String>,
     /// Row after row.
     pub numbers: Vec<f64>,
 }
 
-impl Rows {
+impl RowList {
     /// None yet.
     pub fn new(columns: Vec<String>) -> Self {
-        Rows {
+        RowList {
             columns,
             numbers: Vec::new(),
         }
@@ -57,11 +57,11 @@ impl Rows {
     }
 }
 
-impl Serialize for Rows {
+impl Serialize for RowList {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut list = serializer.serialize_seq(Some(self.iter().len()))?;
         for row in self.iter() {
-            list.serialize_element(&Row {
+            list.serialize_element(&RowObject {
                 columns: &self.columns,
                 row,
             })?;
@@ -70,12 +70,12 @@ impl Serialize for Rows {
     }
 }
 
-struct Row<'a> {
+struct RowObject<'a> {
     columns: &'a [String],
     row: &'a [f64],
 }
 
-impl Serialize for Row<'_> {
+impl Serialize for RowObject<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut map = serializer.serialize_map(Some(self.columns.len()))?;
         for (name, x) in self.columns.iter().zip(self.row) {

@@ -24,7 +24,7 @@ pub const GROUP: usize = 100_000;
 
 /// What a column holds.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum ColumnType {
     /// Doubles, which may be missing.
     Number,
     /// UTF-8, which may be missing.
@@ -35,7 +35,7 @@ pub enum Kind {
 
 /// Some rows of a column.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Column {
+pub enum ColumnChunk {
     /// Doubles.
     Number(Vec<Option<f64>>),
     /// Words.
@@ -47,7 +47,7 @@ pub enum Column {
 /// Writes groups of rows to a file or a buffer; without [`ParquetRows::finish`] nothing can be read.
 pub struct ParquetRows<W: Write + Send> {
     writer: SerializedFileWriter<W>,
-    kinds: Vec<Kind>,
+    kinds: Vec<ColumnType>,
 }
 
 impl<W: Write + Send> ParquetRows<W> {
@@ -55,7 +55,7 @@ impl<W: Write + Send> ParquetRows<W> {
     ///
     /// # Errors
     /// [`Error::Input`] with the words of the library.
-    pub fn new(to: W, remarks: &[String], columns: &[(String, Kind)]) -> Result<Self> {
+    pub fn new(to: W, remarks: &[String], columns: &[(String, ColumnType)]) -> Result<Self> {
         let fields = columns.iter().map(|(name, kind)| field(name, *kind));
         let fields = fields.collect::<std::result::Result<_, _>>();
         let schema =
@@ -80,8 +80,8 @@ impl<W: Write + Send> ParquetRows<W> {
     ///
     /// # Errors
     /// [`Error::Input`] for columns that are not those that were named, or with the words of the library or the system.
-    pub fn group(&mut self, columns: &[Column]) -> Result<()> {
-        let kinds: Vec<Kind> = columns.iter().map(Column::kind).collect();
+    pub fn group(&mut self, columns: &[ColumnChunk]) -> Result<()> {
+        let kinds: Vec<ColumnType> = columns.iter().map(ColumnChunk::kind).collect();
         if kinds != self.kinds
             || columns
                 .iter()
@@ -110,15 +110,15 @@ impl<W: Write + Send> ParquetRows<W> {
     }
 }
 
-fn field(name: &str, kind: Kind) -> std::result::Result<TypePtr, ParquetError> {
+fn field(name: &str, kind: ColumnType) -> std::result::Result<TypePtr, ParquetError> {
     let (physical, logical, repetition) = match kind {
-        Kind::Number => (Physical::DOUBLE, None, Repetition::OPTIONAL),
-        Kind::Word => (
+        ColumnType::Number => (Physical::DOUBLE, None, Repetition::OPTIONAL),
+        ColumnType::Word => (
             Physical::BYTE_ARRAY,
             Some(LogicalType::String),
             Repetition::OPTIONAL,
         ),
-        Kind::Count => {
+        ColumnType::Count => {
             let unsigned = LogicalType::integer(64, false);
             (Physical::INT64, Some(unsigned), Repetition::REQUIRED)
         }
@@ -128,43 +128,43 @@ fn field(name: &str, kind: Kind) -> std::result::Result<TypePtr, ParquetError> {
     field.build().map(Arc::new)
 }
 
-impl Column {
+impl ColumnChunk {
     /// Without rows yet.
-    pub fn empty(kind: Kind) -> Self {
+    pub fn empty(kind: ColumnType) -> Self {
         match kind {
-            Kind::Number => Column::Number(Vec::new()),
-            Kind::Word => Column::Word(Vec::new()),
-            Kind::Count => Column::Count(Vec::new()),
+            ColumnType::Number => ColumnChunk::Number(Vec::new()),
+            ColumnType::Word => ColumnChunk::Word(Vec::new()),
+            ColumnType::Count => ColumnChunk::Count(Vec::new()),
         }
     }
 
     /// What it holds.
-    pub fn kind(&self) -> Kind {
+    pub fn kind(&self) -> ColumnType {
         match self {
-            Column::Number(_) => Kind::Number,
-            Column::Word(_) => Kind::Word,
-            Column::Count(_) => Kind::Count,
+            ColumnChunk::Number(_) => ColumnType::Number,
+            ColumnChunk::Word(_) => ColumnType::Word,
+            ColumnChunk::Count(_) => ColumnType::Count,
         }
     }
 
     fn len(&self) -> usize {
         match self {
-            Column::Number(all) => all.len(),
-            Column::Word(all) => all.len(),
-            Column::Count(all) => all.len(),
+            ColumnChunk::Number(all) => all.len(),
+            ColumnChunk::Word(all) => all.len(),
+            ColumnChunk::Count(all) => all.len(),
         }
     }
 
     /// Adds a cell as CSV has it, empty where it is missing; says whether it could be read.
     fn read(&mut self, cell: &str) -> bool {
         match self {
-            Column::Number(all) if cell.is_empty() => all.push(None),
-            Column::Number(all) => match cell.parse::<f64>() {
+            ColumnChunk::Number(all) if cell.is_empty() => all.push(None),
+            ColumnChunk::Number(all) => match cell.parse::<f64>() {
                 Ok(x) => all.push(x.is_finite().then_some(x)),
                 Err(_) => return false,
             },
-            Column::Word(all) => all.push((!cell.is_empty()).then(|| cell.to_owned())),
-            Column::Count(all) => match cell.parse() {
+            ColumnChunk::Word(all) => all.push((!cell.is_empty()).then(|| cell.to_owned())),
+            ColumnChunk::Count(all) => match cell.parse() {
                 Ok(n) => all.push(n),
                 Err(_) => return false,
             },
@@ -175,13 +175,13 @@ impl Column {
     fn write(&self, to: &mut SerializedColumnWriter<'_>) -> std::result::Result<(), ParquetError> {
         let there = |present: bool| i16::from(present);
         let written = match self {
-            Column::Number(all) => {
+            ColumnChunk::Number(all) => {
                 let levels: Vec<i16> = all.iter().map(|x| there(x.is_some())).collect();
                 let values: Vec<f64> = all.iter().copied().flatten().collect();
                 let typed = to.typed::<DoubleType>();
                 typed.write_batch(&values, Some(&levels), None)
             }
-            Column::Word(all) => {
+            ColumnChunk::Word(all) => {
                 let levels: Vec<i16> = all.iter().map(|x| there(x.is_some())).collect();
                 let values = all
                     .iter()
@@ -190,7 +190,7 @@ impl Column {
                 let typed = to.typed::<ByteArrayType>();
                 typed.write_batch(&values.collect::<Vec<_>>(), Some(&levels), None)
             }
-            Column::Count(all) => {
+            ColumnChunk::Count(all) => {
                 // Parquet keeps the bits of unsigned numbers in signed ones.
                 let values: Vec<i64> = all.iter().map(|&n| n.cast_signed()).collect();
                 to.typed::<Int64Type>().write_batch(&values, None, None)
@@ -222,11 +222,11 @@ pub fn from_csv(csv: &Path, out: &Path, counts: &[&str], words: &[&str]) -> Resu
         .headers()
         .map_err(|error| unread(error.to_string()))?;
     let kind = |name: &str| match name {
-        _ if counts.contains(&name) => Kind::Count,
-        _ if words.contains(&name) => Kind::Word,
-        _ => Kind::Number,
+        _ if counts.contains(&name) => ColumnType::Count,
+        _ if words.contains(&name) => ColumnType::Word,
+        _ => ColumnType::Number,
     };
-    let columns: Vec<(String, Kind)> = header
+    let columns: Vec<(String, ColumnType)> = header
         .iter()
         .map(|name| (name.to_owned(), kind(name)))
         .collect();
@@ -254,10 +254,10 @@ pub fn from_csv(csv: &Path, out: &Path, counts: &[&str], words: &[&str]) -> Resu
     })
 }
 
-fn empty(columns: &[(String, Kind)]) -> Vec<Column> {
+fn empty(columns: &[(String, ColumnType)]) -> Vec<ColumnChunk> {
     columns
         .iter()
-        .map(|(_, kind)| Column::empty(*kind))
+        .map(|(_, kind)| ColumnChunk::empty(*kind))
         .collect()
 }
 

@@ -1,4 +1,5 @@
-//! Of a matrix the sums of any two eigenvalues, and of a field with a pair on the imaginary axis the first Lyapunov coefficient.
+//! The bialternate product: of a matrix the sums of any two eigenvalues; and of a field with a pair on the imaginary axis the first
+//! Lyapunov coefficient.
 
 use crate::field::{State, VectorField};
 use nalgebra::{Complex, DMatrix, DVector};

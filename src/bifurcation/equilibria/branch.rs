@@ -1,10 +1,10 @@
 //! Branches of equilibria along V_H at fixed K, or along K at fixed V_H.
 
-use super::curves::{AlongDriving, AlongStiffness, Curve};
-use super::pieces::{Begin, Ends};
+use super::branch_observer::BranchObserver;
+use super::curves::{AlongDriving, AlongStiffness, CurveVariables};
+use super::pieces::{Ends, PieceEnd};
 use super::special::Teller;
-use super::walk::Walk;
-use crate::bifurcation::{BranchRequest, Parameter, Seen};
+use crate::bifurcation::{BranchRequest, EventObserver, Parameter};
 use crate::continuation::{Branch, Settings, Stop, ZeroProblem, follow};
 use crate::equilibrium::{Solver, Symmetry, steady_states};
 use crate::error::{Error, Result};
@@ -14,10 +14,10 @@ use std::ops::ControlFlow;
 const LONGEST: f64 = 0.2;
 
 /// See [`super::branch()`].
-pub(super) fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
+pub(super) fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     let settings = settings(request)?;
     let interfaces = request.slab.interfaces;
-    let mut run = Run {
+    let mut run = BranchRun {
         request,
         settings,
         teller: Teller::new(seen, request.tolerance, &request.skip),
@@ -43,14 +43,14 @@ fn settings(request: &BranchRequest) -> Result<Settings> {
     .checked()
 }
 
-struct Run<'a> {
+struct BranchRun<'a> {
     request: &'a BranchRequest,
     settings: Settings,
     teller: Teller<'a>,
     branches: usize,
 }
 
-impl Run<'_> {
+impl BranchRun<'_> {
     fn wants(&self, symmetry: Symmetry) -> bool {
         self.request
             .symmetry
@@ -60,16 +60,16 @@ impl Run<'_> {
     fn along_driving(&mut self, interfaces: usize) -> Result<ControlFlow<()>> {
         let (law, (from, to)) = (&self.request.slab.law, self.request.range);
         if self.wants(Symmetry::Symmetric) {
-            let curve = Curve::Symmetric { interfaces };
+            let curve = CurveVariables::Symmetric { interfaces };
             let problem = AlongDriving { law, curve };
             let rates = [from / interfaces as f64; 2];
-            let begin = Begin::at_range_end(law, curve, from, from < to, rates);
+            let begin = PieceEnd::at_range_end(law, curve, from, from < to, rates);
             if self.one(&problem, curve, None, &begin)?.is_break() {
                 return Ok(ControlFlow::Break(()));
             }
         }
         if interfaces == 2 && self.wants(Symmetry::Asymmetric) {
-            let curve = Curve::Asymmetric;
+            let curve = CurveVariables::Asymmetric;
             let problem = AlongDriving { law, curve };
             let mut ends = Ends::of(law, (from, to))?;
             while let Some(begin) = ends.next() {
@@ -91,11 +91,11 @@ impl Run<'_> {
             let these = states.equilibria.iter().filter(|e| e.symmetry == symmetry);
             for state in these.filter(|_| self.request.symmetry.is_none_or(|s| s == symmetry)) {
                 let curve = match symmetry {
-                    Symmetry::Symmetric => Curve::Symmetric { interfaces },
-                    Symmetry::Asymmetric => Curve::Asymmetric,
+                    Symmetry::Symmetric => CurveVariables::Symmetric { interfaces },
+                    Symmetry::Asymmetric => CurveVariables::Asymmetric,
                 };
                 let rates = [state.slip_rate[0], state.slip_rate[interfaces - 1]];
-                let fixed = Begin::on_a_line(&slab.law, from, from < to, rates);
+                let fixed = PieceEnd::on_a_line(&slab.law, from, from < to, rates);
                 if self
                     .one(&AlongStiffness, curve, Some(rates), &fixed)?
                     .is_break()
@@ -111,11 +111,11 @@ impl Run<'_> {
     fn one(
         &mut self,
         problem: &dyn ZeroProblem,
-        curve: Curve,
+        curve: CurveVariables,
         rates: Option<[f64; 2]>,
-        begin: &Begin,
+        begin: &PieceEnd,
     ) -> Result<ControlFlow<(), Branch>> {
-        let mut walk = Walk {
+        let mut observer = BranchObserver {
             request: self.request,
             curve,
             rates,
@@ -125,8 +125,8 @@ impl Run<'_> {
             failure: None,
         };
         self.branches += 1;
-        let branch = follow(problem, &begin.start, &self.settings, &mut walk)?;
-        if let Some(error) = walk.failure {
+        let branch = follow(problem, &begin.start, &self.settings, &mut observer)?;
+        if let Some(error) = observer.failure {
             return Err(error);
         }
         if branch.stopped == Stop::MaxPoints {
@@ -134,7 +134,7 @@ impl Run<'_> {
             return Err(Error::TooManyPoints { limit });
         }
         if let Stop::StepTooSmall { .. } = branch.stopped
-            && walk.gave_up(&branch).is_break()
+            && observer.gave_up(&branch).is_break()
         {
             return Ok(ControlFlow::Break(()));
         }

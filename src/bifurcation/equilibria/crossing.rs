@@ -6,7 +6,7 @@ use crate::number::Real;
 
 /// Which root of (42).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Root {
+pub(super) enum QuadraticRoot {
     /// k_+, the larger one: (34), the boundary of stability.
     Larger,
     /// k_-. With the paper's parameters nothing oscillates there; with others it may.
@@ -19,7 +19,11 @@ pub(super) fn symmetric<T: Real>(law: &impl Law, rate: T, interfaces: usize) -> 
 }
 
 /// A root of (42), which is c_2 c_1 = c_0 of the polynomial (30). Not a number where there is none.
-pub(super) fn asymmetric<T: Real>(one: &Interface<T>, two: &Interface<T>, root: Root) -> T {
+pub(super) fn asymmetric<T: Real>(
+    one: &Interface<T>,
+    two: &Interface<T>,
+    root: QuadraticRoot,
+) -> T {
     let a_3 = one.compliance + two.compliance;
     let (sum, product) = (one.s + two.s, one.s * two.s);
     // c of (42); a_i s_i is one number
@@ -35,7 +39,7 @@ pub(super) fn asymmetric<T: Real>(one: &Interface<T>, two: &Interface<T>, root: 
         discriminant - half
     };
     let larger_adds = (adding.leading() > 0.0) == (quadratic.leading() > 0.0);
-    if larger_adds == (root == Root::Larger) {
+    if larger_adds == (root == QuadraticRoot::Larger) {
         adding / quadratic
     } else {
         constant / adding

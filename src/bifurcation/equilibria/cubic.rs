@@ -4,7 +4,7 @@
 //! P_3 is linear in K, so that K is a function of a real root: where that has an extremum Q_3 touches L, and two real roots
 //! become a complex pair or come from one.
 
-use super::crossing::{self, Root};
+use super::crossing::{self, QuadraticRoot};
 use crate::equilibrium::{Interface, routh_hurwitz};
 use crate::friction::{AnyLaw, with_law};
 use crate::number::polynomial::{evaluate, roots};
@@ -106,7 +106,7 @@ impl CharacteristicCubic {
 
     /// k_c* (34), at which two roots are imaginary, and their omega; `None` where there is none.
     pub fn critical_stiffness(&self) -> Option<(f64, f64)> {
-        let k = crossing::asymmetric(&self.one, &self.two, Root::Larger);
+        let k = crossing::asymmetric(&self.one, &self.two, QuadraticRoot::Larger);
         let squared = crossing::asymmetric_frequency(&self.one, &self.two, k);
         (k > 0.0 && k.is_finite() && squared > 0.0).then(|| (k, squared.sqrt()))
     }

@@ -4,7 +4,7 @@
 //! V_H by construction, and (20) is left, divided by z. So divided the curve goes straight through the pitchforks at z = 0,
 //! and the symmetric state is no part of it.
 
-use crate::continuation::{Point, ZeroProblem};
+use crate::continuation::{CurvePoint, ZeroProblem};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::friction::{AnyLaw, Law, steady_log_activation};
@@ -40,27 +40,27 @@ fn log_derivatives<T: Real>(law: &impl Law, x: T) -> [T; 2] {
 
 /// What u means.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Curve {
+pub(super) enum CurveVariables {
     /// No unknown: all interfaces slide at V_H / n.
     Symmetric { interfaces: usize },
     /// u = z.
     Asymmetric,
 }
 
-impl Curve {
+impl CurveVariables {
     /// The symmetry of its equilibria.
     pub fn symmetry(self) -> Symmetry {
         match self {
-            Curve::Symmetric { .. } => Symmetry::Symmetric,
-            Curve::Asymmetric => Symmetry::Asymmetric,
+            CurveVariables::Symmetric { .. } => Symmetry::Symmetric,
+            CurveVariables::Asymmetric => Symmetry::Asymmetric,
         }
     }
 
     /// Both slip rates at V_H, the slower one first.
-    pub fn rates(self, point: &Point, driving: f64) -> [f64; 2] {
+    pub fn rates(self, point: &CurvePoint, driving: f64) -> [f64; 2] {
         match self {
-            Curve::Symmetric { interfaces } => [driving / interfaces as f64; 2],
-            Curve::Asymmetric => {
+            CurveVariables::Symmetric { interfaces } => [driving / interfaces as f64; 2],
+            CurveVariables::Asymmetric => {
                 let ratio = (2.0 * point.u[0].abs()).exp();
                 [driving / (1.0 + ratio), driving / (1.0 + 1.0 / ratio)]
             }
@@ -77,8 +77,8 @@ impl Curve {
             fast.ln() - (steady_log_activation(law, fast) - healed)
         };
         match self {
-            Curve::Symmetric { .. } => DVector::zeros(0),
-            Curve::Asymmetric => DVector::from_element(1, 0.5 * ratio),
+            CurveVariables::Symmetric { .. } => DVector::zeros(0),
+            CurveVariables::Asymmetric => DVector::from_element(1, 0.5 * ratio),
         }
     }
 }
@@ -87,12 +87,12 @@ impl Curve {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct AlongDriving<'a> {
     pub law: &'a AnyLaw,
-    pub curve: Curve,
+    pub curve: CurveVariables,
 }
 
 impl ZeroProblem for AlongDriving<'_> {
     fn dimension(&self) -> usize {
-        usize::from(self.curve == Curve::Asymmetric)
+        usize::from(self.curve == CurveVariables::Asymmetric)
     }
 
     fn residual(&self, u: &DVector<f64>, lambda: f64) -> Result<DVector<f64>> {

@@ -9,7 +9,9 @@
 
 use super::bialternate::{bialternate, lyapunov};
 use crate::bifurcation::Label;
-use crate::continuation::{Branch, Mark, Point, Settings, Start, Watch, ZeroProblem, follow};
+use crate::continuation::{
+    Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, ZeroProblem, follow,
+};
 use crate::error::{Error, Result};
 use crate::field::{State, VectorField};
 use nalgebra::{Complex, DMatrix, DVector};
@@ -21,7 +23,7 @@ pub type Fields<'a, const N: usize> = &'a dyn Fn([f64; 2]) -> Box<dyn VectorFiel
 
 /// The equilibria of a family of fields along one of its parameters.
 #[derive(Clone, Copy)]
-pub struct Family<'a, const N: usize> {
+pub struct FieldEquilibria<'a, const N: usize> {
     /// The fields.
     pub fields: Fields<'a, N>,
     /// The parameters; that of the other number is held.
@@ -30,7 +32,7 @@ pub struct Family<'a, const N: usize> {
     pub varied: usize,
 }
 
-impl<const N: usize> std::fmt::Debug for Family<'_, N> {
+impl<const N: usize> std::fmt::Debug for FieldEquilibria<'_, N> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Family")
             .field("parameters", &self.parameters)
@@ -41,7 +43,7 @@ impl<const N: usize> std::fmt::Debug for Family<'_, N> {
 
 /// A point of a branch of equilibria.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Found<const N: usize> {
+pub struct FoundEquilibrium<const N: usize> {
     /// The state.
     pub state: State<N>,
     /// The varied parameter.
@@ -88,7 +90,7 @@ impl<const N: usize> Onward<N> {
 /// Part of 1 + |p| by which the parameter is changed for a derivative.
 const CHANGE: f64 = 1e-3;
 
-impl<const N: usize> Family<'_, N> {
+impl<const N: usize> FieldEquilibria<'_, N> {
     fn field(&self, parameter: f64) -> Box<dyn VectorField<N>> {
         let mut parameters = self.parameters;
         parameters[self.varied] = parameter;
@@ -131,7 +133,7 @@ impl<const N: usize> Family<'_, N> {
         &self,
         onward: &Onward<N>,
         settings: &Settings,
-        seen: &mut dyn FnMut(&Found<N>) -> ControlFlow<()>,
+        seen: &mut dyn FnMut(&FoundEquilibrium<N>) -> ControlFlow<()>,
     ) -> Result<Branch> {
         if self.varied > 1 {
             return Err(Error::parameter("varied", self.varied, "0 or 1"));
@@ -142,7 +144,7 @@ impl<const N: usize> Family<'_, N> {
             direction: onward.direction.clone(),
             across: onward.across,
         };
-        let mut look = Look { family: self, seen };
+        let mut look = EquilibriumObserver { family: self, seen };
         follow(self, &start, settings, &mut look)
     }
 
@@ -153,7 +155,7 @@ impl<const N: usize> Family<'_, N> {
     ///
     /// # Errors
     /// [`Error::NotConverged`] if the singular value decomposition fails.
-    pub fn switch(&self, point: &Found<N>, distance: f64) -> Result<[Onward<N>; 2]> {
+    pub fn switch(&self, point: &FoundEquilibrium<N>, distance: f64) -> Result<[Onward<N>; 2]> {
         let y = point.state;
         let mut matrix = DMatrix::zeros(N + 1, N + 1);
         let j = self.dense(&y, point.parameter);
@@ -189,7 +191,7 @@ fn state<const N: usize>(u: &DVector<f64>) -> State<N> {
     State::<N>::from_column_slice(u.as_slice())
 }
 
-impl<const N: usize> ZeroProblem for Family<'_, N> {
+impl<const N: usize> ZeroProblem for FieldEquilibria<'_, N> {
     fn dimension(&self) -> usize {
         N
     }
@@ -233,13 +235,13 @@ fn sums(jacobian: &DMatrix<f64>) -> f64 {
 /// The test functions' order.
 const LABELS: [Label; 3] = [Label::Lp, Label::Bp, Label::Hb];
 
-struct Look<'a, 'b, const N: usize> {
-    family: &'a Family<'b, N>,
-    seen: &'a mut dyn FnMut(&Found<N>) -> ControlFlow<()>,
+struct EquilibriumObserver<'a, 'b, const N: usize> {
+    family: &'a FieldEquilibria<'b, N>,
+    seen: &'a mut dyn FnMut(&FoundEquilibrium<N>) -> ControlFlow<()>,
 }
 
-impl<const N: usize> Watch for Look<'_, '_, N> {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+impl<const N: usize> CurveObserver for EquilibriumObserver<'_, '_, N> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let y = state(&point.u);
         let extended = self.family.jacobian(&point.u, point.lambda)?;
         let mut square = extended.insert_row(N, 0.0);
@@ -253,15 +255,15 @@ impl<const N: usize> Watch for Look<'_, '_, N> {
         ])
     }
 
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         let (y, p) = (state(&point.u), point.lambda);
         let label = match mark {
-            Mark::Step => None,
-            Mark::Zero(i) => Some(LABELS[i]),
-            Mark::Wanted(_) => Some(Label::Uz),
-            Mark::Begin | Mark::Lowest | Mark::Highest => Some(Label::Ep),
+            PointKind::Step => None,
+            PointKind::Zero(i) => Some(LABELS[i]),
+            PointKind::Wanted(_) => Some(Label::Uz),
+            PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
         };
-        let mut found = Found {
+        let mut found = FoundEquilibrium {
             state: y,
             parameter: p,
             eigenvalues: self.family.eigenvalues(&y, p),

@@ -4,9 +4,9 @@
 //! difference. Both are computed in 31 digits, as close to a pitchfork the slip rates take digits; budgets come from the same
 //! formulas in interval arithmetic, and cover the rounding of the law's parameters and of V_H or K.
 
-use super::crossing::{self, Root};
-use super::curves::Curve;
-use crate::continuation::Point;
+use super::crossing::{self, QuadraticRoot};
+use super::curves::CurveVariables;
+use crate::continuation::CurvePoint;
 use crate::equilibrium::Interface;
 use crate::friction::AnyLaw;
 use crate::friction::rounding;
@@ -26,16 +26,18 @@ pub(super) struct Hopf {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct HopfPoints<'a> {
     pub law: &'a AnyLaw,
-    pub curve: Curve,
-    pub root: Root,
+    pub curve: CurveVariables,
+    pub root: QuadraticRoot,
 }
 
 impl HopfPoints<'_> {
     /// K of the closed form.
     pub fn closed_form<T: Real>(&self, rates: [T; 2]) -> T {
         match self.curve {
-            Curve::Symmetric { interfaces } => crossing::symmetric(self.law, rates[0], interfaces),
-            Curve::Asymmetric => {
+            CurveVariables::Symmetric { interfaces } => {
+                crossing::symmetric(self.law, rates[0], interfaces)
+            }
+            CurveVariables::Asymmetric => {
                 let [one, two] = rates.map(|v| Interface::at(self.law, v));
                 crossing::asymmetric(&one, &two, self.root)
             }
@@ -43,10 +45,10 @@ impl HopfPoints<'_> {
     }
 
     /// K of the closed form, as it is watched along a curve: where nothing but rounding is left of it, at a pitchfork, its limit.
-    pub fn along(&self, point: &Point, rates: [f64; 2]) -> f64 {
+    pub fn along(&self, point: &CurvePoint, rates: [f64; 2]) -> f64 {
         /// z this close to a pitchfork; K is a quadratic function of it.
         const CLOSE: f64 = 1e-6;
-        if self.curve == Curve::Asymmetric && point.u[0].abs() < CLOSE {
+        if self.curve == CurveVariables::Asymmetric && point.u[0].abs() < CLOSE {
             return 0.0;
         }
         self.closed_form(rates)
@@ -71,8 +73,10 @@ impl HopfPoints<'_> {
     pub fn frequency_squared<T: Real>(&self, rates: [T; 2], k: T) -> T {
         let [one, two] = rates.map(|v| Interface::at(self.law, v));
         match self.curve {
-            Curve::Symmetric { interfaces } => crossing::symmetric_frequency(&one, k, interfaces),
-            Curve::Asymmetric => crossing::asymmetric_frequency(&one, &two, k),
+            CurveVariables::Symmetric { interfaces } => {
+                crossing::symmetric_frequency(&one, k, interfaces)
+            }
+            CurveVariables::Asymmetric => crossing::asymmetric_frequency(&one, &two, k),
         }
     }
 
@@ -83,7 +87,7 @@ impl HopfPoints<'_> {
     }
 
     /// omega^2 at exactly this V_H and the closed form's K, with a bound on its error.
-    fn sharp_frequency(&self, driving: f64, near: [f64; 2]) -> Sharp {
+    fn refined_frequency(&self, driving: f64, near: [f64; 2]) -> RefinedValue {
         let bounds = {
             let rates = self.curve.enclosed(self.law, driving, near);
             self.frequency_squared(rates, self.closed_form(rates))
@@ -93,15 +97,15 @@ impl HopfPoints<'_> {
             points.frequency_squared(rates, points.closed_form(rates))
         });
         let value = self.frequency_squared(pair, self.closed_form(pair));
-        Sharp::new(value, bounds, of_inputs)
+        RefinedValue::new(value, bounds, of_inputs)
     }
 
     /// K of the closed form at exactly this V_H, with a bound on its error.
-    pub fn sharp(&self, driving: f64, near: [f64; 2]) -> Sharp {
+    pub fn refine(&self, driving: f64, near: [f64; 2]) -> RefinedValue {
         let bounds = self.closed_form(self.curve.enclosed(self.law, driving, near));
         let pair = self.curve.rates_at::<DoubleDouble>(self.law, driving, near);
         let of_inputs = self.inputs(driving, near, |points, rates| points.closed_form(rates));
-        Sharp::new(self.closed_form(pair), bounds, of_inputs)
+        RefinedValue::new(self.closed_form(pair), bounds, of_inputs)
     }
 
     /// What a number is off by the rounding of the law's parameters and of V_H.
@@ -126,7 +130,7 @@ impl HopfPoints<'_> {
     pub fn period(&self, driving: &[f64], near: [f64; 2]) -> Option<Uncertain> {
         let all: Vec<_> = driving
             .iter()
-            .map(|&v| self.sharp_frequency(v, near))
+            .map(|&v| self.refined_frequency(v, near))
             .collect();
         let middle = all[all.len() / 2];
         let omega = middle.value.to_f64().sqrt();
@@ -159,7 +163,7 @@ impl HopfPoints<'_> {
         self.stiffness(rates)?;
         Some(Hopf {
             driving: Uncertain::new(driving, 0.0),
-            stiffness: self.sharp(driving, rates).rounded(),
+            stiffness: self.refine(driving, rates).rounded(),
             period: self.period(&[driving], rates),
             rates,
         })
@@ -168,9 +172,9 @@ impl HopfPoints<'_> {
     /// The Hopf point at exactly this K, at a V_H near this one. None where K does not certainly pass the value.
     pub fn at_stiffness(&self, k: f64, driving: f64, near: [f64; 2]) -> Option<Hopf> {
         let above = |v: f64| {
-            let mut sharp = self.sharp(v, near);
-            sharp.error += k * f64::EPSILON;
-            sharp.above(k)
+            let mut refined_point = self.refine(v, near);
+            refined_point.error += k * f64::EPSILON;
+            refined_point.above(k)
         };
         let (v, radius) = certain_zero("a Hopf point", driving, above)?;
         let rates = self.rounded_rates(v, near);
@@ -190,7 +194,7 @@ impl HopfPoints<'_> {
         let mut point = self.at_driving(v, near)?;
         let at = [v - radius, v, v + radius];
         let reach = at.map(|x| {
-            let here = self.sharp(x, near);
+            let here = self.refine(x, near);
             here.above(point.stiffness.value).0.abs() + here.error
         });
         point.stiffness.uncertainty += reach.into_iter().fold(0.0, f64::max);
@@ -202,18 +206,18 @@ impl HopfPoints<'_> {
 
 /// A number in 31 digits, with a bound on what it is off.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Sharp {
+pub(super) struct RefinedValue {
     pub value: DoubleDouble,
     pub error: f64,
 }
 
-impl Sharp {
+impl RefinedValue {
     /// The width of intervals is that of rounding in 16 digits: the same operations in 31 digits err by 1e-15 of it, and a
     /// factor of a thousand is left.
     fn new(value: DoubleDouble, bounds: Interval, of_inputs: f64) -> Self {
         const PART: f64 = 1e-12;
         let error = PART * bound(value.to_f64(), bounds) + of_inputs;
-        Sharp { value, error }
+        RefinedValue { value, error }
     }
 
     fn rounded(&self) -> Uncertain {

@@ -10,10 +10,10 @@
 //! the asymmetric one, but for one of no consequence that leaves the Bogdanov-Takens point of V_sn at K = 4.4e-13. l_1 has
 //! no zero there either (tests/curves_equilibria.rs; a search over 1293 other sets of parameters of (35) found none either).
 
-use super::crossing::Root;
-use super::curves::{AlongDriving, Curve};
+use super::crossing::QuadraticRoot;
+use super::curves::{AlongDriving, CurveVariables};
 use super::hopf::HopfPoints;
-use super::pieces::{Begin, Ends};
+use super::pieces::{Ends, PieceEnd};
 use super::special::Teller;
 use super::trace::Trace;
 use crate::bifurcation::LocusRequest;
@@ -33,7 +33,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
     let wants = |s: Symmetry| request.symmetry.is_none_or(|wanted| wanted == s);
     let mut curves = 0;
     // one curve of equilibria from its begin to its end; nothing where the observer has seen enough
-    let mut piece = |curve: Curve, root: Root, begin: &Begin| {
+    let mut piece = |curve: CurveVariables, root: QuadraticRoot, begin: &PieceEnd| {
         let mut trace = Trace {
             request,
             points: HopfPoints { law, curve, root },
@@ -58,18 +58,18 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
         Ok::<_, Error>((!ended).then_some(branch))
     };
     if wants(Symmetry::Symmetric) {
-        let curve = Curve::Symmetric { interfaces };
+        let curve = CurveVariables::Symmetric { interfaces };
         let rates = [from / interfaces as f64; 2];
-        let begin = Begin::at_range_end(law, curve, from, from < to, rates);
-        if piece(curve, Root::Larger, &begin)?.is_none() {
+        let begin = PieceEnd::at_range_end(law, curve, from, from < to, rates);
+        if piece(curve, QuadraticRoot::Larger, &begin)?.is_none() {
             return Ok(ControlFlow::Break(()));
         }
     }
     if interfaces == 2 && wants(Symmetry::Asymmetric) {
-        for root in [Root::Larger, Root::Smaller] {
+        for root in [QuadraticRoot::Larger, QuadraticRoot::Smaller] {
             let mut ends = Ends::of(law, (from, to))?;
             while let Some(begin) = ends.next() {
-                match piece(Curve::Asymmetric, root, &begin)? {
+                match piece(CurveVariables::Asymmetric, root, &begin)? {
                     Some(branch) => ends.reached(&branch),
                     None => return Ok(ControlFlow::Break(())),
                 }

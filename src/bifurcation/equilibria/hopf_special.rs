@@ -3,10 +3,10 @@
 //! That the closed forms are right is no part of their error budgets: they are held against the numerical condition on the
 //! Jacobian of the vector field itself, and a special point's budget covers the difference.
 
-use super::crossing::Root;
-use super::curves::Curve;
+use super::crossing::QuadraticRoot;
+use super::curves::CurveVariables;
 use super::hopf::{Hopf, HopfPoints, certain_zero, straddling};
-use super::lyapunov::{Lyapunov, first_lyapunov};
+use super::lyapunov::{FirstLyapunov, first_lyapunov};
 use crate::bifurcation::{Criticality, Label, Parameter, Special, Symmetry};
 use crate::field::State;
 use crate::friction::{AnyLaw, Law, steady_stress};
@@ -16,7 +16,7 @@ use nalgebra::DMatrix;
 
 impl HopfPoints<'_> {
     /// l_1 at exactly this V_H, at the closed form's K.
-    pub fn lyapunov(&self, driving: f64, near: [f64; 2]) -> Lyapunov {
+    pub fn lyapunov(&self, driving: f64, near: [f64; 2]) -> FirstLyapunov {
         let rates = self.curve.in_31_digits(self.law, driving, near);
         let pair = [rates[0], *rates.last().unwrap_or(&rates[0])];
         let k: DoubleDouble = self.closed_form(pair);
@@ -73,7 +73,7 @@ impl HopfPoints<'_> {
         let condition = |k: f64| {
             let matrix = self.jacobian(rates, k);
             let trace = matrix.trace();
-            if self.curve != Curve::Asymmetric {
+            if self.curve != CurveVariables::Asymmetric {
                 return trace;
             }
             let minor = |i: usize, j: usize| {
@@ -102,12 +102,12 @@ impl HopfPoints<'_> {
             stiffness: k,
         };
         match self.curve {
-            Curve::Asymmetric => {
+            CurveVariables::Asymmetric => {
                 let y = State::<3>::new(tau, w[0], w[1]);
                 let j = two_interfaces(*self.law, loading(2.0)).jacobian(&y);
                 DMatrix::from_fn(3, 3, |i, l| j[(i, l)])
             }
-            Curve::Symmetric { interfaces } => {
+            CurveVariables::Symmetric { interfaces } => {
                 // two interfaces in symmetry are one on a spring twice as stiff
                 let stiffer = Loading {
                     driving: rates[0],
@@ -140,32 +140,34 @@ impl HopfPoints<'_> {
 /// rates there. `None` where no pair crosses: two real eigenvalues of opposite sign are no bifurcation.
 pub(super) fn hopf_point(
     law: &AnyLaw,
-    curve: Curve,
+    curve: CurveVariables,
     along: Parameter,
     [driving, stiffness]: [f64; 2],
     rates: [f64; 2],
 ) -> Option<(Special, [f64; 2])> {
     /// In ln V_H and ln K: that it is this one.
     const CLOSE: f64 = 1e-6;
-    [Root::Larger, Root::Smaller].into_iter().find_map(|root| {
-        let points = HopfPoints { law, curve, root };
-        let found = match along {
-            Parameter::Driving => points.at_stiffness(stiffness, driving, rates),
-            Parameter::Stiffness => points.at_driving(driving, rates),
-        };
-        let near = |a: f64, b: f64| (a / b).ln().abs() < CLOSE;
-        let point = found.filter(|point| {
-            near(point.driving.value, driving) && near(point.stiffness.value, stiffness)
-        })?;
-        let point = points.crosschecked(point);
-        let special = Special {
-            period: point.period,
-            criticality: Some(points.criticality(&point)),
-            coefficient: Some(points.lyapunov(point.driving.value, point.rates).value),
-            ..Special::new(Label::Hb, point.driving, point.stiffness)
-        };
-        Some((special, point.rates))
-    })
+    [QuadraticRoot::Larger, QuadraticRoot::Smaller]
+        .into_iter()
+        .find_map(|root| {
+            let points = HopfPoints { law, curve, root };
+            let found = match along {
+                Parameter::Driving => points.at_stiffness(stiffness, driving, rates),
+                Parameter::Stiffness => points.at_driving(driving, rates),
+            };
+            let near = |a: f64, b: f64| (a / b).ln().abs() < CLOSE;
+            let point = found.filter(|point| {
+                near(point.driving.value, driving) && near(point.stiffness.value, stiffness)
+            })?;
+            let point = points.crosschecked(point);
+            let special = Special {
+                period: point.period,
+                criticality: Some(points.criticality(&point)),
+                coefficient: Some(points.lyapunov(point.driving.value, point.rates).value),
+                ..Special::new(Label::Hb, point.driving, point.stiffness)
+            };
+            Some((special, point.rates))
+        })
 }
 
 /// K of a Hopf point by its closed form, by the Jacobian of the vector field, and what the comparison leaves certain of it.
@@ -176,13 +178,13 @@ pub fn by_both(
     symmetry: Symmetry,
 ) -> Option<(Uncertain, f64, Uncertain)> {
     let curve = match symmetry {
-        Symmetry::Symmetric => Curve::Symmetric { interfaces: 2 },
-        Symmetry::Asymmetric => Curve::Asymmetric,
+        Symmetry::Symmetric => CurveVariables::Symmetric { interfaces: 2 },
+        Symmetry::Asymmetric => CurveVariables::Asymmetric,
     };
     let points = HopfPoints {
         law,
         curve,
-        root: Root::Larger,
+        root: QuadraticRoot::Larger,
     };
     let point = points.at_driving(driving, rates)?;
     let closed = point.stiffness;

@@ -11,7 +11,7 @@ use std::ops::{Add, Mul, Neg, Sub};
 
 type Number = DoubleDouble;
 /// With all derivatives up to the third, in (tau, psi).
-type Cubic = Jet<Jet<Jet<Number, 2>, 2>, 2>;
+type ThirdJet = Jet<Jet<Jet<Number, 2>, 2>, 2>;
 
 /// re + i im; nalgebra's asks for more than these numbers can.
 #[derive(Debug, Clone, Copy)]
@@ -102,26 +102,26 @@ impl Mul for Complex {
 
 /// v(tau, psi) and dpsi/dt of one interface, with derivatives.
 #[derive(Debug, Clone, Copy)]
-struct Response {
-    v: Cubic,
-    g: Cubic,
+struct InterfaceDerivatives {
+    v: ThirdJet,
+    g: ThirdJet,
 }
 
-impl Response {
+impl InterfaceDerivatives {
     fn at(law: &impl Law, rate: Number) -> Self {
         let psi = law.steady_state(rate);
         let at = [law.stress(rate, psi), psi];
         let [tau, psi] = [0, 1].map(|i| {
             let inner = Jet::<_, 2>::variable(Jet::<_, 2>::variable(at[i], i), i);
-            Cubic::variable(inner, i)
+            ThirdJet::variable(inner, i)
         });
         let v = law.slip_rate(law.activation(tau), psi);
         let g = law.evolution(v, psi);
-        Response { v, g }
+        InterfaceDerivatives { v, g }
     }
 }
 
-fn first(x: &Cubic, i: usize) -> Number {
+fn first(x: &ThirdJet, i: usize) -> Number {
     x.value.value.gradient[i]
 }
 
@@ -131,14 +131,14 @@ fn along<T: Copy>(gradient: &[T; 2], a: [Complex; 2], of: impl Fn(&T) -> Complex
 }
 
 /// The second derivative applied to two vectors.
-fn bilinear(x: &Cubic, a: [Complex; 2], b: [Complex; 2]) -> Complex {
+fn bilinear(x: &ThirdJet, a: [Complex; 2], b: [Complex; 2]) -> Complex {
     along(&x.value.gradient, a, |x| {
         along(&x.gradient, b, |&x| Complex::real(x))
     })
 }
 
 /// The third derivative applied to three vectors.
-fn trilinear(x: &Cubic, a: [Complex; 2], b: [Complex; 2], c: [Complex; 2]) -> Complex {
+fn trilinear(x: &ThirdJet, a: [Complex; 2], b: [Complex; 2], c: [Complex; 2]) -> Complex {
     along(&x.gradient, a, |x| {
         along(&x.gradient, b, |x| {
             along(&x.gradient, c, |&x| Complex::real(x))
@@ -147,20 +147,20 @@ fn trilinear(x: &Cubic, a: [Complex; 2], b: [Complex; 2], c: [Complex; 2]) -> Co
 }
 
 /// The linearised system (19), or (11), and its nonlinear terms: dtau/dt = K (V_H - sum v_i), dpsi_i/dt = g_i.
-struct System {
-    interfaces: Vec<Response>,
+struct LinearisedSystem {
+    interfaces: Vec<InterfaceDerivatives>,
     k: Number,
 }
 
-type Vector = Vec<Complex>;
+type ComplexVector = Vec<Complex>;
 
-impl System {
+impl LinearisedSystem {
     /// (tau, psi_i) of a vector.
-    fn part(x: &Vector, i: usize) -> [Complex; 2] {
+    fn part(x: &ComplexVector, i: usize) -> [Complex; 2] {
         [x[0], x[i + 1]]
     }
 
-    fn form(&self, of: impl Fn(&Cubic, usize) -> Complex) -> Vector {
+    fn form(&self, of: impl Fn(&ThirdJet, usize) -> Complex) -> ComplexVector {
         let mut stress = Complex::ZERO;
         let mut result = vec![Complex::ZERO];
         for (i, interface) in self.interfaces.iter().enumerate() {
@@ -171,16 +171,16 @@ impl System {
         result
     }
 
-    fn b(&self, x: &Vector, y: &Vector) -> Vector {
+    fn b(&self, x: &ComplexVector, y: &ComplexVector) -> ComplexVector {
         self.form(|f, i| bilinear(f, Self::part(x, i), Self::part(y, i)))
     }
 
-    fn c(&self, x: &Vector, y: &Vector, z: &Vector) -> Vector {
+    fn c(&self, x: &ComplexVector, y: &ComplexVector, z: &ComplexVector) -> ComplexVector {
         self.form(|f, i| trilinear(f, Self::part(x, i), Self::part(y, i), Self::part(z, i)))
     }
 
     /// The solution x of (sigma - A) x = b: the states couple through the stress alone.
-    fn resolvent(&self, sigma: Complex, b: &Vector) -> Vector {
+    fn resolvent(&self, sigma: Complex, b: &ComplexVector) -> ComplexVector {
         let mut diagonal = sigma;
         let mut right = b[0];
         for (i, one) in self.interfaces.iter().enumerate() {
@@ -200,7 +200,7 @@ impl System {
 }
 
 /// The sum of products, nothing conjugated.
-fn product(a: &Vector, b: &Vector) -> Complex {
+fn product(a: &ComplexVector, b: &ComplexVector) -> Complex {
     a.iter()
         .zip(b)
         .fold(Complex::ZERO, |sum, (&x, &y)| sum + x * y)
@@ -208,12 +208,12 @@ fn product(a: &Vector, b: &Vector) -> Complex {
 
 /// l_1, and the size of the terms whose sum it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Lyapunov {
+pub(super) struct FirstLyapunov {
     pub value: f64,
     pub scale: f64,
 }
 
-impl Lyapunov {
+impl FirstLyapunov {
     /// The sign, unless only rounding is left: with the Dieterich-Ruina and the slip law l_1 is zero throughout.
     pub fn sign(&self) -> Option<f64> {
         /// Of 31 digits this many certainly are right.
@@ -228,9 +228,12 @@ pub(super) fn first_lyapunov(
     rates: &[Number],
     k: Number,
     omega: Number,
-) -> Lyapunov {
-    let interfaces: Vec<_> = rates.iter().map(|&v| Response::at(law, v)).collect();
-    let system = System { interfaces, k };
+) -> FirstLyapunov {
+    let interfaces: Vec<_> = rates
+        .iter()
+        .map(|&v| InterfaceDerivatives::at(law, v))
+        .collect();
+    let system = LinearisedSystem { interfaces, k };
     let i_omega = Complex::imaginary(omega);
     // right and left eigenvector; the left one is p*, so products with it conjugate nothing
     let (mut q, mut p) = (vec![Complex::ONE], vec![Complex::ONE]);
@@ -250,7 +253,7 @@ pub(super) fn first_lyapunov(
     let normal = product(&p, &q);
     p = p.into_iter().map(|x| x.over(normal)).collect();
 
-    let conjugate: Vector = q.iter().map(|x| x.conjugate()).collect();
+    let conjugate: ComplexVector = q.iter().map(|x| x.conjugate()).collect();
     // A^-1 b = -(0 - A)^-1 b
     let mean = system.resolvent(Complex::ZERO, &system.b(&q, &conjugate));
     let double = system.resolvent(i_omega + i_omega, &system.b(&q, &q));
@@ -260,7 +263,7 @@ pub(super) fn first_lyapunov(
         product(&p, &system.b(&q, &mean)).times(over * 2.0),
         product(&p, &system.b(&conjugate, &double)).times(over),
     ];
-    Lyapunov {
+    FirstLyapunov {
         value: (terms[0].re + terms[1].re + terms[2].re).to_f64(),
         scale: terms.iter().map(|t| t.square().sqrt().to_f64()).sum(),
     }

@@ -5,6 +5,7 @@
 
 mod bialternate;
 mod branch;
+mod branch_observer;
 mod crossing;
 mod cubic;
 mod curves;
@@ -19,15 +20,14 @@ mod special;
 mod stationary;
 mod trace;
 mod vertical;
-mod walk;
 
-use super::{BranchRequest, LocusKind, LocusRequest, Parameter, Seen, Special};
+use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, Parameter, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
 use crate::orbit::HopfPoint;
 pub use cubic::{CharacteristicCubic, Tangency};
-use curves::Curve;
+use curves::CurveVariables;
 use special::Teller;
 
 /// All branches of equilibria over a range of V_H at fixed K, or of K at fixed V_H, with their special points.
@@ -39,7 +39,7 @@ use special::Teller;
 /// # Errors
 /// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense; those of
 /// [`steady_states`](crate::equilibrium::steady_states). That the observer ended it is none.
-pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
+pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
     branch::branch(request, seen)
 }
@@ -51,7 +51,7 @@ pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
 ///
 /// # Errors
 /// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
-pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
+pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
     let tolerance = request.tolerance;
     let mut teller = Teller::new(seen, tolerance, &request.skip);
@@ -80,8 +80,8 @@ pub(super) fn hopf(law: &AnyLaw, along: Parameter, point: &HopfPoint) -> Option<
     let rates = &point.equilibrium.slip_rate;
     let interfaces = rates.len();
     let curve = match point.equilibrium.symmetry {
-        Symmetry::Symmetric => Curve::Symmetric { interfaces },
-        Symmetry::Asymmetric => Curve::Asymmetric,
+        Symmetry::Symmetric => CurveVariables::Symmetric { interfaces },
+        Symmetry::Asymmetric => CurveVariables::Asymmetric,
     };
     let pair = [rates[0], rates[interfaces - 1]];
     let at = [point.driving, point.stiffness];

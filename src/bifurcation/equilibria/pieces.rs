@@ -4,9 +4,9 @@
 //! rates of one stress between tau_m and tau_M, it runs through the pairs (a, b), (a, c) and (b, c). So every piece of it within
 //! a range has two ends, each a pitchfork or a state at an end of the range, and nothing closed lies within.
 
-use super::curves::Curve;
+use super::curves::CurveVariables;
 use super::stationary::pitchforks;
-use crate::continuation::{Branch, Point, Start, Stop};
+use crate::continuation::{Branch, CurvePoint, Start, Stop};
 use crate::equilibrium::{Solver, Symmetry, steady_states};
 use crate::error::Result;
 use crate::friction::AnyLaw;
@@ -14,17 +14,17 @@ use nalgebra::DVector;
 
 /// A begin, or an end.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) struct Begin {
+pub(super) struct PieceEnd {
     pub start: Start,
     /// V_H or K there, exactly.
     pub value: f64,
     pub pitchfork: bool,
 }
 
-impl Begin {
+impl PieceEnd {
     pub fn at_range_end(
         law: &AnyLaw,
-        curve: Curve,
+        curve: CurveVariables,
         value: f64,
         forward: bool,
         rates: [f64; 2],
@@ -32,7 +32,7 @@ impl Begin {
         let u = curve.unknown(law, rates);
         let mut direction = DVector::zeros(u.len() + 1);
         direction[u.len()] = if forward { 1.0 } else { -1.0 };
-        Begin {
+        PieceEnd {
             start: Start {
                 u,
                 lambda: value.ln(),
@@ -46,12 +46,12 @@ impl Begin {
 
     /// Where nothing but lambda changes.
     pub fn on_a_line(law: &AnyLaw, value: f64, forward: bool, rates: [f64; 2]) -> Self {
-        let curve = Curve::Symmetric { interfaces: 1 };
+        let curve = CurveVariables::Symmetric { interfaces: 1 };
         Self::at_range_end(law, curve, value, forward, rates)
     }
 
     fn at_pitchfork(driving: f64) -> Self {
-        Begin {
+        PieceEnd {
             start: Start {
                 u: DVector::zeros(1),
                 lambda: driving.ln(),
@@ -65,14 +65,14 @@ impl Begin {
     }
 
     /// Distance in z and ln V_H.
-    fn distance(&self, point: &Point) -> f64 {
+    fn distance(&self, point: &CurvePoint) -> f64 {
         (&self.start.u - &point.u).amax() + (self.start.lambda - point.lambda).abs()
     }
 }
 
 /// The ends of all pieces of the asymmetric curve that have not been met.
 #[derive(Debug)]
-pub(super) struct Ends(Vec<Begin>);
+pub(super) struct Ends(Vec<PieceEnd>);
 
 impl Ends {
     /// Within this range of V_H, in the order from its first end.
@@ -82,15 +82,15 @@ impl Ends {
             .iter()
             .map(|p| p.driving.value)
             .filter(|&v| inside(v))
-            .map(Begin::at_pitchfork)
+            .map(PieceEnd::at_pitchfork)
             .collect();
         for (value, other) in [(from, to), (to, from)] {
             for state in steady_states(law, value, 2, Solver::Newton)?.equilibria {
                 if state.symmetry == Symmetry::Asymmetric {
                     let rates = [state.slip_rate[0], state.slip_rate[1]];
-                    all.push(Begin::at_range_end(
+                    all.push(PieceEnd::at_range_end(
                         law,
-                        Curve::Asymmetric,
+                        CurveVariables::Asymmetric,
                         value,
                         value < other,
                         rates,
@@ -99,12 +99,12 @@ impl Ends {
             }
         }
         // the last one is taken next
-        let far = |begin: &Begin| (begin.value / from).ln().abs();
+        let far = |begin: &PieceEnd| (begin.value / from).ln().abs();
         all.sort_by(|a, b| far(b).total_cmp(&far(a)));
         Ok(Ends(all))
     }
 
-    pub fn next(&mut self) -> Option<Begin> {
+    pub fn next(&mut self) -> Option<PieceEnd> {
         self.0.pop()
     }
 
@@ -114,7 +114,7 @@ impl Ends {
             return;
         };
         let pitchfork = matches!(branch.stopped, Stop::Ended(_));
-        let near = |begin: &Begin| begin.pitchfork == pitchfork && begin.distance(last) < 1e-6;
+        let near = |begin: &PieceEnd| begin.pitchfork == pitchfork && begin.distance(last) < 1e-6;
         self.0.retain(|begin| !near(begin));
     }
 }

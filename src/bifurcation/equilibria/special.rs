@@ -1,12 +1,12 @@
 //! Handing on what is found, with a word where a special point is less accurate than was asked for.
 
-use crate::bifurcation::{BranchRow, Event, LocusRow, Seen, Special};
+use crate::bifurcation::{BranchRow, Event, EventObserver, LocusRow, Special};
 use crate::equilibrium::Symmetry;
 use std::ops::ControlFlow;
 
 /// Tells the observer.
 pub(super) struct Teller<'a> {
-    seen: Seen<'a>,
+    seen: EventObserver<'a>,
     /// Asked for, relative.
     tolerance: f64,
     /// Numbers of the branches or curves of which nothing is to be told.
@@ -17,7 +17,7 @@ pub(super) struct Teller<'a> {
 }
 
 impl<'a> Teller<'a> {
-    pub fn new(seen: Seen<'a>, tolerance: f64, skip: &'a [usize]) -> Self {
+    pub fn new(seen: EventObserver<'a>, tolerance: f64, skip: &'a [usize]) -> Self {
         Teller {
             seen,
             tolerance,

@@ -2,7 +2,7 @@
 
 use super::hopf::bound;
 use crate::bifurcation::Criticality;
-use crate::continuation::Point;
+use crate::continuation::CurvePoint;
 use crate::equilibrium::{Interface, routh_hurwitz};
 use crate::friction::rounding;
 use crate::friction::{AnyLaw, Extremum, Law, steady_slope, steady_stress};
@@ -10,7 +10,7 @@ use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_ra
 
 /// A pitchfork V_H = 2 V_e, V_e an extremum of tau_ss  (23).
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Pitchfork {
+pub(super) struct PitchforkPoint {
     pub driving: Uncertain,
     /// -3 tau_ss'' / tau_ss''': close by, the asymmetric states have [(V_1 - V_2)/2]^2 = this (V_H - 2 V_e)  (24)
     pub coefficient: f64,
@@ -28,7 +28,7 @@ fn curvatures<T: Real>(law: &AnyLaw, v: T) -> [T; 2] {
 }
 
 /// All pitchforks, by V_H ascending.
-pub(super) fn pitchforks(law: &AnyLaw) -> Vec<Pitchfork> {
+pub(super) fn pitchforks(law: &AnyLaw) -> Vec<PitchforkPoint> {
     Extremum::all(law)
         .into_iter()
         .enumerate()
@@ -42,7 +42,7 @@ pub(super) fn pitchforks(law: &AnyLaw) -> Vec<Pitchfork> {
                 Some(_) => Criticality::Subcritical,
                 None => Criticality::Undecided,
             };
-            Pitchfork {
+            PitchforkPoint {
                 driving: Uncertain::new(
                     2.0 * slip_rate.value,
                     2.0 * (slip_rate.uncertainty + of_inputs),
@@ -65,7 +65,7 @@ pub(super) struct Fold {
 
 /// Changes its sign at a fold of the asymmetric states and, as it is even in z, not at a pitchfork. Nothing but rounding so
 /// close to one that it is not told.
-pub(super) fn fold_test(point: &Point) -> f64 {
+pub(super) fn fold_test(point: &CurvePoint) -> f64 {
     const CLOSE: f64 = 1e-6;
     let z = point.u[0];
     if z.abs() < CLOSE {

@@ -1,12 +1,12 @@
 //! What is told of the Hopf points along a curve of equilibria: stretches within the range of K, and what is special on them.
 
-use super::curves::Curve;
+use super::curves::CurveVariables;
 use super::hopf::{Hopf, HopfPoints};
-use super::pieces::Begin;
+use super::pieces::PieceEnd;
 use super::special::Teller;
 use super::stationary::fold;
 use crate::bifurcation::{Label, LocusRequest, LocusRow, Special};
-use crate::continuation::{Branch, Mark, Point, Watch};
+use crate::continuation::{Branch, CurveObserver, CurvePoint, PointKind};
 use crate::equilibrium::{Interface, routh_hurwitz};
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -33,7 +33,7 @@ enum Meaning {
 pub(super) struct Trace<'a, 'b> {
     pub request: &'a LocusRequest,
     pub points: HopfPoints<'a>,
-    pub begin: &'a Begin,
+    pub begin: &'a PieceEnd,
     pub teller: &'a mut Teller<'b>,
     /// How many there have been.
     pub curves: &'a mut usize,
@@ -43,7 +43,7 @@ pub(super) struct Trace<'a, 'b> {
 
 /// A place on the curve of equilibria.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct CurvePosition {
     driving: f64,
     rates: [f64; 2],
 }
@@ -60,7 +60,7 @@ impl Trace<'_, '_> {
                 .map(|&k| Meaning::Wanted(k)),
         );
         all.extend([Meaning::Top, Meaning::Degenerate]);
-        if self.points.curve == Curve::Asymmetric {
+        if self.points.curve == CurveVariables::Asymmetric {
             all.extend([
                 Meaning::BogdanovTakens,
                 Meaning::ZeroHopf,
@@ -70,22 +70,22 @@ impl Trace<'_, '_> {
         all
     }
 
-    fn place(&self, point: &Point, driving: f64) -> Place {
+    fn place(&self, point: &CurvePoint, driving: f64) -> CurvePosition {
         let near = self.points.curve.rates(point, driving);
-        Place {
+        CurvePosition {
             driving,
             rates: self.points.curve.rates_at(self.points.law, driving, near),
         }
     }
 
     /// K of a Hopf point within the range.
-    fn stiffness(&self, place: &Place) -> Option<f64> {
+    fn stiffness(&self, place: &CurvePosition) -> Option<f64> {
         let (a, b) = self.request.stiffness;
         let within = |k: &f64| *k >= a.min(b) && *k <= a.max(b);
         self.points.stiffness(place.rates).filter(within)
     }
 
-    fn test(&self, meaning: Meaning, point: &Point, place: &Place, k: f64) -> f64 {
+    fn test(&self, meaning: Meaning, point: &CurvePoint, place: &CurvePosition, k: f64) -> f64 {
         let points = &self.points;
         match meaning {
             Meaning::Limit(value) | Meaning::Wanted(value) => k / value - 1.0,
@@ -151,7 +151,7 @@ impl Trace<'_, '_> {
     }
 
     /// At exactly this V_H.
-    fn landed(&mut self, place: &Place, label: Label) -> ControlFlow<()> {
+    fn landed(&mut self, place: &CurvePosition, label: Label) -> ControlFlow<()> {
         match self.points.at_driving(place.driving, place.rates) {
             Some(point) if self.inside => self.labelled(point, label),
             _ => ControlFlow::Continue(()),
@@ -159,7 +159,7 @@ impl Trace<'_, '_> {
     }
 
     /// K passes an end of its range.
-    fn limit(&mut self, place: &Place, k: f64) -> ControlFlow<()> {
+    fn limit(&mut self, place: &CurvePosition, k: f64) -> ControlFlow<()> {
         let Some(point) = self.points.at_stiffness(k, place.driving, place.rates) else {
             return ControlFlow::Continue(());
         };
@@ -172,8 +172,8 @@ impl Trace<'_, '_> {
         shown
     }
 
-    fn met(&mut self, meaning: Meaning, place: &Place) -> ControlFlow<()> {
-        let (points, Place { driving, rates }) = (self.points, *place);
+    fn met(&mut self, meaning: Meaning, place: &CurvePosition) -> ControlFlow<()> {
+        let (points, CurvePosition { driving, rates }) = (self.points, *place);
         let found = match meaning {
             Meaning::Limit(k) => return self.limit(place, k),
             Meaning::Wanted(k) => (points.at_stiffness(k, driving, rates), Label::Uz),
@@ -190,7 +190,7 @@ impl Trace<'_, '_> {
     }
 
     /// omega^2 changes its sign: the curve ends here, or begins.
-    fn bogdanov_takens(&mut self, place: &Place) -> ControlFlow<()> {
+    fn bogdanov_takens(&mut self, place: &CurvePosition) -> ControlFlow<()> {
         let k = self.points.closed_form(place.rates);
         let (a, b) = self.request.stiffness;
         if !(k >= a.min(b) && k <= a.max(b)) {
@@ -213,7 +213,7 @@ impl Trace<'_, '_> {
         })
     }
 
-    fn step(&mut self, place: &Place) -> ControlFlow<()> {
+    fn step(&mut self, place: &CurvePosition) -> ControlFlow<()> {
         let within = self.stiffness(place).is_some();
         if within && !self.inside {
             self.enter();
@@ -241,20 +241,20 @@ impl Trace<'_, '_> {
     }
 
     /// V_H as it was asked for where it was.
-    fn value(&self, point: &Point, mark: Mark) -> f64 {
+    fn value(&self, point: &CurvePoint, mark: PointKind) -> f64 {
         let (a, b) = self.request.driving;
         let near = |x: &&f64| (x.ln() - point.lambda).abs() < 1e-12;
         match mark {
-            Mark::Begin => self.begin.value,
-            Mark::Lowest => a.min(b),
-            Mark::Highest => a.max(b),
-            Mark::Wanted(_) => *self
+            PointKind::Begin => self.begin.value,
+            PointKind::Lowest => a.min(b),
+            PointKind::Highest => a.max(b),
+            PointKind::Wanted(_) => *self
                 .request
                 .at_driving
                 .iter()
                 .find(near)
                 .unwrap_or(&point.lambda.exp()),
-            Mark::Step | Mark::Zero(_) => point.lambda.exp(),
+            PointKind::Step | PointKind::Zero(_) => point.lambda.exp(),
         }
     }
 }
@@ -266,8 +266,8 @@ fn unbounded(mut point: Hopf) -> Hopf {
     point
 }
 
-impl Watch for Trace<'_, '_> {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+impl CurveObserver for Trace<'_, '_> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
         let k = self.points.along(point, place.rates);
         let all = self.meanings();
@@ -281,24 +281,24 @@ impl Watch for Trace<'_, '_> {
         self.meanings()[test] == Meaning::Pitchfork
     }
 
-    fn too_far(&self, from: &Point, to: &Point) -> bool {
+    fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
         let [a, b] = [from, to].map(|p| self.stiffness(&self.place(p, p.lambda.exp())));
         matches!((a, b), (Some(a), Some(b)) if (a / b).ln().abs() > LARGEST * self.request.step)
     }
 
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         let place = self.place(point, self.value(point, mark));
         match mark {
-            Mark::Step => self.step(&place),
-            Mark::Begin => {
+            PointKind::Step => self.step(&place),
+            PointKind::Begin => {
                 if self.stiffness(&place).is_some() {
                     self.enter();
                 }
                 self.landed(&place, Label::Ep)
             }
-            Mark::Lowest | Mark::Highest => self.landed(&place, Label::Ep),
-            Mark::Wanted(_) => self.landed(&place, Label::Uz),
-            Mark::Zero(i) => self.met(self.meanings()[i], &place),
+            PointKind::Lowest | PointKind::Highest => self.landed(&place, Label::Ep),
+            PointKind::Wanted(_) => self.landed(&place, Label::Uz),
+            PointKind::Zero(i) => self.met(self.meanings()[i], &place),
         }
     }
 }

@@ -4,12 +4,12 @@
 //! s^2 + 2 K s / F_V + 2 K G_psi / F_V with positive coefficients, and nothing degenerates along it. On a fold line c_1 of
 //! (30) has one zero, a Bogdanov-Takens point; with the paper's parameters it lies at K = 4.4e-13, next to nothing.
 
-use super::curves::{AlongDriving, Curve};
+use super::curves::{AlongDriving, CurveVariables};
 use super::pieces::Ends;
 use super::special::Teller;
 use super::stationary::{Fold, fold, fold_test, pitchforks};
 use crate::bifurcation::{Criticality, Label, LocusKind, LocusRequest, LocusRow, Special};
-use crate::continuation::{Mark, Point, Settings, Stop, Watch, follow};
+use crate::continuation::{CurveObserver, CurvePoint, PointKind, Settings, Stop, follow};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
@@ -20,7 +20,7 @@ use std::ops::ControlFlow;
 const LONGEST: f64 = 0.2;
 
 /// A vertical line.
-struct Line {
+struct VerticalLine {
     driving: Uncertain,
     criticality: Option<Criticality>,
     coefficient: Option<f64>,
@@ -31,9 +31,9 @@ struct Line {
 pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<ControlFlow<()>> {
     let (from, to) = request.driving;
     let law = &request.slab.law;
-    let lines: Vec<Line> = if request.kind == LocusKind::Pitchfork {
+    let lines: Vec<VerticalLine> = if request.kind == LocusKind::Pitchfork {
         let all = pitchforks(law).into_iter();
-        all.map(|p| Line {
+        all.map(|p| VerticalLine {
             driving: p.driving,
             criticality: Some(p.criticality).filter(|_| request.criticality),
             coefficient: Some(p.coefficient).filter(|_| request.criticality),
@@ -42,7 +42,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
         .collect()
     } else {
         let all = folds(law, request.driving)?.into_iter();
-        all.map(|f| Line {
+        all.map(|f| VerticalLine {
             driving: f.driving,
             criticality: None,
             coefficient: None,
@@ -50,7 +50,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
         })
         .collect()
     };
-    let inside = |line: &&Line| (from.min(to)..=from.max(to)).contains(&line.driving.value);
+    let inside = |line: &&VerticalLine| (from.min(to)..=from.max(to)).contains(&line.driving.value);
     for (number, line) in lines.iter().filter(inside).enumerate() {
         if along(request, line, number, teller).is_break() {
             return Ok(ControlFlow::Break(()));
@@ -62,7 +62,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
 /// All values of K to be shown, in order, with what they are: as they are asked for, however many there may be.
 fn values(
     request: &LocusRequest,
-    line: &Line,
+    line: &VerticalLine,
 ) -> impl Iterator<Item = (Uncertain, Option<Label>)> + use<> {
     let (from, to) = request.stiffness;
     let (low, high) = (from.min(to), from.max(to));
@@ -99,7 +99,7 @@ fn values(
 
 fn along(
     request: &LocusRequest,
-    line: &Line,
+    line: &VerticalLine,
     curve: usize,
     teller: &mut Teller<'_>,
 ) -> ControlFlow<()> {
@@ -133,17 +133,17 @@ struct Hunt {
     found: Vec<[f64; 2]>,
 }
 
-impl Watch for Hunt {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+impl CurveObserver for Hunt {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         Ok(vec![point.u[0], fold_test(point)])
     }
     fn ends(&self, test: usize) -> bool {
         test == 0
     }
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
-        if mark == Mark::Zero(1) {
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
+        if mark == PointKind::Zero(1) {
             self.found
-                .push(Curve::Asymmetric.rates(point, point.lambda.exp()));
+                .push(CurveVariables::Asymmetric.rates(point, point.lambda.exp()));
         }
         ControlFlow::Continue(())
     }
@@ -154,7 +154,7 @@ fn folds(law: &AnyLaw, (from, to): (f64, f64)) -> Result<Vec<Fold>> {
     let settings = Settings::new((from.min(to).ln(), from.max(to).ln()), LONGEST)?;
     let problem = AlongDriving {
         law,
-        curve: Curve::Asymmetric,
+        curve: CurveVariables::Asymmetric,
     };
     let mut hunt = Hunt { found: Vec::new() };
     let mut ends = Ends::of(law, (from, to))?;

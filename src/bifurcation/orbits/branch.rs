@@ -2,19 +2,20 @@
 //! doubled periods.
 
 use super::chart::Chart;
-use super::course::Course;
+use super::orbit_branch::OrbitBranch;
 use super::rows::symmetry;
-use crate::bifurcation::{BranchRequest, Event, Label, Seen, Special, equilibria};
+use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Corrector, Family, HopfPoint, OverLoadings, Path, Regular, Switch, Tracer, Walk, hopf_points,
+    Corrector, HopfPoint, OverLoadings, Palc, PalcSettings, ParametrisedField, Regular, Switch,
+    Tracer, hopf_points,
 };
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Tolerance of the walk.
+/// Tolerance of the continuation.
 pub(super) const ROUGH: f64 = 1e-11;
 /// The longest step.
 pub(super) const LONGEST: f64 = 0.7;
@@ -30,7 +31,9 @@ const SAME: f64 = 1e-6;
 ///
 /// # Errors
 /// Those of [`Tracer::limited`].
-pub(super) fn walker<F: Family<N>, const N: usize>(family: &F) -> Result<Corrector<'_, F, N>> {
+pub(super) fn new_corrector<F: ParametrisedField<N>, const N: usize>(
+    family: &F,
+) -> Result<Corrector<'_, F, N>> {
     Ok(Corrector::by(family, Tracer::limited(ROUGH, ARC, WORK)?))
 }
 
@@ -39,10 +42,10 @@ pub(super) fn walker<F: Family<N>, const N: usize>(family: &F) -> Result<Correct
 ///
 /// # Errors
 /// Those of [`BranchRequest::checked`], of the equilibria and of the flow; that a branch ends early is none.
-pub fn branch(request: &BranchRequest, seen: Seen<'_>) -> Result<()> {
+pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
     let wants = |symmetry| request.symmetry.is_none_or(|only| only == symmetry);
-    let mut branches = Branches::new(request);
+    let mut branches = BranchSet::new(request);
     if wants(Symmetry::Symmetric) && branches.symmetric(seen)?.is_break() {
         return Ok(());
     }
@@ -59,7 +62,7 @@ pub(super) struct Doubling {
 }
 
 /// All branches, and what is known of them so far.
-pub(super) struct Branches<'r> {
+pub(super) struct BranchSet<'r> {
     pub request: &'r BranchRequest,
     pub family: OverLoadings,
     /// The free parameter's place and the range of its coordinate.
@@ -77,10 +80,10 @@ pub(super) struct Branches<'r> {
     pub visited: Vec<bool>,
 }
 
-impl<'r> Branches<'r> {
+impl<'r> BranchSet<'r> {
     fn new(request: &'r BranchRequest) -> Self {
         let (a, b) = (request.range.0.ln(), request.range.1.ln());
-        Branches {
+        BranchSet {
             request,
             family: OverLoadings(request.slab),
             free: match request.along {
@@ -114,11 +117,11 @@ impl<'r> Branches<'r> {
         self.count - 1
     }
 
-    fn symmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
+    fn symmetric(&mut self, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
         self.all_of::<2>(Symmetry::Symmetric, seen)
     }
 
-    fn asymmetric(&mut self, seen: Seen<'_>) -> Result<ControlFlow<()>> {
+    fn asymmetric(&mut self, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
         if self.all_of::<3>(Symmetry::Asymmetric, seen)?.is_break() {
             return Ok(Break(()));
         }
@@ -128,7 +131,7 @@ impl<'r> Branches<'r> {
                 continue;
             }
             self.merged.push(here);
-            let Some(switch) = self.pitchforks[i].parted() else {
+            let Some(switch) = self.pitchforks[i].asymmetric() else {
                 continue;
             };
             if self.aside(switch, 0, seen)?.is_break() {
@@ -156,7 +159,7 @@ impl<'r> Branches<'r> {
     fn all_of<const N: usize>(
         &mut self,
         symmetry: Symmetry,
-        seen: Seen<'_>,
+        seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>>
     where
         OverLoadings: Chart<N>,
@@ -178,18 +181,22 @@ impl<'r> Branches<'r> {
         Ok(Continue(()))
     }
 
-    fn path(&self) -> Path {
-        Path::branch(self.free, LONGEST * self.request.step)
+    fn settings(&self) -> PalcSettings {
+        PalcSettings::branch(self.free, LONGEST * self.request.step)
     }
 
-    fn one_of<const N: usize>(&mut self, i: usize, seen: Seen<'_>) -> Result<ControlFlow<()>>
+    fn one_of<const N: usize>(
+        &mut self,
+        i: usize,
+        seen: EventObserver<'_>,
+    ) -> Result<ControlFlow<()>>
     where
         OverLoadings: Chart<N>,
     {
         let number = self.next();
         let hopf = self.hopfs[i].clone();
         let family = self.family;
-        let mut corrector = walker::<_, N>(&family)?;
+        let mut corrector = new_corrector::<_, N>(&family)?;
         let begin = hopf.at()[self.free];
         let inside = self.in_range(begin);
         let symmetry = symmetry::<N>();
@@ -198,8 +205,8 @@ impl<'r> Branches<'r> {
         if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
-        match Walk::from_hopf(&mut corrector, self.path(), &hopf) {
-            Ok(mut walk) => Course::new(self, (number, symmetry), begin, seen).go(&mut walk),
+        match Palc::from_hopf(&mut corrector, self.settings(), &hopf) {
+            Ok(mut palc) => OrbitBranch::new(self, (number, symmetry), begin, seen).go(&mut palc),
             Err(error) if inside && self.tells(number) => {
                 let special = Special {
                     note: Some(format!("no orbit is found beside the Hopf point: {error}")),
@@ -220,19 +227,19 @@ impl<'r> Branches<'r> {
         &mut self,
         (site, direction): Switch<3>,
         times: usize,
-        seen: Seen<'_>,
+        seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
         let number = self.next();
         let family = self.family;
-        let mut corrector = walker::<_, 3>(&family)?;
+        let mut corrector = new_corrector::<_, 3>(&family)?;
         let begin = site.at[self.free];
         let first = site.moved(&direction, ASIDE);
-        match Walk::from(&mut corrector, self.path(), first, direction) {
-            Ok(mut walk) => {
+        match Palc::from(&mut corrector, self.settings(), first, direction) {
+            Ok(mut palc) => {
                 let symmetry = Symmetry::Asymmetric;
-                let mut course = Course::new(self, (number, symmetry), begin, seen);
-                course.times = times;
-                course.go(&mut walk)
+                let mut branch = OrbitBranch::new(self, (number, symmetry), begin, seen);
+                branch.times = times;
+                branch.go(&mut palc)
             }
             Err(_) => Ok(Continue(())),
         }

@@ -1,10 +1,12 @@
-//! Whether what is watched certainly changes its sign at an orbit of a branch: on both sides of it, by more than the noise.
+//! Whether a test function certainly changes its sign at an orbit of a branch: on both sides of it, by more than the noise.
 //!
 //! At a fold the parameter turns: on both sides of it, it is less, or it is greater, than at the fold. Where a branch is
 //! vertical, as at a degenerate Hopf point, the parameter's slope is noise and changes its sign again and again.
 
-use super::detect::{Watch, size};
-use crate::orbit::{Condition, Corrector, Family, Goal, Pace, Path, Regular, Walk};
+use super::detect::{WatchedFunction, size};
+use crate::orbit::{
+    Condition, Corrector, DirectedPoint, Goal, Palc, PalcSettings, ParametrisedField, Regular,
+};
 
 /// The distances to both sides that are tried, the nearest first, in units of the step.
 const PARTS: [f64; 3] = [0.125, 0.5, 1.0];
@@ -13,26 +15,26 @@ const DEVIATIONS: f64 = 5.0;
 /// Tolerance with which the sides are looked at, as what steps may err by.
 const FINE: f64 = 2e-15;
 
-/// Whether the zero of what is watched, which was landed on at `orbit` on a step of the walk from `before` over `length`, is one.
-pub(super) fn certain<F: Family<N>, const N: usize>(
-    walk: &mut Walk<'_, '_, F, N>,
-    watch: Watch,
+/// Whether the zero of what is watched, which was landed on at `orbit` on a step of the continuation from `before` over `length`, is one.
+pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
+    palc: &mut Palc<'_, '_, F, N>,
+    watch: WatchedFunction,
     orbit: &Regular<N>,
-    (before, length): (&Pace<N>, f64),
+    (before, length): (&DirectedPoint<N>, f64),
 ) -> bool {
-    let path = walk.path.clone();
-    let found = if walk.corrector.tracer.differentiates() {
-        let fine = Corrector::new(walk.corrector.family, FINE);
+    let settings = palc.settings.clone();
+    let found = if palc.corrector.tracer.differentiates() {
+        let fine = Corrector::new(palc.corrector.family, FINE);
         fine.ok()
-            .and_then(|mut fine| beside(&mut fine, &path, watch, orbit, length))
+            .and_then(|mut fine| beside(&mut fine, &settings, watch, orbit, length))
     } else {
-        beside(walk.corrector, &path, watch, orbit, length)
+        beside(palc.corrector, &settings, watch, orbit, length)
     };
     found.unwrap_or_else(|| {
         // By the ends of the step, then, as accurately as these are known.
-        let ends = [before.here.clone(), walk.pace.here.clone()];
+        let ends = [before.here.clone(), palc.now.here.clone()];
         let plane = before.direction.clone();
-        let mut at = |orbit: &Regular<N>| measured(walk.corrector, &path, watch, orbit, &plane);
+        let mut at = |orbit: &Regular<N>| measured(palc.corrector, &settings, watch, orbit, &plane);
         let [Some(a), Some(b), Some(middle)] = [at(&ends[0]), at(&ends[1]), at(orbit)] else {
             return false;
         };
@@ -44,10 +46,10 @@ pub(super) fn certain<F: Family<N>, const N: usize>(
 type Measured = (f64, f64);
 
 /// On the sides at the nearest distance that tells; `None` where no orbits are found there.
-fn beside<F: Family<N>, const N: usize>(
+fn beside<F: ParametrisedField<N>, const N: usize>(
     corrector: &mut Corrector<'_, F, N>,
-    path: &Path,
-    watch: Watch,
+    settings: &PalcSettings,
+    watch: WatchedFunction,
     orbit: &Regular<N>,
     length: f64,
 ) -> Option<bool> {
@@ -56,9 +58,9 @@ fn beside<F: Family<N>, const N: usize>(
         let site = orbit.site.moved(&along, s);
         let plane = [Condition::Plane(&along, &site)];
         let found = corrector
-            .correct(site.clone(), &path.free, &plane, Goal::SHARP)
+            .correct(site.clone(), &settings.free, &plane, Goal::SHARP)
             .ok()?;
-        measured(corrector, path, watch, &found, &along)
+        measured(corrector, settings, watch, &found, &along)
     };
     let middle = at(0.0)?;
     for part in PARTS {
@@ -71,32 +73,32 @@ fn beside<F: Family<N>, const N: usize>(
     Some(false)
 }
 
-fn measured<F: Family<N>, const N: usize>(
+fn measured<F: ParametrisedField<N>, const N: usize>(
     corrector: &mut Corrector<'_, F, N>,
-    path: &Path,
-    watch: Watch,
+    settings: &PalcSettings,
+    watch: WatchedFunction,
     orbit: &Regular<N>,
-    across: &crate::orbit::Motion<N>,
+    across: &crate::orbit::TangentVector<N>,
 ) -> Option<Measured> {
     let plane = [Condition::Plane(across, &orbit.site)];
     match watch {
-        Watch::Turn(i) => {
-            let noise = corrector.noise(orbit, &path.free, &plane)?;
+        WatchedFunction::Turn(i) => {
+            let noise = corrector.noise(orbit, &settings.free, &plane)?;
             Some((orbit.site.at[i], noise.parameters[i]))
         }
-        Watch::Indicator(indicator) => Some((
-            indicator.of::<N>(&orbit.spectrum) / size::<N>(indicator, &orbit.spectrum),
-            corrector.noise_of(indicator, orbit, &path.free, plane[0])?
-                / size::<N>(indicator, &orbit.spectrum),
+        WatchedFunction::TestFunction(test_function) => Some((
+            test_function.of::<N>(&orbit.spectrum) / size::<N>(test_function, &orbit.spectrum),
+            corrector.noise_of(test_function, orbit, &settings.free, plane[0])?
+                / size::<N>(test_function, &orbit.spectrum),
         )),
-        Watch::Value(i, value) => Some((orbit.site.at[i] - value, 0.0)),
+        WatchedFunction::Value(i, value) => Some((orbit.site.at[i] - value, 0.0)),
     }
 }
 
 /// Whether there is a change of sign, or a turn, between both sides; `None` where it is within the noise.
-fn changes(watch: Watch, a: Measured, middle: Measured, b: Measured) -> Option<bool> {
+fn changes(watch: WatchedFunction, a: Measured, middle: Measured, b: Measured) -> Option<bool> {
     let (left, right) = match watch {
-        Watch::Turn(_) => {
+        WatchedFunction::Turn(_) => {
             let less = |side: Measured| (middle.0 - side.0, middle.1 + side.1);
             let (left, right) = (less(a), less(b));
             (left, (-right.0, right.1))

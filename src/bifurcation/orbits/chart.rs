@@ -1,29 +1,34 @@
-//! The variables in which orbits of a slab are followed, and the way from one to the other.
+//! Charts: the variables in which orbits of a slab are followed, and the way from one to the other.
 
 use super::normal_form::{Form, normal_form};
 use crate::bifurcation::Criticality;
 use crate::field::State;
 use crate::number::Uncertain;
-use crate::orbit::{Family, OverLoadings, OverParted, Polygon, Site};
+use crate::orbit::{
+    ContinuationPoint, OverDifferenceChart, OverLoadings, ParametrisedField, ShootingNodes,
+};
 
 /// Orbits of a slab in some variables.
-pub trait Chart<const N: usize>: Family<N> + Copy {
+pub trait Chart<const N: usize>: ParametrisedField<N> + Copy {
     /// The slab over the plane of parameters.
     fn slab(&self) -> OverLoadings;
     /// An orbit in (tau, ln psi) or (tau, ln psi_1, ln psi_2).
-    fn usual(&self, site: &Site<N>) -> Site<N>;
-    /// Whether the walk from `last` to `here` has come to a symmetric orbit.
-    fn merges(&self, here: &Site<N>, last: &Site<N>) -> bool;
+    fn usual(&self, site: &ContinuationPoint<N>) -> ContinuationPoint<N>;
+    /// Whether the continuation from `last` to `here` has come to a symmetric orbit.
+    fn merges(&self, here: &ContinuationPoint<N>, last: &ContinuationPoint<N>) -> bool;
     /// Whether the interfaces come so near each other along the orbit that these variables lose their difference.
-    fn loses(&self, site: &Site<N>) -> bool;
-    /// Whether these are the variables that don't.
-    fn parted(&self) -> bool {
+    fn loses(&self, site: &ContinuationPoint<N>) -> bool;
+    /// Whether this is the difference chart, which does not lose it.
+    fn keeps_difference(&self) -> bool {
         false
     }
-    /// The same orbit in the variables that don't.
-    fn keeping(&self, site: &Site<N>) -> Option<(OverParted, Site<3>)>;
+    /// The same orbit in the difference chart.
+    fn keeping(
+        &self,
+        site: &ContinuationPoint<N>,
+    ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)>;
     /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is.
-    fn normal_form(&self, site: &Site<N>, form: Form) -> (Uncertain, Criticality);
+    fn normal_form(&self, site: &ContinuationPoint<N>, form: Form) -> (Uncertain, Criticality);
 }
 
 /// The least difference of ln psi along an orbit that is left with digits enough.
@@ -35,19 +40,22 @@ impl Chart<2> for OverLoadings {
     fn slab(&self) -> OverLoadings {
         *self
     }
-    fn usual(&self, site: &Site<2>) -> Site<2> {
+    fn usual(&self, site: &ContinuationPoint<2>) -> ContinuationPoint<2> {
         site.clone()
     }
-    fn merges(&self, _: &Site<2>, _: &Site<2>) -> bool {
+    fn merges(&self, _: &ContinuationPoint<2>, _: &ContinuationPoint<2>) -> bool {
         false
     }
-    fn loses(&self, _: &Site<2>) -> bool {
+    fn loses(&self, _: &ContinuationPoint<2>) -> bool {
         false
     }
-    fn keeping(&self, _: &Site<2>) -> Option<(OverParted, Site<3>)> {
+    fn keeping(
+        &self,
+        _: &ContinuationPoint<2>,
+    ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)> {
         None
     }
-    fn normal_form(&self, site: &Site<2>, form: Form) -> (Uncertain, Criticality) {
+    fn normal_form(&self, site: &ContinuationPoint<2>, form: Form) -> (Uncertain, Criticality) {
         normal_form(self, &embedded(site), form)
     }
 }
@@ -56,77 +64,86 @@ impl Chart<3> for OverLoadings {
     fn slab(&self) -> OverLoadings {
         *self
     }
-    fn usual(&self, site: &Site<3>) -> Site<3> {
+    fn usual(&self, site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
         site.clone()
     }
     // The difference has one sign all along an asymmetric orbit.
-    fn merges(&self, here: &Site<3>, last: &Site<3>) -> bool {
+    fn merges(&self, here: &ContinuationPoint<3>, last: &ContinuationPoint<3>) -> bool {
         asymmetry(here) * asymmetry(last) <= 0.0
     }
-    fn loses(&self, site: &Site<3>) -> bool {
-        let apart = site.polygon.nodes.iter().map(|x| (x[1] - x[2]).abs());
+    fn loses(&self, site: &ContinuationPoint<3>) -> bool {
+        let apart = site.shooting.nodes.iter().map(|x| (x[1] - x[2]).abs());
         apart.fold(f64::INFINITY, f64::min) < LEAST
     }
-    fn keeping(&self, site: &Site<3>) -> Option<(OverParted, Site<3>)> {
-        Some((OverParted(*self), OverParted::parted(site)?))
+    fn keeping(
+        &self,
+        site: &ContinuationPoint<3>,
+    ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)> {
+        Some((
+            OverDifferenceChart(*self),
+            OverDifferenceChart::to_chart(site)?,
+        ))
     }
-    fn normal_form(&self, site: &Site<3>, form: Form) -> (Uncertain, Criticality) {
+    fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
         normal_form(self, site, form)
     }
 }
 
-impl Chart<3> for OverParted {
-    fn parted(&self) -> bool {
+impl Chart<3> for OverDifferenceChart {
+    fn keeps_difference(&self) -> bool {
         true
     }
     fn slab(&self) -> OverLoadings {
         self.0
     }
-    fn usual(&self, site: &Site<3>) -> Site<3> {
-        OverParted::united(site)
+    fn usual(&self, site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
+        OverDifferenceChart::from_chart(site)
     }
-    fn merges(&self, here: &Site<3>, _: &Site<3>) -> bool {
-        let gaps = here.polygon.nodes.iter().map(|x| x[2]);
+    fn merges(&self, here: &ContinuationPoint<3>, _: &ContinuationPoint<3>) -> bool {
+        let gaps = here.shooting.nodes.iter().map(|x| x[2]);
         gaps.fold(f64::NEG_INFINITY, f64::max) < SYMMETRIC
     }
-    fn loses(&self, _: &Site<3>) -> bool {
+    fn loses(&self, _: &ContinuationPoint<3>) -> bool {
         false
     }
-    fn keeping(&self, _: &Site<3>) -> Option<(OverParted, Site<3>)> {
+    fn keeping(
+        &self,
+        _: &ContinuationPoint<3>,
+    ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)> {
         None
     }
-    fn normal_form(&self, site: &Site<3>, form: Form) -> (Uncertain, Criticality) {
+    fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
         normal_form(self, site, form)
     }
 }
 
 /// The mean of ln psi_1 - ln psi_2.
-fn asymmetry(site: &Site<3>) -> f64 {
-    let apart = site.polygon.nodes.iter().map(|x| x[1] - x[2]);
-    apart.sum::<f64>() / site.polygon.nodes.len() as f64
+fn asymmetry(site: &ContinuationPoint<3>) -> f64 {
+    let apart = site.shooting.nodes.iter().map(|x| x[1] - x[2]);
+    apart.sum::<f64>() / site.shooting.nodes.len() as f64
 }
 
 /// The symmetric orbit in the middle of one in (tau, ln psi_1, ln psi_2).
-pub(super) fn middle<const N: usize>(site: &Site<N>) -> Site<2> {
-    let nodes = site.polygon.nodes.iter();
-    Site {
-        polygon: Polygon {
+pub(super) fn middle<const N: usize>(site: &ContinuationPoint<N>) -> ContinuationPoint<2> {
+    let nodes = site.shooting.nodes.iter();
+    ContinuationPoint {
+        shooting: ShootingNodes {
             nodes: nodes
                 .map(|x| State::<2>::new(x[0], 0.5 * (x[1] + x[N - 1])))
                 .collect(),
-            durations: site.polygon.durations.clone(),
+            durations: site.shooting.durations.clone(),
         },
         at: site.at,
     }
 }
 
 /// A symmetric orbit among all.
-pub(super) fn embedded(site: &Site<2>) -> Site<3> {
-    let nodes = site.polygon.nodes.iter();
-    Site {
-        polygon: Polygon {
+pub(super) fn embedded(site: &ContinuationPoint<2>) -> ContinuationPoint<3> {
+    let nodes = site.shooting.nodes.iter();
+    ContinuationPoint {
+        shooting: ShootingNodes {
             nodes: nodes.map(|x| State::<3>::new(x[0], x[1], x[1])).collect(),
-            durations: site.polygon.durations.clone(),
+            durations: site.shooting.durations.clone(),
         },
         at: site.at,
     }

@@ -3,14 +3,15 @@
 //! Pitchforks of orbits are found in another formulation too. Tops and zeros of cubic coefficients have no condition of their
 //! own, and no second method here.
 
-use super::sharp::{Exactly, SpecialOrbit};
+use super::refine::{DefiningCondition, SpecialOrbit};
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::orbit::{
-    Condition, Corrector, Family, Goal, Indicator, Motion, OverLoadings, OverParted, Polygon,
-    Regular, Site, Slab, Tracer, of_digits,
+    Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, OverDifferenceChart,
+    OverLoadings, ParametrisedField, Regular, ShootingNodes, TangentVector, TestFunction, Tracer,
+    of_digits,
 };
 
 /// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
@@ -24,7 +25,11 @@ const TOLERANCE: f64 = 1e-12;
 ///
 /// # Errors
 /// [`Error::NotConverged`] where the second method does not find the point; those of the method.
-pub fn crosscheck(slab: &Slab, special: &Special, method: Choice) -> Result<Option<[f64; 3]>> {
+pub fn crosscheck(
+    slab: &InterfaceSystem,
+    special: &Special,
+    method: Choice,
+) -> Result<Option<[f64; 3]>> {
     let Some(orbit) = &special.orbit else {
         return Ok(None);
     };
@@ -32,20 +37,22 @@ pub fn crosscheck(slab: &Slab, special: &Special, method: Choice) -> Result<Opti
     let first = [special.driving.value, special.stiffness.value, period];
     let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
     let family = OverLoadings(*slab);
-    let across = orbit.meets.contains(&Exactly::Indicator(Indicator::Across));
+    let across = orbit
+        .meets
+        .contains(&DefiningCondition::TestFunction(TestFunction::Transverse));
     let second = if across {
         second_pitchfork(family, orbit, method)?
     } else if planar {
         second::<_, 2>(&family, orbit, method)?
-    } else if orbit.parted {
-        second::<_, 3>(&OverParted(family), orbit, method)?
+    } else if orbit.in_difference_chart {
+        second::<_, 3>(&OverDifferenceChart(family), orbit, method)?
     } else {
         second::<_, 3>(&family, orbit, method)?
     };
     Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
 }
 
-fn second<F: Family<N>, const N: usize>(
+fn second<F: ParametrisedField<N>, const N: usize>(
     family: &F,
     orbit: &SpecialOrbit,
     method: Choice,
@@ -75,33 +82,33 @@ fn second_pitchfork(
 ) -> Result<[f64; 3]> {
     /// ln D at the first node: far below rounding, and far above the smallest number.
     const FAINT: f64 = -300.0;
-    let family = OverParted(family);
+    let family = OverDifferenceChart(family);
     let tolerances = Tolerances::equal(TOLERANCE)?;
     let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
     let others = orbit
         .meets
         .iter()
-        .filter(|meets| **meets != Exactly::Indicator(Indicator::Across));
+        .filter(|meets| **meets != DefiningCondition::TestFunction(TestFunction::Transverse));
     let others: Vec<Condition<'_, 3>> = others.map(|exactly| exactly.condition()).collect();
     let mut found = |digits: i32| {
-        let Site { polygon, at } = cut::<2>(orbit, digits);
+        let ContinuationPoint { shooting, at } = cut::<2>(orbit, digits);
         let field = family.field(at);
         let (mut nodes, mut faint) = (Vec::new(), FAINT);
-        for (x, &duration) in polygon.nodes.iter().zip(&polygon.durations) {
+        for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             let node = State::<3>::new(x[0], x[1], faint);
             let end = corrector.tracer.flow(&*field, &node, duration, None).ok()?;
             faint = end[2];
             nodes.push(node);
         }
         drop(field);
-        let shift = Motion {
+        let shift = TangentVector {
             nodes: vec![State::<3>::new(0.0, 0.0, 1.0); nodes.len()],
             durations: vec![0.0; nodes.len()],
             parameters: [0.0; 2],
         };
-        let durations = polygon.durations;
-        let polygon = Polygon { nodes, durations };
-        let site = Site { polygon, at };
+        let durations = shooting.durations;
+        let shooting = ShootingNodes { nodes, durations };
+        let site = ContinuationPoint { shooting, at };
         let mut conditions = vec![Condition::Plane(&shift, &site)];
         conditions.extend(&others);
         corrector
@@ -113,7 +120,7 @@ fn second_pitchfork(
 }
 
 /// V_H, K and the period of what was found.
-fn found_again<F: Family<N>, const N: usize>(
+fn found_again<F: ParametrisedField<N>, const N: usize>(
     family: &F,
     found: Option<Regular<N>>,
 ) -> Result<[f64; 3]> {
@@ -124,18 +131,18 @@ fn found_again<F: Family<N>, const N: usize>(
         tolerance: Goal::SHARP.done,
     })?;
     let [driving, stiffness] = family.parameters(again.site.at);
-    Ok([driving, stiffness, again.site.polygon.period()])
+    Ok([driving, stiffness, again.site.shooting.period()])
 }
 
 /// The orbit with only so many digits left.
-fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> Site<N> {
+fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> ContinuationPoint<N> {
     let mut at = orbit.at;
     // What is not free is given.
     for &i in &orbit.free {
         at[i] = of_digits(digits, at[i]);
     }
-    Site {
-        polygon: Polygon::of_digits(digits, &orbit.nodes, &orbit.durations),
+    ContinuationPoint {
+        shooting: ShootingNodes::of_digits(digits, &orbit.nodes, &orbit.durations),
         at,
     }
 }

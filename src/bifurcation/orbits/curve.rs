@@ -1,12 +1,15 @@
-//! One curve of bifurcations, followed both ways from a point on it.
+//! One two-parameter curve of bifurcations, followed in both directions from a point on it.
 
-use super::branch::walker;
+use super::branch::new_corrector;
 use super::chart::Chart;
-use super::leg::{Leg, Pass};
+use super::half_curve::{HalfCurve, Pass};
 use super::locus::Locus;
-use crate::bifurcation::Seen;
+use crate::bifurcation::EventObserver;
 use crate::error::Result;
-use crate::orbit::{Condition, Corrector, Goal, Motion, OverLoadings, Path, Regular, Site, Walk};
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, OverLoadings, Palc, PalcSettings, Regular,
+    TangentVector,
+};
 use std::ops::ControlFlow;
 
 /// A curve that was followed.
@@ -22,27 +25,27 @@ pub(super) struct Curve {
 pub(super) fn through<const N: usize>(
     locus: &Locus<'_, N>,
     number: usize,
-    seed: Site<N>,
-    seen: Seen<'_>,
+    seed: ContinuationPoint<N>,
+    seen: EventObserver<'_>,
 ) -> Result<Option<Curve>>
 where
     OverLoadings: Chart<N>,
 {
-    let path = Path::locus(locus.indicator, locus.longest());
-    let mut corrector = walker::<_, N>(&locus.family)?;
-    let Some((here, direction)) = first(&mut corrector, &path, seed) else {
+    let settings = PalcSettings::locus(locus.test_function, locus.longest());
+    let mut corrector = new_corrector::<_, N>(&locus.family)?;
+    let Some((here, direction)) = first(&mut corrector, &settings, seed) else {
         return Ok(None);
     };
     let begin = Pass::of(&here);
-    let mut back = Leg::new(locus, number, begin, None);
-    if let Ok(mut walk) = Walk::from(
+    let mut back = HalfCurve::new(locus, number, begin, None);
+    if let Ok(mut palc) = Palc::from(
         &mut corrector,
-        path.clone(),
+        settings.clone(),
         here.clone(),
         direction.clone(),
-    ) && !back.leaves(&walk.pace)
+    ) && !back.leaves(&palc.now)
     {
-        back.go(&mut walk)?;
+        back.go(&mut palc)?;
     }
     let (mut passes, events) = back.kept();
     passes.push(begin);
@@ -56,11 +59,11 @@ where
     if told.is_break() {
         return Ok(Some(Curve { passes, told }));
     }
-    let mut forth = Leg::new(locus, number, begin, Some(seen));
-    if let Ok(mut walk) = Walk::from(&mut corrector, path, here, direction.scaled(-1.0)) {
-        forth.begins(&mut walk);
-        if !forth.told && !forth.leaves(&walk.pace) {
-            forth.go(&mut walk)?;
+    let mut forth = HalfCurve::new(locus, number, begin, Some(seen));
+    if let Ok(mut palc) = Palc::from(&mut corrector, settings, here, direction.scaled(-1.0)) {
+        forth.begins(&mut palc);
+        if !forth.told && !forth.leaves(&palc.now) {
+            forth.go(&mut palc)?;
         }
     }
     let told = if forth.told {
@@ -75,22 +78,22 @@ where
 /// The bifurcation at the seed's K, and a direction along the curve there.
 fn first<const N: usize>(
     corrector: &mut Corrector<'_, OverLoadings, N>,
-    path: &Path,
-    seed: Site<N>,
-) -> Option<(Site<N>, Motion<N>)>
+    settings: &PalcSettings,
+    seed: ContinuationPoint<N>,
+) -> Option<(ContinuationPoint<N>, TangentVector<N>)>
 where
     OverLoadings: Chart<N>,
 {
-    let fixed = path.and(Condition::Parameter(1, seed.at[1]));
+    let fixed = settings.and(Condition::Parameter(1, seed.at[1]));
     let closed: Regular<N> = corrector
-        .correct(seed, &path.free, &fixed, Goal::STEP)
+        .correct(seed, &settings.free, &fixed, Goal::STEP)
         .ok()?;
-    let own: Vec<_> = path
-        .indicator
-        .map(Condition::Indicator)
+    let own: Vec<_> = settings
+        .test_function
+        .map(Condition::TestFunction)
         .into_iter()
         .collect();
-    let here = corrector.look(closed.site, &path.free, &own).ok()?;
-    let direction = path.direction(&here, &here.along[0])?;
+    let here = corrector.look(closed.site, &settings.free, &own).ok()?;
+    let direction = settings.direction(&here, &here.along[0])?;
     Some((here.site, direction))
 }

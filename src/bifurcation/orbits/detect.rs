@@ -1,15 +1,18 @@
-//! What happens between two orbits of a walk: zeros of what is watched, none missed, none invented.
+//! Detection of bifurcations between two orbits of a continuation: zeros of test functions, none missed, none invented.
 //!
 //! A change of sign shows a zero. Two zeros in one step show by the slopes: the cubic with the values and slopes at both ends
 //! dips to zero, or does not fit the midpoint; the step is then halved for a look.
 
-use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Pace, Regular, Spectrum, Walk};
+use crate::orbit::{
+    Condition, Corrector, DirectedPoint, Goal, Palc, ParametrisedField, Regular, Spectrum,
+    TestFunction,
+};
 
-/// What is watched along a walk.
+/// What is watched along a continuation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Watch {
-    /// An indicator.
-    Indicator(Indicator),
+pub enum WatchedFunction {
+    /// A test function.
+    TestFunction(TestFunction),
     /// The direction's component along a parameter: zero at folds of a branch, at tops of a curve.
     Turn(usize),
     /// A parameter's coordinate less this value.
@@ -19,23 +22,23 @@ pub enum Watch {
 /// A zero between two orbits.
 #[derive(Debug, Clone)]
 pub(super) struct Zero<const N: usize> {
-    pub watch: Watch,
+    pub watch: WatchedFunction,
     /// The distance from the orbit before, along the direction there.
     pub at: f64,
     /// An orbit near it.
-    pub near: Pace<N>,
+    pub near: DirectedPoint<N>,
     /// Whether the values at both ends are far from zero, so that no noise changes their signs.
     pub clear: bool,
 }
 
-/// What is watched, with the slopes along the walk where there are such.
+/// What is watched, with the slopes along the continuation where there are such.
 pub(super) type Values = Vec<(f64, Option<f64>)>;
 
 /// A place on the step, with what is watched there.
 #[derive(Debug, Clone)]
-struct Place<const N: usize> {
+struct StepPosition<const N: usize> {
     at: f64,
-    pace: Pace<N>,
+    now: DirectedPoint<N>,
     values: Values,
 }
 
@@ -50,79 +53,87 @@ const DIP: f64 = 0.25;
 /// So is a step whose cubic turns by more than this part of them.
 const BENT: f64 = 0.6;
 
-impl Watch {
+impl WatchedFunction {
     /// The value, scaled to be of order one, and its slope where there is one.
-    fn value<const N: usize>(self, pace: &Pace<N>, slope: Option<&Spectrum>) -> (f64, Option<f64>) {
+    fn value<const N: usize>(
+        self,
+        now: &DirectedPoint<N>,
+        slope: Option<&Spectrum>,
+    ) -> (f64, Option<f64>) {
         match self {
-            Watch::Turn(i) => (pace.direction.parameters[i], None),
-            Watch::Value(i, value) => (
-                pace.here.site.at[i] - value,
-                Some(pace.direction.parameters[i]),
+            WatchedFunction::Turn(i) => (now.direction.parameters[i], None),
+            WatchedFunction::Value(i, value) => (
+                now.here.site.at[i] - value,
+                Some(now.direction.parameters[i]),
             ),
-            Watch::Indicator(indicator) => {
-                let at = &pace.here.spectrum;
-                let (value, size) = (indicator.of::<N>(at), size::<N>(indicator, at));
-                let slope = slope.map(|by| indicator.change_along::<N>(at, by) / size);
+            WatchedFunction::TestFunction(test_function) => {
+                let at = &now.here.spectrum;
+                let (value, size) = (test_function.of::<N>(at), size::<N>(test_function, at));
+                let slope = slope.map(|by| test_function.change_along::<N>(at, by) / size);
                 (value / size, slope)
             }
         }
     }
 }
 
-pub(super) fn size<const N: usize>(indicator: Indicator, at: &Spectrum) -> f64 {
-    match indicator {
-        Indicator::Fold | Indicator::Doubling if N > 2 => 1.0 + at.trace.abs() + at.volume.exp(),
+pub(super) fn size<const N: usize>(test_function: TestFunction, at: &Spectrum) -> f64 {
+    match test_function {
+        TestFunction::Fold | TestFunction::Doubling if N > 2 => {
+            1.0 + at.trace.abs() + at.volume.exp()
+        }
         _ => 1.0,
     }
 }
 
-/// All zeros on the step from `before`, where the values may be known, to where the walk stands, by distance; and the values
+/// All zeros on the step from `before`, where the values may be known, to where the continuation stands, by distance; and the values
 /// there.
-pub(super) fn zeros<F: Family<N>, const N: usize>(
-    walk: &mut Walk<'_, '_, F, N>,
-    (before, known): (&Pace<N>, Option<Values>),
+pub(super) fn zeros<F: ParametrisedField<N>, const N: usize>(
+    palc: &mut Palc<'_, '_, F, N>,
+    (before, known): (&DirectedPoint<N>, Option<Values>),
     length: f64,
-    watches: &[Watch],
+    watches: &[WatchedFunction],
 ) -> (Vec<Zero<N>>, Values) {
     let start = match known {
-        Some(values) => Place {
+        Some(values) => StepPosition {
             at: 0.0,
-            pace: before.clone(),
+            now: before.clone(),
             values,
         },
-        None => place(walk.corrector, before.clone(), 0.0, watches),
+        None => place(palc.corrector, before.clone(), 0.0, watches),
     };
-    let end = place(walk.corrector, walk.pace.clone(), length, watches);
+    let end = place(palc.corrector, palc.now.clone(), length, watches);
     let mut found = Vec::new();
-    look(walk, before, &start, &end, watches, DEPTH, &mut found);
+    look(palc, before, &start, &end, watches, DEPTH, &mut found);
     found.sort_by(|a: &Zero<N>, b| a.at.total_cmp(&b.at));
     (found, end.values)
 }
 
-fn place<F: Family<N>, const N: usize>(
+fn place<F: ParametrisedField<N>, const N: usize>(
     corrector: &mut Corrector<'_, F, N>,
-    pace: Pace<N>,
+    now: DirectedPoint<N>,
     at: f64,
-    watches: &[Watch],
-) -> Place<N> {
-    let indicators = watches.iter().any(|w| matches!(w, Watch::Indicator(_)));
-    let slope = indicators
-        .then(|| corrector.slope(&pace.here, &pace.direction))
+    watches: &[WatchedFunction],
+) -> StepPosition<N> {
+    let test_functions = watches
+        .iter()
+        .any(|w| matches!(w, WatchedFunction::TestFunction(_)));
+    let slope = test_functions
+        .then(|| corrector.slope(&now.here, &now.direction))
         .flatten();
-    let values = watches.iter().map(|w| w.value(&pace, slope.as_ref()));
-    Place {
+    let values = watches.iter().map(|w| w.value(&now, slope.as_ref()));
+    StepPosition {
         at,
         values: values.collect(),
-        pace,
+        now,
     }
 }
 
-fn look<F: Family<N>, const N: usize>(
-    walk: &mut Walk<'_, '_, F, N>,
-    before: &Pace<N>,
-    a: &Place<N>,
-    b: &Place<N>,
-    watches: &[Watch],
+fn look<F: ParametrisedField<N>, const N: usize>(
+    palc: &mut Palc<'_, '_, F, N>,
+    before: &DirectedPoint<N>,
+    a: &StepPosition<N>,
+    b: &StepPosition<N>,
+    watches: &[WatchedFunction],
     depth: usize,
     found: &mut Vec<Zero<N>>,
 ) {
@@ -130,10 +141,10 @@ fn look<F: Family<N>, const N: usize>(
     let pairs = a.values.iter().zip(&b.values);
     if depth > 0 && pairs.clone().any(|(a, b)| suspicious(*a, *b, length)) {
         let middle = 0.5 * (a.at + b.at);
-        if let Some(pace) = walk.beyond(before, middle) {
-            let m = place(walk.corrector, pace, middle, watches);
-            look(walk, before, a, &m, watches, depth - 1, found);
-            look(walk, before, &m, b, watches, depth - 1, found);
+        if let Some(now) = palc.correct_from(before, middle) {
+            let m = place(palc.corrector, now, middle, watches);
+            look(palc, before, a, &m, watches, depth - 1, found);
+            look(palc, before, &m, b, watches, depth - 1, found);
             return;
         }
     }
@@ -144,16 +155,16 @@ fn look<F: Family<N>, const N: usize>(
             let clear = left.abs().min(right.abs()) > CLEAR;
             found.push(Zero {
                 clear: match watches[i] {
-                    Watch::Turn(_) => false,
-                    Watch::Indicator(_) => clear,
-                    Watch::Value(..) => true,
+                    WatchedFunction::Turn(_) => false,
+                    WatchedFunction::TestFunction(_) => clear,
+                    WatchedFunction::Value(..) => true,
                 },
                 watch: watches[i],
                 at: a.at + part * length,
                 near: if part < 0.5 {
-                    a.pace.clone()
+                    a.now.clone()
                 } else {
-                    b.pace.clone()
+                    b.now.clone()
                 },
             });
         }
@@ -191,31 +202,31 @@ fn suspicious(a: (f64, Option<f64>), b: (f64, Option<f64>), length: f64) -> bool
     })
 }
 
-/// The orbit at a zero, to the accuracy of the walk's corrector or of another, found by Newton's method on the condition itself.
-pub(super) fn landed<F: Family<N>, const N: usize>(
-    walk: &mut Walk<'_, '_, F, N>,
-    before: &Pace<N>,
+/// The orbit at a zero, to the accuracy of the continuation's corrector or of another, found by Newton's method on the condition itself.
+pub(super) fn landed<F: ParametrisedField<N>, const N: usize>(
+    palc: &mut Palc<'_, '_, F, N>,
+    before: &DirectedPoint<N>,
     length: f64,
     zero: &Zero<N>,
     goal: Goal,
 ) -> Option<Regular<N>> {
-    if zero.watch == Watch::Turn(1) && walk.path.indicator.is_some() {
+    if zero.watch == WatchedFunction::Turn(1) && palc.settings.test_function.is_some() {
         // Along a curve of bifurcations a turn has no condition of its own.
-        return turned(walk, before, length, zero.at);
+        return turned(palc, before, length, zero.at);
     }
     let condition = match zero.watch {
-        Watch::Indicator(indicator) => Condition::Indicator(indicator),
-        Watch::Value(i, value) => Condition::Parameter(i, value),
+        WatchedFunction::TestFunction(test_function) => Condition::TestFunction(test_function),
+        WatchedFunction::Value(i, value) => Condition::Parameter(i, value),
         // Along a branch a turn is a fold.
-        Watch::Turn(_) => Condition::Indicator(Indicator::Fold),
+        WatchedFunction::Turn(_) => Condition::TestFunction(TestFunction::Fold),
     };
-    let conditions = walk.path.and(condition);
-    let free = walk.path.free.clone();
-    let mut ends = (before.clone(), walk.pace.clone());
+    let conditions = palc.settings.and(condition);
+    let free = palc.settings.free.clone();
+    let mut ends = (before.clone(), palc.now.clone());
     let mut at = zero.at;
     let (mut low, mut high) = (0.0, length);
     for _ in 0..ATTEMPTS {
-        let guess = walk.beyond(before, at);
+        let guess = palc.correct_from(before, at);
         let starts = [
             guess.as_ref(),
             Some(&zero.near),
@@ -224,7 +235,7 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
         ];
         for start in starts.into_iter().flatten() {
             let site = start.here.site.clone();
-            let found = walk.corrector.correct(site, &free, &conditions, goal);
+            let found = palc.corrector.correct(site, &free, &conditions, goal);
             if let Ok(found) = found {
                 let there = before.direction.dot(&found.site.from(&before.here.site));
                 if there > -0.1 * length && there < 1.1 * length {
@@ -240,7 +251,7 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
             at = 0.5 * (at + if at - low > high - at { low } else { high });
             continue;
         };
-        let value = |pace: &Pace<N>| zero.watch.value(pace, None).0;
+        let value = |now: &DirectedPoint<N>| zero.watch.value(now, None).0;
         if value(&guess) * value(before) > 0.0 {
             (low, ends.0) = (at, guess);
         } else {
@@ -252,25 +263,25 @@ pub(super) fn landed<F: Family<N>, const N: usize>(
 }
 
 /// Where K turns on the step, by false position from a first guess: long steps bend by more than one straight line tells.
-fn turned<F: Family<N>, const N: usize>(
-    walk: &mut Walk<'_, '_, F, N>,
-    before: &Pace<N>,
+fn turned<F: ParametrisedField<N>, const N: usize>(
+    palc: &mut Palc<'_, '_, F, N>,
+    before: &DirectedPoint<N>,
     length: f64,
     first: f64,
 ) -> Option<Regular<N>> {
     /// Iterations, and a slope that is small enough.
     const ITERATIONS: usize = 8;
     const FLAT: f64 = 1e-3;
-    let slope = |pace: &Pace<N>| pace.direction.parameters[1];
+    let slope = |now: &DirectedPoint<N>| now.direction.parameters[1];
     let mut low = (0.0, slope(before));
-    let mut high = (length, slope(&walk.pace));
+    let mut high = (length, slope(&palc.now));
     let (mut at, mut found) = (first, None);
     for _ in 0..ITERATIONS {
-        let Some(pace) = walk.beyond(before, at) else {
+        let Some(now) = palc.correct_from(before, at) else {
             break;
         };
-        let here = slope(&pace);
-        found = Some(pace.here);
+        let here = slope(&now);
+        found = Some(now.here);
         if here.abs() < FLAT {
             break;
         }

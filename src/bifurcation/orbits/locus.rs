@@ -1,16 +1,17 @@
-//! Curves of bifurcations of periodic orbits in the (V_H, K) plane, with what is special on them.
+//! Two-parameter continuation of bifurcations of periodic orbits in the (V_H, K) plane: folds, period doublings, Neimark-Sacker
+//! bifurcations and pitchforks, with what is special on them.
 //!
 //! They start from the bifurcations met along a few branches, and are followed both ways with V_H and K free: past their tops,
 //! through resonances, to where the bifurcation ceases to be one.
 
 use super::chart::Chart;
 use super::curve::through;
-use super::leg::Pass;
+use super::half_curve::Pass;
 use super::scan::Scan;
-use crate::bifurcation::{Event, LocusKind, LocusRequest, Seen};
+use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::orbit::{Indicator, OverLoadings, Site, Slab};
+use crate::orbit::{ContinuationPoint, InterfaceSystem, OverLoadings, TestFunction};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
@@ -18,7 +19,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// # Errors
 /// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of
 /// [`LocusRequest::checked`], of the equilibria and of the flow.
-pub fn locus(request: &LocusRequest, seen: Seen<'_>) -> Result<()> {
+pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     loci(std::slice::from_ref(request), &mut |_, event| seen(event))
 }
 
@@ -44,7 +45,7 @@ pub fn loci(
         };
         let mut count = 0;
         for symmetry in own {
-            let seen: Seen<'_> = &mut |event| seen(i, event);
+            let seen: EventObserver<'_> = &mut |event| seen(i, event);
             let told = match symmetry {
                 Symmetry::Symmetric => {
                     Locus::<2>::all(request, &mut scan.symmetric, &mut count, seen)?
@@ -64,7 +65,7 @@ pub fn loci(
 
 /// What is looked for along branches of both symmetries.
 struct Scans {
-    slab: Slab,
+    slab: InterfaceSystem,
     driving: (f64, f64),
     symmetric: Scan<2>,
     asymmetric: Scan<3>,
@@ -101,12 +102,12 @@ impl Scans {
 }
 
 /// What is zero along curves of a kind.
-fn of_kind(kind: LocusKind) -> Indicator {
+fn of_kind(kind: LocusKind) -> TestFunction {
     match kind {
-        LocusKind::OrbitPitchfork => Indicator::Across,
-        LocusKind::PeriodDoubling => Indicator::Doubling,
-        LocusKind::Torus => Indicator::Torus,
-        _ => Indicator::Fold,
+        LocusKind::OrbitPitchfork => TestFunction::Transverse,
+        LocusKind::PeriodDoubling => TestFunction::Doubling,
+        LocusKind::Torus => TestFunction::Torus,
+        _ => TestFunction::Fold,
     }
 }
 
@@ -163,7 +164,7 @@ pub(super) struct Locus<'r, const N: usize> {
     pub scan: &'r [f64],
     pub request: &'r LocusRequest,
     pub family: OverLoadings,
-    pub indicator: Indicator,
+    pub test_function: TestFunction,
     /// Where the curves so far pass these.
     known: Vec<Pass>,
 }
@@ -176,18 +177,18 @@ where
         request: &'r LocusRequest,
         branches: &mut Scan<N>,
         count: &mut usize,
-        seen: Seen<'_>,
+        seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
         let scan = scanned(request.stiffness);
         let mut locus = Locus {
             scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
             family: OverLoadings(request.slab),
-            indicator: of_kind(request.kind),
+            test_function: of_kind(request.kind),
             known: Vec::new(),
         };
         for stiffness in scan {
-            for seed in branches.at(stiffness, locus.indicator)? {
+            for seed in branches.at(stiffness, locus.test_function)? {
                 if locus.is_known(&seed) {
                     continue;
                 }
@@ -213,7 +214,7 @@ where
     }
 
     /// Whether a curve that was followed passes there.
-    fn is_known(&self, seed: &Site<N>) -> bool {
+    fn is_known(&self, seed: &ContinuationPoint<N>) -> bool {
         let here = Pass::of(seed);
         self.known.iter().any(|pass| pass.is(&here))
     }

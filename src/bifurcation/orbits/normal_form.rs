@@ -1,4 +1,4 @@
-//! Normal forms of the bifurcations of orbits: which way they go.
+//! Normal forms of bifurcations of orbits (period doubling, Neimark-Sacker, pitchfork): criticality by the cubic coefficient.
 //!
 //! Along the centre manifold of an orbit, whose part in the k-th plane is
 //!
@@ -21,7 +21,10 @@
 
 use crate::bifurcation::Criticality;
 use crate::number::Uncertain;
-use crate::orbit::{Axes, Family, Jet, Site, cut_into, cyclic, finely_cut, jets, squares};
+use crate::orbit::{
+    Axes, ContinuationPoint, ParametrisedField, PoincareJet, cut_into, cyclic, finely_cut, jets,
+    squares,
+};
 use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector2, Vector4};
 
 type C = Complex<f64>;
@@ -46,9 +49,9 @@ const LEAST: f64 = 1e-8;
 
 /// The cubic coefficient of an orbit that bifurcates, and which way that is: b of (5.40) or Re d of (5.45) of the return map,
 /// for an eigenvector whose length across the flow, in (tau, ln psi_1, ln psi_2), has the mean square 1 over the period.
-pub fn normal_form<F: Family<3>>(
+pub fn normal_form<F: ParametrisedField<3>>(
     family: &F,
-    site: &Site<3>,
+    site: &ContinuationPoint<3>,
     form: Form,
 ) -> (Uncertain, Criticality) {
     let Some(coefficient) = coefficient(family, site, form) else {
@@ -68,7 +71,11 @@ pub fn normal_form<F: Family<3>>(
     (coefficient, criticality)
 }
 
-fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<Uncertain> {
+fn coefficient<F: ParametrisedField<3>>(
+    family: &F,
+    site: &ContinuationPoint<3>,
+    form: Form,
+) -> Option<Uncertain> {
     let site = finely_cut(family, site)?;
     let axes = match form {
         Form::Pitchfork => Axes::Symmetry,
@@ -79,7 +86,7 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
         let circle = Circle {
             jets: jets(family, &cut, axes, tolerance)?,
             squares: squares(family, &cut, axes)?,
-            period: cut.polygon.period(),
+            period: cut.shooting.period(),
         }
         .begun_at_the_top(axes);
         let coefficient = match form {
@@ -96,7 +103,7 @@ fn coefficient<F: Family<3>>(family: &F, site: &Site<3>, form: Form) -> Option<U
 
 /// The maps around an orbit.
 struct Circle {
-    jets: Vec<Jet>,
+    jets: Vec<PoincareJet>,
     /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
     squares: Vec<Matrix2<f64>>,
     period: f64,
@@ -158,8 +165,9 @@ impl Circle {
             .iter()
             .map(|jet| Matrix1::new(jet.linear()[(1, 1)]))
             .collect();
-        let square =
-            |(jet, q): (&Jet, &f64)| Vector1::new(jet.second(&across, &across)[1].re * q * q);
+        let square = |(jet, q): (&PoincareJet, &f64)| {
+            Vector1::new(jet.second(&across, &across)[1].re * q * q)
+        };
         let squares: Vec<_> = self.jets.iter().zip(&q).map(square).collect();
         let h = cyclic::solve(&in_plane, &squares)?;
         let mut sum = 0.0;
@@ -198,7 +206,7 @@ impl Circle {
         Some(self.solvability(mu, &p, &q, &cube).re / 2.0 / self.mean_square(&q))
     }
 
-    fn each(&self, of: impl Fn(usize, &Jet) -> C2) -> Vec<C2> {
+    fn each(&self, of: impl Fn(usize, &PoincareJet) -> C2) -> Vec<C2> {
         self.jets
             .iter()
             .enumerate()
@@ -218,7 +226,7 @@ impl Circle {
 
     /// u_{k+1} = P_k u_k + r_k with u_m = mu u_0.
     fn solve(&self, mu: C, right: &[C2]) -> Option<Vec<C2>> {
-        let maps: Vec<_> = self.jets.iter().map(Jet::linear).collect();
+        let maps: Vec<_> = self.jets.iter().map(PoincareJet::linear).collect();
         let mut right = right.to_vec();
         *right.last_mut()? /= mu;
         around(&maps, mu.inv(), &right)
@@ -228,7 +236,7 @@ impl Circle {
     /// inverse iteration a little beside the multiplier.
     fn eigenvectors(&self, mu: C) -> Option<(Vec<C2>, Vec<C2>)> {
         const ITERATIONS: usize = 3;
-        let maps: Vec<_> = self.jets.iter().map(Jet::linear).collect();
+        let maps: Vec<_> = self.jets.iter().map(PoincareJet::linear).collect();
         let last = maps.len() - 1;
         // From the last plane but one down to the first, and from the last plane at last, where the circle closes.
         let mut transposed: Vec<_> = maps[..last].iter().rev().map(Matrix2::transpose).collect();

@@ -22,7 +22,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
     orbit: &Regular<N>,
     label: Option<Label>,
 ) -> Result<BranchRow> {
-    /// ln |mu| that is zero within the accuracy of a walk.
+    /// ln |mu| that is zero within the accuracy of a continuation.
     const NEUTRAL: f64 = 1e-6;
     let here = family.slab().slab(orbit.site.at);
     let Profile {
@@ -30,7 +30,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
         stress_range,
         state,
         slip_rate,
-    } = profile(&here, &family.usual(&orbit.site).polygon)?;
+    } = profile(&here, &family.usual(&orbit.site).shooting)?;
     let spectrum = &orbit.spectrum;
     let logs = if N == 3 {
         spectrum.log_multipliers()?.map(Some)
@@ -57,7 +57,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
         stiffness,
         stress: mean_stress,
         stress_range,
-        period: Some(orbit.site.polygon.period()),
+        period: Some(orbit.site.shooting.period()),
         state,
         slip_rate,
         ln_abs_multiplier: logs,
@@ -67,7 +67,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
 }
 
 /// V_H and K as they were given, where they were: not the exponentials of their logarithms.
-pub(super) type Given = [Option<f64>; 2];
+pub(super) type GivenParameters = [Option<f64>; 2];
 
 /// The number that was asked for and has this logarithm, of a range's ends and the wanted values.
 pub(super) fn asked(log: f64, range: (f64, f64), wanted: &[f64]) -> Option<f64> {
@@ -76,14 +76,14 @@ pub(super) fn asked(log: f64, range: (f64, f64), wanted: &[f64]) -> Option<f64> 
 }
 
 impl BranchRow {
-    pub(super) fn given(&mut self, [driving, stiffness]: Given) {
+    pub(super) fn given(&mut self, [driving, stiffness]: GivenParameters) {
         self.driving = driving.unwrap_or(self.driving);
         self.stiffness = stiffness.unwrap_or(self.stiffness);
     }
 }
 
 impl Special {
-    pub(super) fn given(&mut self, given: Given) {
+    pub(super) fn given(&mut self, given: GivenParameters) {
         let places = [&mut self.driving, &mut self.stiffness];
         for (place, given) in places.into_iter().zip(given) {
             if let Some(exact) = given {

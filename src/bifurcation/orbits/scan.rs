@@ -2,13 +2,14 @@
 //! that are wanted.
 
 use super::chart::Chart;
-use super::detect::Watch;
+use super::detect::WatchedFunction;
 use super::follow::{Met, follow};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::Parameter;
 use crate::orbit::{
-    Corrector, HopfPoint, Indicator, OverLoadings, Path, Site, Slab, Tracer, Walk, hopf_points,
+    ContinuationPoint, Corrector, HopfPoint, InterfaceSystem, OverLoadings, Palc, PalcSettings,
+    TestFunction, Tracer, hopf_points,
 };
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -23,38 +24,42 @@ const TOLERANCE: f64 = 1e-8;
 
 /// The bifurcations of orbits of one symmetry.
 pub(super) struct Scan<const N: usize> {
-    slab: Slab,
+    slab: InterfaceSystem,
     driving: (f64, f64),
     symmetry: Symmetry,
     /// What is looked for.
-    indicators: Vec<Indicator>,
+    test_functions: Vec<TestFunction>,
     /// What has been found, at these K.
-    found: Vec<(f64, Vec<(Indicator, Site<N>)>)>,
+    found: Vec<(f64, Vec<(TestFunction, ContinuationPoint<N>)>)>,
 }
 
 impl<const N: usize> Scan<N>
 where
     OverLoadings: Chart<N>,
 {
-    pub fn new(slab: Slab, driving: (f64, f64), symmetry: Symmetry) -> Self {
+    pub fn new(slab: InterfaceSystem, driving: (f64, f64), symmetry: Symmetry) -> Self {
         Scan {
             slab,
             driving,
             symmetry,
-            indicators: Vec::new(),
+            test_functions: Vec::new(),
             found: Vec::new(),
         }
     }
 
     /// Looks for this too.
-    pub fn also(&mut self, indicator: Indicator) {
-        if !self.indicators.contains(&indicator) {
-            self.indicators.push(indicator);
+    pub fn also(&mut self, test_function: TestFunction) {
+        if !self.test_functions.contains(&test_function) {
+            self.test_functions.push(test_function);
         }
     }
 
     /// The bifurcations of one kind at this K.
-    pub fn at(&mut self, stiffness: f64, indicator: Indicator) -> Result<Vec<Site<N>>> {
+    pub fn at(
+        &mut self,
+        stiffness: f64,
+        test_function: TestFunction,
+    ) -> Result<Vec<ContinuationPoint<N>>> {
         if !self.found.iter().any(|found| found.0 == stiffness) {
             let here = self.all_at(stiffness)?;
             self.found.push((stiffness, here));
@@ -62,11 +67,11 @@ where
         let here = self.found.iter().filter(|found| found.0 == stiffness);
         let of_kind = here
             .flat_map(|found| &found.1)
-            .filter(|one| one.0 == indicator);
+            .filter(|one| one.0 == test_function);
         Ok(of_kind.map(|one| one.1.clone()).collect())
     }
 
-    fn all_at(&self, stiffness: f64) -> Result<Vec<(Indicator, Site<N>)>> {
+    fn all_at(&self, stiffness: f64) -> Result<Vec<(TestFunction, ContinuationPoint<N>)>> {
         let slab = self.slab.of_stiffness(stiffness);
         let (mut found, mut reached) = (Vec::new(), Vec::new());
         let hopfs = hopf_points(&slab, self.symmetry, Parameter::Driving)?;
@@ -81,47 +86,47 @@ where
     /// What is found along the branch of a Hopf point, and which other one it reaches.
     fn branch(
         &self,
-        slab: &Slab,
+        slab: &InterfaceSystem,
         (i, hopfs): (usize, &[HopfPoint]),
         reached: &mut Vec<usize>,
-        found: &mut Vec<(Indicator, Site<N>)>,
+        found: &mut Vec<(TestFunction, ContinuationPoint<N>)>,
     ) -> Result<()> {
         let family = OverLoadings(*slab);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
-        let inside = |site: &Site<N>| (from..=to).contains(&site.at[0]);
+        let inside = |site: &ContinuationPoint<N>| (from..=to).contains(&site.at[0]);
         // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
         let last_one = i + 1 == hopfs.len();
         let tracer = Tracer::limited(TOLERANCE, WORK, WORK)?;
         let mut corrector = Corrector::<_, N>::by(&family, tracer);
-        let path = Path::branch(0, LONGEST);
-        let Ok(mut walk) = Walk::from_hopf(&mut corrector, path, &hopfs[i]) else {
+        let settings = PalcSettings::branch(0, LONGEST);
+        let Ok(mut palc) = Palc::from_hopf(&mut corrector, settings, &hopfs[i]) else {
             return Ok(());
         };
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
-        let watches: Vec<Watch> = self.indicators.iter().map(|&i| watch(i)).collect();
+        let watches: Vec<WatchedFunction> = self.test_functions.iter().map(|&i| watch(i)).collect();
         follow(
-            &mut walk,
+            &mut palc,
             &watches,
             STEPS,
-            &mut |walk, before, met| match met {
+            &mut |palc, before, met| match met {
                 Met::Zero(met, at) => {
-                    let pitchfork = family.merges(&walk.pace.here.site, &before.here.site);
-                    let indicator = indicator(met);
-                    let is_one = match indicator {
-                        Indicator::Torus => at.spectrum.trace.abs() < 2.0,
-                        Indicator::Fold => !pitchfork,
+                    let pitchfork = family.merges(&palc.now.here.site, &before.here.site);
+                    let test_function = test_function(met);
+                    let is_one = match test_function {
+                        TestFunction::Torus => at.spectrum.trace.abs() < 2.0,
+                        TestFunction::Fold => !pitchfork,
                         _ => true,
                     };
                     if is_one && inside(&at.site) {
-                        found.push((indicator, at.site.clone()));
+                        found.push((test_function, at.site.clone()));
                     }
                     Continue(())
                 }
-                Met::Orbit(pace) => {
-                    let here = &pace.here.site;
+                Met::Orbit(now) => {
+                    let here = &now.here.site;
                     let left = been && !inside(here);
                     been |= inside(here);
-                    let end = walk.ends_at(&before.here.site, hopfs);
+                    let end = palc.ends_at(&before.here.site, hopfs);
                     reached.extend(end);
                     let merged = family.merges(here, &before.here.site);
                     if left && last_one || end.is_some() || merged {
@@ -137,16 +142,16 @@ where
 }
 
 /// Along a branch a fold is a turn of V_H.
-fn watch(indicator: Indicator) -> Watch {
-    match indicator {
-        Indicator::Fold => Watch::Turn(0),
-        other => Watch::Indicator(other),
+fn watch(test_function: TestFunction) -> WatchedFunction {
+    match test_function {
+        TestFunction::Fold => WatchedFunction::Turn(0),
+        other => WatchedFunction::TestFunction(other),
     }
 }
 
-fn indicator(watch: Watch) -> Indicator {
+fn test_function(watch: WatchedFunction) -> TestFunction {
     match watch {
-        Watch::Indicator(indicator) => indicator,
-        _ => Indicator::Fold,
+        WatchedFunction::TestFunction(test_function) => test_function,
+        _ => TestFunction::Fold,
     }
 }

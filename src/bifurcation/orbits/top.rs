@@ -5,7 +5,10 @@
 //! curve has. Two widths of the interval show what the interpolation errs by.
 
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Motion, Path, Regular, Site};
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, PalcSettings, ParametrisedField, Regular,
+    TangentVector, TestFunction,
+};
 
 /// A stationary value of K on a curve.
 pub struct Top<const N: usize> {
@@ -25,18 +28,18 @@ const WIDTHS: [f64; 2] = [0.04, 0.027];
 /// Tolerance of the points.
 const FINE: f64 = 1e-16;
 
-/// The stationary point of the second coordinate along the curve of an indicator, near a site on it.
-pub fn top<F: Family<N>, const N: usize>(
+/// The stationary point of the second coordinate along the curve of a test function, near a site on it.
+pub fn top<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    near: &Site<N>,
-    indicator: Indicator,
+    near: &ContinuationPoint<N>,
+    test_function: TestFunction,
 ) -> Option<Top<N>> {
     let mut corrector = Corrector::new(family, FINE).ok()?;
-    let path = Path::locus(indicator, 1.0);
-    let own = [Condition::Indicator(indicator)];
-    let here = corrector.look(near.clone(), &path.free, &own).ok()?;
+    let settings = PalcSettings::locus(test_function, 1.0);
+    let own = [Condition::TestFunction(test_function)];
+    let here = corrector.look(near.clone(), &settings.free, &own).ok()?;
     let any = here.along[0].clone();
-    let direction = path.direction(&here, &any)?;
+    let direction = settings.direction(&here, &any)?;
     let mut found = Vec::new();
     for width in WIDTHS {
         found.push(stationary(
@@ -44,14 +47,14 @@ pub fn top<F: Family<N>, const N: usize>(
             near,
             &direction,
             width,
-            indicator,
+            test_function,
         )?);
     }
     let [first, second] = [&found[0], &found[1]];
     let at = near.moved(&direction, second.s);
-    let conditions = path.and(Condition::Plane(&direction, &at));
+    let conditions = settings.and(Condition::Plane(&direction, &at));
     let orbit = corrector
-        .correct(at.clone(), &path.free, &conditions, Goal::SHARP)
+        .correct(at.clone(), &settings.free, &conditions, Goal::SHARP)
         .ok()?;
     let (parameters, scale) = (family.parameters(second.at), family.scale(second.at));
     // The value at a stationary point is known far better than its place.
@@ -78,12 +81,12 @@ struct Stationary {
     errors: [f64; 2],
 }
 
-fn stationary<F: Family<N>, const N: usize>(
+fn stationary<F: ParametrisedField<N>, const N: usize>(
     corrector: &mut Corrector<'_, F, N>,
-    near: &Site<N>,
-    direction: &Motion<N>,
+    near: &ContinuationPoint<N>,
+    direction: &TangentVector<N>,
     width: f64,
-    indicator: Indicator,
+    test_function: TestFunction,
 ) -> Option<Stationary> {
     let (mut v, mut k, mut t) = ([0.0; POINTS], [0.0; POINTS], [0.0; POINTS]);
     for i in 0..POINTS {
@@ -91,14 +94,14 @@ fn stationary<F: Family<N>, const N: usize>(
         let s = ((i as f64 + 0.5) * std::f64::consts::PI / POINTS as f64).cos();
         let at = near.moved(direction, width * s);
         let conditions = [
-            Condition::Indicator(indicator),
+            Condition::TestFunction(test_function),
             Condition::Plane(direction, &at),
         ];
         let orbit = corrector
             .correct(at.clone(), &[0, 1], &conditions, Goal::SHARP)
             .ok()?;
         [v[i], k[i]] = orbit.site.at;
-        t[i] = orbit.site.polygon.period();
+        t[i] = orbit.site.shooting.period();
     }
     let [v, k, t] = [v, k, t].map(|values| coefficients(&values));
     let mut x = 0.0;

@@ -4,11 +4,11 @@
 //! like folds is noise.
 
 use super::chart::Chart;
-use super::rows::Given;
-use super::sharp::rough;
+use super::refine::rough;
+use super::rows::GivenParameters;
 use crate::bifurcation::{Label, Special};
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Pace, Walk};
+use crate::orbit::{Condition, DirectedPoint, Palc};
 
 /// Standard deviations of what is noise.
 const DEVIATIONS: f64 = 5.0;
@@ -44,20 +44,20 @@ impl Vertical {
     /// With the next orbit; `None` where the parameter varies.
     pub fn and<F: Chart<N>, const N: usize>(
         self,
-        walk: &mut Walk<'_, '_, F, N>,
-        Pace { here, direction }: &Pace<N>,
+        palc: &mut Palc<'_, '_, F, N>,
+        DirectedPoint { here, direction }: &DirectedPoint<N>,
         free: usize,
     ) -> Option<Self> {
         let (site, first) = (&here.site, self.orbits == 0);
         let plane = [Condition::Plane(direction, site)];
-        let noise = walk.corrector.noise(here, &walk.path.free, &plane)?;
+        let noise = palc.corrector.noise(here, &palc.settings.free, &plane)?;
         let next = Vertical {
             orbits: self.orbits + 1,
             coordinates: widened(self.coordinates, site.at[free], first),
             noise: self.noise.max(noise.parameters[free]),
             least: widened((self.least, self.least), noise.parameters[free], first).0,
-            extents: widened(self.extents, site.polygon.extent(), first),
-            periods: widened(self.periods, site.polygon.period(), first),
+            extents: widened(self.extents, site.shooting.extent(), first),
+            periods: widened(self.periods, site.shooting.period(), first),
         };
         (next.range() <= 2.0 * DEVIATIONS * next.noise).then_some(next)
     }
@@ -79,15 +79,12 @@ impl Vertical {
     /// The end of the branch, in words.
     pub fn end<F: Chart<N>, const N: usize>(
         &self,
-        walk: &Walk<'_, '_, F, N>,
+        palc: &Palc<'_, '_, F, N>,
         free: usize,
-        mut given: Given,
+        mut given: GivenParameters,
     ) -> Special {
         let name = ["V_H", "K"][free];
-        let mut special = rough(
-            Label::Ep,
-            &walk.corrector.family.usual(&walk.pace.here.site),
-        );
+        let mut special = rough(Label::Ep, &palc.corrector.family.usual(&palc.now.here.site));
         given[free] = None;
         special.given(given);
         let place = [&mut special.driving, &mut special.stiffness];

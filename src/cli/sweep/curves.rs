@@ -36,8 +36,8 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
         .enumerate()
         .map(|(i, locus)| {
             let title = locus.curve.title;
-            let kept = Kept::of(locus);
-            if let Some(points) = kept.as_ref().and_then(Kept::read) {
+            let kept = KeptCurve::of(locus);
+            if let Some(points) = kept.as_ref().and_then(KeptCurve::read) {
                 return (title, points);
             }
             let told = |place: &str| format!("over the map: {title}, {} of {all}{place}", i + 1);
@@ -114,12 +114,12 @@ fn folder() -> Option<PathBuf> {
 }
 
 /// A curve that may be kept.
-struct Kept {
+struct KeptCurve {
     path: PathBuf,
     key: String,
 }
 
-impl Kept {
+impl KeptCurve {
     fn of(locus: &LocusPlan) -> Option<Self> {
         let program = std::env::current_exe().and_then(fs::metadata).ok()?;
         let made = program.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
@@ -132,7 +132,7 @@ impl Kept {
         .replace('\n', " ");
         let name = format!("curve-{}.csv", &hash(key.as_bytes())[..16]);
         let path = folder()?.join(name);
-        Some(Kept { path, key })
+        Some(KeptCurve { path, key })
     }
 
     /// The points, if they are there and whole.

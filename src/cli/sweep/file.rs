@@ -6,7 +6,7 @@ use super::super::resume::same;
 use crate::error::{Error, Result};
 use crate::output::{self, Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest};
 use crate::scene::{Quantity, Shard, SweepPlan};
-use crate::sweep::Row;
+use crate::sweep::SweepRow;
 use crate::views::{self, Column};
 use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read, Seek, SeekFrom};
@@ -28,7 +28,7 @@ pub fn remarks(plan: &SweepPlan, shard: Option<Shard>) -> Vec<String> {
 pub fn beginning(
     plan: &SweepPlan,
     shard: Option<Shard>,
-    columns: &[Column<Row>],
+    columns: &[Column<SweepRow>],
     status: Option<Status>,
 ) -> Vec<u8> {
     let names = views::names(columns, false);
@@ -40,8 +40,8 @@ pub fn beginning(
 }
 
 /// Rows as lines, checked by their numbers: so the lines of parts are those of the whole.
-pub fn lines(plan: &SweepPlan, columns: &[Column<Row>], rows: &[Row]) -> Vec<u8> {
-    let line = |row: &Row| {
+pub fn lines(plan: &SweepPlan, columns: &[Column<SweepRow>], rows: &[SweepRow]) -> Vec<u8> {
+    let line = |row: &SweepRow| {
         let cells = views::cells(columns, row, &plan.system.units, false);
         checked_line(&row.number.to_string(), &cells)
     };
@@ -69,7 +69,7 @@ pub struct Standing {
 pub fn read(
     path: &Path,
     plan: &SweepPlan,
-    columns: &[Column<Row>],
+    columns: &[Column<SweepRow>],
     kept: &mut dyn FnMut(usize, &[String]),
 ) -> Result<Standing> {
     let mut file = match File::open(path) {
@@ -124,7 +124,7 @@ fn begins(
     path: &Path,
     file: &mut BufReader<File>,
     plan: &SweepPlan,
-    columns: &[Column<Row>],
+    columns: &[Column<SweepRow>],
 ) -> Result<Option<Vec<u8>>> {
     let marked = beginning(plan, plan.shard, columns, Some(Status::Unfinished));
     let mut found = Vec::new();
@@ -209,10 +209,10 @@ fn belongs(plan: &SweepPlan, number: usize, cells: &[String]) -> bool {
 /// A row from its cells; `None` if they are not those of a row.
 pub fn row(
     plan: &SweepPlan,
-    columns: &[Column<Row>],
+    columns: &[Column<SweepRow>],
     number: usize,
     cells: &[String],
-) -> Option<Row> {
+) -> Option<SweepRow> {
     let names = views::names(columns, false);
     let cell = |name: &str| {
         let at = names.iter().position(|(one, _)| one == name);

@@ -15,9 +15,9 @@ use super::{Ending, interrupt, say, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{SweepOptions, SweepPlan};
-use crate::sweep::{self, Units};
+use crate::sweep::{self, UnitShare};
 use crate::views;
-use out::Out;
+use out::SweepOut;
 use ranks::Ranks;
 use serde_json::{Value, json};
 
@@ -54,15 +54,15 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
         }
     }
     let columns = views::sweep_columns();
-    let mut out = Out::new(&plan, &report, &columns, plot.is_some());
+    let mut out = SweepOut::new(&plan, &report, &columns, plot.is_some());
     let done = resume.map_or(Ok(0), |path| out.keep(path, &columns))?;
     if let Err(error) = out.open(resume.is_some()) {
         return written(Err(error), &report.place);
     }
     let shard = plan.part();
-    let units = Units::shard(shard.index, shard.of, done);
+    let units = UnitShare::shard(shard.index, shard.of, done);
     interrupt::watch();
-    let mut seen = |rows: &[sweep::Row]| out.take(rows);
+    let mut seen = |rows: &[sweep::SweepRow]| out.take(rows);
     let failure = match ranks {
         Some(ranks) => ranks.run(&plan.settings, units, interrupt::flag(), &mut seen),
         None => sweep::run(
@@ -93,7 +93,7 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
 }
 
 /// The object; tables and CSV are written already.
-fn write(plan: &SweepPlan, report: &Report<'_>, out: &Out<'_>) -> Result<Ending> {
+fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<Ending> {
     if report.format != Format::Json {
         return Ok(Ending::Done);
     }

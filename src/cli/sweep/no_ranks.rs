@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::scene::SweepPlan;
-use crate::sweep::{Row, Settings, Units};
+use crate::sweep::{SweepRow, SweepSettings, UnitShare};
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 
@@ -41,10 +41,10 @@ impl Ranks {
 
     pub fn run(
         &mut self,
-        _: &Settings,
-        _: Units,
+        _: &SweepSettings,
+        _: UnitShare,
         _: &AtomicBool,
-        _: &mut dyn FnMut(&[Row]) -> ControlFlow<()>,
+        _: &mut dyn FnMut(&[SweepRow]) -> ControlFlow<()>,
     ) -> Result<()> {
         match *self {}
     }

@@ -9,23 +9,23 @@ use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
 use crate::scene::SweepPlan;
 use crate::section::Regime;
-use crate::sweep::Row;
+use crate::sweep::SweepRow;
 use crate::views::{self, Column, REGIMES};
 use std::io::{self, IsTerminal, Write};
 use std::ops::ControlFlow;
 use std::path::Path;
 
 /// Takes rows in their order: writes, counts and, where they are needed once more, keeps them.
-pub struct Out<'a> {
+pub struct SweepOut<'a> {
     plan: &'a SweepPlan,
     report: &'a Report<'a>,
-    pub columns: &'a [Column<Row>],
-    to: To,
+    pub columns: &'a [Column<SweepRow>],
+    to: SweepSink,
     /// Where the rows of an earlier run end.
     torn: u64,
     keeps: bool,
     /// Rows for the picture and the object.
-    pub rows: Vec<Row>,
+    pub rows: Vec<SweepRow>,
     counts: [usize; REGIMES.len()],
     /// Rows of this run.
     pub new: usize,
@@ -34,28 +34,28 @@ pub struct Out<'a> {
     pub progress: Progress,
 }
 
-enum To {
+enum SweepSink {
     Nothing,
     Lines(Box<dyn Write>),
     Table(Box<dyn RowWriter>),
 }
 
-impl<'a> Out<'a> {
+impl<'a> SweepOut<'a> {
     pub fn new(
         plan: &'a SweepPlan,
         report: &'a Report<'a>,
-        columns: &'a [Column<Row>],
+        columns: &'a [Column<SweepRow>],
         drawn: bool,
     ) -> Self {
         // Rows that scroll by on the terminal are progress enough.
         let scrolling = report.format != Format::Json
             && report.place.path().is_none()
             && io::stdout().is_terminal();
-        Out {
+        SweepOut {
             plan,
             report,
             columns,
-            to: To::Nothing,
+            to: SweepSink::Nothing,
             torn: 0,
             keeps: drawn || report.format == Format::Json,
             rows: Vec::new(),
@@ -67,7 +67,7 @@ impl<'a> Out<'a> {
     }
 
     /// Reads the rows of an earlier run, and says of how many units they are.
-    pub fn keep(&mut self, path: &Path, columns: &[Column<Row>]) -> Result<usize> {
+    pub fn keep(&mut self, path: &Path, columns: &[Column<SweepRow>]) -> Result<usize> {
         let plan = self.plan;
         let mut unreadable = None;
         let standing = file::read(path, plan, columns, &mut |number, cells| {
@@ -94,22 +94,22 @@ impl<'a> Out<'a> {
     pub fn open(&mut self, resumed: bool) -> io::Result<()> {
         let report = self.report;
         self.to = match report.format {
-            Format::Json => To::Nothing,
+            Format::Json => SweepSink::Nothing,
             Format::Table => {
                 let names = views::names(self.columns, true);
                 let (names, quantities): (Vec<_>, Vec<_>) = names.into_iter().unzip();
                 let units = unit_names(&self.plan.system.units, quantities.into_iter());
                 let remarks = file::remarks(self.plan, self.plan.shard);
-                To::Table(report.begin(remarks, &names, &units)?)
+                SweepSink::Table(report.begin(remarks, &names, &units)?)
             }
-            Format::Csv if resumed && self.torn > 0 => To::Lines(report.stream(self.torn)?),
+            Format::Csv if resumed && self.torn > 0 => SweepSink::Lines(report.stream(self.torn)?),
             Format::Csv => {
                 let mut to = report.stream(0)?;
                 let status = report.file.as_ref().map(|_| Status::Unfinished);
                 let beginning = file::beginning(self.plan, self.plan.shard, self.columns, status);
                 to.write_all(&beginning)?;
                 to.flush()?;
-                To::Lines(to)
+                SweepSink::Lines(to)
             }
         };
         Ok(())
@@ -124,7 +124,7 @@ impl<'a> Out<'a> {
     }
 
     /// The next rows.
-    pub fn take(&mut self, rows: &[Row]) -> ControlFlow<()> {
+    pub fn take(&mut self, rows: &[SweepRow]) -> ControlFlow<()> {
         if let Err(error) = self.write(rows) {
             self.broken = Some(error);
             return ControlFlow::Break(());
@@ -135,7 +135,7 @@ impl<'a> Out<'a> {
         }
         if self.keeps {
             self.rows.extend_from_slice(rows);
-            if matches!(self.to, To::Nothing) {
+            if matches!(self.to, SweepSink::Nothing) {
                 interrupt::holds();
             }
         }
@@ -145,14 +145,14 @@ impl<'a> Out<'a> {
         ControlFlow::Continue(())
     }
 
-    fn write(&mut self, rows: &[Row]) -> io::Result<()> {
+    fn write(&mut self, rows: &[SweepRow]) -> io::Result<()> {
         match &mut self.to {
-            To::Nothing => Ok(()),
-            To::Lines(to) => {
+            SweepSink::Nothing => Ok(()),
+            SweepSink::Lines(to) => {
                 to.write_all(&file::lines(self.plan, self.columns, rows))?;
                 to.flush()
             }
-            To::Table(writer) => rows.iter().try_for_each(|row| {
+            SweepSink::Table(writer) => rows.iter().try_for_each(|row| {
                 let units = &self.plan.system.units;
                 writer.row(&views::cells(self.columns, row, units, true))
             }),

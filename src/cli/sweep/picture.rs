@@ -7,19 +7,19 @@ use crate::bifurcation::LocusRow;
 use crate::error::Result;
 use crate::output::plot;
 use crate::scene::SweepPlan;
-use crate::sweep::{Grid, Range, Row};
-use crate::views::{self, Outcome, Side};
+use crate::sweep::{Grid, Range, SweepRow};
+use crate::views::{self, GridSide, PointOutcome};
 use std::path::Path;
 
 /// Draws what there is: points that are missing stay white.
-pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[Row], path: &Path) -> Result<()> {
+pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Path) -> Result<()> {
     if rows.is_empty() {
         report.say("there is no point to draw");
         return Ok(());
     }
-    let outcomes: Vec<Outcome> = rows.iter().map(views::outcome).collect();
+    let outcomes: Vec<PointOutcome> = rows.iter().map(views::outcome).collect();
     let units = &plan.system.units;
-    let side = |range: &Range| Side {
+    let side = |range: &Range| GridSide {
         values: range.values().collect(),
         log: range.log,
     };

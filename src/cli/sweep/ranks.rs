@@ -6,7 +6,7 @@
 use super::wire;
 use crate::error::{Error, Result};
 use crate::scene::SweepPlan;
-use crate::sweep::{Row, Settings, Sweeper, Units};
+use crate::sweep::{SweepRow, SweepSettings, Sweeper, UnitShare};
 use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
@@ -87,10 +87,10 @@ impl Ranks {
     /// As [`crate::sweep::run`].
     pub fn run(
         &mut self,
-        settings: &Settings,
-        units: Units,
+        settings: &SweepSettings,
+        units: UnitShare,
         stop: &AtomicBool,
-        seen: &mut dyn FnMut(&[Row]) -> ControlFlow<()>,
+        seen: &mut dyn FnMut(&[SweepRow]) -> ControlFlow<()>,
     ) -> Result<()> {
         let others = self.world.size() as usize - 1;
         let all = settings.units().saturating_sub(units.first);
@@ -100,7 +100,7 @@ impl Ranks {
         let chunks = all.div_ceil(size);
         let (mut given, mut next) = (0, 0);
         let mut at_work = BTreeMap::new();
-        let mut waiting: BTreeMap<usize, Vec<Row>> = BTreeMap::new();
+        let mut waiting: BTreeMap<usize, Vec<SweepRow>> = BTreeMap::new();
         while next < chunks {
             while given < chunks.min(next + AHEAD * others) {
                 let Some(rank) = self.idle.pop() else { break };

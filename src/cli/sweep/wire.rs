@@ -2,11 +2,11 @@
 
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;
-use crate::sweep::Row;
+use crate::sweep::SweepRow;
 use crate::views::REGIMES;
 
 /// All rows, one after the other.
-pub fn pack(rows: &[Row]) -> Vec<u8> {
+pub fn pack(rows: &[SweepRow]) -> Vec<u8> {
     let mut to = Vec::new();
     for row in rows {
         count(&mut to, row.number);
@@ -56,7 +56,7 @@ fn maybe<const N: usize>(to: &mut Vec<u8>, list: Option<[f64; N]>) {
 }
 
 /// The rows again; `None` if these are not the bytes of any.
-pub fn unpack(bytes: &[u8]) -> Option<Vec<Row>> {
+pub fn unpack(bytes: &[u8]) -> Option<Vec<SweepRow>> {
     let mut from = From(bytes);
     let mut rows = Vec::new();
     while !from.0.is_empty() {
@@ -69,10 +69,10 @@ pub fn unpack(bytes: &[u8]) -> Option<Vec<Row>> {
 struct From<'a>(&'a [u8]);
 
 impl From<'_> {
-    fn row(&mut self) -> Option<Row> {
+    fn row(&mut self) -> Option<SweepRow> {
         let number = self.count()?;
         let [driving, stiffness, tau, ln_psi_1, ln_psi_2] = self.numbers()?;
-        Some(Row {
+        Some(SweepRow {
             number,
             driving,
             stiffness,

@@ -1,4 +1,4 @@
-//! The length of a step: the error's norm, the first step, and each one after.
+//! Step size control: the error's norm, the first step, and each one after.
 
 use crate::field::{Jacobian, State};
 use crate::integrate::Tolerances;

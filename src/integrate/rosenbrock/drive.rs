@@ -1,4 +1,4 @@
-//! Steps from one time to another, whatever is carried along: the state alone or with its tangent.
+//! Adaptive steps from one time to another, whatever is carried along: the state alone or with its tangent.
 
 use super::control::Controller;
 use crate::error::{Error, Result};
@@ -6,7 +6,7 @@ use crate::field::{State, VectorField};
 use crate::integrate::{Control, Work, step_underflow};
 
 /// Something that can be moved by a step, and stays where it is until the step is accepted.
-pub(super) trait Motion<const N: usize> {
+pub(super) trait Steppable<const N: usize> {
     /// Order of the error estimate in h, that is order of the lower of the two solutions, plus one.
     const ERROR_ORDER: u32;
 
@@ -24,10 +24,10 @@ pub(super) trait Motion<const N: usize> {
     fn advance(&mut self);
 }
 
-/// From `t.0` to `t.1` with the first step `h`, signed; `seen` is told of each step before the motion advances.
+/// From `t.0` to `t.1` with the first step `h`, signed; `seen` is told of each step before the carried advances.
 #[inline]
-pub(super) fn drive<M: Motion<N>, const N: usize>(
-    motion: &mut M,
+pub(super) fn drive<M: Steppable<N>, const N: usize>(
+    carried: &mut M,
     t: (f64, f64),
     mut h: f64,
     limit: usize,
@@ -47,22 +47,22 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
         let step = next - now;
         // Nothing, or rounded up again to what was just refused: no shorter step can be added to t.
         if step == 0.0 || refused == Some(step) || !step.is_finite() {
-            return Err(step_underflow(motion.field(), now, h, motion.state()));
+            return Err(step_underflow(carried.field(), now, h, carried.state()));
         }
-        let error = motion.attempt(step);
+        let error = carried.attempt(step);
         let accepted = error.is_some_and(|error| error <= 1.0);
-        let first = motion.work().steps == 0;
-        let seen_to_end = accepted && (next == end && !first || motion.look_ahead());
-        if seen_to_end && first && outgrown(step, motion.fastest()) {
+        let first = carried.work().steps == 0;
+        let seen_to_end = accepted && (next == end && !first || carried.look_ahead());
+        if seen_to_end && first && outgrown(step, carried.fastest()) {
             h = controller.refused(step, None);
             refused = Some(step);
-            motion.work().rejected += 1;
+            carried.work().rejected += 1;
         } else if seen_to_end {
             h = controller.accepted(step, error.unwrap_or(0.0));
             refused = None;
-            motion.work().steps += 1;
-            let control = seen(motion, now, next)?;
-            motion.advance();
+            carried.work().steps += 1;
+            let control = seen(carried, now, next)?;
+            carried.advance();
             now = next;
             if control == Control::Stop {
                 return Ok(());
@@ -70,7 +70,7 @@ pub(super) fn drive<M: Motion<N>, const N: usize>(
         } else {
             h = controller.refused(step, error.filter(|_| !accepted));
             refused = Some(step);
-            motion.work().rejected += 1;
+            carried.work().rejected += 1;
         }
     }
     Ok(())

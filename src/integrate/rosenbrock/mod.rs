@@ -29,7 +29,7 @@ use control::first_step;
 use drive::drive;
 use stages::{Linearisation, Scheme};
 use tangent::Bundle;
-use trajectory::Trajectory;
+use trajectory::StepState;
 
 /// The Rosenbrock methods.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -201,7 +201,7 @@ impl<const N: usize> Rosenbrock<N> {
     ) -> Result<State<N>> {
         let (here, h) = self.start(field, t, y0)?;
         let mut trajectory =
-            Trajectory::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here);
+            StepState::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here);
         drive(
             &mut trajectory,
             t,

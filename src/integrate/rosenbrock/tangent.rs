@@ -9,7 +9,7 @@
 //! the error test; scaled by columns or by the whole matrix the work at equal error was the same.
 
 use super::control::error_norm;
-use super::drive::Motion;
+use super::drive::Steppable;
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
 use crate::field::{Jacobian, State, VectorField};
@@ -19,12 +19,12 @@ use std::marker::PhantomData;
 
 /// f, J, and D2f(y)[e_b, .] for every b at one state.
 #[derive(Debug, Clone, Copy)]
-struct Expansion<const N: usize> {
+struct SecondDerivatives<const N: usize> {
     linear: Linearisation<N>,
     quadratic: [Jacobian<N>; N],
 }
 
-impl<const N: usize> Expansion<N> {
+impl<const N: usize> SecondDerivatives<N> {
     /// `None` if something is not finite. All of D2f is evaluated once: it serves all stages and columns.
     #[inline]
     fn new(field: &dyn VectorField<N>, y: &State<N>, linear: Linearisation<N>) -> Option<Self> {
@@ -38,7 +38,7 @@ impl<const N: usize> Expansion<N> {
                 quadratic[b].set_column(a, &d2);
             }
         }
-        finite.then_some(Expansion { linear, quadratic })
+        finite.then_some(SecondDerivatives { linear, quadratic })
     }
 
     /// D2f(y)[u, .]
@@ -59,11 +59,11 @@ fn unit<const N: usize>(i: usize) -> State<N> {
 }
 
 /// A step in the making.
-struct Stepping<'a, const N: usize> {
+struct TangentStepping<'a, const N: usize> {
     field: &'a dyn VectorField<N>,
     y: &'a State<N>,
     tangent: &'a Jacobian<N>,
-    here: &'a Expansion<N>,
+    here: &'a SecondDerivatives<N>,
     factors: Factors<N>,
     per_h: f64,
     u: &'a mut Stages<N, 1>,
@@ -72,7 +72,7 @@ struct Stepping<'a, const N: usize> {
     newest: State<N>,
 }
 
-impl<const N: usize> Staged for Stepping<'_, N> {
+impl<const N: usize> Staged for TangentStepping<'_, N> {
     #[inline(always)]
     fn stage<S: Scheme, const I: usize>(&mut self) {
         let tableau = const { &S::TABLEAU };
@@ -103,13 +103,13 @@ pub(super) struct Bundle<'a, S, const N: usize> {
     work: &'a mut Work,
     y: State<N>,
     tangent: Jacobian<N>,
-    here: Expansion<N>,
+    here: SecondDerivatives<N>,
     /// The end of the tried step, its stages, f at the last of them, and what was looked up ahead.
     next: (State<N>, Jacobian<N>),
     u: Stages<N, 1>,
     v: Stages<N, N>,
     last_f: State<N>,
-    ahead: Expansion<N>,
+    ahead: SecondDerivatives<N>,
     scheme: PhantomData<S>,
 }
 
@@ -122,7 +122,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
         y: State<N>,
         here: Linearisation<N>,
     ) -> Option<Self> {
-        let here = Expansion::new(field, &y, here)?;
+        let here = SecondDerivatives::new(field, &y, here)?;
         let tangent = Jacobian::identity();
         Some(Bundle {
             field,
@@ -145,7 +145,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
     }
 }
 
-impl<S: Scheme, const N: usize> Motion<N> for Bundle<'_, S, N> {
+impl<S: Scheme, const N: usize> Steppable<N> for Bundle<'_, S, N> {
     const ERROR_ORDER: u32 = error_order(&S::TABLEAU);
 
     fn field(&self) -> &dyn VectorField<N> {
@@ -168,7 +168,7 @@ impl<S: Scheme, const N: usize> Motion<N> for Bundle<'_, S, N> {
         let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.linear.jacobian)?;
         self.work.rhs += count - 1;
         self.work.jacobians += count - 1;
-        let mut stepping = Stepping {
+        let mut stepping = TangentStepping {
             field: self.field,
             y: &self.y,
             tangent: &self.tangent,
@@ -212,7 +212,7 @@ impl<S: Scheme, const N: usize> Motion<N> for Bundle<'_, S, N> {
         };
         self.work.jacobians += 1;
         let ahead = Linearisation::new(self.field, y, f)
-            .and_then(|linear| Expansion::new(self.field, y, linear));
+            .and_then(|linear| SecondDerivatives::new(self.field, y, linear));
         if let Some(ahead) = ahead {
             self.ahead = ahead;
         }

@@ -1,7 +1,7 @@
 //! One step of the state alone.
 
 use super::control::error_norm;
-use super::drive::Motion;
+use super::drive::Steppable;
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
 use crate::field::{State, VectorField};
@@ -37,7 +37,7 @@ impl<const N: usize> Staged for Stepping<'_, N> {
 }
 
 /// A state on its way.
-pub(super) struct Trajectory<'a, S, const N: usize> {
+pub(super) struct StepState<'a, S, const N: usize> {
     field: &'a dyn VectorField<N>,
     tolerances: Tolerances,
     work: &'a mut Work,
@@ -51,7 +51,7 @@ pub(super) struct Trajectory<'a, S, const N: usize> {
     scheme: PhantomData<S>,
 }
 
-impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
+impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
     pub fn new(
         field: &'a dyn VectorField<N>,
         tolerances: Tolerances,
@@ -59,7 +59,7 @@ impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
         y: State<N>,
         here: Linearisation<N>,
     ) -> Self {
-        Trajectory {
+        StepState {
             field,
             tolerances,
             work,
@@ -95,7 +95,7 @@ impl<'a, S: Scheme, const N: usize> Trajectory<'a, S, N> {
     }
 }
 
-impl<S: Scheme, const N: usize> Motion<N> for Trajectory<'_, S, N> {
+impl<S: Scheme, const N: usize> Steppable<N> for StepState<'_, S, N> {
     const ERROR_ORDER: u32 = error_order(&S::TABLEAU);
 
     fn field(&self) -> &dyn VectorField<N> {

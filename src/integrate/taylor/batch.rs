@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::field::State;
 use crate::friction::AnyLaw;
 use crate::integrate::Integrator;
-use crate::model::{Convoy, Loading, MAX_LANES, convoy, two_interfaces};
+use crate::model::{BatchSolution, Loading, MAX_LANES, batch_solution, two_interfaces};
 use crate::number::DoubleDouble;
 use crate::series::Expansion;
 use std::cell::LazyCell;
@@ -54,7 +54,7 @@ pub type BatchObserver<'a> = &'a mut dyn FnMut(usize, &Step<'_, 3>) -> Result<Co
 pub struct Batch {
     law: AnyLaw,
     taylor: Taylor,
-    convoy: Option<Box<dyn Convoy>>,
+    batch_solution: Option<Box<dyn BatchSolution>>,
     work: Work,
 }
 
@@ -84,14 +84,16 @@ impl Batch {
         Ok(Batch {
             law,
             taylor: Taylor::new(tolerances, max_steps)?,
-            convoy: convoy(law),
+            batch_solution: batch_solution(law),
             work: Work::default(),
         })
     }
 
     /// How many runs this one has on their way at the same time: 8 with AVX-512, 4 with AVX2, otherwise 1.
     pub fn lanes(&self) -> usize {
-        self.convoy.as_ref().map_or(1, |convoy| convoy.lanes())
+        self.batch_solution
+            .as_ref()
+            .map_or(1, |batch_solution| batch_solution.lanes())
     }
 
     /// The work of the last call, of all runs together.
@@ -109,7 +111,7 @@ impl Batch {
         mut observer: Option<BatchObserver<'_>>,
     ) -> Vec<Result<State<3>>> {
         self.work = Work::default();
-        let Some(mut convoy) = self.convoy.take() else {
+        let Some(mut batch_solution) = self.batch_solution.take() else {
             return self.one_by_one(runs, observer);
         };
         let mut ends: Vec<Result<State<3>>> = runs.iter().map(|run| Ok(run.start)).collect();
@@ -118,22 +120,22 @@ impl Batch {
         let mut limits = [1.0; MAX_LANES];
         let mut expansion = Expansion::new();
         let accuracy = self.taylor.accuracy;
-        for (lane, seat) in seats.iter_mut().enumerate().take(convoy.lanes()) {
-            *seat = self.seated(&mut *convoy, lane, runs, &mut next, &mut ends);
+        for (lane, seat) in seats.iter_mut().enumerate().take(batch_solution.lanes()) {
+            *seat = self.seated(&mut *batch_solution, lane, runs, &mut next, &mut ends);
         }
         while seats.iter().any(Option::is_some) {
             for (limit, seat) in limits.iter_mut().zip(&seats) {
                 *limit = seat.as_ref().map_or(1.0, |seat| seat.remaining.hi());
             }
-            let steps = convoy.advance(&accuracy, &limits);
+            let steps = batch_solution.advance(&accuracy, &limits);
             for (lane, seat) in seats.iter_mut().enumerate() {
                 let Some(here) = seat else { continue };
                 let (begin, before) = (here.clock.now, here.clock.now.hi());
-                let mut fate = self.ticked(here, &*convoy, lane, steps[lane], runs);
+                let mut fate = self.ticked(here, &*batch_solution, lane, steps[lane], runs);
                 if let (Some(observer), Fate::On | Fate::Done) = (&mut observer, &fate) {
-                    let end = State::from(convoy.state(lane));
+                    let end = State::from(batch_solution.state(lane));
                     let made = LazyCell::new(|| {
-                        convoy.expansion(lane, accuracy.order, &mut expansion);
+                        batch_solution.expansion(lane, accuracy.order, &mut expansion);
                         (expansion.begin, expansion.length) = (begin, steps[lane]);
                         &expansion
                     });
@@ -146,7 +148,7 @@ impl Batch {
                             t1: here.clock.now.hi(),
                             y1: &end,
                             dense: &dense,
-                            reach: convoy.reaches()[lane],
+                            reach: batch_solution.reaches()[lane],
                             expansion: Some(&made),
                         },
                     );
@@ -162,20 +164,20 @@ impl Batch {
                 }
                 ends[here.run] = match fate {
                     Fate::On => continue,
-                    Fate::Done => Ok(State::from(convoy.state(lane))),
+                    Fate::Done => Ok(State::from(batch_solution.state(lane))),
                     Fate::Failed(error) => Err(error),
                 };
-                *seat = self.seated(&mut *convoy, lane, runs, &mut next, &mut ends);
+                *seat = self.seated(&mut *batch_solution, lane, runs, &mut next, &mut ends);
             }
         }
-        self.convoy = Some(convoy);
+        self.batch_solution = Some(batch_solution);
         ends
     }
 
     /// The next run that has any steps to do, begun in this lane; those before it are at their ends.
     fn seated(
         &self,
-        convoy: &mut dyn Convoy,
+        batch_solution: &mut dyn BatchSolution,
         lane: usize,
         runs: &[BatchRun],
         next: &mut usize,
@@ -195,7 +197,7 @@ impl Batch {
                 let Some(remaining) = clock.remaining() else {
                     continue;
                 };
-                convoy.start(lane, &loading, &start.data.0[0]);
+                batch_solution.start(lane, &loading, &start.data.0[0]);
                 return Some(Seat {
                     run,
                     clock,
@@ -205,7 +207,7 @@ impl Batch {
                 });
             }
         }
-        convoy.idle(lane);
+        batch_solution.idle(lane);
         None
     }
 
@@ -213,7 +215,7 @@ impl Batch {
     fn ticked(
         &mut self,
         seat: &mut Seat,
-        convoy: &dyn Convoy,
+        batch_solution: &dyn BatchSolution,
         lane: usize,
         h: f64,
         runs: &[BatchRun],
@@ -222,7 +224,7 @@ impl Batch {
         if !seat.clock.tick(h.into(), seat.remaining) {
             let h = if h.is_finite() { h } else { 0.0 };
             let h = h.copysign(seat.remaining.hi());
-            let here = State::from(convoy.state(lane));
+            let here = State::from(batch_solution.state(lane));
             let field = two_interfaces(self.law, runs[seat.run].loading);
             return Fate::Failed(step_underflow(&*field, before, h, &here));
         }

@@ -15,9 +15,7 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflo
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::number::DoubleDouble;
-use crate::series::{
-    Accuracy, Cubic, Derivatives, Expansion, REFERENCE_ORDER, Solution, Transport,
-};
+use crate::series::{Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, TaylorMap};
 use std::cell::LazyCell;
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
@@ -129,7 +127,7 @@ impl Taylor {
             Arithmetic::Double => analytic.tangent(parameters),
             Arithmetic::DoubleDouble => analytic.reference_tangent(),
         };
-        let (end, _) = self.walk(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
+        let (end, _) = self.palc(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
         Ok((end, tangent.derivatives()))
     }
 
@@ -141,8 +139,8 @@ impl Taylor {
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
-        y0: [Cubic; N],
-    ) -> Result<[Cubic; N]> {
+        y0: [Jet3; N],
+    ) -> Result<[Jet3; N]> {
         let (transport, _) = self.transported(field, t, y0)?;
         // Without a step there is nothing that was started.
         Ok(if self.work.steps == 0 {
@@ -161,9 +159,9 @@ impl Taylor {
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
-        y0: [Cubic; N],
+        y0: [Jet3; N],
         (normal, point): (&State<N>, &State<N>),
-    ) -> Result<(Cubic, [Cubic; N])> {
+    ) -> Result<(Jet3, [Jet3; N])> {
         let (transport, last) = self.transported(field, t, y0)?;
         let plane = (&normal.data.0[0], &point.data.0[0]);
         let Some((mut time, state)) = transport.onto_plane(plane, last) else {
@@ -185,18 +183,18 @@ impl Taylor {
         &mut self,
         field: &'f dyn VectorField<N>,
         t: (f64, f64),
-        y0: [Cubic; N],
-    ) -> Result<(Box<dyn Transport<N> + 'f>, f64)> {
+        y0: [Jet3; N],
+    ) -> Result<(Box<dyn TaylorMap<N> + 'f>, f64)> {
         self.work = Work::default();
         let transport = analytic(field)?.transport(y0);
         let mut transport = transport.ok_or(Error::NotAnalytic)?;
-        let start = State::from(y0.map(Cubic::value));
+        let start = State::from(y0.map(Jet3::value));
         let mut last = 0.0;
         let mut halt = |h: f64, _: &dyn Fn() -> State<N>| {
             last = h;
             false
         };
-        self.walk(field, t, &start, &mut *transport, None, &mut halt)?;
+        self.palc(field, t, &start, &mut *transport, None, &mut halt)?;
         Ok((transport, last))
     }
 
@@ -211,7 +209,7 @@ impl Taylor {
     ) -> Result<(State<N>, f64)> {
         self.work = Work::default();
         let mut solution = analytic(field)?.solution();
-        self.walk(field, t, y0, &mut *solution, observer, halt)
+        self.palc(field, t, y0, &mut *solution, observer, halt)
     }
 
     /// The order of a step.
@@ -224,7 +222,7 @@ impl Taylor {
         self.max_steps = max_steps;
     }
 
-    fn walk<const N: usize>(
+    fn palc<const N: usize>(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
@@ -319,7 +317,7 @@ impl<const N: usize> Integrator<N> for Taylor {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        let end = self.walk(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
+        let end = self.palc(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
         Ok(end.0)
     }
 

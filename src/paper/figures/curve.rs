@@ -1,7 +1,7 @@
 //! What figures of closed formulas share: grids, and curves that are solid where stable and dashed where not.
 
 use crate::output::Cell;
-use crate::output::plot::{Series, Stroke};
+use crate::output::plot::{PlotSeries, Stroke};
 
 /// n numbers from `lo` to `hi` at equal distances, both included.
 pub fn even(lo: f64, hi: f64, n: usize) -> Vec<f64> {
@@ -24,13 +24,13 @@ pub fn cells<const N: usize>(rows: impl IntoIterator<Item = [f64; N]>) -> Vec<Ve
 
 /// A curve with the stability of its points.
 #[derive(Debug, Clone, Default)]
-pub struct Curve {
+pub struct StabilityCurve {
     pub x: Vec<f64>,
     pub y: Vec<f64>,
     pub stable: Vec<bool>,
 }
 
-impl Curve {
+impl StabilityCurve {
     pub fn push(&mut self, x: f64, y: f64, stable: bool) {
         self.x.push(x);
         self.y.push(y);
@@ -38,7 +38,7 @@ impl Curve {
     }
 
     /// The stable parts solid, the others dashed. A stretch is what its end is; parts that there are not are left out.
-    pub fn series(&self, label: [&str; 2], colour: usize) -> Vec<Series> {
+    pub fn series(&self, label: [&str; 2], colour: usize) -> Vec<PlotSeries> {
         let part = |stable: bool| {
             let belongs = |i: usize| {
                 let begins = |j: usize| self.stable.get(j) == Some(&stable);
@@ -52,7 +52,7 @@ impl Curve {
                 Stroke::Dashed
             };
             let name = label[usize::from(!stable)];
-            Series::new(name, self.x.clone(), y)
+            PlotSeries::new(name, self.x.clone(), y)
                 .stroke(stroke)
                 .colour(colour)
         };

@@ -5,7 +5,7 @@ use super::curve::{cells, geometric};
 use crate::error::Result;
 use crate::friction::{Law, Parameters, critical_stiffness, steady_stress};
 use crate::model::scales::{Material, Scales};
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, PlotSeries, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -40,7 +40,7 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     for (i, rows) in rows.iter().enumerate() {
         let column = |j: usize| rows.iter().map(|row| row[j]).collect::<Vec<f64>>();
         let line = |y: Vec<f64>| {
-            Series::new(names[i], column(0), y)
+            PlotSeries::new(names[i], column(0), y)
                 .stroke(strokes[i])
                 .colour(1 - i)
         };

@@ -1,12 +1,12 @@
 //! Figure 2: whether the asymmetric steady states around an extremum of tau_ss branch off super- or subcritically, by the shape
 //! of the law there: the sign of its third derivative.
 
-use super::curve::{Curve, cells, even};
+use super::curve::{StabilityCurve, cells, even};
 use crate::equilibrium::Pitchfork;
 use crate::error::{Error, Result};
 use crate::friction::{ExtremumKind, Parameters, Spinodal, steady_slope, steady_stress};
 use crate::output::Cell;
-use crate::output::plot::{Axis, Block, Drawing, Mark, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Mark, Panel, PlotSeries, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -88,7 +88,7 @@ struct Case {
 }
 
 /// [V_H, V_1, V_2] with V_1 > V_2, of an asymmetric state and of the parabola (24) at its z.
-struct Point {
+struct AsymmetricPoint {
     state: [f64; 3],
     near: [f64; 3],
     stable: bool,
@@ -167,7 +167,7 @@ impl Case {
 
     fn stress(&self, sheet: &mut Sheet) -> Panel {
         let v_e = self.fork.slip_rate;
-        let mut curve = Curve::default();
+        let mut curve = StabilityCurve::default();
         // of the law as it is, and so that both ends are drawn as they are given
         let ends = [self.given.range.0 * v_e, self.given.range.1 * v_e].map(|v| self.drawn(v));
         let mut rates = even(ends[0], ends[1], POINTS);
@@ -200,7 +200,7 @@ impl Case {
     }
 
     /// Along z.
-    fn asymmetric(&self) -> Result<Vec<Point>> {
+    fn asymmetric(&self) -> Result<Vec<AsymmetricPoint>> {
         let state = |lambda: f64, z: f64| {
             let [one, two] = [lambda + z, lambda - z].map(|v| self.drawn(v));
             [2.0 * self.drawn(lambda), one.max(two), one.min(two)]
@@ -210,7 +210,7 @@ impl Case {
             let lambda = self.fork.branch(&self.law, z)?;
             // (22)
             let slopes = [lambda + z, lambda - z].map(|v| steady_slope(&self.law, v));
-            Ok(Point {
+            Ok(AsymmetricPoint {
                 state: state(lambda, z),
                 near: state(self.fork.parabola(z), z),
                 stable: slopes[0] + slopes[1] > 0.0,
@@ -236,12 +236,12 @@ impl Case {
             Axis::linear("driving velocity V_H [V*]"),
             Axis::linear("slip rates V₁, V₂ [V*]"),
         );
-        let [mut upper, mut lower] = [Curve::default(), Curve::default()];
+        let [mut upper, mut lower] = [StabilityCurve::default(), StabilityCurve::default()];
         for (rate, curve) in [(1, &mut upper), (2, &mut lower)] {
             // (24) below the branch that it approximates
             let near = |i: usize| points.iter().map(|point| point.near[i]).collect();
             let name = if rate == 1 { "parabola (24)" } else { "" };
-            let line = Series::new(name, near(0), near(rate));
+            let line = PlotSeries::new(name, near(0), near(rate));
             panel.series.push(line.stroke(Stroke::Dotted).colour(7));
             curve.push(2.0 * v_e, v_e, points[0].stable);
             for point in &points {
@@ -260,9 +260,9 @@ impl Case {
     }
 
     /// V_1 = V_2 = V_H/2 as far on both sides of the pitchfork.
-    fn symmetric(&self, reach: f64, sheet: &mut Sheet) -> Curve {
+    fn symmetric(&self, reach: f64, sheet: &mut Sheet) -> StabilityCurve {
         let v_e = self.fork.slip_rate;
-        let mut curve = Curve::default();
+        let mut curve = StabilityCurve::default();
         let [before, after] = [2.0 * v_e - reach, 2.0 * v_e + reach];
         // The stretch up to the pitchfork is what the state was before.
         for (driving, at) in [(before, before), (2.0 * v_e, before), (after, after)] {

@@ -3,7 +3,7 @@
 use super::runs::{column, combined, in_time, method, title as title_of};
 use crate::error::Result;
 use crate::friction::steady_stress;
-use crate::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, Series, Symbol};
+use crate::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, PlotSeries, Symbol};
 use crate::paper::pieces::{Pieces, Run};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -70,7 +70,7 @@ fn differences(run: &Run) -> Panel {
         label: label.into(),
     };
     Panel {
-        series: vec![Series::new("", apart, stress).colour(0)],
+        series: vec![PlotSeries::new("", apart, stress).colour(0)],
         marks,
         keys: vec![
             key(Symbol::Dot, true, Some(1), "start"),

@@ -7,7 +7,7 @@ use crate::friction::{
     critical_stiffness_maximum, steady_stress,
 };
 use crate::model::scales::Material;
-use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, Series, Side, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Note, Panel, PlotSeries, Side, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -41,7 +41,7 @@ fn make(_: &Pieces<'_>) -> Result<Made> {
     let mu = ends.map(|v| scales.friction * steady_stress(&ruina, v));
     let k_c = ends.map(|v| critical_stiffness(&ruina, v));
     let line = |y: [f64; 2]| {
-        Series::new("Dieterich-Ruina (4)", ends.to_vec(), y.to_vec())
+        PlotSeries::new("Dieterich-Ruina (4)", ends.to_vec(), y.to_vec())
             .stroke(Stroke::DashDot)
             .colour(1)
     };
@@ -79,7 +79,7 @@ fn friction_panel(law: &Spinodal, a: f64, sheet: &mut Sheet) -> Panel {
     );
     panel
         .series
-        .push(Series::new("spinodal law (36)", rates, mu).colour(0));
+        .push(PlotSeries::new("spinodal law (36)", rates, mu).colour(0));
     for extremum in Extremum::all(law) {
         let (v, tau) = (extremum.slip_rate.value, extremum.stress.value);
         let (part, label) = match extremum.kind {
@@ -112,7 +112,7 @@ fn stability_panel(law: &Spinodal, sheet: &mut Sheet) -> Result<Panel> {
     );
     panel
         .series
-        .push(Series::new("k_c(V)", rates, k_c).colour(0));
+        .push(PlotSeries::new("k_c(V)", rates, k_c).colour(0));
     for (v, name) in extrema.into_iter().zip(["V_M", "V_m"]) {
         panel.marks.push(Mark::new(v, 0.0, name));
     }

@@ -4,7 +4,7 @@ use super::plane::{keys, labels, marks};
 use crate::bifurcation::BranchRow;
 use crate::error::Result;
 use crate::friction::steady_stress;
-use crate::output::plot::{Axis, Block, Drawing, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Block, Drawing, Panel, PlotSeries, Stroke};
 use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -105,7 +105,7 @@ fn stress(branches: &Branches, title: &str) -> Panel {
             .collect()
     };
     let thin = |label: &str, part, stroke| {
-        Series::new(label, driving.clone(), of(part))
+        PlotSeries::new(label, driving.clone(), of(part))
             .stroke(stroke)
             .colour(6)
     };

@@ -2,7 +2,7 @@
 
 use super::plane::{in_plane, method, resonances};
 use crate::error::Result;
-use crate::output::plot::{Axis, Drawing, Note, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Note, Panel, PlotSeries, Stroke};
 use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -83,7 +83,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
         let short = name.split(':').next().unwrap_or(name);
         sheet.add_curves(short, &curves);
         let line = in_plane(&curves, name, (colour, stroke));
-        panel.series.push(Series { wide, ..line });
+        panel.series.push(PlotSeries { wide, ..line });
     }
     let torus = pieces.curves("fig12")?;
     let mut double = resonances(&torus);

@@ -2,7 +2,7 @@
 
 use super::plane::{in_plane, method, resonances};
 use crate::error::Result;
-use crate::output::plot::{Axis, Drawing, Note, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Note, Panel, PlotSeries, Stroke};
 use crate::paper::pieces::Pieces;
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -36,7 +36,7 @@ fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let panel = |title: &str, [x, y]: [(f64, f64); 2]| Panel {
         series: vec![
             in_plane(&torus, "TR", (2, Stroke::Solid)).wide(),
-            Series {
+            PlotSeries {
                 wide: true,
                 ..in_plane(&doubling, "PD", (3, Stroke::Dotted))
             },

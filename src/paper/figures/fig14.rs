@@ -3,7 +3,7 @@
 use super::plane::{lines, mark, method, symbol};
 use crate::bifurcation::{Label, LocusRow};
 use crate::error::Result;
-use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 use crate::paper::pieces::{Curves, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
@@ -49,7 +49,7 @@ fn panel(torus: &Curves, title: &str, x: Axis, of: fn(&LocusRow) -> f64) -> Pane
     let most = xs.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut series = vec![lines(torus, "", (2, Stroke::Solid), of, angle).wide()];
     for height in LINES {
-        let line = Series::new("", vec![least, most], vec![height; 2]);
+        let line = PlotSeries::new("", vec![least, most], vec![height; 2]);
         series.push(line.stroke(Stroke::Dotted).colour(6));
     }
     let strong = |row: &&LocusRow| matches!(row.label, Some(Label::R2 | Label::R3 | Label::R4));

@@ -1,12 +1,12 @@
 //! Figure 15: the bifurcation curves of the approximating system (39)-(40) in the (mu_1, mu_2) plane, and its steady states and
 //! cycles along two paths across them. Everything is of the full system at finite mu.
 
-use super::curve::{Curve, cells, even, geometric};
+use super::curve::{StabilityCurve, cells, even, geometric};
 use crate::bifurcation::strong_resonance::{Around, Homoclinic, ResonanceCycle};
 use crate::error::Result;
 use crate::model::normal_form::StrongResonance;
 use crate::output::Cell;
-use crate::output::plot::{Axis, Block, Drawing, Mark, Note, Panel, Series, Stroke, Symbol};
+use crate::output::plot::{Axis, Block, Drawing, Mark, Note, Panel, PlotSeries, Stroke, Symbol};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -104,11 +104,11 @@ fn plane(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
     );
     for ((name, colour, stroke), points) in NAMES.into_iter().zip(curves) {
         let column = |i: usize| points.iter().map(|point| point[i]).collect();
-        let line = Series::new(name, column(0), column(1));
+        let line = PlotSeries::new(name, column(0), column(1));
         panel.series.push(line.stroke(stroke).colour(colour));
     }
     for (mu2, (from, to)) in [(L_1, ALONG_1), (L_2, ALONG_2)] {
-        let path = Series::new("", vec![from, to], vec![mu2; 2]);
+        let path = PlotSeries::new("", vec![from, to], vec![mu2; 2]);
         panel.series.push(path.stroke(Stroke::Dotted).colour(7));
     }
     panel.marks.push(Mark::new(0.0, 0.0, "1:2"));
@@ -144,16 +144,16 @@ fn enlarged(curves: &[Vec<[f64; 2]>; 5]) -> Panel {
         }
         panel
             .series
-            .push(Series::new(name, x, y).stroke(stroke).colour(colour));
+            .push(PlotSeries::new(name, x, y).stroke(stroke).colour(colour));
     }
     for limit in [
         StrongResonance::homoclinic(-1.0),
         StrongResonance::fold_of_cycles(-1.0),
     ] {
-        let line = Series::new("", vec![limit; 2], vec![0.0, -REACH]);
+        let line = PlotSeries::new("", vec![limit; 2], vec![0.0, -REACH]);
         panel.series.push(line.stroke(Stroke::Dotted).colour(6));
     }
-    let path = Series::new("", vec![range.0, range.1], vec![L_2; 2]);
+    let path = PlotSeries::new("", vec![range.0, range.1], vec![L_2; 2]);
     panel.series.push(path.stroke(Stroke::Dotted).colour(7));
     panel.notes = vec![
         Note::new(-1.03, -0.2, "3"),
@@ -174,8 +174,8 @@ fn cycles(
     amplitudes: &[f64],
     part: &str,
     sheet: &mut Sheet,
-) -> Result<Curve> {
-    let (mut curve, mut rows) = (Curve::default(), Vec::new());
+) -> Result<StabilityCurve> {
+    let (mut curve, mut rows) = (StabilityCurve::default(), Vec::new());
     for &amplitude in amplitudes {
         let cycle = ResonanceCycle::of(around, mu2, amplitude)?;
         let stable = cycle.log_multiplier < 0.0;
@@ -209,8 +209,8 @@ fn steady(
     change: Option<f64>,
     part: &str,
     sheet: &mut Sheet,
-) -> Curve {
-    let mut curve = Curve::default();
+) -> StabilityCurve {
+    let mut curve = StabilityCurve::default();
     curve.push(from, v, false);
     if let Some(mu1) = change {
         curve.push(mu1, v, false);

@@ -6,7 +6,7 @@ use crate::bifurcation::equilibria::{CharacteristicCubic, Tangency};
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, stability, steady_states};
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
-use crate::output::plot::{Axis, Drawing, Mark, Panel, Series, Stroke};
+use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 use crate::paper::{Made, Make, Pieces, Product, Sheet};
 
 /// The figure.
@@ -133,7 +133,7 @@ impl Setting {
         let critical = ("Q₃, K = k_c*", Stroke::DashDot, 2);
         let roots = self.cubic.real_roots(self.critical.0);
         self.curve(self.critical.0, &roots, critical, &mut panel, sheet);
-        let line = Series::new("L", ends.to_vec(), line.to_vec());
+        let line = PlotSeries::new("L", ends.to_vec(), line.to_vec());
         panel.series.push(line.colour(7));
         panel
     }
@@ -156,7 +156,7 @@ impl Setting {
         sheet.add("real-roots", &["stiffness", "s"], rows);
         let x = grid.iter().map(|s| s * THOUSANDTHS).collect();
         let y = grid.iter().map(|&s| cubic.q_3(k, s) * MILLIONTHS).collect();
-        let line = Series::new(label, x, y).stroke(stroke).colour(colour);
+        let line = PlotSeries::new(label, x, y).stroke(stroke).colour(colour);
         panel.series.push(line.wide());
         panel.marks.extend(roots.iter().map(|&s| {
             let (x, y) = (s * THOUSANDTHS, cubic.line(s) * MILLIONTHS);
@@ -216,7 +216,7 @@ impl Setting {
         let column = |i: usize| -> Vec<f64> { roots.iter().map(|row| row[i]).collect() };
         let line = |label: &str, i: usize, colour: usize| {
             let y = column(i).iter().map(|s| s * THOUSANDTHS).collect();
-            Series::new(label, column(0), y).colour(colour)
+            PlotSeries::new(label, column(0), y).colour(colour)
         };
         panel.series = vec![
             line("the pair, real part", 1, 0),

@@ -1,7 +1,7 @@
 //! Bifurcation diagrams and curves in the (V_H, K) plane: symbols, strokes and keys, the same in all figures.
 
 use crate::bifurcation::{BranchRow, Label, LocusRow, Special};
-use crate::output::plot::{Key, Mark, Series, Stroke, Symbol};
+use crate::output::plot::{Key, Mark, PlotSeries, Stroke, Symbol};
 use crate::paper::pieces::{Branches, Curves};
 
 /// How a kind of special point is drawn: shape, whether it is filled, its words.
@@ -84,7 +84,7 @@ pub fn lines(
     (colour, stroke): (usize, Stroke),
     x: impl Fn(&LocusRow) -> f64,
     y: impl Fn(&LocusRow) -> f64,
-) -> Series {
+) -> PlotSeries {
     let (mut xs, mut ys) = (Vec::new(), Vec::new());
     for piece in curves.rows.chunk_by(|a, b| a.curve == b.curve) {
         xs.push(f64::NAN);
@@ -92,11 +92,11 @@ pub fn lines(
         xs.extend(piece.iter().map(&x));
         ys.extend(piece.iter().map(&y));
     }
-    Series::new(label, xs, ys).stroke(stroke).colour(colour)
+    PlotSeries::new(label, xs, ys).stroke(stroke).colour(colour)
 }
 
 /// In the (V_H, K) plane.
-pub fn in_plane(curves: &Curves, label: &str, look: (usize, Stroke)) -> Series {
+pub fn in_plane(curves: &Curves, label: &str, look: (usize, Stroke)) -> PlotSeries {
     let (x, y) = (
         |row: &LocusRow| row.driving.value,
         |row: &LocusRow| row.stiffness.value,

@@ -2,8 +2,8 @@
 
 use crate::error::Result;
 use crate::friction::steady_stress;
-use crate::output::Rows;
-use crate::output::plot::{Axis, Block, Drawing, Note, Panel, Series, Stroke};
+use crate::output::RowList;
+use crate::output::plot::{Axis, Block, Drawing, Note, Panel, PlotSeries, Stroke};
 use crate::paper::pieces::{Map, Pieces, Run};
 use crate::paper::product::Made;
 use crate::paper::sheet::Sheet;
@@ -29,8 +29,8 @@ pub fn method(run: &Run) -> String {
 }
 
 /// The rows of the end of a run.
-pub fn last(run: &Run, shown: f64) -> Rows {
-    let mut some = Rows::new(run.rows.columns.clone());
+pub fn last(run: &Run, shown: f64) -> RowList {
+    let mut some = RowList::new(run.rows.columns.clone());
     let from = run.plan.until - shown;
     // Time is the first column.
     for row in run.rows.iter().filter(|row| row[0] >= from) {
@@ -40,18 +40,18 @@ pub fn last(run: &Run, shown: f64) -> Rows {
 }
 
 /// A column by name.
-pub fn column(rows: &Rows, name: &str) -> Vec<f64> {
+pub fn column(rows: &RowList, name: &str) -> Vec<f64> {
     rows.column(name).unwrap_or_default()
 }
 
 /// What follows from two columns, row by row.
-pub fn combined(rows: &Rows, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+pub fn combined(rows: &RowList, names: [&str; 2], of: impl Fn(f64, f64) -> f64) -> Vec<f64> {
     let (a, b) = (column(rows, names[0]), column(rows, names[1]));
     a.iter().zip(&b).map(|(&a, &b)| of(a, b)).collect()
 }
 
 /// Stress, states and slip rates in time.
-pub fn in_time(run: &Run, rows: &Rows) -> Vec<Panel> {
+pub fn in_time(run: &Run, rows: &RowList) -> Vec<Panel> {
     let mut panels = views::panels_in_time(&run.plan, rows);
     // The parameters stand above all panels.
     panels[0].title = "stress".into();
@@ -67,7 +67,7 @@ pub fn title(words: &str, run: &Run) -> String {
 }
 
 /// The phase plane with the steady-state law as a dotted line.
-fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
+fn plane_with_law(run: &Run, rows: &RowList) -> Panel {
     let mut panel = views::phase_plane(&run.plan, rows);
     let law = run.plan.system.law;
     let rates = [column(rows, "slip_rate_1"), column(rows, "slip_rate_2")].concat();
@@ -79,7 +79,7 @@ fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
         let at = |i: usize| lo * (hi / lo).powf(i as f64 / LAW_POINTS as f64);
         let x: Vec<f64> = (0..=LAW_POINTS).map(at).collect();
         let y = x.iter().map(|&v| steady_stress(&law, v)).collect();
-        let dotted = Series::new("steady-state law", x, y);
+        let dotted = PlotSeries::new("steady-state law", x, y);
         panel
             .series
             .push(dotted.stroke(Stroke::Dotted).colour(GREY));
@@ -88,10 +88,10 @@ fn plane_with_law(run: &Run, rows: &Rows) -> Panel {
 }
 
 /// How far the interfaces differ: ln psi_1 - ln psi_2, against stress.
-fn asymmetry(rows: &Rows) -> Panel {
+fn asymmetry(rows: &RowList) -> Panel {
     let apart = combined(rows, ["state_1", "state_2"], |a, b| (a / b).ln());
     Panel {
-        series: vec![Series::new("", apart, column(rows, "stress"))],
+        series: vec![PlotSeries::new("", apart, column(rows, "stress"))],
         ..Panel::new(
             "asymmetric subspace",
             Axis::linear("ln ψ₁ − ln ψ₂"),
@@ -129,7 +129,7 @@ pub fn of_runs(pieces: &Pieces<'_>, scenes: &[(&str, &str)], shown: f64) -> Resu
 }
 
 /// A run with its return map: in time, in the phase plane and the asymmetric subspace, and at the section.
-fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> [Block; 2] {
+fn with_returns(title: &str, run: &Run, rows: &RowList, map: &Map) -> [Block; 2] {
     let block = |title: &str, columns| Block {
         title: title.into(),
         columns,
@@ -146,7 +146,7 @@ fn with_returns(title: &str, run: &Run, rows: &Rows, map: &Map) -> [Block; 2] {
 }
 
 /// A run with its path in the phase plane and in the phase space.
-pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Vec<Block> {
+pub fn with_phase_space(title: &str, run: &Run, rows: &RowList) -> Vec<Block> {
     let [front, side, above] = phase_space(rows);
     let block = |title: &str, columns| Block {
         title: title.into(),
@@ -164,7 +164,7 @@ pub fn with_phase_space(title: &str, run: &Run, rows: &Rows) -> Vec<Block> {
 }
 
 /// The phase space in oblique projection, in a box whose sides are the ranges of what it shows.
-fn in_space(rows: &Rows) -> Panel {
+fn in_space(rows: &RowList) -> Panel {
     /// Where what is behind is drawn, as parts of the sides of the box.
     const BACK: (f64, f64) = (0.45, 0.35);
     let part = |values: Vec<f64>| -> Vec<f64> {
@@ -200,7 +200,7 @@ fn in_space(rows: &Rows) -> Panel {
         box_x.extend([from.0, to.0, f64::NAN]);
         box_y.extend([from.1, to.1, f64::NAN]);
     }
-    let frame = Series::new("", box_x, box_y);
+    let frame = PlotSeries::new("", box_x, box_y);
     let name = |place, text: &str| {
         let (x, y) = at(place);
         Note::new(x, y, text)
@@ -208,7 +208,7 @@ fn in_space(rows: &Rows) -> Panel {
     Panel {
         series: vec![
             frame.stroke(Stroke::Dotted).colour(GREY),
-            Series::new("", x, y).colour(0),
+            PlotSeries::new("", x, y).colour(0),
         ],
         notes: vec![
             name([0.5, -0.2, 0.0], "w₁ + w₂"),
@@ -224,11 +224,11 @@ fn in_space(rows: &Rows) -> Panel {
 }
 
 /// The phase space (tau, w_1 + w_2, w_1 - w_2), w = log10 psi, seen from three sides.
-fn phase_space(rows: &Rows) -> [Panel; 3] {
+fn phase_space(rows: &RowList) -> [Panel; 3] {
     let sum = || combined(rows, ["state_1", "state_2"], |a, b| (a * b).log10());
     let apart = || combined(rows, ["state_1", "state_2"], |a, b| (a / b).log10());
     let panel = |title: &str, names: [&str; 2], x: Vec<f64>, y: Vec<f64>| Panel {
-        series: vec![Series::new("", x, y)],
+        series: vec![PlotSeries::new("", x, y)],
         ..Panel::new(title, Axis::linear(names[0]), Axis::linear(names[1]))
     };
     let (tau, stress) = ("stress τ [aσ]", || column(rows, "stress"));

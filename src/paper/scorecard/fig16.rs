@@ -8,7 +8,7 @@ use crate::error::Result;
 use crate::field::State;
 use crate::integrate::{Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::polynomial::Crossing;
-use crate::orbit::Begin;
+use crate::orbit::InitialGuess;
 use crate::paper::Pieces;
 use crate::section::{Return, Surface, Watching, record};
 
@@ -115,7 +115,7 @@ fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) ->
     let orbit = torus.orbit.as_ref();
     let orbit = orbit.ok_or_else(|| missing("a torus bifurcation without its orbit"))?;
     let node = &orbit.nodes().0[0];
-    let begin = Begin::At {
+    let begin = InitialGuess::At {
         start: (node[0], [node[1], node[2]]),
         period: torus.period.map(|period| period.value),
     };

@@ -16,12 +16,12 @@ use std::ops::ControlFlow;
 const SOFTEST: f64 = 1e-6;
 
 /// A curve of Hopf points with what is special on it.
-struct Curve {
+struct HopfCurve {
     rows: Vec<LocusRow>,
     special: Vec<Special>,
 }
 
-impl Curve {
+impl HopfCurve {
     fn of(pieces: &Pieces<'_>, symmetry: Symmetry) -> Result<Self> {
         let request = LocusRequest {
             symmetry: Some(symmetry),
@@ -42,7 +42,7 @@ impl Curve {
             }
             ControlFlow::Continue(())
         })?;
-        Ok(Curve { rows, special })
+        Ok(HopfCurve { rows, special })
     }
 
     /// V_H of both ends, at the least K, the smaller one first.
@@ -65,8 +65,8 @@ fn count(pieces: &Pieces<'_>, stiffness: f64, symmetry: Symmetry) -> Result<usiz
 
 /// All of it.
 pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
-    let symmetric = Curve::of(pieces, Symmetry::Symmetric)?;
-    let asymmetric = Curve::of(pieces, Symmetry::Asymmetric)?;
+    let symmetric = HopfCurve::of(pieces, Symmetry::Symmetric)?;
+    let asymmetric = HopfCurve::of(pieces, Symmetry::Asymmetric)?;
     let [v_peak, v_trough] = extrema(&pieces.law())?;
     Ok(vec![
         no_hopf_points(pieces, &symmetric, &asymmetric)?,
@@ -77,12 +77,16 @@ pub fn entries(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     ])
 }
 
-fn no_hopf_points(pieces: &Pieces<'_>, symmetric: &Curve, asymmetric: &Curve) -> Result<Entry> {
+fn no_hopf_points(
+    pieces: &Pieces<'_>,
+    symmetric: &HopfCurve,
+    asymmetric: &HopfCurve,
+) -> Result<Entry> {
     let mut there = count(pieces, 0.45, Symmetry::Asymmetric)?;
     for stiffness in [0.45, 0.3, 0.2] {
         there += count(pieces, stiffness, Symmetry::Symmetric)?;
     }
-    let beyond = |curve: &Curve, k: f64| curve.rows.iter().any(|row| row.stiffness.value > k);
+    let beyond = |curve: &HopfCurve, k: f64| curve.rows.iter().any(|row| row.stiffness.value > k);
     let above = beyond(symmetric, 0.2) || beyond(asymmetric, 0.45);
     Ok(Entry::claim(
         ("no-hopf", "Figs 5, 6"),
@@ -124,7 +128,7 @@ fn right_end(end: f64, v_trough: f64) -> Entry {
     ))
 }
 
-fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
+fn always_supercritical(pieces: &Pieces<'_>, curve: &HopfCurve) -> Result<Entry> {
     let to = |way: Criticality| {
         curve
             .rows
@@ -162,7 +166,7 @@ fn always_supercritical(pieces: &Pieces<'_>, curve: &Curve) -> Result<Entry> {
     )))
 }
 
-fn top(pieces: &Pieces<'_>, symmetric: &Curve) -> Result<Entry> {
+fn top(pieces: &Pieces<'_>, symmetric: &HopfCurve) -> Result<Entry> {
     let top = symmetric.special.iter().find(|s| s.label == Label::Top);
     let top = top.ok_or_else(|| missing("the symmetric Hopf points have no top"))?;
     let largest = critical_stiffness_maximum(&pieces.law())?;

@@ -19,7 +19,7 @@ mod stability;
 mod table1;
 mod torus;
 
-pub use rule::{Verdict, difference, judge};
+pub use rule::{Agreement, compare, difference};
 pub use table1::table1;
 
 use super::clock::timed;
@@ -31,7 +31,7 @@ use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Extremum};
 use crate::model::Loading;
 use crate::number::Uncertain;
-use crate::orbit::Slab;
+use crate::orbit::InterfaceSystem;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -117,7 +117,7 @@ pub struct Entry {
     /// Once more, otherwise.
     pub second: Option<Second>,
     /// By the rule.
-    pub verdict: Verdict,
+    pub verdict: Agreement,
     /// What the answer rests on, and what is to be said of a difference.
     pub note: String,
 }
@@ -132,7 +132,7 @@ impl Entry {
         computed: Uncertain,
     ) -> Self {
         let computed = Answer::Number(computed);
-        let (verdict, decided) = judge(printed, &computed);
+        let (verdict, decided) = compare(printed, &computed);
         let entry = Entry {
             id,
             place,
@@ -168,7 +168,7 @@ impl Entry {
             quantity,
             unit: "",
             printed,
-            verdict: judge(printed, &computed).0,
+            verdict: compare(printed, &computed).0,
             computed,
             second: None,
             note: String::new(),
@@ -197,8 +197,8 @@ impl Entry {
 
     /// Why a difference must be a misprint. Where there is none it says nothing.
     fn misprinted(mut self, reason: &str) -> Self {
-        if self.verdict == Verdict::Differs {
-            self.verdict = Verdict::Misprint;
+        if self.verdict == Agreement::Differs {
+            self.verdict = Agreement::Misprint;
             self = self.noted(format!("misprint: {reason}"));
         }
         self
@@ -206,10 +206,10 @@ impl Entry {
 }
 
 /// Entries that belong together.
-type Section = fn(&Pieces<'_>) -> Result<Vec<Entry>>;
+type ScorecardSection = fn(&Pieces<'_>) -> Result<Vec<Entry>>;
 
 /// All of them, in the order of the paper.
-const SECTIONS: [Section; 19] = [
+const SECTIONS: [ScorecardSection; 19] = [
     laws::of_section_2,
     stability::single_interface,
     equilibria::of_section_3,
@@ -255,12 +255,12 @@ pub(super) fn timed_entries(pieces: &Pieces<'_>) -> Result<(Vec<Entry>, Duration
 /// What `scorecard.json` holds.
 pub fn json(entries: &[Entry]) -> Value {
     let all: Vec<Value> = entries.iter().map(object).collect();
-    let count = |verdict: Verdict| entries.iter().filter(|e| e.verdict == verdict).count();
+    let count = |verdict: Agreement| entries.iter().filter(|e| e.verdict == verdict).count();
     json!({
         "entries": all,
-        "agrees": count(Verdict::Agrees),
-        "differs": count(Verdict::Differs),
-        "misprint": count(Verdict::Misprint),
+        "agrees": count(Agreement::Agrees),
+        "differs": count(Agreement::Differs),
+        "misprint": count(Agreement::Misprint),
     })
 }
 
@@ -291,8 +291,8 @@ fn answer(answer: &Answer) -> Value {
 }
 
 /// The paper's two interfaces at V_H and K.
-fn slab(pieces: &Pieces<'_>, driving: f64, stiffness: f64) -> Result<Slab> {
-    Ok(Slab {
+fn slab(pieces: &Pieces<'_>, driving: f64, stiffness: f64) -> Result<InterfaceSystem> {
+    Ok(InterfaceSystem {
         law: pieces.law(),
         interfaces: 2,
         loading: Loading::new(driving, stiffness)?,

@@ -5,7 +5,7 @@ use super::{Answer, Entry, missing, range, stability_word, whether};
 use crate::bifurcation::BranchRow;
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::orbit::Begin;
+use crate::orbit::InitialGuess;
 use crate::paper::Pieces;
 
 /// V_H between which both kinds of orbits are compared, away from the Hopf points where the symmetric ones vanish.
@@ -36,7 +36,7 @@ fn across(pieces: &Pieces<'_>, symmetric: &[&BranchRow]) -> Result<Entry> {
         .iter()
         .all(|row| row.ln_abs_multiplier[1].is_some_and(|x| x < 0.0));
     let (at, kind) = ((1.0, 0.14), Symmetry::Symmetric);
-    let again = orbit_at(pieces, at, kind, Begin::Anywhere, second_method()?)?;
+    let again = orbit_at(pieces, at, kind, InitialGuess::Anywhere, second_method()?)?;
     let logarithm = |i: usize| {
         let one = again.floquet.multipliers.get(i);
         one.map_or(f64::NAN, |one| one.ln_abs.value)

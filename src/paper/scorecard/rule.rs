@@ -14,7 +14,7 @@ const LOGARITHM: &str = " (log10: ";
 
 /// What comes of the comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Agreement {
     /// By the rule.
     Agrees,
     /// By the rule.
@@ -23,13 +23,13 @@ pub enum Verdict {
     Misprint,
 }
 
-impl Verdict {
+impl Agreement {
     /// The word in files.
     pub fn name(self) -> &'static str {
         match self {
-            Verdict::Agrees => "agrees",
-            Verdict::Differs => "differs",
-            Verdict::Misprint => "misprint",
+            Agreement::Agrees => "agrees",
+            Agreement::Differs => "differs",
+            Agreement::Misprint => "misprint",
         }
     }
 }
@@ -66,12 +66,12 @@ impl Decimal {
 }
 
 /// The verdict, and whether it is the same wherever the true value lies within its uncertainty. A misprint is never found here.
-pub fn judge(printed: &str, computed: &Answer) -> (Verdict, bool) {
+pub fn compare(printed: &str, computed: &Answer) -> (Agreement, bool) {
     let verdict = |agrees: bool| {
         if agrees {
-            Verdict::Agrees
+            Agreement::Agrees
         } else {
-            Verdict::Differs
+            Agreement::Differs
         }
     };
     let x = match computed {
@@ -79,7 +79,7 @@ pub fn judge(printed: &str, computed: &Answer) -> (Verdict, bool) {
         Answer::Number(x) => x,
     };
     let Some(agrees) = rule(printed) else {
-        return (Verdict::Differs, true);
+        return (Agreement::Differs, true);
     };
     let all = [
         agrees(x.value),

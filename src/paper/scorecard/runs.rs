@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::friction::Parameters;
 use crate::integrate::Choice;
 use crate::model::Loading;
-use crate::orbit::Begin;
+use crate::orbit::InitialGuess;
 use crate::paper::{Pieces, Run};
 use crate::section::Regime;
 
@@ -44,7 +44,7 @@ fn fast_interface(pieces: &Pieces<'_>, run: &Run, least: f64) -> Result<Entry> {
     let c = Parameters::heslot_1994().residual_strength;
     let Loading { driving, stiffness } = run.plan.loading;
     let (at, kind) = ((driving, stiffness), Symmetry::Asymmetric);
-    let orbit = orbit_at(pieces, at, kind, Begin::Anywhere, Choice::Taylor)?;
+    let orbit = orbit_at(pieces, at, kind, InitialGuess::Anywhere, Choice::Taylor)?;
     let word = |least: f64| whether(least < 0.1 * c, "much less than c", "not much less than c");
     Ok(Entry::claim(
         ("state-of-the-fast-interface", "section 4.2; Fig. 8(b)"),
@@ -85,7 +85,13 @@ pub fn of_fig_11(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let (begin, end) = (run.plan.start.1, apart(last));
     let at = (run.plan.loading.driving, run.plan.loading.stiffness);
     let method = second_method()?;
-    let orbit = orbit_at(pieces, at, Symmetry::Symmetric, Begin::Anywhere, method)?;
+    let orbit = orbit_at(
+        pieces,
+        at,
+        Symmetry::Symmetric,
+        InitialGuess::Anywhere,
+        method,
+    )?;
     let stable = orbit.verdict() == Verdict::Stable;
     let word = |it_is| whether(it_is, "the symmetric orbit", "elsewhere");
     Ok(vec![

@@ -6,7 +6,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::integrate::Choice;
 use crate::number::Uncertain;
-use crate::orbit::{Accuracy, Begin, Orbit, Query, find};
+use crate::orbit::{InitialGuess, Orbit, OrbitAccuracy, Query, find};
 use crate::paper::Pieces;
 
 #[cfg(feature = "sundials")]
@@ -42,12 +42,12 @@ pub fn orbit_at(
     pieces: &Pieces<'_>,
     (driving, stiffness): (f64, f64),
     symmetry: Symmetry,
-    begin: Begin,
+    begin: InitialGuess,
     method: Choice,
 ) -> Result<Orbit> {
     let slab = slab(pieces, driving, stiffness)?;
     let query = Query { symmetry, begin };
-    Ok(find(&slab, &query, &Accuracy::of(method))?.orbit)
+    Ok(find(&slab, &query, &OrbitAccuracy::of(method))?.orbit)
 }
 
 /// V_H and K of a special orbit, found again. Their uncertainty is how far they are from the first ones, with that of those.
@@ -71,7 +71,7 @@ pub fn at_top(
     driving: f64,
     near: f64,
     symmetry: Symmetry,
-    begin: Begin,
+    begin: InitialGuess,
 ) -> Result<Uncertain> {
     /// How far off the search begins, relative, and its steps.
     const OFF: f64 = 1e-4;

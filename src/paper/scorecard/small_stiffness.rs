@@ -6,7 +6,7 @@ use crate::bifurcation::{BranchRow, Label, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::integrate::Choice;
-use crate::orbit::{Begin, Orbit};
+use crate::orbit::{InitialGuess, Orbit};
 use crate::paper::{Branches, Pieces};
 
 /// K of Figs 9 and 10.
@@ -31,7 +31,7 @@ fn largest_of_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
     let top = top.ok_or_else(|| missing("the pitchforks of orbits have no top"))?;
     let (driving, near) = (top.driving.value, top.stiffness.value);
     let kind = Symmetry::Symmetric;
-    let again = at_top(pieces, driving, near, kind, Begin::Anywhere)?;
+    let again = at_top(pieces, driving, near, kind, InitialGuess::Anywhere)?;
     Ok(Entry::number(
         (
             "largest-K-of-orbit-pitchforks",
@@ -48,7 +48,15 @@ fn largest_of_pitchforks(pieces: &Pieces<'_>) -> Result<Entry> {
 
 fn coexistence(pieces: &Pieces<'_>) -> Result<Entry> {
     let both = |method: Choice| -> Result<[Orbit; 2]> {
-        let at = |kind| orbit_at(pieces, (0.2, STIFFNESS), kind, Begin::Anywhere, method);
+        let at = |kind| {
+            orbit_at(
+                pieces,
+                (0.2, STIFFNESS),
+                kind,
+                InitialGuess::Anywhere,
+                method,
+            )
+        };
         Ok([at(Symmetry::Symmetric)?, at(Symmetry::Asymmetric)?])
     };
     let word = |orbits: &[Orbit; 2]| {

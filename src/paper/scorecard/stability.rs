@@ -70,15 +70,15 @@ impl Letters {
 
 /// The letters of appendix A for a pair of rates, the one on the weakening part first.
 #[derive(Debug, Clone, Copy)]
-struct Pair {
+struct RatePair {
     s: [f64; 2],
     a: [f64; 3],
 }
 
-impl Pair {
+impl RatePair {
     fn at(law: &AnyLaw, state: &Equilibrium) -> Self {
         let [one, two] = [1, 0].map(|i| Letters::at(law, state.slip_rate[i]));
-        Pair {
+        RatePair {
             s: [one.s, two.s],
             a: [
                 one.a_s / one.s,
@@ -172,7 +172,7 @@ pub fn two_interfaces(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let as_told = symmetric(&law, &outside)? == Some(Verdict::Stable)
         && symmetric(&law, &inside)? == Some(Verdict::Unstable);
     let sums = weakening_states(&law)?.into_iter().map(|(_, state)| {
-        let [s1, s2] = Pair::at(&law, &state).s;
+        let [s1, s2] = RatePair::at(&law, &state).s;
         (s1 + s2) / s1
     });
     let (least, most) = range(sums);
@@ -209,14 +209,14 @@ fn critical_stiffness_of_pairs(law: &AnyLaw) -> Result<Entry> {
     let mut largest: f64 = 0.0;
     for stiffness in [0.05, 0.14, 0.3] {
         let loading = crate::model::Loading::new(1.0, stiffness)?;
-        let slab = crate::orbit::Slab {
+        let slab = crate::orbit::InterfaceSystem {
             law: *law,
             interfaces: 2,
             loading,
         };
         let along = crate::bifurcation::Parameter::Driving;
         for point in hopf_points(&slab, Symmetry::Asymmetric, along)? {
-            let by_formula = Pair::at(law, &point.equilibrium).critical();
+            let by_formula = RatePair::at(law, &point.equilibrium).critical();
             largest = largest.max((by_formula / stiffness - 1.0).abs());
         }
     }
@@ -242,7 +242,7 @@ pub fn of_the_appendix(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
     let states = weakening_states(&law)?;
     let roots: Vec<usize> = states
         .iter()
-        .map(|(_, state)| Pair::at(&law, state).positive_roots())
+        .map(|(_, state)| RatePair::at(&law, state).positive_roots())
         .collect();
     let all = |n: usize| roots.iter().all(|&roots| roots == n);
     let word = if all(1) {

@@ -7,7 +7,7 @@ use crate::bifurcation::{Label, LocusRow, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::integrate::Choice;
-use crate::orbit::Begin;
+use crate::orbit::InitialGuess;
 use crate::paper::Pieces;
 
 /// Where asymmetric orbits lose their stability, and how they have it again: the end of section 4.2.
@@ -22,10 +22,10 @@ pub fn of_section_4_2(pieces: &Pieces<'_>) -> Result<Vec<Entry>> {
         pieces,
         above,
         Symmetry::Asymmetric,
-        Begin::Anywhere,
+        InitialGuess::Anywhere,
         Choice::Taylor,
     )?;
-    let begin = Begin::At {
+    let begin = InitialGuess::At {
         start: (settled.point[0], [settled.point[1], settled.point[2]]),
         period: Some(settled.period.value),
     };

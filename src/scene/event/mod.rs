@@ -18,7 +18,7 @@ use crate::series::Zeros;
 
 /// One stick-slip event, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Event {
+pub struct SlipEvent {
     /// Time of the stress maximum.
     pub onset: f64,
     /// Time since the onset of the event before.
@@ -33,7 +33,7 @@ pub struct Event {
     pub slip: [f64; 2],
 }
 
-impl Event {
+impl SlipEvent {
     /// Which interface slipped more, 1 or 2; `None` if neither did.
     pub fn leader(&self) -> Option<usize> {
         let [first, second] = self.slip;
@@ -62,7 +62,7 @@ struct Log {
     threshold: f64,
     last_onset: Option<DoubleDouble>,
     open: Option<Open>,
-    events: Vec<Event>,
+    events: Vec<SlipEvent>,
 }
 
 #[derive(Debug, Clone, Copy)]
@@ -93,7 +93,7 @@ impl Log {
             return;
         }
         let last_onset = self.last_onset.replace(from.time);
-        self.events.push(Event {
+        self.events.push(SlipEvent {
             onset: from.time.hi(),
             recurrence: last_onset.map(|last| (from.time - last).hi()),
             duration: (end.time - from.time).hi(),
@@ -145,7 +145,7 @@ impl<'a, const N: usize> Detector<'a, N> {
     }
 
     /// All events found.
-    pub fn into_events(self) -> Vec<Event> {
+    pub fn into_events(self) -> Vec<SlipEvent> {
         self.log.events
     }
 }

@@ -9,9 +9,9 @@ use crate::field::State;
 use crate::integrate::{Choice, Control};
 use crate::model::Driven;
 use crate::number::Uncertain;
-use crate::orbit::{Accuracy, Begin, Kind, Orbit, Query, Slab, find};
+use crate::orbit::{InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find};
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, Periodic, Record, Return, at_equilibrium, spectrum_watched,
+    Ended, FEWEST_FOR_EXPONENTS, Periodic, Return, ReturnRecord, at_equilibrium, spectrum_watched,
 };
 
 /// Periods that differ by less, relatively, are of one orbit.
@@ -19,7 +19,7 @@ const SAME_PERIOD: f64 = 1e-6;
 
 /// The Lyapunov exponents of a run, dimensionless, with what checks them.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Lyapunov {
+pub struct CheckedExponents {
     /// In descending order.
     pub exponents: Vec<Uncertain>,
     /// The largest of those across the flow; at rest, of all.
@@ -33,18 +33,18 @@ pub struct Lyapunov {
 }
 
 /// Told how far it has come; it may stop it.
-pub(super) type Seen<'a> = &'a mut dyn FnMut(f64) -> Control;
+pub(super) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
 
 /// The exponents by means along a record with waypoints, or of the equilibrium that it ends at; `None` of too few returns, and
 /// if it is stopped.
 pub(super) fn of_record<const N: usize>(
     field: &dyn Driven<N>,
-    record: &Record<N>,
-    see: Seen<'_>,
-) -> Result<Option<Lyapunov>> {
+    record: &ReturnRecord<N>,
+    see: ProgressObserver<'_>,
+) -> Result<Option<CheckedExponents>> {
     if let Ended::Steady { equilibrium, .. } = &record.ended {
         let exponents = at_equilibrium(field, equilibrium);
-        return Ok(Some(Lyapunov {
+        return Ok(Some(CheckedExponents {
             across_flow: exponents.first().copied(),
             exponents: exponents.into(),
             converged: true,
@@ -56,7 +56,7 @@ pub(super) fn of_record<const N: usize>(
         return Ok(None);
     }
     let found = spectrum_watched(field, record, see)?;
-    Ok(found.map(|found| Lyapunov {
+    Ok(found.map(|found| CheckedExponents {
         across_flow: found.across_flow(),
         exponents: found.exponents.into(),
         converged: found.converged,
@@ -70,18 +70,18 @@ pub(super) fn of_record<const N: usize>(
 pub(super) fn of_orbit<const N: usize>(
     plan: &SectionPlan,
     periodic: &Periodic<N>,
-) -> Option<(Uncertain, Lyapunov)> {
-    let slab = Slab {
+) -> Option<(Uncertain, CheckedExponents)> {
+    let slab = InterfaceSystem {
         law: plan.system.law,
         interfaces: plan.system.interfaces,
         loading: plan.loading,
     };
     let y = &periodic.point;
-    let begin = Begin::At {
+    let begin = InitialGuess::At {
         start: (y[0], [y[1], y[N - 1]]),
         period: Some(periodic.period.value),
     };
-    let accuracy = Accuracy::of(Choice::Taylor);
+    let accuracy = OrbitAccuracy::of(Choice::Taylor);
     let closed = |symmetry| {
         let found = find(&slab, &Query { symmetry, begin }, &accuracy).ok()?;
         let apart = found.orbit.period.value / periodic.period.value - 1.0;
@@ -95,7 +95,7 @@ pub(super) fn of_orbit<const N: usize>(
     Some((orbit.period, of_multipliers(&orbit)?))
 }
 
-fn of_multipliers(orbit: &Orbit) -> Option<Lyapunov> {
+fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
     let Uncertain {
         value: period,
         uncertainty,
@@ -114,7 +114,7 @@ fn of_multipliers(orbit: &Orbit) -> Option<Lyapunov> {
     let known = exponents.iter().all(|x| x.uncertainty.is_finite());
     let across_flow = exponents.get(1).copied();
     exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
-    known.then(|| Lyapunov {
+    known.then(|| CheckedExponents {
         across_flow,
         exponents,
         converged: true,
@@ -124,13 +124,13 @@ fn of_multipliers(orbit: &Orbit) -> Option<Lyapunov> {
 }
 
 /// A record of the symmetric subspace in all three dimensions.
-pub(super) fn embedded(record: &Record<2>) -> Record<3> {
+pub(super) fn embedded(record: &ReturnRecord<2>) -> ReturnRecord<3> {
     let state = |y: &State<2>| State::<3>::new(y[0], y[1], y[1]);
     let point = |at: &Return<2>| Return {
         time: at.time,
         state: state(&at.state),
     };
-    Record {
+    ReturnRecord {
         returns: record.returns.iter().map(point).collect(),
         waypoints: record.waypoints.iter().map(point).collect(),
         ended: match &record.ended {

@@ -5,7 +5,7 @@ mod exponents;
 mod run;
 
 pub use explain::explain_section;
-pub use exponents::Lyapunov;
+pub use exponents::CheckedExponents;
 pub use run::{SectionColumn, SectionOutcome, run_section};
 
 use super::options::SectionOptions;

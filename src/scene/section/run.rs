@@ -4,15 +4,15 @@ use super::super::plan::Dimension;
 use super::super::run::Sink;
 use super::super::units::Quantity;
 use super::SectionPlan;
-use super::exponents::{Lyapunov, Seen, embedded, of_orbit, of_record};
+use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, of_record};
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Work};
 use crate::model::{self, Driven};
 use crate::number::Uncertain;
 use crate::section::{
-    Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Record, Regime, Return, Surface,
-    Verdict, Watching, aperiodic, record, record_finely, verdict,
+    Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Regime, RegimeVerdict, Return,
+    ReturnRecord, Surface, Watching, aperiodic, record, record_finely, verdict,
 };
 
 /// Where exponents are asked for, the run takes this part of the time, and has come to this part when their own run is done.
@@ -84,7 +84,7 @@ pub struct SectionOutcome {
     /// How many closed curves the torus has in the section.
     pub curves: Option<usize>,
     /// The Lyapunov exponents, where asked for and known.
-    pub lyapunov: Option<Lyapunov>,
+    pub lyapunov: Option<CheckedExponents>,
     /// What it rests on, or why it is undecided and what to try.
     pub note: Option<String>,
     /// Returns recorded.
@@ -131,7 +131,8 @@ pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOut
 }
 
 /// The exponents by means along a record.
-type Means<'a, const N: usize> = &'a dyn Fn(&Record<N>, Seen<'_>) -> Result<Option<Lyapunov>>;
+type Means<'a, const N: usize> =
+    &'a dyn Fn(&ReturnRecord<N>, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
 
 fn follow<const N: usize>(
     plan: &SectionPlan,
@@ -221,10 +222,10 @@ fn follow<const N: usize>(
 fn exponents<const N: usize>(
     plan: &SectionPlan,
     (field, surface, watching): (&dyn Driven<N>, &Surface<N>, &Watching),
-    (record, made): (&Record<N>, &mut Verdict<N>),
+    (record, made): (&ReturnRecord<N>, &mut RegimeVerdict<N>),
     sink: &mut dyn Sink,
     means: Means<'_, N>,
-) -> Result<Option<Lyapunov>> {
+) -> Result<Option<CheckedExponents>> {
     if let Ended::Steady { .. } = record.ended {
         return means(record, &mut |_| Control::Continue);
     }
@@ -264,7 +265,8 @@ fn exponents<const N: usize>(
             converged: found.converged,
         };
         // Either run may be the one whose returns tell.
-        let by = |run: &Record<N>| aperiodic(surface, &run.returns, run.accuracy, Some(known));
+        let by =
+            |run: &ReturnRecord<N>| aperiodic(surface, &run.returns, run.accuracy, Some(known));
         *made = by(record);
         if made.regime == Regime::Undecided {
             *made = by(&own);
@@ -274,7 +276,10 @@ fn exponents<const N: usize>(
 }
 
 /// The exponents of the orbit that a verdict names, with its period then.
-fn by_orbit<const N: usize>(plan: &SectionPlan, made: &mut Verdict<N>) -> Option<Lyapunov> {
+fn by_orbit<const N: usize>(
+    plan: &SectionPlan,
+    made: &mut RegimeVerdict<N>,
+) -> Option<CheckedExponents> {
     let periodic = made.periodic.as_mut()?;
     let (period, found) = of_orbit(plan, periodic)?;
     periodic.period = period;

@@ -14,10 +14,10 @@ use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result, count};
 use crate::model::Loading;
-use crate::sweep::{Grid, Settings, threads_checked};
+use crate::sweep::{Grid, SweepSettings, threads_checked};
 use clap::Parser;
 use grain::Grain;
-use options::Line;
+use options::SweepLine;
 use serde_json::Value;
 use words::{canonical, numerics};
 
@@ -27,7 +27,7 @@ pub struct SweepPlan {
     /// What slides.
     pub system: System,
     /// What is computed.
-    pub settings: Settings,
+    pub settings: SweepSettings,
     /// Which part of it.
     pub shard: Option<Shard>,
     /// By how many threads.
@@ -80,7 +80,7 @@ impl SweepPlan {
                 state_2: state_2.inward(Quantity::State, units)?,
             },
         };
-        let settings = Settings {
+        let settings = SweepSettings {
             law: system.law,
             grid,
             starts: options.starts,
@@ -122,7 +122,7 @@ impl SweepPlan {
     pub fn of_command(command: &str) -> Result<Self> {
         let words = command.strip_prefix("twinslip sweep").unwrap_or_default();
         let words = std::iter::once("sweep").chain(words.split_whitespace());
-        let line = Line::try_parse_from(words)
+        let line = SweepLine::try_parse_from(words)
             .map_err(|_| Error::Input(format!("{command:?} is not the command of a sweep")))?;
         SweepPlan::new(&line.options)
     }

@@ -108,7 +108,7 @@ pub struct SweepOptions {
 
 /// The command line of a sweep, as its files tell it.
 #[derive(Parser)]
-pub(super) struct Line {
+pub(super) struct SweepLine {
     #[command(flatten)]
     pub options: SweepOptions,
 }

@@ -1,6 +1,6 @@
 //! A sweep in words that equal sweeps share, whatever was typed.
 
-use super::options::{Line, SweepOptions};
+use super::options::{SweepLine, SweepOptions};
 use clap::Parser;
 use serde_json::{Value, json};
 
@@ -26,7 +26,7 @@ pub(super) fn numerics(options: &SweepOptions, grid: &[(&str, String)]) -> Value
 
 /// The words in a fixed order, each setting with its value unless that is the default.
 pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<String> {
-    let default = Line::parse_from(["sweep"]).options;
+    let default = SweepLine::parse_from(["sweep"]).options;
     let mut words = vec!["twinslip".to_owned(), "sweep".to_owned()];
     for (name, text) in grid {
         words.extend([format!("--{name}"), text.clone()]);

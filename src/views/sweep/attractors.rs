@@ -1,7 +1,7 @@
 //! Which runs end on the same attractor.
 
-use super::Outcome;
-use super::tints::Kind;
+use super::PointOutcome;
+use super::tints::RegimeKind;
 use crate::section::Regime;
 
 /// Periods and stresses that agree to this, relatively, are those of one orbit: runs close in on it to far less.
@@ -12,8 +12,8 @@ const SAME: f64 = 1e-4;
 /// Orbits and steady states are the same if regime, symmetry, period and stresses are. A torus or chaos is one attractor: the
 /// stresses of a wandering run depend on how long it is watched. So two chaotic attractors are not told apart, nor are an
 /// asymmetric attractor and its mirror image.
-pub fn attractors(outcomes: &[Outcome]) -> (Vec<(Outcome, usize)>, Vec<Option<usize>>) {
-    let mut all: Vec<(Outcome, usize)> = Vec::new();
+pub fn attractors(outcomes: &[PointOutcome]) -> (Vec<(PointOutcome, usize)>, Vec<Option<usize>>) {
+    let mut all: Vec<(PointOutcome, usize)> = Vec::new();
     let mut of: Vec<Option<usize>> = Vec::with_capacity(outcomes.len());
     for outcome in outcomes {
         if outcome.regime == Regime::Undecided {
@@ -39,11 +39,11 @@ pub fn attractors(outcomes: &[Outcome]) -> (Vec<(Outcome, usize)>, Vec<Option<us
     (sorted, of)
 }
 
-fn same(a: &Outcome, b: &Outcome) -> bool {
+fn same(a: &PointOutcome, b: &PointOutcome) -> bool {
     let alike = a.regime == b.regime
         && a.symmetry == b.symmetry
         && a.returns_per_period == b.returns_per_period
-        && Kind::of(a) == Kind::of(b);
+        && RegimeKind::of(a) == RegimeKind::of(b);
     if !alike || matches!(a.regime, Regime::Torus | Regime::Chaotic) {
         return alike;
     }

@@ -1,25 +1,25 @@
 //! Basins: on which attractor the runs from starts (psi_1, psi_2) end.
 
 use super::attractors::attractors;
-use super::tints::Kind;
-use super::{Outcome, Side};
+use super::tints::RegimeKind;
+use super::{GridSide, PointOutcome};
 use crate::equilibrium::Symmetry;
-use crate::output::plot::{Cells, Drawing, Panel, Series, Shade, Stroke, Swatch};
+use crate::output::plot::{Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
 use crate::scene::{Quantity, Units};
 use crate::section::Regime;
 use crate::views::{axis_label, parameters};
 
 /// Colours of attractors, the largest basin first, far apart in lightness and hue where there are few.
-const ORDER: [Kind; 9] = [
-    Kind::PeriodicSymmetric,
-    Kind::PeriodHigher,
-    Kind::SteadySymmetric,
-    Kind::Torus,
-    Kind::PeriodicAsymmetric,
-    Kind::Period4,
-    Kind::SteadyAsymmetric,
-    Kind::Period3,
-    Kind::Chaotic,
+const ORDER: [RegimeKind; 9] = [
+    RegimeKind::PeriodicSymmetric,
+    RegimeKind::PeriodHigher,
+    RegimeKind::SteadySymmetric,
+    RegimeKind::Torus,
+    RegimeKind::PeriodicAsymmetric,
+    RegimeKind::Period4,
+    RegimeKind::SteadyAsymmetric,
+    RegimeKind::Period3,
+    RegimeKind::Chaotic,
 ];
 
 /// Starts with equal states stay symmetric for ever: a line, which has no area however large the cells of a grid are.
@@ -30,8 +30,8 @@ const BLACK: usize = 7;
 /// The attractor that each start goes to, numbered by the size of their basins, of which equal states are no part. Points that
 /// are missing stay white; all beyond the eighth attractor share a colour. V_H and K are for the title.
 pub fn basin_map(
-    outcomes: &[Outcome],
-    (state_1, state_2): (&Side, &Side),
+    outcomes: &[PointOutcome],
+    (state_1, state_2): (&GridSide, &GridSide),
     (driving, stiffness): (f64, f64),
     units: &Units,
 ) -> Drawing {
@@ -44,7 +44,7 @@ pub fn basin_map(
         let start = state_1.values.get(number % columns.max(1));
         start.is_some() && start == state_2.values.get(number / columns.max(1))
     };
-    let (symmetric, beside): (Vec<Outcome>, Vec<Outcome>) = outcomes
+    let (symmetric, beside): (Vec<PointOutcome>, Vec<PointOutcome>) = outcomes
         .iter()
         .copied()
         .partition(|outcome| equal(outcome.number));
@@ -52,7 +52,7 @@ pub fn basin_map(
     let mut fills = vec![Vec::new(); columns * state_2.values.len()];
     for (outcome, attractor) in beside.iter().zip(&of) {
         if let Some(cell) = fills.get_mut(outcome.number) {
-            *cell = vec![attractor.map_or(Kind::Undecided.shade(), tint)];
+            *cell = vec![attractor.map_or(RegimeKind::Undecided.shade(), tint)];
         }
     }
     for outcome in &symmetric {
@@ -80,14 +80,14 @@ pub fn basin_map(
 }
 
 /// The line of equal states across a map.
-fn diagonal(map: &Cells) -> Series {
+fn diagonal(map: &Cells) -> PlotSeries {
     let (x, y) = (&map.x_edges, &map.y_edges);
     let common = |of: fn(f64, f64) -> f64, a: Option<&f64>, b: Option<&f64>| {
         a.zip(b).map_or(f64::NAN, |(a, b)| of(*a, *b))
     };
     let from = common(f64::max, x.first(), y.first());
     let to = common(f64::min, x.last(), y.last());
-    let line = Series::new(DIAGONAL, vec![from, to], vec![from, to]);
+    let line = PlotSeries::new(DIAGONAL, vec![from, to], vec![from, to]);
     line.stroke(Stroke::Dotted).colour(BLACK)
 }
 
@@ -111,7 +111,7 @@ fn tint(attractor: usize) -> Shade {
 }
 
 /// The legend: each attractor with what it is and its share of the starts.
-fn swatches(all: &[(Outcome, usize)], of: &[Option<usize>], units: &Units) -> Vec<Swatch> {
+fn swatches(all: &[(PointOutcome, usize)], of: &[Option<usize>], units: &Units) -> Vec<Swatch> {
     let share = |count: usize| 100.0 * count as f64 / of.len().max(1) as f64;
     let last = ORDER.len() - 1;
     let named = all
@@ -129,14 +129,14 @@ fn swatches(all: &[(Outcome, usize)], of: &[Option<usize>], units: &Units) -> Ve
     });
     let undecided = of.iter().filter(|attractor| attractor.is_none()).count();
     let undecided = (undecided > 0).then(|| Swatch {
-        shades: vec![Kind::Undecided.shade()],
+        shades: vec![RegimeKind::Undecided.shade()],
         label: format!("undecided, {:.1} %", share(undecided)),
     });
     named.chain(others).chain(undecided).collect()
 }
 
 /// Regime, symmetry and period.
-fn words(one: &Outcome, units: &Units) -> String {
+fn words(one: &PointOutcome, units: &Units) -> String {
     let mut words = vec![one.regime.name().to_owned()];
     words.extend(one.symmetry.map(|symmetry| match symmetry {
         Symmetry::Symmetric => "symmetric".to_owned(),

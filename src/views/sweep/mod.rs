@@ -15,7 +15,7 @@ use crate::section::Regime;
 
 /// What a run settled on at a point of a sweep, as far as pictures show it.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outcome {
+pub struct PointOutcome {
     /// The number of the point: k = (j N + i) S + s for the i-th of N values across, the j-th upwards, the s-th of S starts.
     pub number: usize,
     /// What it is.
@@ -34,14 +34,14 @@ pub struct Outcome {
 
 /// The values along one side of a grid, growing.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Side {
+pub struct GridSide {
     /// The values, dimensionless.
     pub values: Vec<f64>,
     /// Whether they are in equal ratios: so is then the axis.
     pub log: bool,
 }
 
-impl Side {
+impl GridSide {
     /// The edges of cells around the values: halfway to the neighbours, and as far beyond the ends.
     fn edges(&self) -> Vec<f64> {
         /// What a single value reaches to both sides, as a part of it.

@@ -1,9 +1,9 @@
 //! Regimes over the (V_H, K) plane, with curves of bifurcations over them.
 
-use super::tints::{Kind, LIGHTEST};
-use super::{Outcome, Side};
+use super::tints::{LIGHTEST, RegimeKind};
+use super::{GridSide, PointOutcome};
 use crate::bifurcation::LocusRow;
-use crate::output::plot::{Cells, Drawing, Panel, Series, Shade, Stroke, Swatch};
+use crate::output::plot::{Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
 use crate::scene::{Quantity, Units};
 use crate::views::axis_label;
 
@@ -24,8 +24,8 @@ const STROKES: [Stroke; 5] = [
 /// has a verdict, as it says nothing of another attractor. Chaos is the darker the larger the exponent; attractors of the same
 /// regime are not told apart.
 pub fn regime_map(
-    outcomes: &[Outcome],
-    (driving, stiffness): (&Side, &Side),
+    outcomes: &[PointOutcome],
+    (driving, stiffness): (&GridSide, &GridSide),
     starts: usize,
     curves: &[(&str, &[LocusRow])],
     units: &Units,
@@ -39,11 +39,11 @@ pub fn regime_map(
     });
     let columns = driving.values.len();
     let starts = starts.max(1);
-    let exponents = Exponents::of(outcomes);
+    let exponents = LargestExponents::of(outcomes);
     let mut found = vec![Vec::new(); columns * stiffness.values.len()];
     for outcome in outcomes {
         if let Some(cell) = found.get_mut(outcome.number / starts) {
-            cell.push((Kind::of(outcome), exponents.shade(outcome)));
+            cell.push((RegimeKind::of(outcome), exponents.shade(outcome)));
         }
     }
     let fills: Vec<_> = found.iter_mut().map(told).collect();
@@ -70,7 +70,7 @@ pub fn regime_map(
 }
 
 /// What a cell shows of what its starts found: each regime once, in the order of the legend.
-fn told(found: &mut Vec<(Kind, Shade)>) -> Vec<(Kind, Shade)> {
+fn told(found: &mut Vec<(RegimeKind, Shade)>) -> Vec<(RegimeKind, Shade)> {
     // Of chaos the darkest.
     found.sort_by(|a, b| {
         let lightness = a.1.lightness.total_cmp(&b.1.lightness);
@@ -78,29 +78,31 @@ fn told(found: &mut Vec<(Kind, Shade)>) -> Vec<(Kind, Shade)> {
     });
     found.dedup_by_key(|(kind, _)| *kind);
     if found.len() > 1 {
-        found.retain(|(kind, _)| *kind != Kind::Undecided);
+        found.retain(|(kind, _)| *kind != RegimeKind::Undecided);
     }
     found.clone()
 }
 
 /// The largest exponents of chaotic points.
-struct Exponents(Option<(f64, f64)>);
+struct LargestExponents(Option<(f64, f64)>);
 
-impl Exponents {
-    fn of(outcomes: &[Outcome]) -> Self {
-        let chaotic = outcomes.iter().filter(|one| Kind::of(one) == Kind::Chaotic);
+impl LargestExponents {
+    fn of(outcomes: &[PointOutcome]) -> Self {
+        let chaotic = outcomes
+            .iter()
+            .filter(|one| RegimeKind::of(one) == RegimeKind::Chaotic);
         let values = chaotic.filter_map(|one| Some(one.lyapunov_max?.value));
-        Exponents(values.fold(None, |reach: Option<(f64, f64)>, x| {
+        LargestExponents(values.fold(None, |reach: Option<(f64, f64)>, x| {
             let (lo, hi) = reach.unwrap_or((x, x));
             Some((lo.min(x), hi.max(x)))
         }))
     }
 
     /// The colour of a point.
-    fn shade(&self, outcome: &Outcome) -> Shade {
-        let kind = Kind::of(outcome);
+    fn shade(&self, outcome: &PointOutcome) -> Shade {
+        let kind = RegimeKind::of(outcome);
         match (kind, self.0, outcome.lyapunov_max) {
-            (Kind::Chaotic, Some((lo, hi)), Some(x)) if lo < hi => {
+            (RegimeKind::Chaotic, Some((lo, hi)), Some(x)) if lo < hi => {
                 let part = (x.value - lo) / (hi - lo);
                 lighter(
                     ((1.0 - part) * STEPS as f64)
@@ -115,25 +117,25 @@ impl Exponents {
 
 /// Chaos, so many steps lighter.
 fn lighter(steps: f64) -> Shade {
-    Kind::Chaotic
+    RegimeKind::Chaotic
         .shade()
         .lighter(LIGHTEST * steps / (STEPS - 1) as f64)
 }
 
 /// The legend: the regimes that there are.
 fn swatches(
-    outcomes: &[Outcome],
-    found: &[Vec<(Kind, Shade)>],
-    exponents: &Exponents,
+    outcomes: &[PointOutcome],
+    found: &[Vec<(RegimeKind, Shade)>],
+    exponents: &LargestExponents,
     striped: bool,
     units: &Units,
 ) -> Vec<Swatch> {
     let symmetries = outcomes.iter().any(|one| one.symmetry.is_some());
-    let mut kinds: Vec<Kind> = found.iter().flatten().map(|(kind, _)| *kind).collect();
+    let mut kinds: Vec<RegimeKind> = found.iter().flatten().map(|(kind, _)| *kind).collect();
     kinds.sort();
     kinds.dedup();
-    let swatch = |kind: Kind| match (kind, exponents.0) {
-        (Kind::Chaotic, Some((lo, hi))) if lo < hi => {
+    let swatch = |kind: RegimeKind| match (kind, exponents.0) {
+        (RegimeKind::Chaotic, Some((lo, hi))) if lo < hi => {
             let rate = |x| format!("{:.0e}", units.outward(Quantity::Growth, x));
             let unit = units.short_name(Quantity::Growth);
             Swatch {
@@ -154,7 +156,7 @@ fn swatches(
 }
 
 /// Curves, told apart by their strokes.
-fn over(curves: &[(&str, &[LocusRow])], units: &Units) -> Vec<Series> {
+fn over(curves: &[(&str, &[LocusRow])], units: &Units) -> Vec<PlotSeries> {
     let series = |(i, (name, rows)): (usize, &(&str, &[LocusRow]))| {
         let (mut x, mut y) = (Vec::new(), Vec::new());
         for piece in rows.chunk_by(|a, b| a.curve == b.curve) {
@@ -166,7 +168,7 @@ fn over(curves: &[(&str, &[LocusRow])], units: &Units) -> Vec<Series> {
             x.push(f64::NAN);
             y.push(f64::NAN);
         }
-        let series = Series::new(*name, x, y).colour(BLACK);
+        let series = PlotSeries::new(*name, x, y).colour(BLACK);
         series.stroke(STROKES[i % STROKES.len()])
     };
     let shown = curves.iter().filter(|(_, rows)| !rows.is_empty());

@@ -2,14 +2,14 @@
 //! L*a*b* no two are nearer in L* than 5, from the pale green of the symmetric steady state to the dark red of chaos, nor nearer to one
 //! another than 16, whether all cones see them or one kind is missing.
 
-use super::Outcome;
+use super::PointOutcome;
 use crate::equilibrium::Symmetry;
 use crate::output::plot::Shade;
 use crate::section::Regime;
 
 /// A regime as the picture tells them apart, in the order of the legend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Kind {
+pub enum RegimeKind {
     /// Both interfaces slide alike and steadily, or there is one.
     SteadySymmetric,
     /// They slide steadily at different rates.
@@ -37,58 +37,58 @@ pub enum Kind {
 /// The colour of chaos at its largest exponent; at smaller ones it is lighter, up to this.
 pub const LIGHTEST: f64 = 0.13;
 
-impl Kind {
+impl RegimeKind {
     /// Of what a run settled on.
-    pub fn of(outcome: &Outcome) -> Self {
+    pub fn of(outcome: &PointOutcome) -> Self {
         let asymmetric = outcome.symmetry == Some(Symmetry::Asymmetric);
         match (outcome.regime, outcome.returns_per_period.unwrap_or(1)) {
-            (Regime::Steady, _) if asymmetric => Kind::SteadyAsymmetric,
-            (Regime::Steady, _) => Kind::SteadySymmetric,
-            (Regime::Periodic, 2) => Kind::Period2,
-            (Regime::Periodic, 3) => Kind::Period3,
-            (Regime::Periodic, 4) => Kind::Period4,
-            (Regime::Periodic, 5..) => Kind::PeriodHigher,
-            (Regime::Periodic, _) if asymmetric => Kind::PeriodicAsymmetric,
-            (Regime::Periodic, _) => Kind::PeriodicSymmetric,
-            (Regime::Torus, _) => Kind::Torus,
-            (Regime::Chaotic, _) => Kind::Chaotic,
-            (Regime::Undecided, _) => Kind::Undecided,
+            (Regime::Steady, _) if asymmetric => RegimeKind::SteadyAsymmetric,
+            (Regime::Steady, _) => RegimeKind::SteadySymmetric,
+            (Regime::Periodic, 2) => RegimeKind::Period2,
+            (Regime::Periodic, 3) => RegimeKind::Period3,
+            (Regime::Periodic, 4) => RegimeKind::Period4,
+            (Regime::Periodic, 5..) => RegimeKind::PeriodHigher,
+            (Regime::Periodic, _) if asymmetric => RegimeKind::PeriodicAsymmetric,
+            (Regime::Periodic, _) => RegimeKind::PeriodicSymmetric,
+            (Regime::Torus, _) => RegimeKind::Torus,
+            (Regime::Chaotic, _) => RegimeKind::Chaotic,
+            (Regime::Undecided, _) => RegimeKind::Undecided,
         }
     }
 
     /// In words; of the symmetry only where outcomes have one.
     pub fn words(self, symmetries: bool) -> &'static str {
         match self {
-            Kind::SteadySymmetric if symmetries => "steady, symmetric",
-            Kind::SteadySymmetric => "steady",
-            Kind::SteadyAsymmetric => "steady, asymmetric",
-            Kind::PeriodicSymmetric if symmetries => "periodic, symmetric",
-            Kind::PeriodicSymmetric => "periodic",
-            Kind::PeriodicAsymmetric => "periodic, asymmetric",
-            Kind::Period2 => "period 2",
-            Kind::Period3 => "period 3",
-            Kind::Period4 => "period 4",
-            Kind::PeriodHigher => "period 5 or more",
-            Kind::Torus => "torus",
-            Kind::Chaotic => "chaotic",
-            Kind::Undecided => "undecided",
+            RegimeKind::SteadySymmetric if symmetries => "steady, symmetric",
+            RegimeKind::SteadySymmetric => "steady",
+            RegimeKind::SteadyAsymmetric => "steady, asymmetric",
+            RegimeKind::PeriodicSymmetric if symmetries => "periodic, symmetric",
+            RegimeKind::PeriodicSymmetric => "periodic",
+            RegimeKind::PeriodicAsymmetric => "periodic, asymmetric",
+            RegimeKind::Period2 => "period 2",
+            RegimeKind::Period3 => "period 3",
+            RegimeKind::Period4 => "period 4",
+            RegimeKind::PeriodHigher => "period 5 or more",
+            RegimeKind::Torus => "torus",
+            RegimeKind::Chaotic => "chaotic",
+            RegimeKind::Undecided => "undecided",
         }
     }
 
     /// Its colour.
     pub const fn shade(self) -> Shade {
         Shade::new(match self {
-            Kind::SteadySymmetric => [211, 255, 208],
-            Kind::Undecided => [226, 226, 226],
-            Kind::SteadyAsymmetric => [234, 206, 122],
-            Kind::PeriodicSymmetric => [93, 204, 221],
-            Kind::PeriodicAsymmetric => [236, 123, 64],
-            Kind::Period2 => [95, 135, 104],
-            Kind::Period3 => [182, 71, 132],
-            Kind::Period4 => [61, 144, 215],
-            Kind::PeriodHigher => [0, 110, 52],
-            Kind::Torus => [182, 168, 113],
-            Kind::Chaotic => [69, 8, 32],
+            RegimeKind::SteadySymmetric => [211, 255, 208],
+            RegimeKind::Undecided => [226, 226, 226],
+            RegimeKind::SteadyAsymmetric => [234, 206, 122],
+            RegimeKind::PeriodicSymmetric => [93, 204, 221],
+            RegimeKind::PeriodicAsymmetric => [236, 123, 64],
+            RegimeKind::Period2 => [95, 135, 104],
+            RegimeKind::Period3 => [182, 71, 132],
+            RegimeKind::Period4 => [61, 144, 215],
+            RegimeKind::PeriodHigher => [0, 110, 52],
+            RegimeKind::Torus => [182, 168, 113],
+            RegimeKind::Chaotic => [69, 8, 32],
         })
     }
 }

@@ -3,10 +3,11 @@
 //!
 //! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
 
+mod batch;
 pub mod classics;
+mod difference_chart;
 mod logarithmic;
 pub mod normal_form;
-mod parted;
 mod response;
 pub mod scales;
 mod series;
@@ -14,15 +15,14 @@ mod single_interface;
 mod smooth;
 mod symmetric;
 mod tangent;
-mod trajectories;
 mod two_interfaces;
 
-pub use parted::{Parted, parted, united};
+#[doc(hidden)]
+pub use batch::{BatchSolution, MAX_LANES, batch_solution};
+pub use difference_chart::{DifferenceChart, from_difference_chart, to_difference_chart};
 pub use single_interface::SingleInterface;
 pub use smooth::Smooth;
 pub use symmetric::Symmetric;
-#[doc(hidden)]
-pub use trajectories::{Convoy, MAX_LANES, convoy};
 pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;
@@ -84,8 +84,8 @@ pub fn two_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
 }
 
 /// Two interfaces (19) in (tau, ln psi_2, ln(psi_1 - psi_2)) with a law chosen at run time.
-pub fn parted_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
-    with_law!(law, law => Box::new(Parted { law: law.core() }.at(&loading)))
+pub fn interfaces_in_difference_chart(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
+    with_law!(law, law => Box::new(DifferenceChart { law: law.core() }.at(&loading)))
 }
 
 /// The symmetric subspace of (19) with a law chosen at run time.

@@ -57,7 +57,7 @@ type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
 type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
 
 /// A solution in N = 2 or 3 dimensions, in the best arithmetic of this processor.
-pub(super) enum Track<L> {
+pub(super) enum SeriesSolution<L> {
     #[cfg(target_arch = "x86_64")]
     Pair(V3, PairStepper<L>),
     Plain(PlainStepper<L>),
@@ -68,20 +68,20 @@ macro_rules! each {
     ($track:expr, $s:ident => $body:expr) => {
         match $track {
             #[cfg(target_arch = "x86_64")]
-            Track::Pair(_, $s) => $body,
-            Track::Plain($s) => $body,
+            SeriesSolution::Pair(_, $s) => $body,
+            SeriesSolution::Plain($s) => $body,
         }
     };
 }
 
-impl<L: Law> Track<L> {
+impl<L: Law> SeriesSolution<L> {
     pub fn new(law: L, loading: &Loading) -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = crate::series::avx2() {
             let zero = Pair::new(simd, [0.0; 2]);
-            return Track::Pair(simd, stepper(law, loading, zero));
+            return SeriesSolution::Pair(simd, stepper(law, loading, zero));
         }
-        Track::Plain(stepper(law, loading, Both([0.0; 2])))
+        SeriesSolution::Plain(stepper(law, loading, Both([0.0; 2])))
     }
 }
 
@@ -116,16 +116,16 @@ impl<L: Law> pulp::NullaryFnOnce for PairStep<'_, L> {
     }
 }
 
-impl<L: Law, const N: usize> Solution<N> for Track<L> {
+impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
     fn start(&mut self, y: &[f64; N]) {
         let log_states = [y[1], y[N - 1]];
         match self {
             #[cfg(target_arch = "x86_64")]
-            Track::Pair(simd, stepper) => {
+            SeriesSolution::Pair(simd, stepper) => {
                 let tau = Pair::new(*simd, [y[0]; 2]);
                 stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
             }
-            Track::Plain(stepper) => {
+            SeriesSolution::Plain(stepper) => {
                 stepper.start([Both([y[0]; 2]), Both(log_states.map(f64::exp))]);
             }
         }
@@ -134,7 +134,7 @@ impl<L: Law, const N: usize> Solution<N> for Track<L> {
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         match self {
             #[cfg(target_arch = "x86_64")]
-            Track::Pair(simd, stepper) => {
+            SeriesSolution::Pair(simd, stepper) => {
                 let limit = limit.hi();
                 let step = PairStep {
                     stepper,
@@ -143,7 +143,7 @@ impl<L: Law, const N: usize> Solution<N> for Track<L> {
                 };
                 DoubleDouble::from(simd.vectorize(step))
             }
-            Track::Plain(stepper) => {
+            SeriesSolution::Plain(stepper) => {
                 DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())
             }
         }

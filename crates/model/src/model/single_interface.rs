@@ -2,7 +2,7 @@
 
 use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::series::Track;
+use super::series::SeriesSolution;
 use super::tangent::tangent;
 use super::{Driven, Loading, Parameter};
 use crate::field::{Analytic, Jacobian, State, VectorField};
@@ -84,7 +84,7 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
 
 impl<L: Law> Analytic<2> for SingleInterface<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(Track::new(self.law.core(), &self.as_pair()))
+        Box::new(SeriesSolution::new(self.law.core(), &self.as_pair()))
     }
 
     fn reference(&self) -> Box<dyn Solution<2> + '_> {

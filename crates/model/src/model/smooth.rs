@@ -5,7 +5,7 @@ use crate::number::Jet;
 #[cfg(target_arch = "x86_64")]
 use crate::series::Four;
 use crate::series::{
-    Both, Cubic, Equations, Plain, Recorded, Solution, Tangent, Transport, Variational, is_small,
+    Both, Equations, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap, Variational, is_small,
 };
 
 /// Equations at given parameters.
@@ -153,7 +153,7 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
         self.recorded().reference_tangent()
     }
 
-    fn transport(&self, start: [Cubic; N]) -> Option<Box<dyn Transport<N> + '_>> {
+    fn transport(&self, start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {
         Some(self.recorded().transport(start))
     }
 }

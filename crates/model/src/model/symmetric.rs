@@ -5,7 +5,7 @@
 //! formulas of [`SingleInterface`] serve.
 
 use super::logarithmic::Logarithmic;
-use super::series::Track;
+use super::series::SeriesSolution;
 use super::tangent::tangent;
 use super::{Driven, Loading, Parameter, SingleInterface};
 use crate::field::{Analytic, Jacobian, State, VectorField};
@@ -74,7 +74,7 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
 
 impl<L: Law> Analytic<2> for Symmetric<L> {
     fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(Track::new(
+        Box::new(SeriesSolution::new(
             self.equivalent.law.core(),
             &self.equivalent.as_pair(),
         ))

@@ -1,7 +1,7 @@
 //! The interfaces with their tangents in power series.
 //!
 //! The laws' formulas run on jets of series: the Jacobian's entries along the solution, for both interfaces at once. The
-//! linearised equations of all columns are then sums of products with them, see [`Columns`]. In doubles: it takes a quarter of
+//! linearised equations of all columns are then sums of products with them, see [`VariationalEquations`]. In doubles: it takes a quarter of
 //! the time of [`crate::series::Recorded`], which serves for 31 digits and for other systems.
 
 use super::series::{Interfaces, chart, copy};
@@ -9,8 +9,8 @@ use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::{DoubleDouble, Jet};
 use crate::series::{
-    Accuracy, Both, Columns, Derivatives, Element, Expansion, Formula, Linearisation, MAX_ORDER,
-    Order, Rates, Series, Solution, Spread, Stepper, Tangent, value,
+    Accuracy, Both, Derivatives, Element, Expansion, Formula, JacobianSeries, MAX_ORDER, Order,
+    Rates, Series, Solution, Spread, Stepper, Tangent, VariationalEquations, value,
 };
 use pulp::NullaryFnOnce;
 #[cfg(target_arch = "x86_64")]
@@ -21,9 +21,9 @@ use {
 
 /// The interfaces, with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
 #[derive(Clone, Copy)]
-struct Linearised<E, L>(Interfaces<E, L>);
+struct LinearisedInterfaces<E, L>(Interfaces<E, L>);
 
-impl<E: Element, L: Law> Formula<E, 2> for Linearised<E, L> {
+impl<E: Element, L: Law> Formula<E, 2> for LinearisedInterfaces<E, L> {
     const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
     const KINK: Option<usize> = <Interfaces<E, L> as Formula<E, 2>>::KINK;
 
@@ -85,18 +85,18 @@ impl Shell for V3 {
 }
 
 /// A solution with the columns that are the derivatives in its start, in V_H and in K, as many as X has lanes.
-struct Track<S, E, X, L> {
+struct TangentSolution<S, E, X, L> {
     shell: S,
     /// V_H and K of the pair that moves as the system does, per those of the system.
     weights: (f64, f64),
-    stepper: Stepper<E, Linearised<E, L>, 2>,
-    columns: Columns<X>,
+    stepper: Stepper<E, LinearisedInterfaces<E, L>, 2>,
+    columns: VariationalEquations<X>,
     stiffness: E,
     /// Zero for a quantity that does not change along solutions.
     constant: [E; MAX_ORDER + 1],
     log_determinant: E,
     /// The integral of dg/dpsi of the first interface.
-    log_across: E,
+    log_transverse: E,
     /// Half the number of states that are variables of the system.
     states: E,
     /// ln psi at the start.
@@ -116,31 +116,40 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
         let four = Four::new(simd, [0.0; 4]);
         return if parameters {
             let any = Both([four; 2]);
-            Box::new(Track::new(simd, law, loading, weights, pair, any))
+            Box::new(TangentSolution::new(simd, law, loading, weights, pair, any))
         } else {
-            Box::new(Track::new(simd, law, loading, weights, pair, four))
+            Box::new(TangentSolution::new(
+                simd, law, loading, weights, pair, four,
+            ))
         };
     }
     let (pair, any) = (Both([0.0; 2]), Both([Both([Both([0.0; 2]); 2]); 2]));
-    Box::new(Track::new(AnyProcessor, law, loading, weights, pair, any))
+    Box::new(TangentSolution::new(
+        AnyProcessor,
+        law,
+        loading,
+        weights,
+        pair,
+        any,
+    ))
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law> Track<S, E, X, L> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law> TangentSolution<S, E, X, L> {
     fn new(shell: S, law: L, loading: Loading, weights: (f64, f64), zero: E, any: X) -> Self {
-        let formula = Linearised(Interfaces {
+        let formula = LinearisedInterfaces(Interfaces {
             law,
             driving: zero.like(loading.driving),
             stiffness: zero.like(loading.stiffness),
         });
-        Track {
+        TangentSolution {
             shell,
             weights,
             stepper: Stepper::new(formula, zero),
-            columns: Columns::new([any; 3], any, any),
+            columns: VariationalEquations::new([any; 3], any, any),
             stiffness: zero.like(loading.stiffness),
             constant: [zero; MAX_ORDER + 1],
             log_determinant: zero,
-            log_across: zero,
+            log_transverse: zero,
             states: zero,
             start: [0.0; 2],
         }
@@ -149,7 +158,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law> Track<S, E, X, L> {
     #[inline(always)]
     fn step(&mut self, accuracy: &Accuracy, limit: E) -> E {
         let longest_of_solution = self.stepper.longest(accuracy);
-        let along = Linearisation {
+        let along = JacobianSeries {
             entries: entries(&self.stepper, &self.constant),
             stress: self.stepper.series(0),
             stiffness: self.stiffness,
@@ -165,7 +174,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law> Track<S, E, X, L> {
         self.columns.advance_by(accuracy.order, h);
         let (trace, across) = self.mean_traces(accuracy.order, h);
         self.log_determinant = trace.mul_add(taken, self.log_determinant);
-        self.log_across = across.mul_add(taken, self.log_across);
+        self.log_transverse = across.mul_add(taken, self.log_transverse);
         taken
     }
 
@@ -208,7 +217,7 @@ fn entries<'a, E: Element, F: Formula<E, 2>>(
 /// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code, and
 /// the same whatever the columns.
 struct Expand<'a, E, L> {
-    stepper: &'a mut Stepper<E, Linearised<E, L>, 2>,
+    stepper: &'a mut Stepper<E, LinearisedInterfaces<E, L>, 2>,
     accuracy: &'a Accuracy,
 }
 
@@ -221,13 +230,15 @@ impl<E: Element, L: Law> NullaryFnOnce for Expand<'_, E, L> {
 }
 
 /// A step whose series are made, to be compiled for the processor.
-struct Step<'a, T, E> {
+struct TangentStep<'a, T, E> {
     track: &'a mut T,
     accuracy: &'a Accuracy,
     limit: E,
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law> NullaryFnOnce for Step<'_, Track<S, E, X, L>, E> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law> NullaryFnOnce
+    for TangentStep<'_, TangentSolution<S, E, X, L>, E>
+{
     type Output = E;
     #[inline(always)]
     fn call(self) -> E {
@@ -235,7 +246,9 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law> NullaryFnOnce for Step<'_, Trac
     }
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for Track<S, E, X, L> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N>
+    for TangentSolution<S, E, X, L>
+{
     fn start(&mut self, y: &[f64; N]) {
         let zero = self.stiffness.like(0.0);
         self.start = [y[1], y[N - 1]];
@@ -256,10 +269,10 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for
                 any
             }
         };
-        self.columns = Columns::new(x, lane(N), lane(N + 1));
+        self.columns = VariationalEquations::new(x, lane(N), lane(N + 1));
         self.states = zero.like(0.5 * (N - 1) as f64);
         self.log_determinant = zero;
-        self.log_across = zero;
+        self.log_transverse = zero;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
@@ -269,7 +282,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for
             stepper: &mut self.stepper,
             accuracy,
         });
-        let step = Step {
+        let step = TangentStep {
             track: self,
             accuracy,
             limit,
@@ -287,7 +300,9 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N> for
     }
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N> for Track<S, E, X, L> {
+impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N>
+    for TangentSolution<S, E, X, L>
+{
     fn derivatives(&self) -> Derivatives<N> {
         let psi = self.stepper.state()[1].interfaces();
         let [tau, psi1, psi2] = self.columns.state();
@@ -312,7 +327,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N> for 
                 parameter(N + 1, self.weights.1),
             ],
             log_determinant: self.log_determinant.first() - growth,
-            log_across: (N == 2).then(|| self.log_across.first() - growth),
+            log_transverse: (N == 2).then(|| self.log_transverse.first() - growth),
         }
     }
 }

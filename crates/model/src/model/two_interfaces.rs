@@ -2,12 +2,12 @@
 
 use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::series::Track;
+use super::series::SeriesSolution;
 use super::tangent::tangent;
 use super::{Driven, Loading, Parameter};
 use crate::field::{Analytic, Jacobian, State, VectorField};
 use crate::friction::Law;
-use crate::series::{Cubic, Equations, Recorded, Solution, Tangent, Transport};
+use crate::series::{Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -87,7 +87,7 @@ impl<L: Law> TwoInterfaces<L> {
 
 impl<L: Law> Analytic<3> for TwoInterfaces<L> {
     fn solution(&self) -> Box<dyn Solution<3> + '_> {
-        Box::new(Track::new(self.law.core(), &self.loading))
+        Box::new(SeriesSolution::new(self.law.core(), &self.loading))
     }
 
     fn reference(&self) -> Box<dyn Solution<3> + '_> {
@@ -102,7 +102,7 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
         self.recorded().reference_tangent()
     }
 
-    fn transport(&self, start: [Cubic; 3]) -> Option<Box<dyn Transport<3> + '_>> {
+    fn transport(&self, start: [Jet3; 3]) -> Option<Box<dyn TaylorMap<3> + '_>> {
         Some(self.recorded().transport(start))
     }
 }

@@ -1,4 +1,4 @@
-//! Tangents: solutions of the equations linearised along a solution, in power series.
+//! Variational equations: solutions of the equations linearised along a solution, in power series.
 //!
 //! With the Jacobian's entries as series along the solution the linearised equations need one product of series for each
 //! entry, and their solutions, the columns, share it: they stand in lanes. The sums run in loops, as there the work is in the
@@ -30,7 +30,7 @@ impl<T: Element> Spread<Both<Both<Both<T>>>> for Both<T> {
 }
 
 /// The series along a solution that its linearised equations need; the lanes of E are the interfaces.
-pub struct Linearisation<'a, E> {
+pub struct JacobianSeries<'a, E> {
     /// dv/dtau, dv/dpsi, dg/dtau, dg/dpsi of v and dpsi/dt = g.
     pub entries: [&'a [E]; 4],
     /// tau itself.
@@ -42,7 +42,7 @@ pub struct Linearisation<'a, E> {
 }
 
 /// The columns, in the lanes of X, each a perturbation of (tau, psi_1, psi_2).
-pub struct Columns<X> {
+pub struct VariationalEquations<X> {
     /// At the beginning of the next step.
     x: [X; 3],
     /// The series, in the order of the powers.
@@ -52,10 +52,10 @@ pub struct Columns<X> {
     stiffness: X,
 }
 
-impl<X: Element> Columns<X> {
+impl<X: Element> VariationalEquations<X> {
     /// Beginning at x, of which one lane each may be the derivative in V_H and in K.
     pub fn new(x: [X; 3], driving: X, stiffness: X) -> Self {
-        Columns {
+        VariationalEquations {
             x,
             series: Box::new([x; REFERENCE_ORDER + 1]),
             driving,
@@ -72,7 +72,7 @@ impl<X: Element> Columns<X> {
     ///
     ///   dtau' = K (dV_H - dv_1 - dv_2) + dK tau'/K,  dpsi_i' = dg_i.
     #[inline(always)]
-    pub fn expand<E: Spread<X>>(&mut self, order: usize, along: &Linearisation<'_, E>) {
+    pub fn expand<E: Spread<X>>(&mut self, order: usize, along: &JacobianSeries<'_, E>) {
         let any = self.x[0];
         let zero = any.like(0.0);
         let [v_tau, v_psi, g_tau, g_psi] = along.entries.map(|entry| &entry[..order]);

@@ -1,4 +1,4 @@
-//! Polynomials of the third degree in two variations: what a flow map is to third order around a solution.
+//! Third-order jets: polynomials of the third degree in two variations, what a flow map is around a solution.
 
 use super::element::{Element, rough_exp2, rough_log2};
 use crate::number::{DoubleDouble, Real};
@@ -8,21 +8,21 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// The coefficients of 1, s, t, s^2, s t, t^2, s^3, s^2 t, s t^2, t^3; all of higher degree are left out. Choices and rough
 /// functions, which step sizes are made of, go by the first.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Cubic(pub [f64; 10]);
+pub struct Jet3(pub [f64; 10]);
 
-impl Cubic {
+impl Jet3 {
     /// A number that does not vary.
     pub fn constant(x: f64) -> Self {
         let mut c = [0.0; 10];
         c[0] = x;
-        Cubic(c)
+        Jet3(c)
     }
 
     /// x + a s + b t
     pub fn linear(x: f64, [a, b]: [f64; 2]) -> Self {
         let mut c = [0.0; 10];
         c[..3].copy_from_slice(&[x, a, b]);
-        Cubic(c)
+        Jet3(c)
     }
 
     /// The value without the variations.
@@ -43,7 +43,7 @@ impl Cubic {
 
     /// x times all.
     pub fn scaled(self, x: f64) -> Self {
-        Cubic(self.0.map(|c| c * x))
+        Jet3(self.0.map(|c| c * x))
     }
 
     /// g(self), from g, g', g''/2 and g'''/6 at the value.
@@ -63,7 +63,7 @@ impl Cubic {
     }
 }
 
-impl Neg for Cubic {
+impl Neg for Jet3 {
     type Output = Self;
     #[inline]
     fn neg(self) -> Self {
@@ -71,7 +71,7 @@ impl Neg for Cubic {
     }
 }
 
-impl Add for Cubic {
+impl Add for Jet3 {
     type Output = Self;
     #[inline]
     fn add(self, o: Self) -> Self {
@@ -79,7 +79,7 @@ impl Add for Cubic {
     }
 }
 
-impl Sub for Cubic {
+impl Sub for Jet3 {
     type Output = Self;
     #[inline]
     fn sub(self, o: Self) -> Self {
@@ -87,7 +87,7 @@ impl Sub for Cubic {
     }
 }
 
-impl Mul for Cubic {
+impl Mul for Jet3 {
     type Output = Self;
     #[inline]
     fn mul(self, o: Self) -> Self {
@@ -105,11 +105,11 @@ impl Mul for Cubic {
             c[8] += p[1] * q[5] + p[2] * q[4];
             c[9] += p[2] * q[5];
         }
-        Cubic(c)
+        Jet3(c)
     }
 }
 
-impl Div for Cubic {
+impl Div for Jet3 {
     type Output = Self;
     #[allow(clippy::suspicious_arithmetic_impl)]
     #[inline(never)]
@@ -117,13 +117,13 @@ impl Div for Cubic {
         let r = 1.0 / o.0[0];
         // Of a constant near 0 the powers overflow.
         if o == Self::constant(o.0[0]) {
-            return Cubic(self.0.map(|c| c / o.0[0]));
+            return Jet3(self.0.map(|c| c / o.0[0]));
         }
         self * o.composed([r, -r * r, r * r * r, -r * r * r * r])
     }
 }
 
-impl Element for Cubic {
+impl Element for Jet3 {
     const LANES: usize = 1;
     #[inline(never)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {

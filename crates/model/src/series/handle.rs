@@ -19,7 +19,7 @@ pub struct Series<'t, E, O> {
 }
 
 /// What a series is.
-pub(super) enum Kind<'t, E, O> {
+pub(super) enum SeriesKind<'t, E, O> {
     /// A constant in the program's text: what it is the compiler knows.
     Literal(f64),
     /// A constant of 31 digits.
@@ -30,14 +30,14 @@ pub(super) enum Kind<'t, E, O> {
     Row(Row<'t, E, O>),
 }
 
-use Kind::{Exact, Value};
+use SeriesKind::{Exact, Value};
 
-impl<E, O> Kind<'_, E, O> {
+impl<E, O> SeriesKind<'_, E, O> {
     /// The same, and no literal any more.
     #[inline(always)]
     pub(super) fn released(self) -> Self {
         match self {
-            Kind::Literal(x) => Exact(DoubleDouble::from(x)),
+            SeriesKind::Literal(x) => Exact(DoubleDouble::from(x)),
             other => other,
         }
     }
@@ -103,9 +103,9 @@ pub(super) fn row<'t, E, O>(x: Row<'t, E, O>) -> Series<'t, E, O> {
 
 impl<'t, E: Element, O: Order> Series<'t, E, O> {
     #[inline(always)]
-    pub(super) fn kind(self) -> Kind<'t, E, O> {
+    pub(super) fn kind(self) -> SeriesKind<'t, E, O> {
         if let Some(tape) = self.tape {
-            Kind::Row(Row {
+            SeriesKind::Row(Row {
                 tape,
                 row: self.row,
                 newest: self.newest,
@@ -114,7 +114,7 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
         } else if let Some(x) = self.value {
             Value(x)
         } else if self.literal {
-            Kind::Literal(self.exact.hi())
+            SeriesKind::Literal(self.exact.hi())
         } else {
             Exact(self.exact)
         }
@@ -134,8 +134,8 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
         match self.kind() {
             Exact(y) => constant(like.like_exact(y)),
             Value(y) => constant(y),
-            Kind::Literal(y) => constant(like.like(y)),
-            Kind::Row(row) => row.times(x),
+            SeriesKind::Literal(y) => constant(like.like(y)),
+            SeriesKind::Row(row) => row.times(x),
         }
     }
 
@@ -143,7 +143,7 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
     #[inline(always)]
     pub fn over_interfaces(self) -> Self {
         match self.kind() {
-            Kind::Row(a) => row(a.mapped(a.newest().over_interfaces())),
+            SeriesKind::Row(a) => row(a.mapped(a.newest().over_interfaces())),
             _ => self,
         }
     }
@@ -152,7 +152,7 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
     #[inline(always)]
     pub(super) fn lanewise(self, map: impl Fn(E) -> E) -> Self {
         match self.kind() {
-            Kind::Row(a) => row(a.mapped(map(a.newest()))),
+            SeriesKind::Row(a) => row(a.mapped(map(a.newest()))),
             _ => self,
         }
     }
@@ -161,7 +161,7 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
     #[inline(always)]
     pub(super) fn row(self) -> Option<usize> {
         match self.kind() {
-            Kind::Row(a) => Some(a.stored().row),
+            SeriesKind::Row(a) => Some(a.stored().row),
             _ => None,
         }
     }

@@ -4,15 +4,15 @@
 //! sign of a quantity, no step leads further than just behind a zero of that.
 
 use super::Accuracy;
-use super::cubic::Cubic;
+use super::cubic::Jet3;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::linearised::longest_of_columns;
-use super::program::{Program, Rows};
+use super::program::{Program, ProgramRows};
 use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
 use crate::number::DoubleDouble;
 
 /// Records the formula at a state.
-pub(super) type Record<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
+pub(super) type RecordFormula<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
 
 /// A solution on its way, in a number of dimensions known when the program runs.
 pub(super) trait Trajectory {
@@ -41,11 +41,11 @@ pub(super) trait Trajectory {
 /// A solution on its way, in numbers T. What the program gives first are the rates of the variables; what it gives after them
 /// as many slip rates as `watched` says, one or two, are kept with its series.
 pub struct Interpreted<'a, T> {
-    record: Record<'a>,
+    record: RecordFormula<'a>,
     program: Program,
-    rows: Rows<T>,
+    rows: ProgramRows<T>,
     /// For the first coefficients elsewhere than where the series begin.
-    probe: Rows<T>,
+    probe: ProgramRows<T>,
     room: usize,
     x: Vec<T>,
     lost: Vec<T>,
@@ -60,7 +60,7 @@ pub struct Interpreted<'a, T> {
 impl<'a, T: Element> Interpreted<'a, T> {
     /// To be started, in so many variables, with room for so many coefficients; `any` is any number.
     pub(super) fn new(
-        record: Record<'a>,
+        record: RecordFormula<'a>,
         (variables, watched): (usize, usize),
         room: usize,
         any: T,
@@ -68,8 +68,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
         let program = record(&vec![1.0; variables]);
         let zero = any.like(0.0);
         Interpreted {
-            rows: Rows::new(&program, room, any),
-            probe: Rows::new(&program, 1, any),
+            rows: ProgramRows::new(&program, room, any),
+            probe: ProgramRows::new(&program, 1, any),
             program,
             record,
             room,
@@ -105,8 +105,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
         if self.program.branches {
             let x: Vec<f64> = self.x.iter().map(|x| x.first()).collect();
             self.program = (self.record)(&x);
-            self.rows = Rows::new(&self.program, self.room, self.any);
-            self.probe = Rows::new(&self.program, 1, self.any);
+            self.rows = ProgramRows::new(&self.program, self.room, self.any);
+            self.probe = ProgramRows::new(&self.program, 1, self.any);
         }
         for (i, x) in self.x.iter().enumerate() {
             self.rows.set(i, 0, *x);
@@ -119,7 +119,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
     }
 
     /// What the program gives, and its series.
-    pub(super) fn made(&self) -> (&Program, &Rows<T>) {
+    pub(super) fn made(&self) -> (&Program, &ProgramRows<T>) {
         (&self.program, &self.rows)
     }
 
@@ -321,31 +321,36 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
 
 /// A solution to third order in two variations of its start.
 pub(super) struct Transported<'a> {
-    solution: Interpreted<'a, Cubic>,
-    start: Vec<Cubic>,
+    solution: Interpreted<'a, Jet3>,
+    start: Vec<Jet3>,
     order: usize,
 }
 
 impl<'a> Transported<'a> {
     /// To be started; the variations of the start are those of `start`.
-    pub fn new(record: Record<'a>, shape: (usize, usize), room: usize, start: &[Cubic]) -> Self {
+    pub fn new(
+        record: RecordFormula<'a>,
+        shape: (usize, usize),
+        room: usize,
+        start: &[Jet3],
+    ) -> Self {
         Transported {
-            solution: Interpreted::new(record, shape, room, Cubic::default()),
+            solution: Interpreted::new(record, shape, room, Jet3::default()),
             start: start.to_vec(),
             order: 0,
         }
     }
 
     /// The i-th variable of the state reached.
-    pub fn polynomial(&self, i: usize) -> Cubic {
+    pub fn polynomial(&self, i: usize) -> Jet3 {
         self.solution.x[i]
     }
 
     /// The i-th variable, and its time derivative, at a time after the beginning of the last step.
-    pub fn after(&self, i: usize, time: Cubic) -> [Cubic; 2] {
+    pub fn after(&self, i: usize, time: Jet3) -> [Jet3; 2] {
         let one_over = 1.0 / self.solution.unit;
         let h = time.scaled(one_over);
-        let (mut state, mut rate) = (Cubic::default(), Cubic::default());
+        let (mut state, mut rate) = (Jet3::default(), Jet3::default());
         for c in self.solution.rows.row(i)[..=self.order].iter().rev() {
             rate = rate * h + state;
             state = state * h + *c;

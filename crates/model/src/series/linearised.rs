@@ -8,20 +8,20 @@
 use super::Accuracy;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::interpreted::{Interpreted, Trajectory};
-use super::program::{Program, Rows, Source};
+use super::program::{Program, ProgramRows, Source};
 use crate::number::DoubleDouble;
 use pulp::NullaryFnOnce;
 
 /// An entry of the Jacobian, or of the derivatives in parameters, that is not zero everywhere.
 #[derive(Debug, Clone, Copy)]
-struct Entry {
+struct JacobianEntry {
     /// The rate, and what it is differentiated in.
     place: (usize, usize),
     series: Source,
 }
 
 /// The columns: `chunks` elements X for every variable, whose lanes are the N components of the start and then the parameters.
-struct Columns<X> {
+struct ColumnChunks<X> {
     variables: usize,
     chunks: usize,
     /// At the beginning of the next step.
@@ -30,11 +30,11 @@ struct Columns<X> {
     series: Vec<X>,
 }
 
-impl<X: Element> Columns<X> {
+impl<X: Element> ColumnChunks<X> {
     fn new(variables: usize, directions: usize, room: usize, any: X) -> Self {
         let chunks = directions.div_ceil(X::LANES);
         let zero = any.like(0.0);
-        Columns {
+        ColumnChunks {
             variables,
             chunks,
             x: vec![zero; variables * chunks],
@@ -64,20 +64,20 @@ impl<X: Element> Columns<X> {
 }
 
 /// The series of the columns from that of the entries, to be compiled for the processor.
-struct Expand<'a, T, X> {
-    columns: &'a mut Columns<X>,
-    jacobian: &'a [Entry],
-    forcing: &'a [Entry],
-    rows: &'a Rows<T>,
+struct ExpandColumns<'a, T, X> {
+    columns: &'a mut ColumnChunks<X>,
+    jacobian: &'a [JacobianEntry],
+    forcing: &'a [JacobianEntry],
+    rows: &'a ProgramRows<T>,
     unit: f64,
     order: usize,
 }
 
-impl<T: Element, X: Element> NullaryFnOnce for Expand<'_, T, X> {
+impl<T: Element, X: Element> NullaryFnOnce for ExpandColumns<'_, T, X> {
     type Output = ();
     #[inline(always)]
     fn call(self) {
-        let Columns {
+        let ColumnChunks {
             variables,
             chunks,
             x,
@@ -178,12 +178,12 @@ pub(super) fn longest_of_columns<X: Element>(
 /// components, each counted in units of 1 + |x_i|.
 pub(super) struct Linearised<'a, T, X> {
     solution: Interpreted<'a, T>,
-    columns: Columns<X>,
+    columns: ColumnChunks<X>,
     parameters: usize,
     /// Whether the growth across a symmetric subspace is what the last variable grows by on its own.
     symmetric: bool,
     log_determinant: DoubleDouble,
-    log_across: DoubleDouble,
+    log_transverse: DoubleDouble,
 }
 
 impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
@@ -197,20 +197,24 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     ) -> Self {
         let variables = solution.reached().len();
         Linearised {
-            columns: Columns::new(variables, variables + parameters, room, any),
+            columns: ColumnChunks::new(variables, variables + parameters, room, any),
             solution,
             parameters,
             symmetric,
             log_determinant: DoubleDouble::ZERO,
-            log_across: DoubleDouble::ZERO,
+            log_transverse: DoubleDouble::ZERO,
         }
     }
 
     /// Entries that are not zero, of a matrix with so many columns that stands there in the outputs.
-    fn entries(program: &Program, from: usize, (rows, columns): (usize, usize)) -> Vec<Entry> {
+    fn entries(
+        program: &Program,
+        from: usize,
+        (rows, columns): (usize, usize),
+    ) -> Vec<JacobianEntry> {
         let all = program.outputs[from..][..rows * columns].iter().enumerate();
         all.filter(|(_, series)| **series != Source::Number(DoubleDouble::ZERO))
-            .map(|(at, series)| Entry {
+            .map(|(at, series)| JacobianEntry {
                 place: (at / columns, at % columns),
                 series: *series,
             })
@@ -240,7 +244,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     fn advance_columns(&mut self, order: usize, h: DoubleDouble) {
         let any = self.columns.x[0];
         let h = any.like_exact(h);
-        let Columns {
+        let ColumnChunks {
             variables,
             chunks,
             x,
@@ -273,7 +277,7 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         self.solution.start(y);
         self.columns.start();
         self.log_determinant = DoubleDouble::ZERO;
-        self.log_across = DoubleDouble::ZERO;
+        self.log_transverse = DoubleDouble::ZERO;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
@@ -284,7 +288,7 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         let jacobian = Self::entries(program, from, (n, n));
         let forcing = Self::entries(program, from + n * n, (n, self.parameters));
         let unit = self.solution.unit();
-        self.columns.x[0].run(Expand {
+        self.columns.x[0].run(ExpandColumns {
             columns: &mut self.columns,
             jacobian: &jacobian,
             forcing: &forcing,
@@ -308,7 +312,7 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
             let grown = self.mean(entry.series, order, h) * taken;
             self.log_determinant = self.log_determinant + grown;
             if entry.place.0 == n - 1 {
-                self.log_across = self.log_across + grown;
+                self.log_transverse = self.log_transverse + grown;
             }
         }
         taken
@@ -339,7 +343,7 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
     }
 
     fn log_growth(&self) -> (f64, Option<f64>) {
-        let across = self.symmetric.then(|| self.log_across.to_f64());
+        let across = self.symmetric.then(|| self.log_transverse.to_f64());
         (self.log_determinant.to_f64(), across)
     }
 }

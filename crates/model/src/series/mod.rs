@@ -39,8 +39,8 @@ mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
-pub use columns::{Columns, Linearisation, Spread};
-pub use cubic::Cubic;
+pub use columns::{JacobianSeries, Spread, VariationalEquations};
+pub use cubic::Jet3;
 pub use element::Element;
 pub(crate) use equations::is_small;
 pub use equations::{Equations, Plain};
@@ -53,7 +53,7 @@ pub use plain::Both;
 pub use recorded::Recorded;
 pub use stepper::Stepper;
 pub use tape::Order;
-pub use transport::Transport;
+pub use transport::TaylorMap;
 pub use variational::Variational;
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
@@ -107,7 +107,7 @@ pub struct Derivatives<const N: usize> {
     pub log_determinant: f64,
     /// Where the system is the symmetric subspace of two equal parts under one common variable: the logarithm by which a small
     /// difference between the parts grows.
-    pub log_across: Option<f64>,
+    pub log_transverse: Option<f64>,
 }
 
 /// The series of a solution at the beginning of a step, in the variables that it is made in.

@@ -5,7 +5,7 @@
 //! any kind, and no code for each formula.
 
 use super::element::Element;
-use super::trace::{Graph, Node, Place, Traced};
+use super::trace::{Graph, Node, NodeIndex, Traced};
 use crate::number::{DoubleDouble, Real};
 
 /// A quantity: a number, or the row of its coefficients.
@@ -76,7 +76,7 @@ impl Program {
         (variables, parameters): (usize, &[f64]),
         outputs: &[Traced<'_>],
     ) -> Self {
-        let outputs: Vec<Place> = outputs.iter().map(|&x| graph.place_of(x)).collect();
+        let outputs: Vec<NodeIndex> = outputs.iter().map(|&x| graph.place_of(x)).collect();
         let nodes = graph.nodes();
         let mut assembly = Assembly {
             program: Program {
@@ -112,7 +112,7 @@ impl Program {
 }
 
 /// Whether a node is needed, for each.
-fn needed(nodes: &[Node], outputs: &[Place]) -> Vec<bool> {
+fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
     let mut needed = vec![false; nodes.len()];
     outputs.iter().for_each(|&at| needed[at] = true);
     for place in (0..nodes.len()).rev() {
@@ -173,7 +173,7 @@ impl Assembly<'_> {
     fn source(&mut self, node: Node) -> Source {
         use Operation as Op;
         use Source::{Number, Row};
-        let at = |place: Place| self.sources[place];
+        let at = |place: NodeIndex| self.sources[place];
         let (operation, spare) = match node {
             Node::Variable(i) => {
                 let parameter = i.checked_sub(self.program.variables);
@@ -272,7 +272,7 @@ impl Assembly<'_> {
 
 /// The rows of a program: the coefficients of each, one after the other.
 #[derive(Debug, Clone)]
-pub(super) struct Rows<T> {
+pub(super) struct ProgramRows<T> {
     coefficients: Vec<T>,
     /// Coefficients that a row has room for.
     room: usize,
@@ -281,10 +281,10 @@ pub(super) struct Rows<T> {
     any: T,
 }
 
-impl<T: Element> Rows<T> {
+impl<T: Element> ProgramRows<T> {
     /// With room for these; `any` is any number.
     pub fn new(program: &Program, room: usize, any: T) -> Self {
-        Rows {
+        ProgramRows {
             coefficients: vec![any.like(0.0); program.rows() * room],
             room,
             inverses: (0..room)

@@ -1,10 +1,10 @@
 //! The arithmetic of [`Series`], so that any formula can be evaluated in them.
 
 use super::element::Element;
-use super::handle::{Kind, Series, exact, literal, row, value};
+use super::handle::{Series, SeriesKind, exact, literal, row, value};
 use super::tape::Order;
 use crate::number::{DoubleDouble, Real};
-use Kind::{Exact, Literal, Row, Value};
+use SeriesKind::{Exact, Literal, Row, Value};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 impl<E: Element, O: Order> Neg for Series<'_, E, O> {

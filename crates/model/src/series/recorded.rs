@@ -1,13 +1,13 @@
-//! Solutions of any [`Equations`] that are computed by a recorded formula: references, tangents and transports.
+//! Solutions of any [`Equations`] that are computed by a recorded formula: references, tangents and Taylor maps.
 
-use super::cubic::Cubic;
+use super::cubic::Jet3;
 use super::equations::Equations;
-use super::interpreted::{Interpreted, Record, Trajectory, Transported};
+use super::interpreted::{Interpreted, RecordFormula, Trajectory, Transported};
 use super::linearised::Linearised;
 use super::program::Program;
 use super::trace::{Graph, Traced};
 use super::{
-    Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, Transport,
+    Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
 };
 #[cfg(target_arch = "x86_64")]
 use super::{Four, avx2};
@@ -32,7 +32,7 @@ pub struct Recorded<S, const N: usize> {
 
 /// A recorded formula: its variables, the slip rates among its outputs, the parameters in which it has derivatives.
 struct Recording<'a> {
-    record: Record<'a>,
+    record: RecordFormula<'a>,
     variables: usize,
     slip_rates: usize,
     parameters: usize,
@@ -73,7 +73,7 @@ impl<'a> Recording<'a> {
         Box::new(Linearised::new(solution, kind, REFERENCE_ROOM, zero))
     }
 
-    fn transport(self, start: &[Cubic]) -> Transported<'a> {
+    fn transport(self, start: &[Jet3]) -> Transported<'a> {
         let shape = self.shape();
         Transported::new(self.record, shape, ROOM, start)
     }
@@ -111,23 +111,23 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
 impl<const N: usize> Tangent<N> for Known<Box<dyn Trajectory + '_>, N> {
     fn derivatives(&self) -> Derivatives<N> {
         let column = |at: usize| std::array::from_fn(|i| self.0.derivative(i, at));
-        let (log_determinant, log_across) = self.0.log_growth();
+        let (log_determinant, log_transverse) = self.0.log_growth();
         Derivatives {
             start: std::array::from_fn(column),
             parameters: [column(N), column(N + 1)],
             log_determinant,
-            log_across,
+            log_transverse,
         }
     }
 }
 
-impl<const N: usize> Transport<N> for Known<Box<Transported<'_>>, N> {
-    fn polynomials(&self) -> [Cubic; N] {
+impl<const N: usize> TaylorMap<N> for Known<Box<Transported<'_>>, N> {
+    fn polynomials(&self) -> [Jet3; N] {
         std::array::from_fn(|i| self.0.polynomial(i))
     }
 
-    fn after(&self, time: Cubic) -> [[Cubic; N]; 2] {
-        let each: [[Cubic; 2]; N] = std::array::from_fn(|i| self.0.after(i, time));
+    fn after(&self, time: Jet3) -> [[Jet3; N]; 2] {
+        let each: [[Jet3; 2]; N] = std::array::from_fn(|i| self.0.after(i, time));
         [0, 1].map(|k| each.map(|both| both[k]))
     }
 }
@@ -160,7 +160,7 @@ impl<'a, S: Equations<N> + 'a, const N: usize> Recorded<S, N> {
     }
 
     /// A solution to third order in two variations, which are those of this start.
-    pub fn transport(self, start: [Cubic; N]) -> Box<dyn Transport<N> + 'a> {
+    pub fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
         let recording = self.recording(Derived::Nothing);
         Box::new(Known(Box::new(recording.transport(&start))))
     }

@@ -7,18 +7,18 @@ use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
 /// sum of a_j b_(k-j) over 0 < j < k, k being the length of both.
-struct Product<'a, E> {
+struct CauchyProduct<'a, E> {
     a: &'a [Cell<E>],
     b: &'a [Cell<E>],
     zero: E,
 }
 
-impl<E: Element> NullaryFnOnce for Product<'_, E> {
+impl<E: Element> NullaryFnOnce for CauchyProduct<'_, E> {
     type Output = E;
     /// With four sums side by side: one or two would wait for each other.
     #[inline(always)]
     fn call(self) -> E {
-        let Product { a, b, zero } = self;
+        let CauchyProduct { a, b, zero } = self;
         let k = a.len();
         let (mut first, mut second, mut third, mut fourth) = (zero, zero, zero, zero);
         let (mut i, mut j) = (1, k.saturating_sub(1));
@@ -86,7 +86,7 @@ impl<E: Element, O: Order> Row<'_, E, O> {
     #[inline(always)]
     fn running_product(self, other: Self) -> E {
         let k = self.order();
-        let product = Product {
+        let product = CauchyProduct {
             a: &self.coefficients()[..k],
             b: &other.coefficients()[..k],
             zero: self.get(0).like(0.0),

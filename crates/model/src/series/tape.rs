@@ -1,4 +1,4 @@
-//! Power series in time that are made order by order.
+//! Taylor-mode automatic differentiation: power series in time that are made order by order.
 //!
 //! A formula written for any [`Real`](crate::number::Real) is evaluated once per order on [`Series`]: handles of rows on a tape, the coefficients
 //! so far. At order k every operation appends the k-th coefficient of its result from its arguments' coefficients 0..=k, by

@@ -13,7 +13,7 @@ use std::hash::{BuildHasherDefault, Hasher};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A node by its place in the list: every operand stands before what is made of it.
-pub(super) type Place = usize;
+pub(super) type NodeIndex = usize;
 
 /// What a node is, of which operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -22,26 +22,26 @@ pub(super) enum Node {
     Variable(usize),
     /// A constant, by the bits of its two parts.
     Constant(u64, u64),
-    Sum(Place, Place),
-    Difference(Place, Place),
-    Negative(Place),
-    Product(Place, Place),
-    Quotient(Place, Place),
-    Exponential(Place),
+    Sum(NodeIndex, NodeIndex),
+    Difference(NodeIndex, NodeIndex),
+    Negative(NodeIndex),
+    Product(NodeIndex, NodeIndex),
+    Quotient(NodeIndex, NodeIndex),
+    Exponential(NodeIndex),
     /// e^a - 1, and the node of e^a.
-    ExponentialLessOne(Place, Place),
-    Logarithm(Place),
+    ExponentialLessOne(NodeIndex, NodeIndex),
+    Logarithm(NodeIndex),
     /// ln(1 + a), and the node of that logarithm as it is for larger a.
-    LogarithmOfOneMore(Place, Place),
-    Sinh(Place),
+    LogarithmOfOneMore(NodeIndex, NodeIndex),
+    Sinh(NodeIndex),
     /// cosh a, and the node of sinh a, which stands before.
-    Cosh(Place, Place),
+    Cosh(NodeIndex, NodeIndex),
     /// a to the power of a constant, by its bits.
-    Power(Place, u64),
+    Power(NodeIndex, u64),
     /// 1 with the sign of a.
-    Sign(Place),
+    Sign(NodeIndex),
     /// a with the sign of b.
-    Signed(Place, Place),
+    Signed(NodeIndex, NodeIndex),
 }
 
 /// Multiplies and rotates (Fx hash): nodes are few words, and a graph is made for every solution.
@@ -72,7 +72,7 @@ impl Hasher for Hash {
 #[derive(Debug, Default)]
 pub struct Graph {
     nodes: RefCell<Vec<(Node, f64)>>,
-    places: RefCell<HashMap<Node, Place, BuildHasherDefault<Hash>>>,
+    places: RefCell<HashMap<Node, NodeIndex, BuildHasherDefault<Hash>>>,
     branches: Cell<bool>,
 }
 
@@ -104,7 +104,7 @@ impl Graph {
     }
 
     /// The node of a number.
-    pub(super) fn place_of(&self, x: Traced<'_>) -> Place {
+    pub(super) fn place_of(&self, x: Traced<'_>) -> NodeIndex {
         match x {
             Constant(x) => self.place(Node::Constant(x.hi().to_bits(), x.lo().to_bits()), x.hi()),
             Traced::Node(_, place) => place,
@@ -118,7 +118,7 @@ impl Graph {
         let mut slopes: Vec<Traced<'_>> = Vec::with_capacity(nodes.len());
         for (place, node) in nodes.iter().enumerate() {
             let at = |place| Traced::Node(self, place);
-            let (this, slope) = (at(place), |place: Place| slopes[place]);
+            let (this, slope) = (at(place), |place: NodeIndex| slopes[place]);
             slopes.push(match *node {
                 Node::Variable(i) => Traced::constant(f64::from(u8::from(i == variable))),
                 Node::Constant(..) | Node::Sign(_) => zero,
@@ -144,7 +144,7 @@ impl Graph {
         of.iter().map(slope).collect()
     }
 
-    fn place(&self, node: Node, value: f64) -> Place {
+    fn place(&self, node: Node, value: f64) -> NodeIndex {
         *self.places.borrow_mut().entry(node).or_insert_with(|| {
             let mut nodes = self.nodes.borrow_mut();
             nodes.push((node, value));
@@ -152,7 +152,7 @@ impl Graph {
         })
     }
 
-    fn value(&self, place: Place) -> f64 {
+    fn value(&self, place: NodeIndex) -> f64 {
         self.nodes.borrow()[place].1
     }
 }
@@ -165,7 +165,7 @@ impl<'g> Traced<'g> {
         self,
         of_constant: fn(DoubleDouble) -> DoubleDouble,
         of_value: fn(f64) -> f64,
-        node: fn(Place) -> Node,
+        node: fn(NodeIndex) -> Node,
     ) -> Self {
         match self {
             Constant(x) => Constant(of_constant(x)),
@@ -182,7 +182,7 @@ impl<'g> Traced<'g> {
         self,
         other: Self,
         of_values: fn(f64, f64) -> f64,
-        node: fn(Place, Place) -> Node,
+        node: fn(NodeIndex, NodeIndex) -> Node,
     ) -> Self {
         let graph = match (self, other) {
             (Traced::Node(graph, _), _) | (_, Traced::Node(graph, _)) => graph,

@@ -19,14 +19,14 @@ use pulp::NullaryFnOnce;
 
 /// The equations on duals, with the trace of the Jacobian watched first.
 #[derive(Debug, Clone, Copy)]
-struct Along<S, X> {
+struct WithTrace<S, X> {
     equations: S,
     parameters: [Dual<X>; 2],
     /// 1 in the lanes that change along the solution, 0 in those that stand for directions.
     changing: X,
 }
 
-impl<S, X: Element> Along<S, X> {
+impl<S, X: Element> WithTrace<S, X> {
     /// A rate without the derivatives in directions.
     #[inline(always)]
     fn changing<'t, O: Order>(&self, rate: Series<'t, Dual<X>, O>) -> Series<'t, Dual<X>, O> {
@@ -46,7 +46,7 @@ fn slope<X: Element, O: Order>(
     rate.lanewise(|d| d.like(d.gradient.lane(lane)))
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> Formula<Dual<X>, N> for Along<S, X> {
+impl<S: Equations<N>, X: Element, const N: usize> Formula<Dual<X>, N> for WithTrace<S, X> {
     #[inline(always)]
     fn rates<'t, O: Order>(&self, x: [Series<'t, Dual<X>, O>; N]) -> Rates<'t, Dual<X>, O, N> {
         // Two or three, one by one: what is in a loop folds too late.
@@ -93,7 +93,7 @@ impl<S: Equations<N>, X: Element, const N: usize> Formula<Dual<X>, N> for Along<
 /// A step may err by `atol + rtol |x_i|` in x_i. In a column of derivatives it may err by `rtol` of the largest of its
 /// components, each counted in units of 1 + |x_i|.
 pub struct Variational<S, X, const N: usize> {
-    stepper: Stepper<Dual<X>, Along<S, X>, N>,
+    stepper: Stepper<Dual<X>, WithTrace<S, X>, N>,
     log_determinant: f64,
 }
 
@@ -110,7 +110,7 @@ impl<S: Equations<N>, X: Element, const N: usize> Variational<S, X, N> {
             value: parameters[i],
             gradient: zero.with_lane(N + i, 1.0),
         };
-        let formula = Along {
+        let formula = WithTrace {
             equations,
             parameters: [parameter(0), parameter(1)],
             changing,
@@ -170,13 +170,13 @@ impl<S: Equations<N>, X: Element, const N: usize> Variational<S, X, N> {
 }
 
 /// A step, to be compiled for the processor.
-struct Step<'a, S, X, const N: usize> {
+struct VariationalStep<'a, S, X, const N: usize> {
     track: &'a mut Variational<S, X, N>,
     accuracy: &'a Accuracy,
     limit: Dual<X>,
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> NullaryFnOnce for Step<'_, S, X, N> {
+impl<S: Equations<N>, X: Element, const N: usize> NullaryFnOnce for VariationalStep<'_, S, X, N> {
     type Output = Dual<X>;
     #[inline(always)]
     fn call(self) -> Dual<X> {
@@ -198,7 +198,7 @@ impl<S: Equations<N>, X: Element, const N: usize> Solution<N> for Variational<S,
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let limit = self.stepper.state()[0].like_exact(limit);
-        let step = Step {
+        let step = VariationalStep {
             track: self,
             accuracy,
             limit,
@@ -229,7 +229,7 @@ impl<S: Equations<N>, X: Element, const N: usize> Tangent<N> for Variational<S, 
             start: std::array::from_fn(column),
             parameters: [column(N), column(N + 1)],
             log_determinant: self.log_determinant,
-            log_across: None,
+            log_transverse: None,
         }
     }
 }

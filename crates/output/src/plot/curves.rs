@@ -5,7 +5,7 @@ use super::canvas::{Canvas, Colour, PAPER, Pixel, colour};
 use super::frame::Frame;
 use super::smooth::smooth;
 use super::thin::thinned;
-use super::{Panel, Series, Stroke, names, strokes, symbols};
+use super::{Panel, PlotSeries, Stroke, names, strokes, symbols};
 use std::collections::{HashMap, HashSet};
 
 /// Breadths of lines: of one, of one of several, of one beside broader ones, and of those.
@@ -25,7 +25,7 @@ const CASING: f64 = 1.0;
 const SAMPLES: f64 = 2.5;
 
 /// The colour of a series, the one of that number in its panel.
-pub fn series_colour(series: &Series, number: usize) -> Colour {
+pub fn series_colour(series: &PlotSeries, number: usize) -> Colour {
     colour(series.colour.unwrap_or(number))
 }
 
@@ -61,7 +61,7 @@ pub fn curves(canvas: &Canvas, panel: &Panel, frame: &Frame) -> Vec<Pixel> {
 }
 
 /// What sets a curve off from a map: the same, broader, in white.
-fn casing(canvas: &Canvas, series: &Series, frame: &Frame, breadth: f64) {
+fn casing(canvas: &Canvas, series: &PlotSeries, frame: &Frame, breadth: f64) {
     if series.dots {
         dots(canvas, series, frame, (PAPER, breadth + CASING));
         return;
@@ -72,7 +72,7 @@ fn casing(canvas: &Canvas, series: &Series, frame: &Frame, breadth: f64) {
 
 fn line(
     canvas: &Canvas,
-    series: &Series,
+    series: &PlotSeries,
     frame: &Frame,
     (colour, width): (Colour, f64),
 ) -> Vec<Pixel> {
@@ -137,7 +137,7 @@ fn finer(width: f64, pieces: &[Vec<Pixel>]) -> f64 {
 
 fn dots(
     canvas: &Canvas,
-    series: &Series,
+    series: &PlotSeries,
     frame: &Frame,
     (colour, radius): (Colour, f64),
 ) -> Vec<Pixel> {

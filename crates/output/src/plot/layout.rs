@@ -34,7 +34,7 @@ const BOTTOM: f64 = 5.0;
 const ABOVE: f64 = 12.0;
 
 /// The picture.
-pub struct Page<'a> {
+pub struct PictureLayout<'a> {
     /// Width and height.
     pub size: (f64, f64),
     /// Lines of titles with the places where they begin.
@@ -61,11 +61,11 @@ pub struct Placed<'a> {
 ///
 /// # Errors
 /// [`crate::error::Error::Input`] for a panel that shows nothing.
-pub fn page(blocks: &[Block]) -> Result<Page<'_>> {
+pub fn page(blocks: &[Block]) -> Result<PictureLayout<'_>> {
     let most = blocks.iter().map(|block| block.columns.len()).max();
     let most = most.unwrap_or(0).max(1);
     let column = if most > 1 { NARROW } else { COLUMN };
-    let mut page = Page {
+    let mut page = PictureLayout {
         size: (column * most as f64, 0.0),
         titles: Vec::new(),
         panels: Vec::new(),
@@ -90,7 +90,7 @@ pub fn page(blocks: &[Block]) -> Result<Page<'_>> {
     Ok(page)
 }
 
-impl<'a> Page<'a> {
+impl<'a> PictureLayout<'a> {
     fn add_title(&mut self, title: &str) -> Result<()> {
         if title.is_empty() {
             return Ok(());
@@ -110,7 +110,7 @@ impl<'a> Page<'a> {
         let mut drafts = Vec::new();
         for (i, column) in columns.iter().enumerate() {
             let left = width * i as f64;
-            drafts.push(Column::draft(column, left, width, height)?);
+            drafts.push(PanelColumn::draft(column, left, width, height)?);
         }
         align(&mut drafts);
         let more = drafts.iter().map(|draft| draft.furniture() - draft.usual());
@@ -124,7 +124,7 @@ impl<'a> Page<'a> {
 }
 
 /// Headings at the top of a block are equally high, and so are those of panels side by side: the frames below begin there.
-fn align(columns: &mut [Column<'_>]) {
+fn align(columns: &mut [PanelColumn<'_>]) {
     let strips: Vec<Vec<f64>> = columns
         .iter()
         .map(|column| column.panels.iter().map(|draft| draft.strip).collect())
@@ -145,7 +145,7 @@ fn align(columns: &mut [Column<'_>]) {
 }
 
 /// A column of panels whose heights are not known yet.
-struct Column<'a> {
+struct PanelColumn<'a> {
     panels: Vec<Draft<'a>>,
     /// Ends of all the frames.
     x: (f64, f64),
@@ -167,7 +167,7 @@ fn one_line() -> f64 {
     Heading::LEAST + frame::below(1) + BOTTOM
 }
 
-impl<'a> Column<'a> {
+impl<'a> PanelColumn<'a> {
     fn draft(panels: &'a [Panel], left: f64, width: f64, height: f64) -> Result<Self> {
         let frame_height = (height / panels.len().max(1) as f64 - one_line()).min(width);
         let (mut inset, mut right) = (LEFT, RIGHT);
@@ -193,7 +193,7 @@ impl<'a> Column<'a> {
                 names: (text::wrapped(&panel.x.label, TEXT, limit), y_name),
             })
         };
-        Ok(Column {
+        Ok(PanelColumn {
             panels: begun.into_iter().map(finish).collect::<Result<_>>()?,
             x: (left + inset, left + inset + frame_width),
             left,

@@ -28,7 +28,7 @@ const FINEST: f64 = 1.6;
 
 /// What stands before a name.
 #[derive(Debug, Clone, PartialEq)]
-enum Sample {
+enum LegendSymbol {
     Nothing,
     Line(Stroke, f64),
     Dots(f64),
@@ -38,10 +38,10 @@ enum Sample {
 
 /// Words with what stands before them.
 #[derive(Debug, Clone, PartialEq)]
-struct Entry {
+struct LegendEntry {
     /// From the left end of the heading, and the middle of its line from the top.
     at: Pixel,
-    sample: Sample,
+    sample: LegendSymbol,
     text: String,
     colour: Colour,
 }
@@ -49,7 +49,7 @@ struct Entry {
 /// Title and legend with their places.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Heading {
-    entries: Vec<Entry>,
+    entries: Vec<LegendEntry>,
     lines: usize,
 }
 
@@ -67,13 +67,13 @@ impl Heading {
             used: 0.0,
             limit,
         };
-        flow.add(Sample::Nothing, &panel.title, INK, AFTER_TITLE);
+        flow.add(LegendSymbol::Nothing, &panel.title, INK, AFTER_TITLE);
         for swatch in panel.cells.iter().flat_map(|map| &map.swatches) {
             let colours: Vec<Colour> = swatch.shades.iter().copied().map(tint).collect();
             let sample = if colours.is_empty() {
-                Sample::Nothing
+                LegendSymbol::Nothing
             } else {
-                Sample::Squares(colours)
+                LegendSymbol::Squares(colours)
             };
             flow.add(sample, &swatch.label, INK, AFTER_ENTRY);
         }
@@ -81,14 +81,14 @@ impl Heading {
             let colour = series_colour(series, i);
             let width = line_width(panel, i).max(FINEST);
             let sample = if series.dots {
-                Sample::Dots(width)
+                LegendSymbol::Dots(width)
             } else {
-                Sample::Line(series.stroke, width)
+                LegendSymbol::Line(series.stroke, width)
             };
             flow.add(sample, &series.label, colour, AFTER_ENTRY);
         }
         for (stroke, words) in &panel.strokes {
-            flow.add(Sample::Line(*stroke, FINEST), words, INK, AFTER_ENTRY);
+            flow.add(LegendSymbol::Line(*stroke, FINEST), words, INK, AFTER_ENTRY);
         }
         for key in &panel.keys {
             let look = Look {
@@ -96,7 +96,7 @@ impl Heading {
                 filled: key.filled,
                 colour: key.colour.map_or(MARK, colour),
             };
-            flow.add(Sample::Symbol(look), &key.label, INK, AFTER_ENTRY);
+            flow.add(LegendSymbol::Symbol(look), &key.label, INK, AFTER_ENTRY);
         }
         flow.heading
     }
@@ -118,14 +118,14 @@ impl Heading {
     }
 }
 
-impl Sample {
+impl LegendSymbol {
     /// Of the room before the words.
     fn width(&self) -> f64 {
         match self {
-            Sample::Nothing => 0.0,
-            Sample::Line(..) => SAMPLE + GAP,
-            Sample::Dots(_) | Sample::Symbol(_) => 2.0 * symbols::HALF + GAP,
-            Sample::Squares(colours) => SQUARE * colours.len() as f64 + GAP,
+            LegendSymbol::Nothing => 0.0,
+            LegendSymbol::Line(..) => SAMPLE + GAP,
+            LegendSymbol::Dots(_) | LegendSymbol::Symbol(_) => 2.0 * symbols::HALF + GAP,
+            LegendSymbol::Squares(colours) => SQUARE * colours.len() as f64 + GAP,
         }
     }
 
@@ -135,13 +135,15 @@ impl Sample {
             y: (f64::NEG_INFINITY, f64::INFINITY),
         };
         match self {
-            Sample::Nothing => (),
-            Sample::Line(stroke, width) => {
+            LegendSymbol::Nothing => (),
+            LegendSymbol::Line(stroke, width) => {
                 strokes::draw(canvas, &[(x, y), (x + SAMPLE, y)], *stroke, *width, colour)
             }
-            Sample::Dots(radius) => canvas.circle((x + symbols::HALF, y), *radius, colour),
-            Sample::Symbol(look) => symbols::draw(canvas, *look, (x + symbols::HALF, y), &all),
-            Sample::Squares(colours) => squares(canvas, (x, y), colours),
+            LegendSymbol::Dots(radius) => canvas.circle((x + symbols::HALF, y), *radius, colour),
+            LegendSymbol::Symbol(look) => {
+                symbols::draw(canvas, *look, (x + symbols::HALF, y), &all)
+            }
+            LegendSymbol::Squares(colours) => squares(canvas, (x, y), colours),
         }
     }
 }
@@ -173,7 +175,7 @@ struct Flow {
 }
 
 impl Flow {
-    fn add(&mut self, sample: Sample, text: &str, colour: Colour, after: f64) {
+    fn add(&mut self, sample: LegendSymbol, text: &str, colour: Colour, after: f64) {
         if text.is_empty() {
             return;
         }
@@ -187,9 +189,9 @@ impl Flow {
             let middle = AROUND / 2.0 + (self.heading.lines as f64 - 0.5) * LINE;
             let (first, indent) = match i {
                 0 => (sample.clone(), 0.0),
-                _ => (Sample::Nothing, sample.width()),
+                _ => (LegendSymbol::Nothing, sample.width()),
             };
-            self.heading.entries.push(Entry {
+            self.heading.entries.push(LegendEntry {
                 at: (self.used + indent, middle),
                 sample: first,
                 text,

@@ -23,7 +23,7 @@ mod thin;
 mod ticks;
 
 pub use panel::{
-    Axis, Block, Cells, Key, Mark, Note, Panel, Series, Shade, Side, Stroke, Swatch, Symbol,
+    Axis, Block, Cells, Key, Mark, Note, Panel, PlotSeries, Shade, Side, Stroke, Swatch, Symbol,
 };
 
 use crate::error::{Error, Result};
@@ -39,14 +39,14 @@ const PNG_ZOOM: f32 = 2.0;
 
 /// Which kind of picture a file name asks for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Kind {
+pub enum PictureFormat {
     /// Vector graphics.
     Svg,
     /// Pixels.
     Png,
 }
 
-impl Kind {
+impl PictureFormat {
     /// By the extension.
     ///
     /// # Errors
@@ -54,8 +54,8 @@ impl Kind {
     pub fn of(path: &Path) -> Result<Self> {
         let ending = path.extension().map(|e| e.to_string_lossy().to_lowercase());
         match ending.as_deref() {
-            Some("svg") => Ok(Kind::Svg),
-            Some("png") => Ok(Kind::Png),
+            Some("svg") => Ok(PictureFormat::Svg),
+            Some("png") => Ok(PictureFormat::Png),
             _ => Err(Error::Input(format!(
                 "--plot {}: the name must end in .svg or .png",
                 path.display()
@@ -113,9 +113,9 @@ impl Drawing {
 /// # Errors
 /// [`Error::Input`] for an extension that is none of ours or nothing to draw; [`Error::File`] if the file can't be written.
 pub fn write(path: &Path, drawing: &Drawing) -> Result<()> {
-    let bytes = match Kind::of(path)? {
-        Kind::Svg => drawing.svg()?.into_bytes(),
-        Kind::Png => drawing.png()?,
+    let bytes = match PictureFormat::of(path)? {
+        PictureFormat::Svg => drawing.svg()?.into_bytes(),
+        PictureFormat::Png => drawing.png()?,
     };
     write_whole(path, &bytes).map_err(|error| Error::File {
         action: "write",

@@ -72,7 +72,7 @@ pub fn placed(
     for (i, name) in names.iter().enumerate() {
         let other = |&(j, _): &(usize, &Named)| j != i;
         let points = names.iter().enumerate().filter(other);
-        let around = Around {
+        let around = Obstacles {
             taken: &taken,
             ties: &ties,
             points: points.map(|(_, other)| other.at).collect(),
@@ -99,7 +99,7 @@ pub fn placed(
 }
 
 /// What a name should not cover.
-struct Around<'a> {
+struct Obstacles<'a> {
     taken: &'a [Area],
     /// From the points to the middles of their names.
     ties: &'a [(Pixel, Pixel)],
@@ -108,7 +108,7 @@ struct Around<'a> {
     frame: &'a Window,
 }
 
-impl Around<'_> {
+impl Obstacles<'_> {
     /// What the candidate of that number costs.
     fn price(&self, name: &Named, number: usize, place: &Area) -> f64 {
         let on = |places: &[Pixel]| places.iter().filter(|&&at| place.holds(at)).count() as f64;

@@ -56,7 +56,7 @@ pub enum Stroke {
 
 /// One curve, drawn smoothly through its points, or points alone.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Series {
+pub struct PlotSeries {
     /// Its name in the legend; empty for none.
     pub label: String,
     /// Abscissae.
@@ -76,10 +76,10 @@ pub struct Series {
     pub left_out: Vec<bool>,
 }
 
-impl Series {
+impl PlotSeries {
     /// From two columns.
     pub fn new(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Series {
+        PlotSeries {
             label: label.into(),
             x,
             y,
@@ -93,9 +93,9 @@ impl Series {
 
     /// Points without a line between them.
     pub fn dots(label: impl Into<String>, x: Vec<f64>, y: Vec<f64>) -> Self {
-        Series {
+        PlotSeries {
             dots: true,
-            ..Series::new(label, x, y)
+            ..PlotSeries::new(label, x, y)
         }
     }
 
@@ -324,7 +324,7 @@ pub struct Panel {
     /// A map behind the curves.
     pub cells: Option<Cells>,
     /// The curves.
-    pub series: Vec<Series>,
+    pub series: Vec<PlotSeries>,
     /// The points.
     pub marks: Vec<Mark>,
     /// Words in the frame.

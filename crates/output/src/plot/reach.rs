@@ -2,7 +2,7 @@
 
 use super::clip::Window;
 use super::scale::{Reach, Scale, coordinate, ends};
-use super::{Panel, Series, Side, unrendered};
+use super::{Panel, PlotSeries, Side, unrendered};
 use crate::error::Result;
 
 /// Room between the curves and the frame, as a part of the range.
@@ -19,7 +19,7 @@ const FREE_MARGIN: f64 = 0.1;
 pub fn scales(panel: &Panel) -> Result<(Scale, Scale)> {
     // A function of time ends with its data, and so does a map; a phase plane needs air around it, and so do names above and
     // below.
-    let function = |series: &Series| !series.dots && series.x.is_sorted();
+    let function = |series: &PlotSeries| !series.dots && series.x.is_sorted();
     let tight = panel.cells.is_some() || panel.series.iter().all(function);
     let margin = match panel.marks.first().map(|mark| mark.side) {
         _ if panel.cells.is_some() => 0.0,

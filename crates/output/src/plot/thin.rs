@@ -22,13 +22,13 @@ pub fn thinned(
 ) -> Vec<Vec<Point>> {
     let mut drawn = HashSet::new();
     let mut pieces = Vec::new();
-    let mut column = Column::default();
-    let mut curve = Curve {
+    let mut column = PixelColumn::default();
+    let mut curve = ThinnedCurve {
         per_pixel,
         points: Vec::new(),
         skipped: None,
     };
-    let mut ended = |curve: &mut Curve| {
+    let mut ended = |curve: &mut ThinnedCurve| {
         let piece = curve.finish();
         if x_grows {
             pieces.extend((!piece.is_empty()).then_some(piece));
@@ -58,14 +58,14 @@ pub fn thinned(
 
 /// Consecutive points in one column.
 #[derive(Default)]
-struct Column {
+struct PixelColumn {
     place: Option<f64>,
     /// First, lowest, highest, last, with their numbers in the order of coming.
     kept: Option<[(usize, Point); 4]>,
     count: usize,
 }
 
-impl Column {
+impl PixelColumn {
     fn holds(&self, place: f64) -> bool {
         self.place == Some(place)
     }
@@ -83,7 +83,7 @@ impl Column {
         kept[3] = new;
     }
 
-    fn empty_into(&mut self, curve: &mut Curve) {
+    fn empty_into(&mut self, curve: &mut ThinnedCurve) {
         if let Some(mut kept) = self.kept.take() {
             kept.sort_by_key(|&(number, _)| number);
             let mut last = None;
@@ -100,13 +100,13 @@ impl Column {
 }
 
 /// Points that are not close to the one before; the last one always.
-struct Curve {
+struct ThinnedCurve {
     per_pixel: Point,
     points: Vec<Point>,
     skipped: Option<Point>,
 }
 
-impl Curve {
+impl ThinnedCurve {
     fn push(&mut self, (x, y): Point) {
         let near = self.points.last().is_some_and(|&(x0, y0)| {
             ((x - x0) / self.per_pixel.0).abs() < VISIBLE

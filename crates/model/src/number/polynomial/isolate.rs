@@ -1,5 +1,5 @@
-//! The search for roots on [0, 1] by halving: parts where the sign does not change, brackets of one root, and clusters of
-//! parts in which the polynomial is lost in its rounding errors.
+//! Root isolation on [0, 1] by halving (Bernstein coefficients): parts where the sign does not change, brackets of one root, and
+//! clusters of parts in which the polynomial is lost in its rounding errors.
 
 use super::{Coefficients, Crossing, Root, bernstein, evaluate, evaluate_derivative, terms};
 use crate::number::bracketed_root;
@@ -13,7 +13,7 @@ const MAX_DEPTH: usize = 100;
 /// Where to divide: in the middle, unless a root is there.
 const DIVISIONS: [f64; 3] = [0.5, 0.4375, 0.5625];
 
-/// By how much the ends of a bracket must exceed the error, so that no neighbour of it is [`Verdict::Noise`].
+/// By how much the ends of a bracket must exceed the error, so that no neighbour of it is [`SignTest::Noise`].
 const FIRM: f64 = 8.0;
 
 /// Part of A beyond which signs are trusted in any polynomial up to the highest degree, ends of brackets included.
@@ -63,7 +63,7 @@ pub(super) fn search(coefficients: &[f64], length: f64, turned: bool, found: &mu
     } else {
         end
     };
-    search.visit(&Part {
+    search.visit(&Subinterval {
         control,
         from: 0.0,
         to: 1.0,
@@ -74,7 +74,7 @@ pub(super) fn search(coefficients: &[f64], length: f64, turned: bool, found: &mu
 }
 
 /// A part of the interval, which is [0, 1] here, with the polynomial's Bernstein coefficients on it.
-struct Part {
+struct Subinterval {
     control: Coefficients,
     from: f64,
     to: f64,
@@ -108,7 +108,7 @@ struct Search<'a> {
 }
 
 /// What the signs of the coefficients on a part say.
-enum Verdict {
+enum SignTest {
     Free,
     /// One change of sign; `sharp` where no coefficient between is uncertain.
     Crossing {
@@ -119,16 +119,16 @@ enum Verdict {
 }
 
 impl Search<'_> {
-    fn visit(&mut self, part: &Part) {
+    fn visit(&mut self, part: &Subinterval) {
         let n = self.coefficients.len() - 1;
         match self.verdict(part) {
-            Verdict::Free => self.close_cluster(part.control[0].signum()),
-            Verdict::Crossing { sharp } => {
+            SignTest::Free => self.close_cluster(part.control[0].signum()),
+            SignTest::Crossing { sharp } => {
                 self.close_cluster(part.control[0].signum());
                 let last = part.control[n].signum();
                 self.cross((part.from, part.to), sharp, part.noise, last);
             }
-            Verdict::Noise => {
+            SignTest::Noise => {
                 let from = self.cluster.map_or(part.from, |c| c.from);
                 self.cluster = Some(Cluster {
                     from,
@@ -136,7 +136,7 @@ impl Search<'_> {
                     noise: part.noise,
                 });
             }
-            Verdict::Unclear => {
+            SignTest::Unclear => {
                 let [left, right] = self.divided(part);
                 self.visit(&left);
                 self.visit(&right);
@@ -144,7 +144,7 @@ impl Search<'_> {
         }
     }
 
-    fn verdict(&self, part: &Part) -> Verdict {
+    fn verdict(&self, part: &Subinterval) -> SignTest {
         let n = self.coefficients.len() - 1;
         let uncertain = part.noise * self.magnitude(part.to);
         let (mut sign, mut changes, mut largest) = (0.0, 0, 0.0_f64);
@@ -167,17 +167,17 @@ impl Search<'_> {
         }
         let middle = 0.5 * part.from + 0.5 * part.to;
         if !(open || gap) && changes == 0 {
-            Verdict::Free
+            SignTest::Free
         } else if !(open || gap) && changes == 1 && bracket {
-            Verdict::Crossing { sharp }
+            SignTest::Crossing { sharp }
         } else if largest <= 4.0 * part.noise * self.magnitude(part.from)
             || part.depth == MAX_DEPTH
             || middle <= part.from
             || middle >= part.to
         {
-            Verdict::Noise
+            SignTest::Noise
         } else {
-            Verdict::Unclear
+            SignTest::Unclear
         }
     }
 
@@ -187,7 +187,7 @@ impl Search<'_> {
     }
 
     /// Two parts, by de Casteljau's algorithm, divided where the polynomial has a certain sign if such a point is at hand.
-    fn divided(&self, part: &Part) -> [Part; 2] {
+    fn divided(&self, part: &Subinterval) -> [Subinterval; 2] {
         let n = self.coefficients.len() - 1;
         let width = part.to - part.from;
         let mut tried = 0;
@@ -209,7 +209,7 @@ impl Search<'_> {
             if right[0].abs() > 2.0 * FIRM * noise * self.magnitude(at) || tried == DIVISIONS.len()
             {
                 let depth = part.depth + 1;
-                let side = |control, from, to| Part {
+                let side = |control, from, to| Subinterval {
                     control,
                     from,
                     to,

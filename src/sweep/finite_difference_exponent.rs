@@ -1,14 +1,14 @@
-//! How fast neighbouring runs part: Lyapunov exponents from the returns of runs that start beside those of a run.
+//! Lyapunov exponents by finite differences: from the returns of runs that start beside those of a run.
 //!
 //! The derivative of the return map P at a return x is taken by central differences, (P(x + d) - P(x - d)) / 2d, over runs of
 //! one return each: they fill all lanes, and take a fraction of the time of tangents. What the differences err by follows
 //! from how much P bends within them.
 
 use super::flows::Flows;
-use super::watch::Run;
+use super::watch::SweepRun;
 use crate::field::State;
 use crate::integrate::{BatchRun, Control, Step};
-use crate::section::{ALIGNMENT, Leg, Return, Spectrum, Surface, summary};
+use crate::section::{ALIGNMENT, GrowthSegment, LyapunovSpectrum, Return, Surface, summary};
 use crate::series::Zeros;
 use nalgebra::{Matrix2, Vector2};
 
@@ -22,16 +22,16 @@ const BESIDE: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]
 /// The exponents along these consecutive returns of a run, from the first to the last; `None` where a run beside it takes
 /// another way.
 pub(super) fn stretching(
-    run: &Run,
+    run: &SweepRun,
     returns: &[Return<3>],
     flows: &mut Flows,
     rtol: f64,
-) -> Option<Spectrum<3>> {
+) -> Option<LyapunovSpectrum<3>> {
     let displaced = DISPLACED * rtol.cbrt();
     let beside = beside(run, returns, flows, displaced)?;
     let mut frame = Matrix2::new(0.8, -0.6, 0.6, 0.8);
     let mut bends = 0.0;
-    let mut legs = Vec::with_capacity(returns.len());
+    let mut segments = Vec::with_capacity(returns.len());
     for (pair, ends) in returns.windows(2).zip(beside.chunks(BESIDE.len())) {
         let [first, second] = [(0, 1), (2, 3)].map(|(i, j)| ends[i] - ends[j]);
         let [bent, also] =
@@ -44,20 +44,27 @@ pub(super) fn stretching(
         frame = q;
         let speed = |at: &Return<3>| run.field.f(&at.state).norm().ln();
         let growth = [r[(0, 0)].abs().ln(), r[(1, 1)].abs().ln()];
-        legs.push(Leg {
+        segments.push(GrowthSegment {
             time: pair[1].time - pair[0].time,
             growth: [speed(&pair[1]) - speed(&pair[0]), growth[0], growth[1]],
             log_determinant: growth[0] + growth[1],
         });
     }
-    if !legs.iter().flat_map(|leg| leg.growth).all(f64::is_finite) {
+    if !segments
+        .iter()
+        .flat_map(|segment| segment.growth)
+        .all(f64::is_finite)
+    {
         return None;
     }
-    let aligned = (ALIGNMENT * legs.len() as f64) as usize;
+    let aligned = (ALIGNMENT * segments.len() as f64) as usize;
     // Along the flow it is the speed itself that is counted: there is no bias to be seen in it.
-    let gained = legs[aligned..].iter().map(|leg| leg.growth[0]).sum();
-    let mut spectrum = summary(&legs[aligned..], 0.0, gained);
-    let error = bends / legs.iter().map(|leg| leg.time).sum::<f64>();
+    let gained = segments[aligned..]
+        .iter()
+        .map(|segment| segment.growth[0])
+        .sum();
+    let mut spectrum = summary(&segments[aligned..], 0.0, gained);
+    let error = bends / segments.iter().map(|segment| segment.time).sum::<f64>();
     for exponent in &mut spectrum.exponents {
         exponent.uncertainty += error;
     }
@@ -66,7 +73,7 @@ pub(super) fn stretching(
 
 /// Where runs that start beside each return but the last come back, in (ln psi_1, ln psi_2).
 fn beside(
-    run: &Run,
+    run: &SweepRun,
     returns: &[Return<3>],
     flows: &mut Flows,
     displaced: f64,

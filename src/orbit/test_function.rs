@@ -1,4 +1,4 @@
-//! Functions of an orbit that are zero at its bifurcations, and how they change along a motion.
+//! Test functions of periodic orbits, zero at bifurcations (fold, period doubling, Neimark-Sacker), and their derivatives.
 //!
 //! With the trace and the determinant of the return map, 1 - tr + det and 1 + tr + det; the determinant by the integral of
 //! the Jacobian's trace. The trace changes as the maps of the single arcs do: a difference of two traces would lose, at small
@@ -13,20 +13,20 @@ use crate::field::Jacobian;
 
 /// What is to be zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Indicator {
+pub enum TestFunction {
     /// A multiplier is 1: 1 - tr + det. Also at a pitchfork, in the whole space.
     Fold,
     /// A multiplier is -1: 1 + tr + det.
     Doubling,
-    /// The product of both is 1: ln det. A torus bifurcation where |tr| < 2, a neutral saddle elsewhere.
+    /// The product of both is 1: ln det. A torus (Neimark-Sacker) bifurcation where |tr| < 2, a neutral saddle elsewhere.
     Torus,
     /// The trace has this value: on a torus bifurcation 2 cos of the multipliers' angle.
     Trace(f64),
     /// The multiplier across the symmetric subspace is 1.
-    Across,
+    Transverse,
 }
 
-/// What the indicators are made of, or its change.
+/// What the test functions are made of, or its change.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Spectrum {
     /// The number of variables: one more than there are nontrivial multipliers.
@@ -43,7 +43,7 @@ impl Spectrum {
     pub(super) fn new<const N: usize>(linear: &Linear<N>) -> Self {
         let maps = linear.maps.iter();
         let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
-        let across: Option<f64> = linear.arcs.iter().map(|arc| arc.log_across).sum();
+        let across: Option<f64> = linear.arcs.iter().map(|arc| arc.log_transverse).sum();
         Spectrum {
             dimension: N,
             // Of the identity's first diagonal entry the maps leave nothing.
@@ -116,22 +116,22 @@ fn volume<const N: usize>(linear: &Linear<N>) -> f64 {
     linear.arcs.iter().map(|arc| arc.volume()).sum()
 }
 
-impl Indicator {
+impl TestFunction {
     /// Whether it is a test function of orbits of so many variables.
     ///
     /// # Errors
     /// [`Error::Dimension`] where it is not: its zeros would be no bifurcations.
     pub fn checked<const N: usize>(self) -> Result<()> {
         let (what, known, holds) = match self {
-            Indicator::Fold => (
+            TestFunction::Fold => (
                 "the test function of folds of orbits",
                 "2 or 3",
                 N == 2 || N == 3,
             ),
-            Indicator::Doubling => ("the test function of period doublings", "3", N == 3),
-            Indicator::Torus => ("the test function of torus bifurcations", "3", N == 3),
-            Indicator::Trace(_) => ("the test function of strong resonances", "3", N == 3),
-            Indicator::Across => ("the test function of pitchforks of orbits", "2", N == 2),
+            TestFunction::Doubling => ("the test function of period doublings", "3", N == 3),
+            TestFunction::Torus => ("the test function of torus bifurcations", "3", N == 3),
+            TestFunction::Trace(_) => ("the test function of strong resonances", "3", N == 3),
+            TestFunction::Transverse => ("the test function of pitchforks of orbits", "2", N == 2),
         };
         if holds {
             return Ok(());
@@ -152,12 +152,12 @@ impl Indicator {
             ..
         } = *spectrum;
         match self {
-            Indicator::Fold if N == 2 => volume.exp_m1(),
-            Indicator::Fold => 1.0 - trace + volume.exp(),
-            Indicator::Doubling => 1.0 + trace + volume.exp(),
-            Indicator::Torus => volume,
-            Indicator::Trace(value) => trace - value,
-            Indicator::Across => across,
+            TestFunction::Fold if N == 2 => volume.exp_m1(),
+            TestFunction::Fold => 1.0 - trace + volume.exp(),
+            TestFunction::Doubling => 1.0 + trace + volume.exp(),
+            TestFunction::Torus => volume,
+            TestFunction::Trace(value) => trace - value,
+            TestFunction::Transverse => across,
         }
     }
 
@@ -165,12 +165,12 @@ impl Indicator {
     pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
         let of_det = at.volume.exp() * by.volume;
         match self {
-            Indicator::Fold if N == 2 => of_det,
-            Indicator::Fold => of_det - by.trace,
-            Indicator::Doubling => of_det + by.trace,
-            Indicator::Torus => by.volume,
-            Indicator::Trace(_) => by.trace,
-            Indicator::Across => by.across,
+            TestFunction::Fold if N == 2 => of_det,
+            TestFunction::Fold => of_det - by.trace,
+            TestFunction::Doubling => of_det + by.trace,
+            TestFunction::Torus => by.volume,
+            TestFunction::Trace(_) => by.trace,
+            TestFunction::Transverse => by.across,
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Polygons along closed curves: what a periodic orbit is solved on.
+//! Shooting nodes: the polygon along a closed curve that a periodic orbit is solved on, and its mesh.
 
 use super::arc::Tracer;
 use crate::error::Result;
@@ -7,7 +7,7 @@ use crate::integrate::Control;
 
 /// Points along a closed curve, and the times from each to the next: a periodic orbit, or a guess of one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Polygon<const N: usize> {
+pub struct ShootingNodes<const N: usize> {
     /// The points.
     pub nodes: Vec<State<N>>,
     /// From each node to the next, from the last to the first; all of one sign.
@@ -20,7 +20,7 @@ pub type EndAndLoss<'a, const N: usize> =
 
 /// How a cycle is cut into arcs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Mesh {
+pub struct ShootingMesh {
     /// The least and the largest number of nodes.
     pub nodes: (usize, usize),
     /// Steps on an arc, of the tracer's method.
@@ -29,16 +29,16 @@ pub struct Mesh {
     pub volume: f64,
 }
 
-impl Mesh {
+impl ShootingMesh {
     /// For an orbit from a good guess: few arcs, which take the least time.
-    pub const COARSE: Mesh = Mesh {
+    pub const COARSE: ShootingMesh = ShootingMesh {
         nodes: (3, 128),
         steps: 12.0,
         volume: 3.0,
     };
     /// For orbits that are to move far: along short arcs Newton's method converges from farther away, and no node's plane is
     /// missed by a smaller orbit as soon.
-    pub const FINE: Mesh = Mesh {
+    pub const FINE: ShootingMesh = ShootingMesh {
         nodes: (12, 256),
         steps: 5.0,
         volume: 2.0,
@@ -58,12 +58,12 @@ pub fn of_digits(digits: i32, x: f64) -> f64 {
     (x / unit).round() * unit
 }
 
-impl<const N: usize> Polygon<N> {
+impl<const N: usize> ShootingNodes<N> {
     /// Nodes, of at least N coordinates, and durations, with only so many significant digits left: what a second method begins
     /// with.
     pub fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
         let node = |x: &Vec<f64>| State::from_fn(|i, _| of_digits(digits, x[i]));
-        Polygon {
+        ShootingNodes {
             nodes: nodes.iter().map(node).collect(),
             durations: durations.iter().map(|&t| of_digits(digits, t)).collect(),
         }
@@ -79,7 +79,7 @@ impl<const N: usize> Polygon<N> {
         start: &State<N>,
         duration: f64,
     ) -> Result<Self> {
-        let whole = Polygon {
+        let whole = ShootingNodes {
             nodes: vec![*start],
             durations: vec![duration],
         };
@@ -91,7 +91,7 @@ impl<const N: usize> Polygon<N> {
     /// # Errors
     /// Those of the flow.
     pub fn meshed(&self, tracer: &mut Tracer<N>, field: &dyn VectorField<N>) -> Result<Self> {
-        self.cut(tracer, field, &Mesh::COARSE)
+        self.cut(tracer, field, &ShootingMesh::COARSE)
     }
 
     /// The same by another rule.
@@ -102,7 +102,7 @@ impl<const N: usize> Polygon<N> {
         &self,
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
-        mesh: &Mesh,
+        mesh: &ShootingMesh,
     ) -> Result<Self> {
         // Time, state and measure at every step's end; no cut but at these.
         let (mut way, mut begin, mut measure) = (Vec::new(), 0.0, 0.0);
@@ -144,7 +144,7 @@ impl<const N: usize> Polygon<N> {
         }
         times.push(begin);
         let durations = times.windows(2).map(|t| t[1] - t[0]).collect();
-        Ok(Polygon { nodes, durations })
+        Ok(ShootingNodes { nodes, durations })
     }
 
     /// With arcs halved, and again, until on none of them more digits than a few are lost to contraction. `end_and_loss` gives
@@ -153,7 +153,7 @@ impl<const N: usize> Polygon<N> {
     /// # Errors
     /// Those of the closure.
     pub fn refined(&self, end_and_loss: EndAndLoss<'_, N>) -> Result<Self> {
-        let mut finer = Polygon {
+        let mut finer = ShootingNodes {
             nodes: Vec::new(),
             durations: Vec::new(),
         };
@@ -187,7 +187,7 @@ impl<const N: usize> Polygon<N> {
         field: &dyn VectorField<N>,
         parts: &[usize],
     ) -> Result<Self> {
-        let mut finer = Polygon {
+        let mut finer = ShootingNodes {
             nodes: Vec::new(),
             durations: Vec::new(),
         };
@@ -238,7 +238,7 @@ impl<const N: usize> Polygon<N> {
     pub(super) fn moved(&self, nodes: &[State<N>], durations: &[f64], part: f64) -> Self {
         let moved = self.nodes.iter().zip(nodes);
         let stretched = self.durations.iter().zip(durations);
-        Polygon {
+        ShootingNodes {
             nodes: moved.map(|(x, dx)| x + dx * part).collect(),
             durations: stretched.map(|(t, dt)| t + dt * part).collect(),
         }

@@ -1,14 +1,14 @@
-//! What is told of a branch of equilibria while it is followed: rows, and what is special on it.
+//! The observer of a branch of equilibria: makes rows of its points, and names what is special on it.
 
-use super::crossing::Root;
-use super::curves::Curve;
+use super::crossing::QuadraticRoot;
+use super::curves::CurveVariables;
 use super::hopf::HopfPoints;
 use super::hopf_special::hopf_point;
-use super::pieces::Begin;
+use super::pieces::PieceEnd;
 use super::special::Teller;
 use super::stationary::{fold, fold_test, pitchforks};
 use crate::bifurcation::{BranchRequest, BranchRow, Label, Special};
-use crate::continuation::{Branch, Mark, Point, Stop, Watch};
+use crate::continuation::{Branch, CurveObserver, CurvePoint, PointKind, Stop};
 use crate::equilibrium::{Equilibrium, stability};
 use crate::error::{Error, Result};
 use crate::friction::{steady_slope, steady_stress};
@@ -19,12 +19,12 @@ use std::ops::ControlFlow;
 const LARGEST: f64 = 0.2;
 
 /// What looks on along one branch: names what is special, and hands on.
-pub(super) struct Walk<'a, 'b> {
+pub(super) struct BranchObserver<'a, 'b> {
     pub request: &'a BranchRequest,
-    pub curve: Curve,
+    pub curve: CurveVariables,
     /// The slip rates along K, where they don't change.
     pub rates: Option<[f64; 2]>,
-    pub begin: &'a Begin,
+    pub begin: &'a PieceEnd,
     pub number: usize,
     pub teller: &'a mut Teller<'b>,
     pub failure: Option<Error>,
@@ -32,22 +32,22 @@ pub(super) struct Walk<'a, 'b> {
 
 /// Where on the branch.
 #[derive(Debug, Clone, Copy)]
-struct Place {
+struct BranchPosition {
     driving: f64,
     stiffness: f64,
     rates: [f64; 2],
 }
 
-impl Walk<'_, '_> {
-    fn place(&self, point: &Point, value: f64) -> Place {
+impl BranchObserver<'_, '_> {
+    fn place(&self, point: &CurvePoint, value: f64) -> BranchPosition {
         let loading = self.request.slab.loading;
         match self.rates {
-            Some(rates) => Place {
+            Some(rates) => BranchPosition {
                 driving: loading.driving,
                 stiffness: value,
                 rates,
             },
-            None => Place {
+            None => BranchPosition {
                 driving: value,
                 stiffness: loading.stiffness,
                 rates: self.curve.rates(point, value),
@@ -56,13 +56,13 @@ impl Walk<'_, '_> {
     }
 
     /// The varied parameter: as it was asked for where it was.
-    fn value(&self, point: &Point, mark: Mark) -> f64 {
+    fn value(&self, point: &CurvePoint, mark: PointKind) -> f64 {
         let (a, b) = self.request.range;
         match mark {
-            Mark::Begin => self.begin.value,
-            Mark::Lowest => a.min(b),
-            Mark::Highest => a.max(b),
-            Mark::Wanted(_) => {
+            PointKind::Begin => self.begin.value,
+            PointKind::Lowest => a.min(b),
+            PointKind::Highest => a.max(b),
+            PointKind::Wanted(_) => {
                 let near = |x: &&f64| (x.ln() - point.lambda).abs() < 1e-12;
                 *self
                     .request
@@ -71,24 +71,24 @@ impl Walk<'_, '_> {
                     .find(near)
                     .unwrap_or(&point.lambda.exp())
             }
-            Mark::Step | Mark::Zero(_) => point.lambda.exp(),
+            PointKind::Step | PointKind::Zero(_) => point.lambda.exp(),
         }
     }
 
     /// What the zeros of the test functions mean.
     fn labels(&self) -> &'static [Label] {
         match (self.rates, self.curve) {
-            (_, Curve::Symmetric { interfaces: 1 }) => &[Label::Hb],
-            (Some(_), Curve::Symmetric { .. }) => &[Label::Hb],
-            (None, Curve::Symmetric { .. }) => &[Label::Hb, Label::Bp],
+            (_, CurveVariables::Symmetric { interfaces: 1 }) => &[Label::Hb],
+            (Some(_), CurveVariables::Symmetric { .. }) => &[Label::Hb],
+            (None, CurveVariables::Symmetric { .. }) => &[Label::Hb, Label::Bp],
             // one for each root of (42)
-            (Some(_), Curve::Asymmetric) => &[Label::Hb, Label::Hb],
-            (None, Curve::Asymmetric) => &[Label::Hb, Label::Hb, Label::Bp, Label::Lp],
+            (Some(_), CurveVariables::Asymmetric) => &[Label::Hb, Label::Hb],
+            (None, CurveVariables::Asymmetric) => &[Label::Hb, Label::Hb, Label::Bp, Label::Lp],
         }
     }
 
     /// How far K of a Hopf point is above the actual one, relative.
-    fn oscillation(&self, point: &Point, place: &Place, root: Root) -> f64 {
+    fn oscillation(&self, point: &CurvePoint, place: &BranchPosition, root: QuadraticRoot) -> f64 {
         let points = HopfPoints {
             law: &self.request.slab.law,
             curve: self.curve,
@@ -100,11 +100,11 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn row(&self, place: &Place, label: Option<Label>) -> Result<BranchRow> {
+    fn row(&self, place: &BranchPosition, label: Option<Label>) -> Result<BranchRow> {
         let slab = &self.request.slab;
         let distinct = place.rates[0] < place.rates[1];
         let state = match self.curve {
-            Curve::Asymmetric if distinct => {
+            CurveVariables::Asymmetric if distinct => {
                 let [slow, _] = self.curve.rates_at(&slab.law, place.driving, place.rates);
                 Equilibrium::asymmetric(&slab.law, place.driving, slow)
             }
@@ -128,7 +128,7 @@ impl Walk<'_, '_> {
         })
     }
 
-    fn hand_on(&mut self, place: &Place, special: Special) -> Result<ControlFlow<()>> {
+    fn hand_on(&mut self, place: &BranchPosition, special: Special) -> Result<ControlFlow<()>> {
         let row = self.row(place, Some(special.label))?;
         if self.teller.branch(row).is_break() {
             return Ok(ControlFlow::Break(()));
@@ -136,13 +136,18 @@ impl Walk<'_, '_> {
         Ok(self.teller.special(special))
     }
 
-    fn plain(&mut self, place: &Place, label: Label, note: &str) -> Result<ControlFlow<()>> {
+    fn plain(
+        &mut self,
+        place: &BranchPosition,
+        label: Label,
+        note: &str,
+    ) -> Result<ControlFlow<()>> {
         let mut special = Special::new(label, exact(place.driving), exact(place.stiffness));
         special.note = (!note.is_empty()).then(|| note.to_string());
         self.hand_on(place, special)
     }
 
-    fn special(&mut self, label: Label, place: &Place) -> Result<ControlFlow<()>> {
+    fn special(&mut self, label: Label, place: &BranchPosition) -> Result<ControlFlow<()>> {
         match label {
             Label::Bp => self.pitchfork(place),
             Label::Lp => self.fold(place),
@@ -150,7 +155,7 @@ impl Walk<'_, '_> {
         }
     }
 
-    fn pitchfork(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+    fn pitchfork(&mut self, place: &BranchPosition) -> Result<ControlFlow<()>> {
         let all = pitchforks(&self.request.slab.law);
         let far = |v: f64| (v / place.driving).ln().abs();
         let nearest = all
@@ -160,13 +165,13 @@ impl Walk<'_, '_> {
             return Ok(ControlFlow::Continue(()));
         };
         let driving = pitchfork.driving.value;
-        let at = Place {
+        let at = BranchPosition {
             driving,
             rates: [0.5 * driving; 2],
             ..*place
         };
         // the symmetric branch has told of it already, if it was followed
-        if self.curve == Curve::Asymmetric && self.request.symmetry.is_none() {
+        if self.curve == CurveVariables::Asymmetric && self.request.symmetry.is_none() {
             let row = self.row(&at, Some(Label::Bp))?;
             return Ok(self.teller.branch(row));
         }
@@ -182,12 +187,12 @@ impl Walk<'_, '_> {
         self.hand_on(&at, special)
     }
 
-    fn fold(&mut self, place: &Place) -> Result<ControlFlow<()>> {
+    fn fold(&mut self, place: &BranchPosition) -> Result<ControlFlow<()>> {
         // a fold is where dV_H/dz certainly changes its sign
         let Some(fold) = fold(&self.request.slab.law, place.rates) else {
             return Ok(ControlFlow::Continue(()));
         };
-        let at = Place {
+        let at = BranchPosition {
             driving: fold.driving.value,
             rates: fold.rates,
             ..*place
@@ -196,8 +201,8 @@ impl Walk<'_, '_> {
         self.hand_on(&at, special)
     }
 
-    fn hopf(&mut self, place: &Place) -> Result<ControlFlow<()>> {
-        let Place {
+    fn hopf(&mut self, place: &BranchPosition) -> Result<ControlFlow<()>> {
+        let BranchPosition {
             driving,
             stiffness,
             rates,
@@ -206,7 +211,7 @@ impl Walk<'_, '_> {
         let at = [driving, stiffness];
         let found = hopf_point(&request.slab.law, self.curve, request.along, at, rates);
         if let Some((special, rates)) = found {
-            let at = Place {
+            let at = BranchPosition {
                 driving: special.driving.value,
                 stiffness: special.stiffness.value,
                 rates,
@@ -235,18 +240,20 @@ impl Walk<'_, '_> {
         self.teller.special(special)
     }
 
-    fn shown(&mut self, point: &Point, mark: Mark) -> Result<ControlFlow<()>> {
+    fn shown(&mut self, point: &CurvePoint, mark: PointKind) -> Result<ControlFlow<()>> {
         let place = self.place(point, self.value(point, mark));
         match mark {
-            Mark::Step => {
+            PointKind::Step => {
                 let row = self.row(&place, None)?;
                 Ok(self.teller.branch(row))
             }
-            Mark::Begin if self.begin.pitchfork => self.special(Label::Bp, &place),
-            Mark::Begin => self.plain(&place, Label::Ep, "begin of the range"),
-            Mark::Wanted(_) => self.plain(&place, Label::Uz, ""),
-            Mark::Lowest | Mark::Highest => self.plain(&place, Label::Ep, "end of the range"),
-            Mark::Zero(i) => self.special(self.labels()[i], &place),
+            PointKind::Begin if self.begin.pitchfork => self.special(Label::Bp, &place),
+            PointKind::Begin => self.plain(&place, Label::Ep, "begin of the range"),
+            PointKind::Wanted(_) => self.plain(&place, Label::Uz, ""),
+            PointKind::Lowest | PointKind::Highest => {
+                self.plain(&place, Label::Ep, "end of the range")
+            }
+            PointKind::Zero(i) => self.special(self.labels()[i], &place),
         }
     }
 }
@@ -255,14 +262,18 @@ fn exact(x: f64) -> Uncertain {
     Uncertain::new(x, 0.0)
 }
 
-impl Watch for Walk<'_, '_> {
-    fn tests(&self, point: &Point) -> Result<Vec<f64>> {
+impl CurveObserver for BranchObserver<'_, '_> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let place = self.place(point, point.lambda.exp());
         let law = &self.request.slab.law;
         let labels = self.labels().iter().enumerate();
         let tests = labels.map(|(i, label)| match (label, self.curve) {
-            (Label::Hb, _) => self.oscillation(point, &place, [Root::Larger, Root::Smaller][i]),
-            (Label::Bp, Curve::Asymmetric) => point.u[0],
+            (Label::Hb, _) => self.oscillation(
+                point,
+                &place,
+                [QuadraticRoot::Larger, QuadraticRoot::Smaller][i],
+            ),
+            (Label::Bp, CurveVariables::Asymmetric) => point.u[0],
             (Label::Bp, _) => steady_slope(law, place.rates[0]) * place.rates[0],
             _ => fold_test(point),
         });
@@ -270,18 +281,18 @@ impl Watch for Walk<'_, '_> {
     }
 
     fn ends(&self, test: usize) -> bool {
-        self.curve == Curve::Asymmetric && self.labels()[test] == Label::Bp
+        self.curve == CurveVariables::Asymmetric && self.labels()[test] == Label::Bp
     }
 
-    fn too_far(&self, from: &Point, to: &Point) -> bool {
-        let stress = |point: &Point| {
+    fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
+        let stress = |point: &CurvePoint| {
             let place = self.place(point, point.lambda.exp());
             steady_stress(&self.request.slab.law, place.rates[0])
         };
         (stress(from) - stress(to)).abs() > LARGEST * self.request.step
     }
 
-    fn seen(&mut self, point: &Point, mark: Mark) -> ControlFlow<()> {
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         self.shown(point, mark).unwrap_or_else(|error| {
             self.failure = Some(error);
             ControlFlow::Break(())

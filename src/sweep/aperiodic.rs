@@ -1,9 +1,9 @@
-//! Runs that close in on nothing: tori, chaos, or neither yet.
+//! Aperiodic motion: runs that close in on nothing, which are tori, chaos, or neither yet.
 
+use super::classify::{Classified, Classifier, alike, begun, steady};
+use super::finite_difference_exponent::stretching;
 use super::flows::Flows;
-use super::judge::{Judge, Told, alike, begun, steady};
-use super::stretch::stretching;
-use super::watch::{Run, see};
+use super::watch::{SweepRun, see};
 use crate::integrate::Control;
 use crate::section::{
     Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
@@ -17,13 +17,13 @@ const FEWEST_TO_ASK: usize = 1024;
 /// Over how many returns exponents are taken: if these don't tell, twice as many.
 const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 
-impl Judge {
+impl Classifier {
     /// A torus or chaos, or why nothing can be said.
     pub(super) fn wandering(
         &self,
-        run: &Run,
+        run: &SweepRun,
         flows: &mut Flows,
-    ) -> std::result::Result<Told, &'static str> {
+    ) -> std::result::Result<Classified, &'static str> {
         let n = run.returns().len();
         let last = run.recorder.returns.len() >= self.settings.max_returns;
         if n < FEWEST_TO_WANDER && !last {
@@ -66,9 +66,9 @@ impl Judge {
     /// compared with it.
     fn chaos(
         &self,
-        run: &Run,
+        run: &SweepRun,
         flows: &mut Flows,
-    ) -> Option<std::result::Result<Told, &'static str>> {
+    ) -> Option<std::result::Result<Classified, &'static str>> {
         let all = run.returns();
         let settled = all.len() / 2;
         let mut count = *FOR_EXPONENTS.start();
@@ -93,7 +93,7 @@ impl Judge {
     }
 
     /// Records anew from where the run is, so finely that its tangents tell an exponent that vanishes.
-    fn with_tangents(&self, run: &Run) -> std::result::Result<Told, &'static str> {
+    fn with_tangents(&self, run: &SweepRun) -> std::result::Result<Classified, &'static str> {
         let returns = run.recorder.returns.len() / 4;
         let watching = Watching {
             returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
@@ -128,7 +128,7 @@ impl Judge {
     }
 }
 
-fn told(run: &Run, regime: Regime, stress: (f64, f64)) -> Told {
+fn told(run: &SweepRun, regime: Regime, stress: (f64, f64)) -> Classified {
     let mut told = begun(run, regime);
     told.row.stress_range = Some(stress);
     told

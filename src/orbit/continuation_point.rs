@@ -1,11 +1,11 @@
-//! How an orbit moves: displacements of its nodes, of its durations and of both parameters.
+//! Continuation points and tangent vectors: an orbit with both parameters, and how its nodes, durations and parameters change.
 
-use super::polygon::Polygon;
+use super::shooting_nodes::ShootingNodes;
 use crate::field::State;
 
 /// A displacement of an orbit, or a direction in which it can be displaced.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Motion<const N: usize> {
+pub struct TangentVector<const N: usize> {
     /// Of every node.
     pub nodes: Vec<State<N>>,
     /// Of every duration.
@@ -16,14 +16,14 @@ pub struct Motion<const N: usize> {
 
 /// An orbit, or a guess of one, at a place in the plane of parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Site<const N: usize> {
+pub struct ContinuationPoint<const N: usize> {
     /// Its nodes and durations.
-    pub polygon: Polygon<N>,
+    pub shooting: ShootingNodes<N>,
     /// The coordinates of the parameters.
     pub at: [f64; 2],
 }
 
-impl<const N: usize> Motion<N> {
+impl<const N: usize> TangentVector<N> {
     /// The mean over the nodes of the products of their displacements, and those of the parameters. The durations and with
     /// them the period stay out of it: near homoclinic orbits and canards they would drown everything else.
     pub fn dot(&self, other: &Self) -> f64 {
@@ -53,9 +53,9 @@ impl<const N: usize> Motion<N> {
         self
     }
 
-    /// What of a motion of this orbit does not depend on its nodes: the change of the parameters and of ln T.
-    pub(super) fn seen_from_afar(&self, polygon: &Polygon<N>) -> [f64; 3] {
-        let of_period = self.durations.iter().sum::<f64>() / polygon.period();
+    /// What of a tangent vector of this orbit does not depend on its nodes: the change of the parameters and of ln T.
+    pub(super) fn seen_from_afar(&self, shooting: &ShootingNodes<N>) -> [f64; 3] {
+        let of_period = self.durations.iter().sum::<f64>() / shooting.period();
         [self.parameters[0], self.parameters[1], of_period]
     }
 
@@ -66,20 +66,24 @@ impl<const N: usize> Motion<N> {
     }
 }
 
-impl<const N: usize> Site<N> {
+impl<const N: usize> ContinuationPoint<N> {
     /// Displaced by x times this.
-    pub fn moved(&self, motion: &Motion<N>, x: f64) -> Self {
-        Site {
-            polygon: self.polygon.moved(&motion.nodes, &motion.durations, x),
-            at: [0, 1].map(|i| self.at[i] + x * motion.parameters[i]),
+    pub fn moved(&self, tangent: &TangentVector<N>, x: f64) -> Self {
+        ContinuationPoint {
+            shooting: self.shooting.moved(&tangent.nodes, &tangent.durations, x),
+            at: [0, 1].map(|i| self.at[i] + x * tangent.parameters[i]),
         }
     }
 
     /// From another site with as many nodes to this one.
-    pub fn from(&self, other: &Self) -> Motion<N> {
-        let pairs = self.polygon.nodes.iter().zip(&other.polygon.nodes);
-        let durations = self.polygon.durations.iter().zip(&other.polygon.durations);
-        Motion {
+    pub fn from(&self, other: &Self) -> TangentVector<N> {
+        let pairs = self.shooting.nodes.iter().zip(&other.shooting.nodes);
+        let durations = self
+            .shooting
+            .durations
+            .iter()
+            .zip(&other.shooting.durations);
+        TangentVector {
             nodes: pairs.map(|(a, b)| a - b).collect(),
             durations: durations.map(|(a, b)| a - b).collect(),
             parameters: [0, 1].map(|i| self.at[i] - other.at[i]),
@@ -88,16 +92,16 @@ impl<const N: usize> Site<N> {
 
     /// How large a displacement is: the largest of a node's in units of 1 + |x|, of a duration's relative, of a parameter's
     /// coordinate.
-    pub fn size(&self, motion: &Motion<N>) -> (f64, f64) {
+    pub fn size(&self, tangent: &TangentVector<N>) -> (f64, f64) {
         let mut nodes = 0_f64;
-        for (dx, x) in motion.nodes.iter().zip(&self.polygon.nodes) {
+        for (dx, x) in tangent.nodes.iter().zip(&self.shooting.nodes) {
             for i in 0..N {
                 nodes = nodes.max(dx[i].abs() / (1.0 + x[i].abs()));
             }
         }
-        let pairs = motion.durations.iter().zip(&self.polygon.durations);
+        let pairs = tangent.durations.iter().zip(&self.shooting.durations);
         let stretch = pairs.map(|(dt, t)| (dt / t).abs()).fold(0.0, f64::max);
-        let parameters = motion
+        let parameters = tangent
             .parameters
             .iter()
             .fold(0.0, |a: f64, p| a.max(p.abs()));

@@ -1,31 +1,31 @@
-//! Along a curve of orbits: pseudo-arclength continuation of a branch, one parameter free, or of a bifurcation, with both.
+//! Pseudo-arclength continuation of periodic orbits: along a branch, one parameter free, or a curve of bifurcations, with both.
 
+use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
-use super::family::Family;
-use super::indicator::Indicator;
+use super::family::ParametrisedField;
 use super::linear::Linear;
-use super::motion::{Motion, Site};
-use super::polygon::Mesh;
+use super::shooting_nodes::ShootingMesh;
+use super::test_function::TestFunction;
 use crate::error::{Error, Result};
 use std::collections::VecDeque;
 use std::fmt;
 
-/// Where a walk stands.
+/// Where a continuation stands.
 #[derive(Debug, Clone)]
-pub struct Pace<const N: usize> {
+pub struct DirectedPoint<const N: usize> {
     /// The orbit and its surroundings.
     pub here: Regular<N>,
-    /// The direction of the walk.
-    pub direction: Motion<N>,
+    /// The direction of the continuation.
+    pub direction: TangentVector<N>,
 }
 
-/// What is walked along.
+/// What is followed.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Path {
+pub struct PalcSettings {
     /// The free parameters: one for a branch, both for a bifurcation.
     pub free: Vec<usize>,
     /// The bifurcation.
-    pub indicator: Option<Indicator>,
+    pub test_function: Option<TestFunction>,
     /// The longest step.
     pub longest: f64,
 }
@@ -45,14 +45,14 @@ const SHORTER: f64 = 0.4;
 /// The least cosine between the directions before and after a step.
 const TURN: f64 = 0.8;
 
-/// A walk with its next step's length.
-pub struct Walk<'c, 'f, F, const N: usize> {
+/// A continuation with its next step's length.
+pub struct Palc<'c, 'f, F, const N: usize> {
     /// What makes its orbits.
     pub corrector: &'c mut Corrector<'f, F, N>,
     /// What it is along.
-    pub path: Path,
+    pub settings: PalcSettings,
     /// Where it stands.
-    pub pace: Pace<N>,
+    pub now: DirectedPoint<N>,
     /// The next step.
     pub length: f64,
     /// Whether the nodes have been cut anew where it stands.
@@ -64,9 +64,9 @@ pub struct Walk<'c, 'f, F, const N: usize> {
     lengths: VecDeque<f64>,
 }
 
-/// Why a walk goes no further.
+/// Why a continuation goes no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Stop {
+pub enum PalcEnd {
     /// Newton's method fails, down to steps of this length.
     NoOrbit {
         /// The length of the last step that was tried.
@@ -90,14 +90,14 @@ pub enum Stop {
     NoNodes,
 }
 
-impl fmt::Display for Stop {
+impl fmt::Display for PalcEnd {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Stop::NoOrbit { length } => write!(
+            PalcEnd::NoOrbit { length } => write!(
                 f,
                 "Newton's method finds no next orbit, down to steps of {length:.1e}"
             ),
-            Stop::NoProgress {
+            PalcEnd::NoProgress {
                 steps,
                 length,
                 travelled,
@@ -105,10 +105,10 @@ impl fmt::Display for Stop {
                 f,
                 "no progress: the last {steps} steps are {length:.1e} long together, the way before {travelled:.1e}"
             ),
-            Stop::UsedUp { steps } => {
+            PalcEnd::UsedUp { steps } => {
                 write!(f, "the bound of {steps} steps of the integrator is used up")
             }
-            Stop::NoNodes => write!(
+            PalcEnd::NoNodes => write!(
                 f,
                 "the orbit can't be cut into arcs anew: the integration along it fails"
             ),
@@ -116,40 +116,40 @@ impl fmt::Display for Stop {
     }
 }
 
-impl Path {
+impl PalcSettings {
     /// A branch along this parameter.
     pub fn branch(parameter: usize, longest: f64) -> Self {
-        Path {
+        PalcSettings {
             free: vec![parameter],
-            indicator: None,
+            test_function: None,
             longest,
         }
     }
 
     /// A curve of bifurcations.
-    pub fn locus(indicator: Indicator, longest: f64) -> Self {
-        Path {
+    pub fn locus(test_function: TestFunction, longest: f64) -> Self {
+        PalcSettings {
             free: vec![0, 1],
-            indicator: Some(indicator),
+            test_function: Some(test_function),
             longest,
         }
     }
 
-    /// The path's own conditions and one more.
+    /// The curve's own conditions and one more.
     pub fn and<'a, const N: usize>(&self, last: Condition<'a, N>) -> Vec<Condition<'a, N>> {
-        let own = self.indicator.map(Condition::Indicator);
+        let own = self.test_function.map(Condition::TestFunction);
         own.into_iter().chain([last]).collect()
     }
 
-    /// The direction of the path at an orbit, with the sign that makes the product with `before` positive.
+    /// The direction of the curve at an orbit, with the sign that makes the product with `before` positive.
     pub fn direction<const N: usize>(
         &self,
         at: &Regular<N>,
-        before: &Motion<N>,
-    ) -> Option<Motion<N>> {
+        before: &TangentVector<N>,
+    ) -> Option<TangentVector<N>> {
         let direction = match (&at.along[..], at.gradients.first()) {
             ([only], _) => only.clone(),
-            // Where the indicator does not change.
+            // Where the test function does not change.
             ([first, second], Some(gradient)) => {
                 let (a, b) = (gradient.dot(first), gradient.dot(second));
                 first.clone().scaled(b).plus(-a, second).normalised()?
@@ -165,25 +165,27 @@ impl Path {
     }
 }
 
-impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
+impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     /// From an orbit nearby into a direction: the first correction is across it.
     ///
     /// # Errors
     /// Those of [`Corrector::correct`].
     pub fn from(
         corrector: &'c mut Corrector<'f, F, N>,
-        path: Path,
-        site: Site<N>,
-        direction: Motion<N>,
+        settings: PalcSettings,
+        site: ContinuationPoint<N>,
+        direction: TangentVector<N>,
     ) -> Result<Self> {
-        let conditions = path.and(Condition::Plane(&direction, &site));
-        let here = corrector.correct(site.clone(), &path.free, &conditions, Goal::STEP)?;
-        let direction = path.direction(&here, &direction).ok_or_else(no_direction)?;
-        Ok(Walk {
+        let conditions = settings.and(Condition::Plane(&direction, &site));
+        let here = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP)?;
+        let direction = settings
+            .direction(&here, &direction)
+            .ok_or_else(no_direction)?;
+        Ok(Palc {
             corrector,
-            pace: Pace { here, direction },
-            length: FIRST.min(path.longest),
-            path,
+            now: DirectedPoint { here, direction },
+            length: FIRST.min(settings.longest),
+            settings,
             fresh: false,
             cuts: 0,
             travelled: 0.0,
@@ -194,39 +196,39 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
     /// From an orbit, in the direction that looks so from afar: after a change of variables.
     pub fn resumed(
         corrector: &'c mut Corrector<'f, F, N>,
-        path: Path,
-        site: Site<N>,
+        settings: PalcSettings,
+        site: ContinuationPoint<N>,
         afar: [f64; 3],
         (length, travelled): (f64, f64),
     ) -> Option<Self> {
         // Closed in the new variables, with the parameter in which it moves most held.
-        let fixed = if afar[1].abs() > afar[0].abs() && path.free.contains(&1) {
+        let fixed = if afar[1].abs() > afar[0].abs() && settings.free.contains(&1) {
             1
         } else {
-            path.free[0]
+            settings.free[0]
         };
         let held = Condition::Parameter(fixed, site.at[fixed]);
         let here = corrector
-            .correct(site, &path.free, &path.and(held), Goal::STEP)
+            .correct(site, &settings.free, &settings.and(held), Goal::STEP)
             .ok()?;
-        let mut walk = Walk {
-            pace: Pace {
+        let mut palc = Palc {
+            now: DirectedPoint {
                 direction: here.along[0].clone(),
                 here,
             },
             corrector,
-            path,
+            settings,
             length,
             fresh: false,
             cuts: 0,
             travelled,
             lengths: VecDeque::new(),
         };
-        let site = walk.pace.here.site.clone();
-        let linear = walk.pace.here.linear.clone();
-        walk.pace = walk.arrived(site, linear, afar)?;
-        walk.cut()?;
-        Some(walk)
+        let site = palc.now.here.site.clone();
+        let linear = palc.now.here.linear.clone();
+        palc.now = palc.arrived(site, linear, afar)?;
+        palc.cut()?;
+        Some(palc)
     }
 
     /// The length of the way so far.
@@ -239,86 +241,95 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         self.cuts
     }
 
-    /// What of the walk's direction does not depend on the variables: the change of the parameters and of ln T.
+    /// What of the continuation's direction does not depend on the variables: the change of the parameters and of ln T.
     pub fn afar(&self) -> [f64; 3] {
-        let Pace { here, direction } = &self.pace;
-        direction.seen_from_afar(&here.site.polygon)
+        let DirectedPoint { here, direction } = &self.now;
+        direction.seen_from_afar(&here.site.shooting)
     }
 
     /// The same, backwards.
     pub fn turned(mut self) -> Self {
-        self.pace.direction = self.pace.direction.scaled(-1.0);
+        self.now.direction = self.now.direction.scaled(-1.0);
         self
     }
 
     /// The orbit at this distance along the direction.
-    pub fn at(&mut self, length: f64) -> Option<Pace<N>> {
-        let pace = self.pace.clone();
-        self.beyond(&pace, length)
+    pub fn correct_at(&mut self, length: f64) -> Option<DirectedPoint<N>> {
+        let now = self.now.clone();
+        self.correct_from(&now, length)
     }
 
-    /// The orbit at this distance from where the walk once stood, along the direction there.
-    pub fn beyond(&mut self, pace: &Pace<N>, length: f64) -> Option<Pace<N>> {
-        let Pace { here, direction } = pace;
+    /// The orbit at this distance from where the continuation once stood, along the direction there.
+    pub fn correct_from(
+        &mut self,
+        now: &DirectedPoint<N>,
+        length: f64,
+    ) -> Option<DirectedPoint<N>> {
+        let DirectedPoint { here, direction } = now;
         let predicted = here.site.moved(direction, length);
-        let conditions = self.path.and(Condition::Plane(direction, &predicted));
+        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
         let next = self
             .corrector
-            .correct(predicted.clone(), &self.path.free, &conditions, Goal::STEP)
+            .correct(
+                predicted.clone(),
+                &self.settings.free,
+                &conditions,
+                Goal::STEP,
+            )
             .ok()?;
-        let along = self.path.direction(&next, direction)?;
-        Some(Pace {
+        let along = self.settings.direction(&next, direction)?;
+        Some(DirectedPoint {
             here: next,
             direction: along,
         })
     }
 
     /// Whether the last steps lead nowhere: measured by the way so far, whatever the units of the variables.
-    fn progresses(&self) -> Result<(), Stop> {
+    fn progresses(&self) -> Result<(), PalcEnd> {
         let length: f64 = self.lengths.iter().sum();
         let grow = self.lengths.back() > self.lengths.front();
         if self.lengths.len() < WINDOW || grow || length > PROGRESS * self.travelled {
             return Ok(());
         }
-        Err(Stop::NoProgress {
+        Err(PalcEnd::NoProgress {
             steps: WINDOW,
             length,
             travelled: self.travelled,
         })
     }
 
-    /// The next orbit, which the walk then stands at; returns where it stood and how far that was.
+    /// The next orbit, which the continuation then stands at; returns where it stood and how far that was.
     ///
     /// # Errors
     /// Why there is none.
-    pub fn step(&mut self) -> Result<(Pace<N>, f64), Stop> {
+    pub fn step(&mut self) -> Result<(DirectedPoint<N>, f64), PalcEnd> {
         self.progresses()?;
         loop {
             let length = self.length;
             let next = self
-                .at(length)
-                .filter(|next| next.direction.dot(&self.pace.direction) > TURN);
+                .correct_at(length)
+                .filter(|next| next.direction.dot(&self.now.direction) > TURN);
             let Some(next) = next else {
                 // Often a node's plane lies badly: nodes elsewhere may do.
                 if let Some(steps) = self.corrector.tracer.used_up() {
-                    return Err(Stop::UsedUp { steps });
+                    return Err(PalcEnd::UsedUp { steps });
                 }
                 if !self.fresh {
-                    self.cut().ok_or(Stop::NoNodes)?;
+                    self.cut().ok_or(PalcEnd::NoNodes)?;
                     continue;
                 }
                 self.length *= SHORTER;
-                let extent = self.pace.here.site.polygon.extent();
+                let extent = self.now.here.site.shooting.extent();
                 if self.length < SHORTEST * extent.min(1.0) {
-                    return Err(Stop::NoOrbit { length });
+                    return Err(PalcEnd::NoOrbit { length });
                 }
                 continue;
             };
             self.fresh = false;
             let ratio = (OFF / next.here.first).sqrt().clamp(RATIO.0, RATIO.1);
-            self.length = (length * ratio).min(self.path.longest);
-            let before = std::mem::replace(&mut self.pace, next);
+            self.length = (length * ratio).min(self.settings.longest);
+            let before = std::mem::replace(&mut self.now, next);
             self.travelled += length;
             self.lengths.push_back(length);
             if self.lengths.len() > WINDOW {
@@ -328,31 +339,31 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
         }
     }
 
-    /// Cuts the orbit's arcs anew where they have become uneven. After that the walk's last orbit has other nodes than the one
+    /// Cuts the orbit's arcs anew where they have become uneven. After that the continuation's last orbit has other nodes than the one
     /// before.
     ///
     /// # Errors
-    /// [`Stop::NoNodes`].
-    pub fn mesh(&mut self) -> Result<(), Stop> {
-        if uneven(&self.pace.here) {
-            self.cut().ok_or(Stop::NoNodes)
+    /// [`PalcEnd::NoNodes`].
+    pub fn mesh(&mut self) -> Result<(), PalcEnd> {
+        if uneven(&self.now.here) {
+            self.cut().ok_or(PalcEnd::NoNodes)
         } else {
             Ok(())
         }
     }
 
     fn cut(&mut self) -> Option<()> {
-        let Pace { here, direction } = &self.pace;
+        let DirectedPoint { here, direction } = &self.now;
         let site = &here.site;
         let field = self.corrector.family.field(site.at);
-        let polygon = site
-            .polygon
-            .cut(&mut self.corrector.tracer, &*field, &Mesh::FINE)
+        let shooting = site
+            .shooting
+            .cut(&mut self.corrector.tracer, &*field, &ShootingMesh::FINE)
             .ok()?;
         drop(field);
-        let old = direction.seen_from_afar(&site.polygon);
-        let mut site = Site {
-            polygon,
+        let old = direction.seen_from_afar(&site.shooting);
+        let mut site = ContinuationPoint {
+            shooting,
             at: site.at,
         };
         let mut linear = self.corrector.linear(&site)?;
@@ -363,43 +374,48 @@ impl<'c, 'f, F: Family<N>, const N: usize> Walk<'c, 'f, F, N> {
             let parts = linear.parts(GROWTH);
             let field = self.corrector.family.field(site.at);
             let tracer = &mut self.corrector.tracer;
-            site.polygon = site.polygon.split(tracer, &*field, &parts).ok()?;
+            site.shooting = site.shooting.split(tracer, &*field, &parts).ok()?;
             drop(field);
             linear = self.corrector.linear(&site)?;
         }
         let scale = self.corrector.family.scale(site.at);
-        let (_, along) = linear.solutions(&self.path.free, scale)?;
+        let (_, along) = linear.solutions(&self.settings.free, scale)?;
         let first = most_moved(&along);
-        site.polygon = site.polygon.beginning_at(first);
-        self.pace = self.arrived(site, linear.beginning_at(first), old)?;
+        site.shooting = site.shooting.beginning_at(first);
+        self.now = self.arrived(site, linear.beginning_at(first), old)?;
         self.fresh = true;
         self.cuts += 1;
         Some(())
     }
 
     /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
-    fn arrived(&mut self, site: Site<N>, linear: Linear<N>, old: [f64; 3]) -> Option<Pace<N>> {
+    fn arrived(
+        &mut self,
+        site: ContinuationPoint<N>,
+        linear: Linear<N>,
+        old: [f64; 3],
+    ) -> Option<DirectedPoint<N>> {
         let own: Vec<Condition<'_, N>> = self
-            .path
-            .indicator
-            .map(Condition::Indicator)
+            .settings
+            .test_function
+            .map(Condition::TestFunction)
             .into_iter()
             .collect();
         let here = self
             .corrector
-            .look_with(site, linear, &self.path.free, &own)?;
+            .look_with(site, linear, &self.settings.free, &own)?;
         let any = here.along.first()?.clone();
-        let mut direction = self.path.direction(&here, &any)?;
-        let new = direction.seen_from_afar(&here.site.polygon);
+        let mut direction = self.settings.direction(&here, &any)?;
+        let new = direction.seen_from_afar(&here.site.shooting);
         let along: f64 = old.iter().zip(&new).map(|(a, b)| a * b).sum();
         if along < 0.0 {
             direction = direction.scaled(-1.0);
         }
-        Some(Pace { here, direction })
+        Some(DirectedPoint { here, direction })
     }
 }
 
-/// Where the walk begins the path has no direction.
+/// Where the continuation begins the curve has no direction.
 fn no_direction() -> Error {
     Error::NotConverged {
         what: "the direction of the curve",
@@ -415,14 +431,14 @@ const GROWN: f64 = 8.0;
 /// How often arcs are split for it.
 const SPLITS: usize = 6;
 
-/// The node that the motions left to the orbit move most. All others are found from the first one: from the small end of a
-/// motion that grows by many decades nothing is found.
-fn most_moved<const N: usize>(along: &[Motion<N>]) -> usize {
+/// The node that the tangent vectors left to the orbit move most. All others are found from the first one: from the small end of a
+/// tangent vector that grows by many decades nothing is found.
+fn most_moved<const N: usize>(along: &[TangentVector<N>]) -> usize {
     let moved = |k: usize| -> f64 {
-        let each = along.iter().map(|motion| motion.nodes[k].norm_squared());
+        let each = along.iter().map(|tangent| tangent.nodes[k].norm_squared());
         each.sum()
     };
-    let count = along.first().map_or(0, |motion| motion.nodes.len());
+    let count = along.first().map_or(0, |tangent| tangent.nodes.len());
     (0..count)
         .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
         .unwrap_or(0)
@@ -437,8 +453,8 @@ fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
     let count = arcs.len() as f64;
     let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
     let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
-    let most = mean.max(Mesh::FINE.steps);
+    let most = mean.max(ShootingMesh::FINE.steps);
     worst > WORST * most
-        || mean > MEAN * Mesh::FINE.steps
+        || mean > MEAN * ShootingMesh::FINE.steps
         || orbit.linear.growth().any(|g| g > GROWN)
 }

@@ -2,12 +2,12 @@
 
 use crate::friction::{AnyLaw, Law, steady_stress};
 use crate::model::{
-    Driven, Loading, parted_interfaces, single_interface, symmetric, two_interfaces,
+    Driven, Loading, interfaces_in_difference_chart, single_interface, symmetric, two_interfaces,
 };
 
 /// One or two interfaces between elastic slabs.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slab {
+pub struct InterfaceSystem {
     /// The law of every interface.
     pub law: AnyLaw,
     /// 1 or 2.
@@ -16,15 +16,15 @@ pub struct Slab {
     pub loading: Loading,
 }
 
-impl Slab {
+impl InterfaceSystem {
     /// The system (19) in (tau, ln psi_1, ln psi_2).
     pub fn whole(&self) -> Box<dyn Driven<3>> {
         two_interfaces(self.law, self.loading)
     }
 
     /// The same in (tau, ln psi_2, ln(psi_1 - psi_2)), for psi_1 > psi_2: there small differences keep all their digits.
-    pub fn parted(&self) -> Box<dyn Driven<3>> {
-        parted_interfaces(self.law, self.loading)
+    pub fn in_difference_chart(&self) -> Box<dyn Driven<3>> {
+        interfaces_in_difference_chart(self.law, self.loading)
     }
 
     /// In (tau, ln psi): the symmetric subspace of (19), or a single interface (11).
@@ -37,8 +37,8 @@ impl Slab {
     }
 
     /// The same slab at another V_H > 0.
-    pub fn driven_at(&self, driving: f64) -> Slab {
-        Slab {
+    pub fn driven_at(&self, driving: f64) -> InterfaceSystem {
+        InterfaceSystem {
             loading: Loading {
                 driving,
                 ..self.loading
@@ -48,8 +48,8 @@ impl Slab {
     }
 
     /// The same slab with another K > 0.
-    pub fn of_stiffness(&self, stiffness: f64) -> Slab {
-        Slab {
+    pub fn of_stiffness(&self, stiffness: f64) -> InterfaceSystem {
+        InterfaceSystem {
             loading: Loading {
                 stiffness,
                 ..self.loading

@@ -1,4 +1,4 @@
-//! Two interfaces (19) in variables that do not lose their asymmetry.
+//! The difference chart: two interfaces (19) in variables that do not lose their asymmetry.
 //!
 //! Along cycles at small stiffness the interfaces come so near each other that psi_1 - psi_2 falls to e^-100, and part again:
 //! a difference of two doubles has long lost it. It never changes sign, and D' = (difference of the rates) is D times a
@@ -19,12 +19,12 @@ use crate::series::Equations;
 /// For tau of one sign: series take the sign of the slip rates at the beginning of a step. With the slip law, whose evolution
 /// takes the logarithm of v psi, digits are lost where v_1 psi_1 is far below v_2 psi_2; with the others nowhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parted<L> {
+pub struct DifferenceChart<L> {
     /// The law of both interfaces.
     pub law: L,
 }
 
-impl<L: Law> Parted<L> {
+impl<L: Law> DifferenceChart<L> {
     /// The field at a loading.
     pub fn at(self, loading: &Loading) -> Smooth<Self, 3> {
         Smooth {
@@ -34,7 +34,7 @@ impl<L: Law> Parted<L> {
     }
 }
 
-impl<L: Law> Equations<3> for Parted<L> {
+impl<L: Law> Equations<3> for DifferenceChart<L> {
     #[inline(always)]
     fn rates<T: Real>(
         &self,
@@ -62,7 +62,7 @@ impl<L: Law> Equations<3> for Parted<L> {
 
 /// From (tau, ln psi_1, ln psi_2) to (tau, ln psi_2, ln D); `None` unless psi_1 > psi_2. Of ln psi_1 - ln psi_2 it keeps the
 /// digits that this difference has.
-pub fn parted(y: &State<3>) -> Option<State<3>> {
+pub fn to_difference_chart(y: &State<3>) -> Option<State<3>> {
     let ratio = y[1] - y[2];
     // ln(e^ratio - 1)
     let log_excess = if ratio > 40.0 {
@@ -74,14 +74,14 @@ pub fn parted(y: &State<3>) -> Option<State<3>> {
 }
 
 /// From (tau, ln psi_2, ln D) to (tau, ln psi_1, ln psi_2).
-pub fn united(x: &State<3>) -> State<3> {
+pub fn from_difference_chart(x: &State<3>) -> State<3> {
     let excess = x[2] - x[1];
     // ln(1 + e^excess)
     let ratio = excess.max(0.0) + (-excess.abs()).exp().ln_1p();
     State::<3>::new(x[0], x[1] + ratio, x[1])
 }
 
-impl<L: Law> Driven<3> for Smooth<Parted<L>, 3> {
+impl<L: Law> Driven<3> for Smooth<DifferenceChart<L>, 3> {
     fn parameter_derivative(&self, y: &State<3>, p: Parameter) -> State<3> {
         Smooth::parameter_derivative(self, y, index(p))
     }

@@ -1,15 +1,16 @@
-//! What a run has settled on, from its returns.
+//! Classifies what a run has settled on, from its returns.
 
 use super::flows::Flows;
-use super::watch::{Run, see, turn};
-use super::{Row, Settings, creep};
+use super::watch::{SweepRun, see, turn};
+use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State};
 use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use crate::number::{DoubleDouble, Uncertain};
 use crate::section::{
-    Ended, Periodic, Regime, STEPS_OF_PIECE, Search, at_equilibrium, derivative_along, reduce,
+    Ended, Periodic, PeriodicSearch, Regime, STEPS_OF_PIECE, at_equilibrium, derivative_along,
+    reduce,
 };
 use nalgebra::DMatrix;
 
@@ -21,7 +22,7 @@ const CONVERGED: f64 = 1e-5;
 const TOLERANCE: f64 = 1e-11;
 /// Returns after which a run that has not settled is judged: each time twice as many.
 pub(super) const FIRST_STAGE: usize = 64;
-/// Returns without which no run is seen to creep.
+/// Returns without which no run is seen to slow_convergence.
 const FEWEST_TO_CREEP: usize = 256;
 /// A candidate that is none is not looked at again before this part more returns.
 const LATER: f64 = 1.3;
@@ -37,22 +38,22 @@ const CHANGE: f64 = 3.0;
 const ON_ORBIT: f64 = 1e-5;
 
 /// Judges runs; its integrators are used over and over.
-pub(super) struct Judge {
-    pub(super) settings: Settings,
+pub(super) struct Classifier {
+    pub(super) settings: SweepSettings,
     fine: Taylor,
     pub(super) coarse: Taylor,
 }
 
 /// What is known of a run's end, and where the next one may start from it.
-pub(super) struct Told {
-    pub row: Row,
+pub(super) struct Classified {
+    pub row: SweepRow,
     pub attractor: Option<State<3>>,
 }
 
-impl Judge {
-    pub fn new(settings: &Settings) -> Result<Self> {
+impl Classifier {
+    pub fn new(settings: &SweepSettings) -> Result<Self> {
         let fine = TOLERANCE.min(settings.rtol);
-        Ok(Judge {
+        Ok(Classifier {
             settings: settings.clone(),
             fine: Taylor::new(Tolerances::equal(fine)?, MAX_STEPS)?,
             coarse: Taylor::new(Tolerances::equal(settings.rtol)?, settings.max_steps)?,
@@ -60,7 +61,7 @@ impl Judge {
     }
 
     /// What the run has settled on, or `None` if it shall go on.
-    pub fn judge(&mut self, run: &mut Run, flows: &mut Flows) -> Option<Told> {
+    pub fn classify(&mut self, run: &mut SweepRun, flows: &mut Flows) -> Option<Classified> {
         match run.recorder.ended.take() {
             Some(Ended::Steady {
                 equilibrium,
@@ -117,9 +118,10 @@ impl Judge {
     }
 
     /// The periodic orbit that the run closes in on.
-    fn periodic(&mut self, run: &mut Run, q: usize) -> Option<Told> {
+    fn periodic(&mut self, run: &mut SweepRun, q: usize) -> Option<Classified> {
         let at = (&*run.field, &run.surface, run.returns());
-        let mut search = Search::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
+        let mut search =
+            PeriodicSearch::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
         search.converged = CONVERGED;
         let found = search.point()?;
         if self.attracts(&found) {
@@ -133,17 +135,17 @@ impl Judge {
     }
 
     /// What the run creeps to.
-    fn creeping(&mut self, run: &Run) -> Option<Told> {
+    fn creeping(&mut self, run: &SweepRun) -> Option<Classified> {
         let (field, returns) = (&*run.field, run.returns());
         if returns.len() < FEWEST_TO_CREEP {
             return None;
         }
-        if let Some(equilibrium) = creep::to_rest(field, returns) {
+        if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
             return Some(steady(run, equilibrium, true));
         }
         // Where little is between the map and the identity, the point is off by much more than the map.
         let rtol = self.settings.rtol;
-        let found = creep::to_orbit(field, &run.surface, &mut self.fine, returns, rtol)?;
+        let found = slow_convergence::to_orbit(field, &run.surface, &mut self.fine, returns, rtol)?;
         if !self.attracts(&found) {
             return None;
         }
@@ -155,7 +157,7 @@ impl Judge {
         found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * self.settings.rtol
     }
 
-    fn orbit(&mut self, run: &Run, found: &Periodic<3>) -> Option<Told> {
+    fn orbit(&mut self, run: &SweepRun, found: &Periodic<3>) -> Option<Classified> {
         let mut stress = (found.point[0], found.point[0]);
         let mut unlike = 0.0_f64;
         let (mut point, mut period) = (found.point, found.period.value);
@@ -191,7 +193,7 @@ impl Judge {
             let now = DoubleDouble::from(period);
             let around = derivative_along(field, &run.surface, &mut self.fine, &points, now);
             let around = largest_multiplier(run, &point, &around.ok()?);
-            let Some(Around { mu, error, left }) = around.filter(|_| before > 0.0) else {
+            let Some(Revolution { mu, error, left }) = around.filter(|_| before > 0.0) else {
                 break;
             };
             // What mu still changes by, by how much it has changed over the last step to the point.
@@ -224,7 +226,7 @@ impl Judge {
 }
 
 /// Once around from a point.
-struct Around {
+struct Revolution {
     /// The larger multiplier, its modulus.
     mu: f64,
     /// What its logarithm errs by.
@@ -235,10 +237,10 @@ struct Around {
 
 /// The larger multiplier by where the way around ends and its derivative; `None` where mu is too small to be told from rounding.
 fn largest_multiplier(
-    run: &Run,
+    run: &SweepRun,
     point: &State<3>,
     (end, derivative): &(State<3>, Jacobian<3>),
-) -> Option<Around> {
+) -> Option<Revolution> {
     const LEAST: f64 = 1e-6;
     let inside = run.surface.directions(point);
     let reduced = reduce(derivative, &inside);
@@ -257,7 +259,7 @@ fn largest_multiplier(
     let error = DERIVATIVE_PER_RTOL * TOLERANCE;
     let (size, apart) = (reduced.norm(), (values[0] - values[1]).norm());
     let double = size / apart.max(error.sqrt() * size);
-    Some(Around {
+    Some(Revolution {
         mu,
         error: error * size / mu * double.max(1.0),
         left: State::from_fn(|i, _| left[i]),
@@ -277,10 +279,10 @@ fn symmetry(unlike: f64) -> Symmetry {
 }
 
 /// A row of which the regime is known.
-pub(super) fn begun(run: &Run, regime: Regime) -> Told {
+pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
     let point = &run.point;
-    Told {
-        row: Row {
+    Classified {
+        row: SweepRow {
             number: point.number,
             driving: point.loading.driving,
             stiffness: point.loading.stiffness,
@@ -301,7 +303,7 @@ pub(super) fn begun(run: &Run, regime: Regime) -> Told {
     }
 }
 
-pub(super) fn steady(run: &Run, equilibrium: State<3>, stable: bool) -> Told {
+pub(super) fn steady(run: &SweepRun, equilibrium: State<3>, stable: bool) -> Classified {
     let mut told = begun(run, Regime::Steady);
     told.attractor = Some(equilibrium);
     told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));
@@ -313,7 +315,7 @@ pub(super) fn steady(run: &Run, equilibrium: State<3>, stable: bool) -> Told {
     told
 }
 
-pub(super) fn undecided(run: &Run, why: String) -> Told {
+pub(super) fn undecided(run: &SweepRun, why: String) -> Classified {
     let mut told = begun(run, Regime::Undecided);
     told.row.note = Some(why);
     told.attractor = None;

@@ -1,4 +1,4 @@
-//! Runs that creep: close to a bifurcation they come nearer to what attracts them so slowly that they never arrive.
+//! Slow convergence: close to a bifurcation runs come nearer to what attracts them so slowly that they never arrive.
 //!
 //! They need not. A run that has come near an attractor, and comes nearer as fast as its eigenvalues or multipliers say, goes on
 //! doing so: in the linear neighbourhood nothing else acts, and short of it what slows the approach, an unstable orbit or
@@ -7,7 +7,7 @@
 use crate::field::{State, VectorField};
 use crate::integrate::Taylor;
 use crate::section::{
-    FEWEST_RETURNS, LONGEST_PERIOD, Periodic, Return, Search, Surface, growth, newton_step,
+    FEWEST_RETURNS, LONGEST_PERIOD, Periodic, PeriodicSearch, Return, Surface, growth, newton_step,
 };
 
 /// The distance, in every component, that Newton's method may go to an orbit, and to an equilibrium.
@@ -21,7 +21,7 @@ const AS_SAID: std::ops::Range<f64> = 0.6..1.6;
 /// What shrinks by less shows nothing.
 const LEAST: f64 = 0.01;
 
-/// The stable equilibrium that these returns creep to.
+/// The stable equilibrium that these returns slow_convergence to.
 pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Option<State<3>> {
     let last = returns.last()?;
     let mut at = last.state;
@@ -40,7 +40,7 @@ pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Opti
     None
 }
 
-/// The periodic point that these returns creep to.
+/// The periodic point that these returns slow_convergence to.
 pub(super) fn to_orbit(
     field: &dyn VectorField<3>,
     surface: &Surface<3>,
@@ -68,7 +68,7 @@ pub(super) fn to_orbit(
         .into_iter()
         .filter(|&(_, q)| shrinks(q))
         .find_map(|(from, q)| {
-            let mut search = Search::new(field, surface, taylor, returns, (accuracy, q));
+            let mut search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, q));
             (search.from, search.near, search.converged) = (from, NEAR, CONVERGED);
             search.shrunk = 1.0;
             let found = search.point()?;

@@ -1,18 +1,18 @@
 //! One branch of periodic orbits, followed to its end.
 
-use super::branch::{Branches, Doubling, walker};
+use super::branch::{BranchSet, Doubling, new_corrector};
 use super::chart::{Chart, embedded, middle};
-use super::detect::Watch;
+use super::cubic_coefficient::CubicCoefficient;
+use super::detect::WatchedFunction;
 use super::follow::{End, Met, follow};
 use super::normal_form::Form;
-use super::rows::{Given, asked, row};
-use super::sharp::{Exactly, Sharp, rough, sharpened, special};
+use super::refine::{DefiningCondition, RefinedPoint, refined, rough, special};
+use super::rows::{GivenParameters, asked, row};
 use super::vertical::Vertical;
-use super::way::Way;
-use crate::bifurcation::{Event, Label, Seen, Special};
+use crate::bifurcation::{Event, EventObserver, Label, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::orbit::{Indicator, Pace, Regular, Site, Walk};
+use crate::orbit::{ContinuationPoint, DirectedPoint, Palc, Regular, TestFunction};
 use std::any::Any;
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -20,8 +20,8 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const STEPS: usize = 5000;
 
 /// How a branch goes on.
-pub(super) struct Course<'b, 'r, 's> {
-    pub branches: &'b mut Branches<'r>,
+pub(super) struct OrbitBranch<'b, 'r, 's> {
+    pub branches: &'b mut BranchSet<'r>,
     pub number: usize,
     symmetry: Symmetry,
     /// Whether it has been in the range.
@@ -30,7 +30,7 @@ pub(super) struct Course<'b, 'r, 's> {
     begin: f64,
     /// How often the period has doubled.
     pub times: usize,
-    seen: Seen<'s>,
+    seen: EventObserver<'s>,
     told: bool,
     /// As long as the parameter has not varied.
     vertical: Option<Vertical>,
@@ -45,17 +45,17 @@ enum Back {
     Jumped,
 }
 
-type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Walk<'c, 'f, F, N>;
+type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Palc<'c, 'f, F, N>;
 
-impl<'b, 'r, 's> Course<'b, 'r, 's> {
+impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     pub fn new(
-        branches: &'b mut Branches<'r>,
+        branches: &'b mut BranchSet<'r>,
         (number, symmetry): (usize, Symmetry),
         begin: f64,
-        seen: Seen<'s>,
+        seen: EventObserver<'s>,
     ) -> Self {
         let inside = branches.in_range(begin);
-        Course {
+        OrbitBranch {
             branches,
             number,
             symmetry,
@@ -71,25 +71,25 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// To the end, in other variables where these lose digits; breaks where whoever is told had enough.
     pub fn go<F: Chart<N>, const N: usize>(
         mut self,
-        walk: Walker<'_, '_, '_, F, N>,
+        palc: Walker<'_, '_, '_, F, N>,
     ) -> Result<ControlFlow<()>> {
-        let end = self.along(walk)?;
-        if end == Some(End::Told) {
+        let end = self.along(palc)?;
+        if end == Some(End::Interrupted) {
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
         if let Some(vertical) = self.vertical.filter(Vertical::is_shown) {
-            let special = vertical.end(walk, self.branches.free, self.given(None));
+            let special = vertical.end(palc, self.branches.free, self.given(None));
             let _ = self.tell(Event::Special(special));
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
-        let site = &walk.pace.here.site;
-        let (family, path) = (*walk.corrector.family, walk.path.clone());
-        let length = (walk.length, walk.travelled());
-        if let Some((parted, there)) = family.keeping(site) {
-            let afar = walk.afar();
-            let mut corrector = walker::<_, 3>(&parted)?;
-            if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
-                return self.go(&mut walk);
+        let site = &palc.now.here.site;
+        let (family, settings) = (*palc.corrector.family, palc.settings.clone());
+        let length = (palc.length, palc.travelled());
+        if let Some((chart, there)) = family.keeping(site) {
+            let afar = palc.afar();
+            let mut corrector = new_corrector::<_, 3>(&chart)?;
+            if let Some(mut palc) = Palc::resumed(&mut corrector, settings, there, afar, length) {
+                return self.go(&mut palc);
             }
         }
         if self.inside {
@@ -106,29 +106,29 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// In the same variables throughout; `None` where these lose digits, or where the branch is vertical.
     fn along<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: Walker<'_, '_, '_, F, N>,
+        palc: Walker<'_, '_, '_, F, N>,
     ) -> Result<Option<End>> {
         let (mut failed, mut lost, mut vertical) = (None, false, false);
         let end = follow(
-            walk,
+            palc,
             &self.watches::<N>(),
             STEPS,
-            &mut |walk, before, met| {
+            &mut |palc, before, met| {
                 let last = &before.here.site;
                 let met = match met {
                     Met::Zero(watch, at) => {
-                        let back = self.comes_back(walk, before);
-                        self.zero(walk, watch, at, last, back)
+                        let back = self.comes_back(palc, before);
+                        self.zero(palc, watch, at, last, back)
                     }
-                    Met::Orbit(pace) => {
-                        let back = self.comes_back(walk, before);
-                        match self.orbit(walk, pace, last, back) {
+                    Met::Orbit(now) => {
+                        let back = self.comes_back(palc, before);
+                        match self.orbit(palc, now, last, back) {
                             // A branch that has ended does not go on in other variables.
-                            Ok(Continue(())) if walk.corrector.family.loses(&pace.here.site) => {
+                            Ok(Continue(())) if palc.corrector.family.loses(&now.here.site) => {
                                 lost = true;
                                 Ok(Break(()))
                             }
-                            Ok(Continue(())) if self.is_vertical(walk, pace) => {
+                            Ok(Continue(())) if self.is_vertical(palc, now) => {
                                 vertical = true;
                                 Ok(Break(()))
                             }
@@ -152,33 +152,33 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// Whether so much of the branch has been vertical that it is followed no further.
     fn is_vertical<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: &mut Walk<'_, '_, F, N>,
-        pace: &Pace<N>,
+        palc: &mut Palc<'_, '_, F, N>,
+        now: &DirectedPoint<N>,
     ) -> bool {
         let free = self.branches.free;
         self.vertical = self
             .vertical
-            .and_then(|vertical| vertical.and(walk, pace, free));
+            .and_then(|vertical| vertical.and(palc, now, free));
         self.vertical.is_some_and(|vertical| vertical.is_enough())
     }
 
-    fn watches<const N: usize>(&self) -> Vec<Watch> {
-        let Branches {
+    fn watches<const N: usize>(&self) -> Vec<WatchedFunction> {
+        let BranchSet {
             free,
             range,
             request,
             ..
         } = *self.branches;
-        let mut watches = vec![Watch::Turn(free)];
+        let mut watches = vec![WatchedFunction::Turn(free)];
         if N == 3 {
-            watches.push(Watch::Indicator(Indicator::Doubling));
-            watches.push(Watch::Indicator(Indicator::Torus));
+            watches.push(WatchedFunction::TestFunction(TestFunction::Doubling));
+            watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
         } else if request.slab.interfaces == 2 {
-            watches.push(Watch::Indicator(Indicator::Across));
+            watches.push(WatchedFunction::TestFunction(TestFunction::Transverse));
         }
         let asked = request.at.iter().map(|x| x.ln());
         let values = [range.0, range.1].into_iter().chain(asked);
-        watches.extend(values.map(|x| Watch::Value(free, x)));
+        watches.extend(values.map(|x| WatchedFunction::Value(free, x)));
         watches
     }
 
@@ -195,19 +195,19 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// The next orbit: its row, and whether the branch goes on.
     fn orbit<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: &Walk<'_, '_, F, N>,
-        Pace { here, .. }: &Pace<N>,
-        last: &Site<N>,
+        palc: &Palc<'_, '_, F, N>,
+        DirectedPoint { here, .. }: &DirectedPoint<N>,
+        last: &ContinuationPoint<N>,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         let site = &here.site;
         let free = self.branches.free;
         let coordinate = site.at[free];
-        if let Some(i) = walk.ends_at(last, &self.branches.hopfs) {
+        if let Some(i) = palc.ends_at(last, &self.branches.hopfs) {
             self.shrunk(i);
             return Ok(Break(()));
         }
-        let family = walk.corrector.family;
+        let family = palc.corrector.family;
         if family.merges(site, last) {
             self.merged(&family.usual(last));
             return Ok(Break(()));
@@ -254,20 +254,20 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     }
 
     /// An asymmetric branch has met the symmetric one.
-    fn merged<const N: usize>(&mut self, last: &Site<N>) {
+    fn merged<const N: usize>(&mut self, last: &ContinuationPoint<N>) {
         let site = middle(last);
-        let across = [Exactly::Indicator(Indicator::Across)];
+        let across = [DefiningCondition::TestFunction(TestFunction::Transverse)];
         let free = self.branches.free;
         let family = self.branches.family;
-        let Some(sharp) = sharpened::<_, 2>(&family, &site, &[free], &across) else {
+        let Some(refined_point) = refined::<_, 2>(&family, &site, &[free], &across) else {
             return;
         };
-        let coordinate = sharp.orbit.site.at[free];
+        let coordinate = refined_point.orbit.site.at[free];
         self.branches.merged.push(coordinate);
         if self.branches.in_range(coordinate) {
-            let mut special = sharp.special(Label::Pf);
+            let mut special = refined_point.special(Label::Pf);
             special.given(self.given(None));
-            self.pitchfork(&mut special, &sharp.orbit);
+            self.pitchfork(&mut special, &refined_point.orbit);
             let _ = self.tell(Event::Special(special));
         }
     }
@@ -275,37 +275,37 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// Whether a branch of doubled orbits has come back, on the step from `before`, to one that goes round once only.
     fn comes_back<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: &mut Walk<'_, '_, F, N>,
-        before: &Pace<N>,
+        palc: &mut Palc<'_, '_, F, N>,
+        before: &DirectedPoint<N>,
     ) -> Option<Back> {
         /// Below this both rounds are the same one.
         const SAME: f64 = 1e-6;
         if self.times == 0 {
             return None;
         }
-        let Pace { here, direction } = &walk.pace;
+        let DirectedPoint { here, direction } = &palc.now;
         let free = self.branches.free;
         let turned = direction.parameters[free] * before.direction.parameters[free] <= 0.0;
         if turned && self.back(&here.site) {
             return Some(Back::Through);
         }
-        let Site { polygon, at } = &here.site;
-        let field = walk.corrector.family.field(*at);
-        let half = 0.5 * polygon.period();
-        let tracer = &mut walk.corrector.tracer;
-        let after = tracer.flow(&*field, &polygon.nodes[0], half, None).ok()?;
-        ((after - polygon.nodes[0]).amax() < SAME).then_some(Back::Jumped)
+        let ContinuationPoint { shooting, at } = &here.site;
+        let field = palc.corrector.family.field(*at);
+        let half = 0.5 * shooting.period();
+        let tracer = &mut palc.corrector.tracer;
+        let after = tracer.flow(&*field, &shooting.nodes[0], half, None).ok()?;
+        ((after - shooting.nodes[0]).amax() < SAME).then_some(Back::Jumped)
     }
 
     /// Whether there is a period doubling, where the parameter turns.
-    fn back<const N: usize>(&mut self, site: &Site<N>) -> bool {
+    fn back<const N: usize>(&mut self, site: &ContinuationPoint<N>) -> bool {
         /// Of the turn in the coordinate, and of the period from twice that at the doubling.
         const NEAR: (f64, f64) = (2e-3, 1e-3);
         let free = self.branches.free;
         let near = |one: &Doubling| {
-            let period = 2.0 * one.orbit.site.polygon.period();
+            let period = 2.0 * one.orbit.site.shooting.period();
             (one.orbit.site.at[free] - site.at[free]).abs() < NEAR.0
-                && (site.polygon.period() / period - 1.0).abs() < NEAR.1
+                && (site.shooting.period() / period - 1.0).abs() < NEAR.1
                 && one.before + 1 == self.times
         };
         let found = self.branches.doublings.iter().position(near);
@@ -318,43 +318,47 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// Something that is watched is zero here.
     fn zero<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: Walker<'_, '_, '_, F, N>,
-        watch: Watch,
+        palc: Walker<'_, '_, '_, F, N>,
+        watch: WatchedFunction,
         at: &Regular<N>,
-        last: &Site<N>,
+        last: &ContinuationPoint<N>,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         // At the doubling that the branch has come back to the parameter turns, and that is no fold.
-        let turns = matches!(watch, Watch::Turn(_));
+        let turns = matches!(watch, WatchedFunction::Turn(_));
         if back == Some(Back::Jumped) || back.is_some() && turns {
             return Ok(Continue(()));
         }
-        let Some(label) = self.label(walk, watch, at, last) else {
+        let Some(label) = self.label(palc, watch, at, last) else {
             return Ok(Continue(()));
         };
         // Where the branch leaves the range it ends, where it enters it begins.
         let ends = label == Label::Ep && self.inside;
         self.inside |= label == Label::Ep;
         let meets = match watch {
-            Watch::Value(i, value) => Exactly::Parameter(i, value),
-            Watch::Turn(_) => Exactly::Indicator(Indicator::Fold),
-            Watch::Indicator(indicator) => Exactly::Indicator(indicator),
+            WatchedFunction::Value(i, value) => DefiningCondition::Parameter(i, value),
+            WatchedFunction::Turn(_) => DefiningCondition::TestFunction(TestFunction::Fold),
+            WatchedFunction::TestFunction(test_function) => {
+                DefiningCondition::TestFunction(test_function)
+            }
         };
-        let family = walk.corrector.family;
-        let sharp = sharpened(family, &at.site, &walk.path.free, &[meets]);
-        let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
+        let family = palc.corrector.family;
+        let refined_point = refined(family, &at.site, &palc.settings.free, &[meets]);
+        let orbit = refined_point
+            .as_ref()
+            .map_or(at, |refined_point| &refined_point.orbit);
         let mut row = row(family, self.number, orbit, Some(label))?;
         let mut special = special(
             family,
             label,
-            sharp.as_ref(),
+            refined_point.as_ref(),
             &at.site,
-            (&walk.path.free, &[meets]),
+            (&palc.settings.free, &[meets]),
         );
         row.given(self.given(Some(watch)));
         special.given(self.given(Some(watch)));
-        if let Some(sharp) = &sharp {
-            self.remember(family, label, sharp, &mut special);
+        if let Some(refined_point) = &refined_point {
+            self.remember(family, label, refined_point, &mut special);
         }
         if self.tell(Event::Special(special)).is_break() || self.tell(Event::Branch(row)).is_break()
         {
@@ -364,12 +368,12 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     }
 
     /// The parameter that does not vary, and the other one where a value was asked for.
-    fn given(&self, watch: Option<Watch>) -> Given {
-        let Branches { free, request, .. } = *self.branches;
+    fn given(&self, watch: Option<WatchedFunction>) -> GivenParameters {
+        let BranchSet { free, request, .. } = *self.branches;
         let loading = request.slab.loading;
         let mut given = [Some(loading.driving), Some(loading.stiffness)];
         given[free] = match watch {
-            Some(Watch::Value(_, value)) => asked(value, request.range, &request.at),
+            Some(WatchedFunction::Value(_, value)) => asked(value, request.range, &request.at),
             _ => None,
         };
         given
@@ -378,29 +382,31 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
     /// What a zero means here; nothing, or nothing new, for some.
     fn label<F: Chart<N>, const N: usize>(
         &self,
-        walk: &Walk<'_, '_, F, N>,
-        watch: Watch,
+        palc: &Palc<'_, '_, F, N>,
+        watch: WatchedFunction,
         at: &Regular<N>,
-        last: &Site<N>,
+        last: &ContinuationPoint<N>,
     ) -> Option<Label> {
-        let Branches { range, .. } = *self.branches;
+        let BranchSet { range, .. } = *self.branches;
         let merges = || {
-            let family = walk.corrector.family;
-            family.merges(&walk.pace.here.site, last)
+            let family = palc.corrector.family;
+            family.merges(&palc.now.here.site, last)
         };
         let label = match watch {
             // At the pitchfork, where the branch meets its mirror image.
-            Watch::Turn(_) if merges() => return None,
-            Watch::Value(_, value) if value == range.0 || value == range.1 => {
+            WatchedFunction::Turn(_) if merges() => return None,
+            WatchedFunction::Value(_, value) if value == range.0 || value == range.1 => {
                 return Some(Label::Ep);
             }
-            Watch::Value(..) => Label::Uz,
-            Watch::Turn(_) => Label::Sn,
-            Watch::Indicator(Indicator::Doubling) => Label::Pd,
-            Watch::Indicator(Indicator::Torus) if at.spectrum.trace.abs() < 2.0 => Label::Tr,
-            Watch::Indicator(Indicator::Across) => Label::Pf,
+            WatchedFunction::Value(..) => Label::Uz,
+            WatchedFunction::Turn(_) => Label::Sn,
+            WatchedFunction::TestFunction(TestFunction::Doubling) => Label::Pd,
+            WatchedFunction::TestFunction(TestFunction::Torus) if at.spectrum.trace.abs() < 2.0 => {
+                Label::Tr
+            }
+            WatchedFunction::TestFunction(TestFunction::Transverse) => Label::Pf,
             // A neutral saddle.
-            Watch::Indicator(_) => return None,
+            WatchedFunction::TestFunction(_) => return None,
         };
         let coordinate = at.site.at[self.branches.free];
         self.branches.in_range(coordinate).then_some(label)
@@ -411,10 +417,10 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         &mut self,
         family: &F,
         label: Label,
-        sharp: &Sharp<N>,
+        refined_point: &RefinedPoint<N>,
         special: &mut Special,
     ) {
-        let orbit: &dyn Any = &sharp.orbit;
+        let orbit: &dyn Any = &refined_point.orbit;
         let form = match label {
             Label::Pd => Form::Doubling,
             Label::Tr => Form::Torus,
@@ -430,8 +436,12 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
         let Some(orbit) = orbit.downcast_ref::<Regular<3>>() else {
             return;
         };
-        special.goes(Some(Way::at(family, &sharp.orbit.site, form)));
-        if label == Label::Pd && !family.loses(&sharp.orbit.site) {
+        special.goes(Some(CubicCoefficient::at(
+            family,
+            &refined_point.orbit.site,
+            form,
+        )));
+        if label == Label::Pd && !family.loses(&refined_point.orbit.site) {
             self.branches.doublings.push(Doubling {
                 orbit: orbit.clone(),
                 before: self.times,
@@ -442,6 +452,10 @@ impl<'b, 'r, 's> Course<'b, 'r, 's> {
 
     fn pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
         let site = embedded(&orbit.site);
-        special.goes(Some(Way::at(&self.branches.family, &site, Form::Pitchfork)));
+        special.goes(Some(CubicCoefficient::at(
+            &self.branches.family,
+            &site,
+            Form::Pitchfork,
+        )));
     }
 }

@@ -1,24 +1,30 @@
-//! Which way bifurcations go, and where along a curve of them that changes.
+//! The cubic coefficient of the normal form: the criticality of a bifurcation, and where along a curve that changes.
 
 use super::chart::Chart;
 use super::normal_form::Form;
 use crate::bifurcation::{Criticality, Label, Special};
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Goal, Indicator, OverLoadings, Regular, Site};
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, OverLoadings, Regular, TestFunction,
+};
 
 /// Which way a bifurcation goes.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Way {
+pub(super) struct CubicCoefficient {
     pub criticality: Criticality,
     /// The cubic coefficient whose sign that is.
     pub coefficient: Uncertain,
 }
 
-impl Way {
+impl CubicCoefficient {
     /// By the cubic coefficient in the space of all states.
-    pub fn at<F: Chart<N>, const N: usize>(family: &F, site: &Site<N>, form: Form) -> Self {
+    pub fn at<F: Chart<N>, const N: usize>(
+        family: &F,
+        site: &ContinuationPoint<N>,
+        form: Form,
+    ) -> Self {
         let (coefficient, criticality) = family.normal_form(site, form);
-        Way {
+        CubicCoefficient {
             criticality,
             coefficient,
         }
@@ -27,22 +33,22 @@ impl Way {
     /// The same at a point of a curve. `None` for folds.
     pub fn along<F: Chart<N>, const N: usize>(
         family: &F,
-        site: &Site<N>,
-        indicator: Indicator,
+        site: &ContinuationPoint<N>,
+        test_function: TestFunction,
     ) -> Option<Self> {
-        let form = match indicator {
-            Indicator::Torus => Form::Torus,
-            Indicator::Doubling => Form::Doubling,
-            Indicator::Across => Form::Pitchfork,
+        let form = match test_function {
+            TestFunction::Torus => Form::Torus,
+            TestFunction::Doubling => Form::Doubling,
+            TestFunction::Transverse => Form::Pitchfork,
             _ => return None,
         };
-        Some(Way::at(family, site, form))
+        Some(CubicCoefficient::at(family, site, form))
     }
 }
 
 impl Special {
     /// Which way it goes, as far as that is decided.
-    pub(super) fn goes(&mut self, way: Option<Way>) {
+    pub(super) fn goes(&mut self, way: Option<CubicCoefficient>) {
         self.criticality = way.map(|way| way.criticality);
         let sure = way.filter(|way| way.coefficient.uncertainty.is_finite());
         self.coefficient = sure.map(|way| way.coefficient.value);
@@ -53,7 +59,7 @@ impl Special {
 /// An orbit on a curve where it is decided which way the bifurcation goes.
 #[derive(Debug, Clone)]
 pub(super) struct Decided<const N: usize> {
-    site: Site<N>,
+    site: ContinuationPoint<N>,
     /// ln of the multipliers' product.
     volume: f64,
     coefficient: Uncertain,
@@ -64,7 +70,7 @@ const FINE: f64 = 1e-15;
 
 impl<const N: usize> Decided<N> {
     /// `None` where it is not decided.
-    pub fn new(here: &Regular<N>, way: &Way) -> Option<Self> {
+    pub fn new(here: &Regular<N>, way: &CubicCoefficient) -> Option<Self> {
         (way.criticality != Criticality::Undecided).then(|| Decided {
             site: here.site.clone(),
             volume: here.spectrum.volume,
@@ -74,18 +80,18 @@ impl<const N: usize> Decided<N> {
 
     /// The orbit on the curve near a site, at this ln K: whether it is decided there or not.
     fn beside<F: Chart<N>>(
-        site: &Site<N>,
+        site: &ContinuationPoint<N>,
         family: &F,
-        indicator: Indicator,
+        test_function: TestFunction,
         log_stiffness: f64,
     ) -> Option<Self> {
         let mut corrector = Corrector::new(family, FINE).ok()?;
         let held = Condition::Parameter(1, log_stiffness);
-        let conditions = [Condition::Indicator(indicator), held];
+        let conditions = [Condition::TestFunction(test_function), held];
         let here = corrector
             .correct(site.clone(), &[0, 1], &conditions, Goal::SHARP)
             .ok()?;
-        let way = Way::along(family, &here.site, indicator)?;
+        let way = CubicCoefficient::along(family, &here.site, test_function)?;
         Some(Decided {
             volume: here.spectrum.volume,
             coefficient: way.coefficient,
@@ -100,7 +106,7 @@ impl<const N: usize> Decided<N> {
         &self,
         to: &Self,
         family: &F,
-        indicator: Indicator,
+        test_function: TestFunction,
     ) -> Option<Special> {
         /// Steps; a change of ln K that is the last; and how often an end may stay before its value is halved.
         const STEPS: usize = 60;
@@ -112,7 +118,7 @@ impl<const N: usize> Decided<N> {
         }
         let largest = left.abs().max(right.abs());
         // At the resonance 1:2 the coefficient of the doubling changes its sign through infinity.
-        if indicator == Indicator::Doubling && a.volume * b.volume < 0.0 {
+        if test_function == TestFunction::Doubling && a.volume * b.volume < 0.0 {
             return None;
         }
         let (mut zero, mut kept) = (None, 0_i32);
@@ -124,7 +130,7 @@ impl<const N: usize> Decided<N> {
             } else {
                 &b
             };
-            let here = Self::beside(&nearer.site, family, indicator, at)?;
+            let here = Self::beside(&nearer.site, family, test_function, at)?;
             let value = here.coefficient.value;
             let moved = (at - from).abs().min((at - to).abs());
             let found = value.abs() <= here.coefficient.uncertainty || moved < LAST;
@@ -147,16 +153,16 @@ impl<const N: usize> Decided<N> {
             }
         }
         let zero = zero.filter(|zero| zero.coefficient.value.abs() < largest)?;
-        zero.special(family, indicator)
+        zero.special(family, test_function)
     }
 
     /// The zero of the coefficient, with the uncertainty that its own leaves.
-    fn special<F: Chart<N>>(&self, family: &F, indicator: Indicator) -> Option<Special> {
+    fn special<F: Chart<N>>(&self, family: &F, test_function: TestFunction) -> Option<Special> {
         /// How far beside it the slopes are taken, in ln K.
         const BESIDE: f64 = 1e-4;
         /// Rounding, in the logarithms.
         const ROUNDING: f64 = 1e-13;
-        let other = Self::beside(&self.site, family, indicator, self.site.at[1] + BESIDE)?;
+        let other = Self::beside(&self.site, family, test_function, self.site.at[1] + BESIDE)?;
         let slope = (other.coefficient.value - self.coefficient.value) / BESIDE;
         let off = (self.coefficient.value.abs() + self.coefficient.uncertainty) / slope.abs();
         let uncertain = |of: &dyn Fn(&Self) -> f64| {
@@ -164,15 +170,15 @@ impl<const N: usize> Decided<N> {
             let by_slope = off * (there - here).abs() / BESIDE;
             Uncertain::new(here, by_slope + ROUNDING * here.abs())
         };
-        let label = match indicator {
-            Indicator::Torus => Label::Ch,
-            Indicator::Doubling => Label::Gpd,
+        let label = match test_function {
+            TestFunction::Torus => Label::Ch,
+            TestFunction::Doubling => Label::Gpd,
             _ => Label::Cp,
         };
         let driving = uncertain(&|d| d.site.at[0].exp());
         let stiffness = uncertain(&|d| d.site.at[1].exp());
         Some(Special {
-            period: Some(uncertain(&|d| d.site.polygon.period())),
+            period: Some(uncertain(&|d| d.site.shooting.period())),
             note: (label == Label::Cp).then(|| DEGENERATE.into()),
             ..Special::new(label, driving, stiffness)
         })
@@ -180,12 +186,15 @@ impl<const N: usize> Decided<N> {
 }
 
 /// The degenerate pitchfork near an orbit at which a curve of folds of asymmetric orbits has come to symmetric ones.
-pub(super) fn degenerate_pitchfork(family: &OverLoadings, near: &Site<2>) -> Option<Special> {
+pub(super) fn degenerate_pitchfork(
+    family: &OverLoadings,
+    near: &ContinuationPoint<2>,
+) -> Option<Special> {
     /// How far to both sides it is looked for, in ln K.
     const FAR: f64 = 0.01;
-    let [below, above] =
-        [-FAR, FAR].map(|off| Decided::beside(near, family, Indicator::Across, near.at[1] + off));
-    below?.change(&above?, family, Indicator::Across)
+    let [below, above] = [-FAR, FAR]
+        .map(|off| Decided::beside(near, family, TestFunction::Transverse, near.at[1] + off));
+    below?.change(&above?, family, TestFunction::Transverse)
 }
 
 /// What a change of the way that a pitchfork goes is.

@@ -1,19 +1,19 @@
-//! One way along a curve of bifurcations.
+//! Half of a two-parameter curve of bifurcations: from its first point in one direction.
 
-use super::branch::{ROUGH, walker};
+use super::branch::{ROUGH, new_corrector};
 use super::chart::{Chart, middle};
-use super::detect::Watch;
+use super::cubic_coefficient::{CubicCoefficient, Decided, degenerate_pitchfork};
+use super::detect::WatchedFunction;
 use super::follow::{End, Met, follow};
 use super::locus::Locus;
-use super::rows::{Given, asked, symmetry};
-use super::sharp::{Exactly, rough, sharpened, special};
+use super::refine::{DefiningCondition, refined, rough, special};
+use super::rows::{GivenParameters, asked, symmetry};
 use super::top::top;
-use super::way::{Decided, Way, degenerate_pitchfork};
-use crate::bifurcation::{Event, Label, LocusRequest, LocusRow, Seen, Special};
+use crate::bifurcation::{Event, EventObserver, Label, LocusRequest, LocusRow, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Indicator, OverLoadings, Pace, Regular, Site, Walk};
+use crate::orbit::{ContinuationPoint, DirectedPoint, OverLoadings, Palc, Regular, TestFunction};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -40,10 +40,10 @@ pub(super) struct Pass {
 }
 
 impl Pass {
-    pub fn of<const N: usize>(site: &Site<N>) -> Self {
+    pub fn of<const N: usize>(site: &ContinuationPoint<N>) -> Self {
         Pass {
             at: site.at,
-            period: site.polygon.period().ln(),
+            period: site.shooting.period().ln(),
         }
     }
 
@@ -57,15 +57,15 @@ impl Pass {
 }
 
 /// What is known of one way along a curve.
-pub(super) struct Leg<'r, 's> {
+pub(super) struct HalfCurve<'r, 's> {
     request: &'r LocusRequest,
-    indicator: Indicator,
+    test_function: TestFunction,
     number: usize,
     symmetry: Symmetry,
     /// Where both ways begin.
     begin: Pass,
     /// Who is told, or what is to be told later.
-    seen: Option<Seen<'s>>,
+    seen: Option<EventObserver<'s>>,
     events: Vec<Event>,
     /// The values of ln K at which the curve is to be known again, and where it passes these.
     scan: &'r [f64],
@@ -73,16 +73,16 @@ pub(super) struct Leg<'r, 's> {
     pub told: bool,
 }
 
-impl<'r, 's> Leg<'r, 's> {
+impl<'r, 's> HalfCurve<'r, 's> {
     pub fn new<const N: usize>(
         locus: &Locus<'r, N>,
         number: usize,
         begin: Pass,
-        seen: Option<Seen<'s>>,
+        seen: Option<EventObserver<'s>>,
     ) -> Self {
-        Leg {
+        HalfCurve {
             request: locus.request,
-            indicator: locus.indicator,
+            test_function: locus.test_function,
             number,
             symmetry: symmetry::<N>(),
             begin,
@@ -111,29 +111,31 @@ impl<'r, 's> Leg<'r, 's> {
         told
     }
 
-    fn watches<const N: usize>(&self) -> Vec<Watch> {
+    fn watches<const N: usize>(&self) -> Vec<WatchedFunction> {
         let request = self.request;
-        let mut watches = vec![Watch::Turn(1)];
-        match self.indicator {
-            Indicator::Torus => {
+        let mut watches = vec![WatchedFunction::Turn(1)];
+        match self.test_function {
+            TestFunction::Torus => {
                 let resonances = RESONANCES.iter();
-                watches.extend(resonances.map(|r| Watch::Indicator(Indicator::Trace(r.1))));
+                watches.extend(
+                    resonances.map(|r| WatchedFunction::TestFunction(TestFunction::Trace(r.1))),
+                );
             }
-            Indicator::Doubling | Indicator::Fold if N == 3 => {
-                watches.push(Watch::Indicator(Indicator::Torus));
+            TestFunction::Doubling | TestFunction::Fold if N == 3 => {
+                watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
             }
             _ => {}
         }
         let (a, b) = request.driving;
         let drivings = [a, b].into_iter().chain(request.at_driving.iter().copied());
-        watches.extend(drivings.map(|x| Watch::Value(0, x.ln())));
+        watches.extend(drivings.map(|x| WatchedFunction::Value(0, x.ln())));
         let (a, b) = request.stiffness;
         let stiffnesses = [a, b]
             .into_iter()
             .chain(request.at_stiffness.iter().copied());
-        watches.extend(stiffnesses.map(|x| Watch::Value(1, x.ln())));
+        watches.extend(stiffnesses.map(|x| WatchedFunction::Value(1, x.ln())));
         for &log in self.scan {
-            let watch = Watch::Value(1, log);
+            let watch = WatchedFunction::Value(1, log);
             if !watches.contains(&watch) {
                 watches.push(watch);
             }
@@ -142,47 +144,49 @@ impl<'r, 's> Leg<'r, 's> {
     }
 
     /// What was asked for at the orbit where both ways begin: neither comes to it.
-    pub fn begins<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) {
-        let here = walk.pace.here.clone();
+    pub fn begins<F: Chart<N>, const N: usize>(&mut self, palc: &mut Palc<'_, '_, F, N>) {
+        let here = palc.now.here.clone();
         for watch in self.watches::<N>() {
-            if let Watch::Value(i, value) = watch
+            if let WatchedFunction::Value(i, value) = watch
                 && (self.begin.at[i] - value).abs() < SAME
                 && !self.told
             {
                 // That it may be the range's end is seen to by who asks whether the way leaves it.
-                let _ = self.zero(walk, watch, &here);
+                let _ = self.zero(palc, watch, &here);
             }
         }
     }
 
     /// Whether the way begins at the end of a range and leads out of it.
-    pub fn leaves<const N: usize>(&self, pace: &Pace<N>) -> bool {
+    pub fn leaves<const N: usize>(&self, now: &DirectedPoint<N>) -> bool {
         let ranges = [self.request.driving, self.request.stiffness];
         (0..2).any(|i| {
             let (from, to) = (ranges[i].0.ln(), ranges[i].1.ln());
-            let (x, slope) = (pace.here.site.at[i], pace.direction.parameters[i]);
+            let (x, slope) = (now.here.site.at[i], now.direction.parameters[i]);
             x < from + SAME && slope < 0.0 || x > to - SAME && slope > 0.0
         })
     }
 
     /// To the end, in other variables where these lose digits.
-    pub fn go<F: Chart<N>, const N: usize>(&mut self, walk: &mut Walk<'_, '_, F, N>) -> Result<()> {
+    pub fn go<F: Chart<N>, const N: usize>(&mut self, palc: &mut Palc<'_, '_, F, N>) -> Result<()> {
         let mut decided: Option<Decided<N>> = None;
         let mut lost = false;
         let watches = self.watches::<N>();
-        let end = follow(walk, &watches, STEPS, &mut |walk, before, met| match met {
-            Met::Zero(Watch::Value(..), at) if Pass::of(&at.site).is(&self.begin) => Continue(()),
-            Met::Zero(watch, at) => self.zero(walk, watch, at),
-            Met::Orbit(pace) => {
-                let here = &pace.here;
-                let family = walk.corrector.family;
+        let end = follow(palc, &watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(WatchedFunction::Value(..), at) if Pass::of(&at.site).is(&self.begin) => {
+                Continue(())
+            }
+            Met::Zero(watch, at) => self.zero(palc, watch, at),
+            Met::Orbit(now) => {
+                let here = &now.here;
+                let family = palc.corrector.family;
                 if family.merges(&here.site, &before.here.site) {
                     return self.merged(&family.slab(), &family.usual(&here.site));
                 }
                 let way = self.row(family, here)?;
                 if let Some(now) = way.and_then(|way| Decided::new(here, &way))
                     && let Some(before) = decided.replace(now.clone())
-                    && let Some(special) = before.change(&now, family, self.indicator)
+                    && let Some(special) = before.change(&now, family, self.test_function)
                 {
                     self.tell(Event::Special(special))?;
                 }
@@ -190,17 +194,17 @@ impl<'r, 's> Leg<'r, 's> {
                 if lost { Break(()) } else { Continue(()) }
             }
         })?;
-        if end == End::Told && !lost || self.told {
+        if end == End::Interrupted && !lost || self.told {
             return Ok(());
         }
-        let site = &walk.pace.here.site;
-        let (family, path) = (*walk.corrector.family, walk.path.clone());
-        let length = (walk.length, walk.travelled());
-        if let Some((parted, there)) = family.keeping(site) {
-            let afar = walk.afar();
-            let mut corrector = walker::<_, 3>(&parted)?;
-            if let Some(mut walk) = Walk::resumed(&mut corrector, path, there, afar, length) {
-                return self.go(&mut walk);
+        let site = &palc.now.here.site;
+        let (family, settings) = (*palc.corrector.family, palc.settings.clone());
+        let length = (palc.length, palc.travelled());
+        if let Some((chart, there)) = family.keeping(site) {
+            let afar = palc.afar();
+            let mut corrector = new_corrector::<_, 3>(&chart)?;
+            if let Some(mut palc) = Palc::resumed(&mut corrector, settings, there, afar, length) {
+                return self.go(&mut palc);
             }
         }
         let mut special = rough(Label::Mx, &family.usual(site));
@@ -214,7 +218,7 @@ impl<'r, 's> Leg<'r, 's> {
         &mut self,
         family: &F,
         here: &Regular<N>,
-    ) -> ControlFlow<(), Option<Way>> {
+    ) -> ControlFlow<(), Option<CubicCoefficient>> {
         // The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
         let uncertainty = LEFT * here.residual + 100.0 * ROUGH;
@@ -227,20 +231,24 @@ impl<'r, 's> Leg<'r, 's> {
         Continue(way)
     }
 
-    fn way<F: Chart<N>, const N: usize>(&self, family: &F, here: &Regular<N>) -> Option<Way> {
+    fn way<F: Chart<N>, const N: usize>(
+        &self,
+        family: &F,
+        here: &Regular<N>,
+    ) -> Option<CubicCoefficient> {
         let wanted = self.request.criticality;
-        wanted.then(|| Way::along(family, &here.site, self.indicator))?
+        wanted.then(|| CubicCoefficient::along(family, &here.site, self.test_function))?
     }
 
     fn put<const N: usize>(
         &mut self,
         here: &Regular<N>,
         [driving, stiffness]: [Uncertain; 2],
-        way: Option<Way>,
+        way: Option<CubicCoefficient>,
         label: Option<Label>,
     ) -> ControlFlow<()> {
-        let period = here.site.polygon.period();
-        let torus = self.indicator == Indicator::Torus;
+        let period = here.site.shooting.period();
+        let torus = self.test_function == TestFunction::Torus;
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
             curve: self.number,
@@ -257,54 +265,66 @@ impl<'r, 's> Leg<'r, 's> {
 
     fn zero<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: &mut Walk<'_, '_, F, N>,
-        watch: Watch,
+        palc: &mut Palc<'_, '_, F, N>,
+        watch: WatchedFunction,
         at: &Regular<N>,
     ) -> ControlFlow<()> {
-        let indicator = self.indicator;
+        let test_function = self.test_function;
         let trace = at.spectrum.trace;
-        if let Watch::Value(1, log) = watch
+        if let WatchedFunction::Value(1, log) = watch
             && self.scan.contains(&log)
         {
             self.passes.push(Pass::of(&at.site));
         }
         let (label, condition, ends) = match watch {
             // Nobody asked for it.
-            Watch::Value(i, value) if self.given(i, value)[i].is_none() => return Continue(()),
-            Watch::Value(i, value) => {
+            WatchedFunction::Value(i, value) if self.given(i, value)[i].is_none() => {
+                return Continue(());
+            }
+            WatchedFunction::Value(i, value) => {
                 let range = [self.request.driving, self.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();
                 let label = if end { Label::Ep } else { Label::Uz };
-                (label, Exactly::Parameter(i, value), end)
+                (label, DefiningCondition::Parameter(i, value), end)
             }
-            Watch::Turn(_) => return self.turn(walk, at),
-            Watch::Indicator(other @ Indicator::Trace(value)) => {
+            WatchedFunction::Turn(_) => return self.turn(palc, at),
+            WatchedFunction::TestFunction(other @ TestFunction::Trace(value)) => {
                 let Some((label, _)) = RESONANCES.iter().find(|r| r.1 == value) else {
                     return Continue(());
                 };
-                (*label, Exactly::Indicator(other), value.abs() == 2.0)
+                (
+                    *label,
+                    DefiningCondition::TestFunction(other),
+                    value.abs() == 2.0,
+                )
             }
             // Both multipliers are -1, or 1.
-            Watch::Indicator(other) if indicator == Indicator::Doubling && trace < 0.0 => {
-                (Label::R2, Exactly::Indicator(other), false)
+            WatchedFunction::TestFunction(other)
+                if test_function == TestFunction::Doubling && trace < 0.0 =>
+            {
+                (Label::R2, DefiningCondition::TestFunction(other), false)
             }
-            Watch::Indicator(other) if indicator == Indicator::Fold && trace > 0.0 => {
-                (Label::R1, Exactly::Indicator(other), false)
+            WatchedFunction::TestFunction(other)
+                if test_function == TestFunction::Fold && trace > 0.0 =>
+            {
+                (Label::R1, DefiningCondition::TestFunction(other), false)
             }
-            Watch::Indicator(_) => return Continue(()),
+            WatchedFunction::TestFunction(_) => return Continue(()),
         };
-        let meets = [Exactly::Indicator(indicator), condition];
-        let family = walk.corrector.family;
-        let sharp = sharpened(family, &at.site, &walk.path.free, &meets);
-        let orbit = sharp.as_ref().map_or(at, |sharp| &sharp.orbit);
+        let meets = [DefiningCondition::TestFunction(test_function), condition];
+        let family = palc.corrector.family;
+        let refined_point = refined(family, &at.site, &palc.settings.free, &meets);
+        let orbit = refined_point
+            .as_ref()
+            .map_or(at, |refined_point| &refined_point.orbit);
         let mut special = special(
             family,
             label,
-            sharp.as_ref(),
+            refined_point.as_ref(),
             &at.site,
-            (&walk.path.free, &meets),
+            (&palc.settings.free, &meets),
         );
-        if let Watch::Value(i, value) = watch {
+        if let WatchedFunction::Value(i, value) = watch {
             special.given(self.given(i, value));
         }
         let way = self.way(family, orbit);
@@ -315,7 +335,7 @@ impl<'r, 's> Leg<'r, 's> {
         if ends { Break(()) } else { Continue(()) }
     }
 
-    fn given(&self, i: usize, value: f64) -> Given {
+    fn given(&self, i: usize, value: f64) -> GivenParameters {
         let request = self.request;
         let ranges = [request.driving, request.stiffness];
         let wanted = [&request.at_driving, &request.at_stiffness];
@@ -327,11 +347,11 @@ impl<'r, 's> Leg<'r, 's> {
     /// K is stationary along the curve here: its largest value, if it is that.
     fn turn<F: Chart<N>, const N: usize>(
         &mut self,
-        walk: &mut Walk<'_, '_, F, N>,
+        palc: &mut Palc<'_, '_, F, N>,
         at: &Regular<N>,
     ) -> ControlFlow<()> {
-        let family = walk.corrector.family;
-        if let Some(top) = top(family, &at.site, self.indicator)
+        let family = palc.corrector.family;
+        if let Some(top) = top(family, &at.site, self.test_function)
             && top.largest
         {
             let [driving, stiffness] = top.at;
@@ -345,7 +365,11 @@ impl<'r, 's> Leg<'r, 's> {
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the pitchfork at this K.
-    fn merged<const N: usize>(&mut self, family: &OverLoadings, last: &Site<N>) -> ControlFlow<()> {
+    fn merged<const N: usize>(
+        &mut self,
+        family: &OverLoadings,
+        last: &ContinuationPoint<N>,
+    ) -> ControlFlow<()> {
         let near = middle(last);
         let special = degenerate_pitchfork(family, &near).unwrap_or_else(|| {
             let mut special = rough(Label::Cp, &near);

@@ -59,7 +59,7 @@ impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
 
 /// Trajectories on their way in lanes.
 #[doc(hidden)]
-pub trait Convoy: Send {
+pub trait BatchSolution: Send {
     /// How many lanes there are.
     fn lanes(&self) -> usize;
     /// Begins at y = (tau, ln psi_1, ln psi_2) in this lane with the next step.
@@ -78,7 +78,7 @@ pub trait Convoy: Send {
 
 /// As many lanes as this processor has, compiled for this law; `None` where it has none.
 #[doc(hidden)]
-pub fn convoy(law: AnyLaw) -> Option<Box<dyn Convoy>> {
+pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = crate::series::avx512() {
@@ -205,7 +205,7 @@ impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
 #[cfg(target_arch = "x86_64")]
 macro_rules! convoys {
     ($($token:ident $element:ident)*) => { $(
-        impl<L: Law> Convoy for Lanes<pulp::x86::$token, $element, L> {
+        impl<L: Law> BatchSolution for Lanes<pulp::x86::$token, $element, L> {
             fn lanes(&self) -> usize {
                 $element::LANES
             }

@@ -8,7 +8,10 @@ use twinslip::friction::{AnyLaw, Law, Parameters, Spinodal};
 use twinslip::integrate::{
     Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Taylor, Tolerances,
 };
-use twinslip::model::{Driven, Loading, Parameter, Parted, Smooth, parted, two_interfaces, united};
+use twinslip::model::{
+    DifferenceChart, Driven, Loading, Parameter, Smooth, from_difference_chart,
+    to_difference_chart, two_interfaces,
+};
 use twinslip::number::{Jet, Real};
 use twinslip::series::Equations;
 
@@ -20,21 +23,27 @@ fn law() -> Spinodal {
     Parameters::heslot_1994().spinodal()
 }
 
-fn field(driving: f64, stiffness: f64) -> Smooth<Parted<Spinodal>, 3> {
-    Parted { law: law() }.at(&Loading::new(driving, stiffness).unwrap())
+fn field(driving: f64, stiffness: f64) -> Smooth<DifferenceChart<Spinodal>, 3> {
+    DifferenceChart { law: law() }.at(&Loading::new(driving, stiffness).unwrap())
 }
 
 #[test]
 fn the_charts_lead_to_each_other() {
     for ratio in [1e-12, 1e-3, 1.0, 30.0, 200.0] {
         let y = State::<3>::new(10.0, -3.0 + ratio, -3.0);
-        let back = united(&parted(&y).unwrap());
+        let back = from_difference_chart(&to_difference_chart(&y).unwrap());
         assert!((back - y).amax() < 1e-15 * (3.0 + ratio), "{ratio}: {back}");
     }
-    assert_eq!(parted(&State::<3>::new(10.0, -3.0, -3.0)), None);
-    assert_eq!(parted(&State::<3>::new(10.0, -3.0, -2.0)), None);
+    assert_eq!(
+        to_difference_chart(&State::<3>::new(10.0, -3.0, -3.0)),
+        None
+    );
+    assert_eq!(
+        to_difference_chart(&State::<3>::new(10.0, -3.0, -2.0)),
+        None
+    );
     let deep = State::<3>::new(10.0, -3.0, -120.0);
-    assert_eq!(united(&deep)[1], -3.0);
+    assert_eq!(from_difference_chart(&deep)[1], -3.0);
 }
 
 /// Two interfaces are the same in either chart, whatever changes places.
@@ -48,16 +57,18 @@ fn end_states_are_met() {
         let Run { start, loading, .. } = &run;
         let swapped = start[1] < start[2];
         let sorted = State::<3>::new(start[0], start[1].max(start[2]), start[1].min(start[2]));
-        let Some(x) = parted(&sorted) else { continue };
+        let Some(x) = to_difference_chart(&sorted) else {
+            continue;
+        };
         // There the asymmetry falls below e^-700.
         if run.name == "C_K0.01_VH0.2, t = 15000" {
             continue;
         }
-        let field = Parted { law }.at(loading);
+        let field = DifferenceChart { law }.at(loading);
         let x = taylor(1e-15)
             .flow(&field, (0.0, run.end_time), &x, None)
             .unwrap();
-        let mut y = united(&x);
+        let mut y = from_difference_chart(&x);
         if swapped {
             y.swap_rows(1, 2);
         }
@@ -151,13 +162,13 @@ fn tangents_are_those_of_two_interfaces() {
     let loading = Loading::new(driving, stiffness).unwrap();
     let field = two_interfaces(AnyLaw::Spinodal(law()), loading);
     let y = State::<3>::new(10.0, 0.5_f64.ln(), 0.01_f64.ln());
-    let x = parted(&y).unwrap();
+    let x = to_difference_chart(&y).unwrap();
     let t = (0.0, 3.0);
     let (end, of_y) = taylor(1e-14).derivatives(&*field, t, &y, true).unwrap();
     let (there, of_x) = taylor(1e-14)
         .derivatives(&parted_field, t, &x, true)
         .unwrap();
-    assert!((united(&there) - end).amax() < 1e-12);
+    assert!((from_difference_chart(&there) - end).amax() < 1e-12);
     // d(tau, ln psi_2, ln D) / d(tau, ln psi_1, ln psi_2)
     let chart = |y: &State<3>| {
         let ratio = (y[2] - y[1]).exp();

@@ -1,4 +1,4 @@
-//! A special orbit to the last digits, with its error budget.
+//! Refining a special point: its defining condition solved to the last digits, with an error budget.
 //!
 //! It is solved several times, with other nodes and other tolerances. What the solutions differ by shows what the method does;
 //! but few solutions may agree by chance, so the noise of the flow, as the equations carry it to the point, counts as well.
@@ -7,22 +7,26 @@
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
 use crate::number::Uncertain;
-use crate::orbit::{Condition, Corrector, Family, Goal, Indicator, Noise, Regular, Site};
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, Noise, ParametrisedField, Regular, TestFunction,
+};
 
-/// What a special orbit meets, by itself: no plane of a walk.
+/// What a special orbit meets, by itself: no plane of a continuation.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Exactly {
+pub enum DefiningCondition {
     /// A bifurcation.
-    Indicator(Indicator),
+    TestFunction(TestFunction),
     /// The coordinate of this parameter has this value.
     Parameter(usize, f64),
 }
 
-impl Exactly {
+impl DefiningCondition {
     pub(super) fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
         match self {
-            Exactly::Indicator(indicator) => Condition::Indicator(indicator),
-            Exactly::Parameter(i, value) => Condition::Parameter(i, value),
+            DefiningCondition::TestFunction(test_function) => {
+                Condition::TestFunction(test_function)
+            }
+            DefiningCondition::Parameter(i, value) => Condition::Parameter(i, value),
         }
     }
 }
@@ -30,14 +34,14 @@ impl Exactly {
 /// The orbit of a special point.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpecialOrbit {
-    /// Whether its variables are those that keep small differences: (tau, ln psi_2, ln D).
-    pub(super) parted: bool,
+    /// Whether its variables are those of the difference chart: (tau, ln psi_2, ln D).
+    pub(super) in_difference_chart: bool,
     /// Its nodes, in (tau, ln psi) or (tau, ln psi_1, ln psi_2) otherwise.
     pub(super) nodes: Vec<Vec<f64>>,
     pub(super) durations: Vec<f64>,
     pub(super) at: [f64; 2],
     /// What makes it special, and the parameters that are free for it.
-    pub(super) meets: Vec<Exactly>,
+    pub(super) meets: Vec<DefiningCondition>,
     pub(super) free: Vec<usize>,
 }
 
@@ -51,14 +55,14 @@ impl SpecialOrbit {
 
 /// A special orbit.
 #[derive(Debug, Clone)]
-pub struct Sharp<const N: usize> {
+pub struct RefinedPoint<const N: usize> {
     /// The best solution.
     pub orbit: Regular<N>,
     /// The parameters (not their coordinates).
     pub at: [Uncertain; 2],
     /// The period.
     pub period: Uncertain,
-    meets: Vec<Exactly>,
+    meets: Vec<DefiningCondition>,
     free: Vec<usize>,
 }
 
@@ -73,12 +77,12 @@ const ENOUGH: f64 = 1e-11;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The orbit near a site that meets the conditions, in the last digits.
-pub fn sharpened<F: Family<N>, const N: usize>(
+pub fn refined<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    near: &Site<N>,
+    near: &ContinuationPoint<N>,
     free: &[usize],
-    meets: &[Exactly],
-) -> Option<Sharp<N>> {
+    meets: &[DefiningCondition],
+) -> Option<RefinedPoint<N>> {
     let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
     let mut solutions: Vec<Regular<N>> = Vec::new();
     for (tolerance, part) in SOLUTIONS {
@@ -86,15 +90,15 @@ pub fn sharpened<F: Family<N>, const N: usize>(
         let begin = solutions.first().map_or(near, |first| &first.site);
         let field = family.field(begin.at);
         // Few long arcs round least often.
-        let polygon = if solutions.is_empty() {
-            begin.polygon.meshed(&mut corrector.tracer, &*field).ok()?
+        let shooting = if solutions.is_empty() {
+            begin.shooting.meshed(&mut corrector.tracer, &*field).ok()?
         } else {
-            let shifted = begin.polygon.shifted(&mut corrector.tracer, &*field, part);
+            let shifted = begin.shooting.shifted(&mut corrector.tracer, &*field, part);
             shifted.ok()?
         };
         drop(field);
-        let site = Site {
-            polygon,
+        let site = ContinuationPoint {
+            shooting,
             at: begin.at,
         };
         match corrector.correct(site, free, &conditions, Goal::SHARP) {
@@ -117,7 +121,7 @@ pub fn sharpened<F: Family<N>, const N: usize>(
     let fixed = |i: usize| {
         let by_value = meets
             .iter()
-            .any(|m| matches!(m, Exactly::Parameter(j, _) if *j == i));
+            .any(|m| matches!(m, DefiningCondition::Parameter(j, _) if *j == i));
         by_value || !free.contains(&i)
     };
     let parameter = |i: usize| {
@@ -130,72 +134,72 @@ pub fn sharpened<F: Family<N>, const N: usize>(
         let scale = family.scale(solutions[0].site.at)[i] / of(&solutions[0]);
         all(&of, noise.parameters[i] * scale.abs(), rounding)
     };
-    Some(Sharp {
+    Some(RefinedPoint {
         at: [parameter(0), parameter(1)],
-        period: all(&|s| s.site.polygon.period(), noise.period, ROUNDING),
+        period: all(&|s| s.site.shooting.period(), noise.period, ROUNDING),
         meets: meets.to_vec(),
         free: free.to_vec(),
         orbit: solutions.swap_remove(0),
     })
 }
 
-/// A special point of a slab: the best that could be done, or a place on the walk.
+/// A special point of a slab: the best that could be done, or a place on the continuation.
 pub(super) fn special<F: Chart<N>, const N: usize>(
     family: &F,
     label: Label,
-    sharp: Option<&Sharp<N>>,
-    near: &Site<N>,
-    (free, meets): (&[usize], &[Exactly]),
+    refined_point: Option<&RefinedPoint<N>>,
+    near: &ContinuationPoint<N>,
+    (free, meets): (&[usize], &[DefiningCondition]),
 ) -> Special {
-    let Some(sharp) = sharp else {
+    let Some(refined_point) = refined_point else {
         let kept = kept(family, label, near, free, meets);
         return kept.unwrap_or_else(|| rough(label, &family.usual(near)));
     };
-    let mut special = sharp.special(label);
+    let mut special = refined_point.special(label);
     if special.driving.uncertainty > ENOUGH * special.driving.value.abs()
         && let Some(better) = kept(family, label, near, free, meets)
         && better.driving.uncertainty < special.driving.uncertainty
     {
         return better;
     }
-    if family.parted()
+    if family.keeps_difference()
         && let Some(orbit) = &mut special.orbit
     {
-        orbit.parted = true;
+        orbit.in_difference_chart = true;
     }
     special
 }
 
-/// The same in the variables that keep small differences, if there are such.
+/// The same in the difference chart, if there is one.
 fn kept<F: Chart<N>, const N: usize>(
     family: &F,
     label: Label,
-    near: &Site<N>,
+    near: &ContinuationPoint<N>,
     free: &[usize],
-    meets: &[Exactly],
+    meets: &[DefiningCondition],
 ) -> Option<Special> {
-    let (parted, there) = family.keeping(near)?;
-    let mut special = sharpened(&parted, &there, free, meets)?.special(label);
+    let (chart, there) = family.keeping(near)?;
+    let mut special = refined(&chart, &there, free, meets)?.special(label);
     if let Some(orbit) = &mut special.orbit {
-        orbit.parted = true;
+        orbit.in_difference_chart = true;
     }
     Some(special)
 }
 
-impl<const N: usize> Sharp<N> {
+impl<const N: usize> RefinedPoint<N> {
     /// As a special point of a slab.
     pub fn special(&self, label: Label) -> Special {
-        let Site { polygon, at } = &self.orbit.site;
+        let ContinuationPoint { shooting, at } = &self.orbit.site;
         Special {
             period: Some(self.period),
             orbit: Some(SpecialOrbit {
-                parted: false,
-                nodes: polygon
+                in_difference_chart: false,
+                nodes: shooting
                     .nodes
                     .iter()
                     .map(|x| x.iter().copied().collect())
                     .collect(),
-                durations: polygon.durations.clone(),
+                durations: shooting.durations.clone(),
                 at: *at,
                 meets: self.meets.clone(),
                 free: self.free.clone(),
@@ -205,12 +209,12 @@ impl<const N: usize> Sharp<N> {
     }
 }
 
-/// A point of which no more is claimed than that it lies on the walk.
-pub(super) fn rough<const N: usize>(label: Label, site: &Site<N>) -> Special {
+/// A point of which no more is claimed than that it lies on the continuation.
+pub(super) fn rough<const N: usize>(label: Label, site: &ContinuationPoint<N>) -> Special {
     let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
     let [driving, stiffness] = site.at.map(|x| unknown(x.exp()));
     Special {
-        period: Some(unknown(site.polygon.period())),
+        period: Some(unknown(site.shooting.period())),
         ..Special::new(label, driving, stiffness)
     }
 }
