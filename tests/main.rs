@@ -37,12 +37,14 @@ mod internals;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod lyapunov;
+mod many_dimensions;
 mod numbers;
 mod orbits;
 mod orbits_of_systems;
 mod page;
 #[cfg(feature = "parquet")]
 mod parquet;
+mod periodic_schur;
 mod pictures;
 mod polynomials;
 mod reproduce;

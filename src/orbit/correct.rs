@@ -345,6 +345,7 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
             trace: length * slope.trace,
             volume: length * slope.volume,
             across: length * slope.across,
+            products: slope.products.map(|products| products.scaled(length)),
             ..slope
         })
     }

@@ -6,7 +6,7 @@
 //! problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
 use crate::field::{Jacobian, State};
-use nalgebra::SMatrix;
+use nalgebra::{DMatrix, SMatrix};
 
 /// A pivot below this part of its row's size is zero.
 const SINGULAR: f64 = 1e-14;
@@ -87,6 +87,17 @@ fn closed<const N: usize, const C: usize>(
 }
 
 impl<const N: usize, const C: usize> Reduced<N, C> {
+    /// The last equations with rows of order one: those that belong to what has grown or decayed on the way are of any size, and
+    /// only beside its own is a pivot zero.
+    fn scaled_end(&self) -> (Jacobian<N>, SMatrix<f64, N, C>) {
+        let (mut matrix, mut right) = self.end;
+        for (i, size) in self.sizes.iter().enumerate().filter(|row| *row.1 > 0.0) {
+            matrix.row_mut(i).scale_mut(1.0 / size);
+            right.row_mut(i).scale_mut(1.0 / size);
+        }
+        (matrix, right)
+    }
+
     /// All u_k from u_0, for this combination of the right-hand sides; `None` where they are not finite.
     pub fn extended(
         &self,
@@ -109,12 +120,7 @@ impl<const N: usize, const C: usize> Reduced<N, C> {
 /// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
 pub fn solve<const N: usize>(maps: &[Jacobian<N>], right: &[State<N>]) -> Option<Vec<State<N>>> {
     let reduced = reduce::<N, 1>(maps, right);
-    // Rows that belong to what has grown or decayed on the way are of any size: only beside its own is a pivot zero.
-    let (mut matrix, mut right) = reduced.end;
-    for (i, size) in reduced.sizes.iter().enumerate().filter(|row| *row.1 > 0.0) {
-        matrix.row_mut(i).scale_mut(1.0 / size);
-        right.row_mut(i).scale_mut(1.0 / size);
-    }
+    let (matrix, right) = reduced.scaled_end();
     let (closing, right) = closed(matrix, right);
     let start = closing.solve_upper_triangular(&right)?;
     // Where one direction is free, rounding alone keeps the last pivot from being zero.
@@ -124,6 +130,20 @@ pub fn solve<const N: usize>(maps: &[Jacobian<N>], right: &[State<N>]) -> Option
         return None;
     }
     reduced.extended(&start, &nalgebra::SVector::repeat(1.0))
+}
+
+/// The direction in which u_{k+1} = P_k u_k, u_m = u_0 is nearest to singular, as displacements of all nodes; `None` where these
+/// are not finite.
+pub(super) fn kernel<const N: usize>(maps: &[Jacobian<N>]) -> Option<Vec<State<N>>> {
+    let reduced = reduce::<N, 1>(maps, &vec![State::zeros(); maps.len()]);
+    let (matrix, _) = reduced.scaled_end();
+    let svd = DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]).svd(false, true);
+    let least = svd.singular_values.imin();
+    let start = svd.v_t?.row(least).transpose();
+    reduced.extended(
+        &State::from_fn(|i, _| start[i]),
+        &nalgebra::SVector::zeros(),
+    )
 }
 
 /// 2N rows in blocks of N.

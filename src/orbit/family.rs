@@ -38,32 +38,26 @@ fn projection<const N: usize>(along: &State<N>) -> Jacobian<N> {
     Jacobian::<N>::identity() - along * along.transpose() / along.norm_squared()
 }
 
-/// Any small system over its two parameters as they are.
+/// Any system over its two parameters as they are.
 #[derive(Debug, Clone, Copy)]
 pub struct OverParameters<S>(pub S);
 
-macro_rules! over_parameters {
-    ($n:literal) => {
-        impl<S: Equations<$n>> ParametrisedField<$n> for OverParameters<S> {
-            fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<$n> + '_> {
-                Box::new(Smooth {
-                    equations: self.0,
-                    parameters: at,
-                })
-            }
+impl<S: Equations<N>, const N: usize> ParametrisedField<N> for OverParameters<S> {
+    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_> {
+        Box::new(Smooth {
+            equations: self.0,
+            parameters: at,
+        })
+    }
 
-            fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
-                at
-            }
+    fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        at
+    }
 
-            fn scale(&self, _: [f64; 2]) -> [f64; 2] {
-                [1.0; 2]
-            }
-        }
-    };
+    fn scale(&self, _: [f64; 2]) -> [f64; 2] {
+        [1.0; 2]
+    }
 }
-over_parameters!(2);
-over_parameters!(3);
 
 /// A slab over (ln V_H, ln K).
 #[derive(Debug, Clone, Copy)]

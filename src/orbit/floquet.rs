@@ -3,12 +3,16 @@
 //! A plain monodromy matrix is noise below 1e-14 of its norm, where relaxation orbits have multipliers of 1e-22 and 1e-75.
 //! So the maps of the arcs are kept apart. Their determinants come from Liouville's theorem, ln det = integral of tr J, a
 //! quadrature beside the tangents; the larger one of two multipliers from the trace of the product with a budget of its own,
-//! and where cancellation leaves nothing of the trace from the growth along its direction; the smaller one from both.
+//! and where cancellation leaves nothing of the trace from the growth along its direction; the smaller one from both. More than
+//! two are those of the periodic Schur form ([`multipliers`]).
 //!
 //! On a symmetric orbit, which lies in two dimensions, both are quadratures: the integral of the trace there, and that of the
 //! antisymmetric mode, the difference of the traces in three dimensions and in two.
 
 use super::arc::Arc;
+use super::correct::Regular;
+use super::linear::Linear;
+use super::multipliers::multipliers;
 use super::shooting::Closed;
 use crate::equilibrium::Verdict;
 use crate::field::{Jacobian, State};
@@ -112,33 +116,26 @@ impl Floquet {
 }
 
 /// Relative error of a tangent in units of that of the state: it loses two digits more at most.
-const TANGENT: f64 = 10.0;
+pub(super) const TANGENT: f64 = 10.0;
 /// Times around for a direction to settle.
 const TURNS: usize = 30;
 /// Change of a direction once around that counts as settled.
 const SETTLED: f64 = 1e-12;
 
 /// The sums of the logarithms of the determinants: by the best the method has, and its uncertainty; and their defect.
-fn volume<const N: usize>(closed: &Closed<N>) -> (Uncertain, Option<f64>) {
-    let by_matrix = closed.arcs().iter().map(|arc| arc.tangent_volume());
-    let by_matrix: f64 = by_matrix.sum();
-    let by_trace: Option<f64> = closed.arcs().iter().map(|arc| arc.log_determinant).sum();
+fn volume<const N: usize>(arcs: &[Arc<N>]) -> (Uncertain, Option<f64>) {
+    let by_matrix: f64 = arcs.iter().map(|arc| arc.tangent_volume()).sum();
+    let by_trace: Option<f64> = arcs.iter().map(|arc| arc.log_determinant).sum();
     match by_trace {
         Some(volume) => {
-            let scale = closed.arcs().iter().filter_map(|arc| arc.log_determinant);
+            let scale = arcs.iter().filter_map(|arc| arc.log_determinant);
             let scale = scale.fold(1.0, |sum, x| sum + x.abs());
-            let uncertain = Uncertain::new(
-                volume,
-                TANGENT * noise(closed.arcs()) + f64::EPSILON * scale,
-            );
+            let uncertain = Uncertain::new(volume, TANGENT * noise(arcs) + f64::EPSILON * scale);
             (uncertain, Some(by_matrix - volume))
         }
         None => {
             // The smallest direction of an arc errs by the norm over it.
-            let loss = closed
-                .arcs()
-                .iter()
-                .map(|arc| arc.noise() * arc.loss().exp());
+            let loss = arcs.iter().map(|arc| arc.noise() * arc.loss().exp());
             (Uncertain::new(by_matrix, TANGENT * together(loss)), None)
         }
     }
@@ -155,9 +152,12 @@ fn noise<const N: usize>(arcs: &[Arc<N>]) -> f64 {
 }
 
 /// f at the next node over f carried there: the trivial multiplier of every arc, and their product minus 1.
-fn trivial_defect<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> f64 {
-    let nodes = &closed.shooting.nodes;
-    let logs = closed.arcs().iter().enumerate().map(|(k, arc)| {
+fn trivial_defect<const N: usize>(
+    nodes: &[State<N>],
+    arcs: &[Arc<N>],
+    f: &dyn Fn(&State<N>) -> State<N>,
+) -> f64 {
+    let logs = arcs.iter().enumerate().map(|(k, arc)| {
         let next = f(&nodes[(k + 1) % nodes.len()]);
         let carried = arc.tangent * f(&nodes[k]);
         (next.dot(&carried) / next.norm_squared()).abs().ln()
@@ -167,17 +167,31 @@ fn trivial_defect<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> S
 
 /// The multipliers of an orbit in the space of its field.
 pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
-    const { assert!(N == 2 || N == 3, "one or two nontrivial multipliers") };
-    let (volume, liouville_defect) = volume(closed);
-    let multipliers = if N == 2 {
-        vec![Multiplier::real(volume.value, volume.uncertainty, false)]
-    } else {
-        let errors: Vec<f64> = closed.arcs().iter().map(Arc::noise).collect();
-        pair(closed.maps(), &errors, volume)
+    around(&closed.shooting.nodes, &closed.linear, f)
+}
+
+impl<const N: usize> Regular<N> {
+    /// Its multipliers in the space of its field.
+    pub fn floquet(&self, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
+        around(&self.site.shooting.nodes, &self.linear, f)
+    }
+}
+
+fn around<const N: usize>(
+    nodes: &[State<N>],
+    Linear { arcs, maps, .. }: &Linear<N>,
+    f: &dyn Fn(&State<N>) -> State<N>,
+) -> Floquet {
+    let (volume, liouville_defect) = volume(arcs);
+    let errors: Vec<f64> = arcs.iter().map(Arc::noise).collect();
+    let multipliers = match N {
+        2 => vec![Multiplier::real(volume.value, volume.uncertainty, false)],
+        3 => pair(maps, &errors, volume),
+        _ => multipliers(maps, &errors, volume),
     };
     Floquet {
         multipliers,
-        trivial_defect: trivial_defect(closed, f),
+        trivial_defect: trivial_defect(nodes, arcs, f),
         liouville_defect,
     }
 }
@@ -188,7 +202,7 @@ pub fn symmetric_floquet(
     f: &dyn Fn(&State<2>) -> State<2>,
     across: &[Arc<3>],
 ) -> Floquet {
-    let (within, within_defect) = volume(closed);
+    let (within, within_defect) = volume(closed.arcs());
     // The antisymmetric mode (0, 1, -1) stays one.
     let by_matrix: f64 = across
         .iter()
@@ -220,7 +234,7 @@ pub fn symmetric_floquet(
     let larger = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
     Floquet {
         multipliers,
-        trivial_defect: trivial_defect(closed, f),
+        trivial_defect: trivial_defect(&closed.shooting.nodes, closed.arcs(), f),
         liouville_defect: larger(within_defect, defect),
     }
 }

@@ -49,7 +49,7 @@ impl Signs {
         Signs(ChaCha8Rng::seed_from_u64(1))
     }
 
-    fn next(&mut self) -> f64 {
+    pub fn next(&mut self) -> f64 {
         if self.0.next_u32() & 1 == 0 {
             1.0
         } else {
@@ -87,7 +87,7 @@ impl<const N: usize> Linear<N> {
 
 /// What the rounding of each entry of a map is relative to: what two maps like it make of their entries without their signs. Where
 /// one variable hardly feels another all the way, rounding doesn't couple them, as errors relative to the whole map would.
-fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
+pub(super) fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
     let sizes = map.abs();
     let passed = sizes * sizes / map.norm().max(f64::MIN_POSITIVE);
     passed.sup(&sizes)

@@ -2,43 +2,25 @@
 
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Regular;
+use super::cyclic;
 use super::shooting_nodes::ShootingNodes;
 use crate::field::State;
 
 /// A place to begin a branch, and its direction there.
 pub type Switch<const N: usize> = (ContinuationPoint<N>, TangentVector<N>);
 
-impl Regular<3> {
-    /// At a period doubling: the orbit traversed twice, and the tangent vector that makes both rounds differ. `None` where no
-    /// multiplier is near -1.
-    pub fn doubled(&self) -> Option<Switch<3>> {
-        let maps = &self.linear.maps;
-        // The eigenvector in the plane of the first node: the return map has nothing along the flow.
-        let product = maps.iter().fold(None, |product, map| match product {
-            None => Some(*map),
-            Some(product) => Some(map * product),
-        })?;
-        let shifted = [
-            [product[(1, 1)] + 1.0, product[(1, 2)]],
-            [product[(2, 1)], product[(2, 2)] + 1.0],
-        ];
-        let larger = |a: [f64; 2], b: [f64; 2]| {
-            if a[0].hypot(a[1]) > b[0].hypot(b[1]) {
-                a
-            } else {
-                b
-            }
-        };
-        let row = larger(shifted[0], shifted[1]);
-        let mut u = State::<3>::new(0.0, -row[1], row[0]).normalize();
-        let mut round = Vec::with_capacity(maps.len());
-        for map in maps {
-            round.push(u);
-            u = map * u;
-        }
+impl<const N: usize> Regular<N> {
+    /// At a period doubling: the orbit traversed twice, and the tangent vector that makes both rounds differ. `None` where that is not
+    /// finite.
+    pub fn doubled(&self) -> Option<Switch<N>> {
+        // What comes back after one round with the other sign.
+        let mut maps = self.linear.maps.clone();
+        let last = maps.last_mut()?;
+        *last = -*last;
+        let round = cyclic::kernel(&maps)?;
         let (nodes, durations) = self.linear.carried(&round);
         let shooting = &self.site.shooting;
-        let twice = |x: &[State<3>], sign: f64| -> Vec<State<3>> {
+        let twice = |x: &[State<N>], sign: f64| -> Vec<State<N>> {
             x.iter()
                 .copied()
                 .chain(x.iter().map(|x| x * sign))

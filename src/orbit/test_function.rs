@@ -4,10 +4,11 @@
 //! the Jacobian's trace. The trace changes as the maps of the single arcs do: a difference of two traces would lose, at small
 //! stiffness, what the maps' product loses.
 //!
-//! With a return map of more than two dimensions these are no test functions: tr and det then are not the sum and the product of
-//! two multipliers. They are refused there.
+//! With a return map of more dimensions tr and det are not the sum and the product of two multipliers. There the test functions
+//! are products over all multipliers, from the maps' periodic Schur form, and their changes are differences.
 
 use super::linear::Linear;
+use super::multipliers::Products;
 use crate::error::{Error, Result};
 use crate::field::Jacobian;
 
@@ -18,9 +19,9 @@ pub enum TestFunction {
     Fold,
     /// A multiplier is -1: 1 + tr + det.
     Doubling,
-    /// The product of both is 1: ln det. A torus (Neimark-Sacker) bifurcation where |tr| < 2, a neutral saddle elsewhere.
+    /// The product of two is 1: ln det. A torus (Neimark-Sacker) bifurcation where they are conjugate, a neutral saddle elsewhere.
     Torus,
-    /// The trace has this value: on a torus bifurcation 2 cos of the multipliers' angle.
+    /// The trace of a map of two dimensions has this value: on a torus bifurcation 2 cos of the multipliers' angle.
     Trace(f64),
     /// The multiplier across the symmetric subspace is 1.
     Transverse,
@@ -37,6 +38,8 @@ pub struct Spectrum {
     pub volume: f64,
     /// ln of the multiplier across the symmetric subspace; not a number where there is none.
     pub across: f64,
+    /// Over all multipliers, where there are more than two.
+    pub products: Option<Products>,
 }
 
 impl Spectrum {
@@ -50,6 +53,7 @@ impl Spectrum {
             trace: product.trace(),
             volume: volume(linear),
             across: across.unwrap_or(f64::NAN),
+            products: (N > 3).then(|| Products::new(&linear.maps)).flatten(),
         }
     }
 
@@ -73,12 +77,14 @@ impl Spectrum {
         }
         let volumes = from.arcs.iter().zip(&to.arcs);
         let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
-        let across = Spectrum::new(to).across - spectrum.across;
+        let there = Spectrum::new(to);
+        let products = spectrum.products.zip(there.products);
         Spectrum {
             dimension: N,
             trace: trace / step,
             volume: volume / step,
-            across: across / step,
+            across: (there.across - spectrum.across) / step,
+            products: products.map(|(here, there)| there.less(&here).scaled(1.0 / step)),
         }
     }
 
@@ -123,13 +129,15 @@ impl TestFunction {
     /// [`Error::Dimension`] where it is not: its zeros would be no bifurcations.
     pub fn checked<const N: usize>(self) -> Result<()> {
         let (what, known, holds) = match self {
-            TestFunction::Fold => (
-                "the test function of folds of orbits",
-                "2 or 3",
-                N == 2 || N == 3,
+            TestFunction::Fold => ("the test function of folds of orbits", "2 or more", N >= 2),
+            TestFunction::Doubling => {
+                ("the test function of period doublings", "3 or more", N >= 3)
+            }
+            TestFunction::Torus => (
+                "the test function of torus bifurcations",
+                "3 or more",
+                N >= 3,
             ),
-            TestFunction::Doubling => ("the test function of period doublings", "3", N == 3),
-            TestFunction::Torus => ("the test function of torus bifurcations", "3", N == 3),
             TestFunction::Trace(_) => ("the test function of strong resonances", "3", N == 3),
             TestFunction::Transverse => ("the test function of pitchforks of orbits", "2", N == 2),
         };
@@ -149,9 +157,14 @@ impl TestFunction {
             trace,
             volume,
             across,
+            products,
             ..
         } = *spectrum;
+        let product = |of: fn(&Products) -> f64| products.as_ref().map_or(f64::NAN, of);
         match self {
+            TestFunction::Fold if N > 3 => product(|all| all.fold),
+            TestFunction::Doubling if N > 3 => product(|all| all.doubling),
+            TestFunction::Torus if N > 3 => product(|all| all.torus),
             TestFunction::Fold if N == 2 => volume.exp_m1(),
             TestFunction::Fold => 1.0 - trace + volume.exp(),
             TestFunction::Doubling => 1.0 + trace + volume.exp(),
@@ -163,6 +176,15 @@ impl TestFunction {
 
     /// Its change with that of the spectrum.
     pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
+        if N > 3
+            && matches!(
+                self,
+                TestFunction::Fold | TestFunction::Doubling | TestFunction::Torus
+            )
+        {
+            // Linear in them.
+            return self.of::<N>(by);
+        }
         let of_det = at.volume.exp() * by.volume;
         match self {
             TestFunction::Fold if N == 2 => of_det,

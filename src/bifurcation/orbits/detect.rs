@@ -78,7 +78,7 @@ impl WatchedFunction {
 
 pub(super) fn size<const N: usize>(test_function: TestFunction, at: &Spectrum) -> f64 {
     match test_function {
-        TestFunction::Fold | TestFunction::Doubling if N > 2 => {
+        TestFunction::Fold | TestFunction::Doubling if N == 3 => {
             1.0 + at.trace.abs() + at.volume.exp()
         }
         _ => 1.0,

@@ -1,0 +1,247 @@
+//! The multipliers of return maps of any dimension, from the periodic Schur form of the arcs' maps, with a budget for each.
+//!
+//! The budget is what the arcs' errors make of a logarithm: its spread over maps with random errors of that size. Where the
+//! smallest multiplier drowns in them, the quadrature of the trace (Liouville) has it from the others.
+
+use super::floquet::{Kind, Multiplier, TANGENT};
+use super::noise::{PROBES, Signs, graded};
+use super::periodic_schur::{LogEigenvalue, eigenvalues};
+use crate::field::Jacobian;
+use crate::number::Uncertain;
+use nalgebra::{Complex, DMatrix};
+use std::f64::consts::PI;
+
+/// Angles below this, from 0 and from pi, are those of real numbers: rounding parts two equal ones by as much.
+const REAL: f64 = 1e-9;
+/// A logarithm with a larger error is not known.
+const LOST: f64 = 0.5;
+
+/// The maps in the planes, without the flow's own direction.
+pub(super) fn planes<const N: usize>(maps: &[Jacobian<N>]) -> Vec<DMatrix<f64>> {
+    maps.iter()
+        .map(|map| DMatrix::from_fn(N - 1, N - 1, |i, j| map[(i + 1, j + 1)]))
+        .collect()
+}
+
+/// The eigenvalues of the maps' product, the largest first, where the maps' relative errors are given and the logarithm of the
+/// product of all eigenvalues is known.
+pub fn multipliers<const N: usize>(
+    maps: &[Jacobian<N>],
+    errors: &[f64],
+    volume: Uncertain,
+) -> Vec<Multiplier> {
+    let found = eigenvalues(&planes(maps));
+    let spreads = found.as_ref().and_then(|all| spreads(maps, errors, all));
+    let (Some(mut all), Some(spreads)) = (found, spreads) else {
+        let unknown = Multiplier {
+            ln_abs: Uncertain::new(volume.value / (N - 1) as f64, f64::INFINITY),
+            angle_over_pi: 0.0,
+            kind: Kind::BelowFloor,
+        };
+        return vec![unknown; N - 1];
+    };
+    conjugated(&mut all);
+    let pairs = all.iter().zip(&spreads);
+    let mut multipliers: Vec<_> = pairs.map(|(one, spread)| spread.multiplier(one)).collect();
+    by_volume(&mut multipliers, volume);
+    multipliers
+}
+
+/// What the errors make of an eigenvalue.
+#[derive(Debug, Clone, Copy, Default)]
+struct Spread {
+    ln_abs: f64,
+    arg: f64,
+    /// The largest that was seen.
+    bound: f64,
+}
+
+impl Spread {
+    fn multiplier(&self, one: &LogEigenvalue) -> Multiplier {
+        let arg = one.arg.abs();
+        if !(self.ln_abs < LOST) {
+            return Multiplier {
+                ln_abs: Uncertain::new(self.bound + TANGENT.ln(), 0.0),
+                angle_over_pi: 0.0,
+                kind: Kind::BelowFloor,
+            };
+        }
+        let error = self.arg.max(REAL);
+        let (kind, angle_over_pi) = if arg <= error {
+            (Kind::Real, 0.0)
+        } else if PI - arg <= error {
+            (Kind::Real, 1.0)
+        } else {
+            (Kind::Complex, arg / PI)
+        };
+        Multiplier {
+            ln_abs: Uncertain::new(one.ln_abs, self.ln_abs),
+            angle_over_pi,
+            kind,
+        }
+    }
+}
+
+/// Of every eigenvalue, over some maps with errors of random sign. `None` where one of these has no eigenvalues.
+fn spreads<const N: usize>(
+    maps: &[Jacobian<N>],
+    errors: &[f64],
+    all: &[LogEigenvalue],
+) -> Option<Vec<Spread>> {
+    let mut signs = Signs::new();
+    let mut spreads: Vec<_> = all
+        .iter()
+        .map(|one| Spread {
+            bound: one.ln_abs,
+            ..Spread::default()
+        })
+        .collect();
+    for _ in 0..PROBES {
+        let noisy = maps.iter().zip(errors).map(|(map, error)| {
+            let sizes = graded(map) * *error;
+            map + sizes.map(|size| size * signs.next())
+        });
+        let noisy: Vec<_> = noisy.collect();
+        let mut others = eigenvalues(&planes(&noisy))?;
+        for (one, spread) in all.iter().zip(&mut spreads) {
+            let off = |other: &LogEigenvalue| {
+                let ln_abs = (other.ln_abs - one.ln_abs).abs();
+                (ln_abs, (other.arg.abs() - one.arg.abs()).abs())
+            };
+            let distance = |other: &LogEigenvalue| off(other).0.hypot(off(other).1);
+            let nearest = (0..others.len())
+                .min_by(|&i, &j| distance(&others[i]).total_cmp(&distance(&others[j])))?;
+            let other = others.swap_remove(nearest);
+            let (ln_abs, arg) = off(&other);
+            spread.ln_abs += ln_abs * ln_abs;
+            spread.arg += arg * arg;
+            spread.bound = spread.bound.max(other.ln_abs);
+        }
+    }
+    let deviation = |squares: f64| TANGENT * (squares / PROBES as f64).sqrt();
+    for (one, spread) in all.iter().zip(&mut spreads) {
+        // The logarithms of the factors' diagonals are rounded too.
+        spread.ln_abs = deviation(spread.ln_abs) + f64::EPSILON * (1.0 + one.ln_abs.abs());
+        spread.arg = deviation(spread.arg);
+    }
+    Some(spreads)
+}
+
+/// Both of a conjugate pair with the same logarithm: rounding makes it two.
+fn conjugated(all: &mut [LogEigenvalue]) {
+    for i in 0..all.len() {
+        let one = all[i];
+        if one.arg <= 0.0 {
+            continue;
+        }
+        let off =
+            |other: &LogEigenvalue| (other.ln_abs - one.ln_abs).abs() + (other.arg + one.arg).abs();
+        let below = (0..all.len()).filter(|&j| all[j].arg < 0.0);
+        if let Some(j) = below.min_by(|&a, &b| off(&all[a]).total_cmp(&off(&all[b])))
+            && off(&all[j]) < REAL
+        {
+            all[j] = LogEigenvalue {
+                arg: -one.arg,
+                ..one
+            };
+        }
+    }
+}
+
+/// The smallest from the volume, where that knows it better.
+fn by_volume(multipliers: &mut [Multiplier], volume: Uncertain) {
+    let Some((last, others)) = multipliers.split_last_mut() else {
+        return;
+    };
+    let known = |one: &Multiplier| one.kind != Kind::BelowFloor;
+    if !others.iter().all(known) || last.kind == Kind::Complex {
+        return;
+    }
+    let sums = others.iter().fold((0.0, 0.0), |sums, one| {
+        let Uncertain { value, uncertainty } = one.ln_abs;
+        (sums.0 + value, sums.1 + uncertainty)
+    });
+    let uncertainty = volume.uncertainty + sums.1;
+    if known(last) && last.ln_abs.uncertainty <= uncertainty {
+        return;
+    }
+    // The product of all is positive: the flow keeps its orientation.
+    let negative = others.iter().filter(|one| one.angle_over_pi == 1.0).count() % 2 == 1;
+    *last = Multiplier {
+        ln_abs: Uncertain::new(volume.value - sums.0, uncertainty),
+        angle_over_pi: if negative { 1.0 } else { 0.0 },
+        kind: Kind::Real,
+    };
+}
+
+/// Products over all multipliers that vanish at bifurcations, each factor over its largest size.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Products {
+    /// Of 1 - mu: a multiplier is 1.
+    pub fold: f64,
+    /// Of 1 + mu: a multiplier is -1.
+    pub doubling: f64,
+    /// Of 1 - mu_i mu_j over all pairs: a conjugate pair on the unit circle, or two real numbers whose product is 1.
+    pub torus: f64,
+}
+
+impl Products {
+    /// Of the maps' product; `None` where its eigenvalues are not found.
+    pub(super) fn new<const N: usize>(maps: &[Jacobian<N>]) -> Option<Self> {
+        let all = eigenvalues(&planes(maps))?;
+        let pairs = all.iter().enumerate().flat_map(|(i, a)| {
+            all[..i].iter().map(|b| LogEigenvalue {
+                ln_abs: a.ln_abs + b.ln_abs,
+                arg: a.arg + b.arg,
+            })
+        });
+        let negative = all.iter().map(|one| LogEigenvalue {
+            arg: one.arg + PI,
+            ..*one
+        });
+        Some(Products {
+            fold: product(all.iter().copied()),
+            doubling: product(negative),
+            torus: product(pairs),
+        })
+    }
+}
+
+impl Products {
+    /// Less others.
+    pub(super) fn less(&self, other: &Self) -> Self {
+        Products {
+            fold: self.fold - other.fold,
+            doubling: self.doubling - other.doubling,
+            torus: self.torus - other.torus,
+        }
+    }
+
+    /// Times x.
+    pub(super) fn scaled(&self, x: f64) -> Self {
+        Products {
+            fold: x * self.fold,
+            doubling: x * self.doubling,
+            torus: x * self.torus,
+        }
+    }
+}
+
+/// The product of (1 - mu) / (1 + |mu|): real, as what is not comes in conjugate pairs.
+fn product(all: impl Iterator<Item = LogEigenvalue>) -> f64 {
+    // Without cancellation near mu = 1, for |mu| <= 1.
+    let small = |ln_abs: f64, arg: f64| {
+        let (size, half) = (ln_abs.exp(), (0.5 * arg).sin());
+        let real = 2.0 * size * half * half - ln_abs.exp_m1();
+        Complex::new(real, -size * arg.sin()) / (1.0 + size)
+    };
+    let factors = all.map(|LogEigenvalue { ln_abs, arg }| {
+        if ln_abs > 0.0 {
+            // 1 - mu = -mu (1 - 1 / mu), over |mu|
+            -Complex::from_polar(1.0, arg) * small(-ln_abs, -arg)
+        } else {
+            small(ln_abs, arg)
+        }
+    });
+    factors.product::<Complex<f64>>().re
+}

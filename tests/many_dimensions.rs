@@ -1,0 +1,530 @@
+//! Periodic orbits, multipliers and bifurcations of systems of four, six and twelve equations.
+
+use crate::common::{data, number};
+use serde_json::Value;
+use std::f64::consts::{PI, TAU};
+use std::ops::ControlFlow::{Break, Continue};
+use twinslip::bifurcation::Label;
+use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
+use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::continuation::Settings;
+use twinslip::field::{State, VectorField};
+use twinslip::model::Smooth;
+use twinslip::model::classics::{Langford, Roessler};
+use twinslip::number::Real;
+use twinslip::orbit::{
+    Closed, Condition, ContinuationPoint, Corrector, Floquet, Goal, Kind, OverParameters, Palc,
+    PalcSettings, ShootingNodes, TestFunction, Tracer, close, floquet,
+};
+use twinslip::series::Equations;
+
+/// Two van der Pol oscillators, drawn together, in (mu, k); the second one's frequency squared.
+#[derive(Debug, Clone, Copy)]
+struct Pair {
+    squared: f64,
+}
+
+impl Equations<4> for Pair {
+    fn rates<T: Real>(&self, [x1, y1, x2, y2]: [T; 4], [mu, k]: [T; 2]) -> [T; 4] {
+        let one = T::constant(1.0);
+        [
+            y1,
+            mu * (one - x1 * x1) * y1 - x1 + k * (x2 - x1),
+            y2,
+            mu * (one - x2 * x2) * y2 - x2 * self.squared + k * (x1 - x2),
+        ]
+    }
+}
+
+fn numbers(list: &Value) -> Vec<f64> {
+    list.as_array()
+        .expect("a list")
+        .iter()
+        .map(number)
+        .collect()
+}
+
+/// The orbit through a point, closed, and its multipliers.
+fn solved<S: Equations<N>, const N: usize>(
+    field: &Smooth<S, N>,
+    point: &[f64],
+    period: f64,
+) -> (Closed<N>, Floquet) {
+    let mut tracer = Tracer::taylor(1e-15).expect("a tracer");
+    let start = State::<N>::from_column_slice(point);
+    let shooting = ShootingNodes::along(&mut tracer, field, &start, period).expect("a shooting");
+    let mut loss = |x: &State<N>, duration: f64| {
+        let mut tracer = Tracer::<N>::taylor(1e-15)?;
+        let arc = tracer.arc(field, x, duration, false)?;
+        Ok((arc.end, arc.loss()))
+    };
+    let shooting = shooting.refined(&mut loss).expect("finer nodes");
+    let closed = close(&mut tracer, field, shooting).expect("an orbit");
+    let multipliers = floquet(&closed, &|x| field.f(x));
+    (closed, multipliers)
+}
+
+/// Of a record: the period and all multipliers, within their budgets, and the budgets within a bar.
+fn assert_as_known<const N: usize>(record: &Value, (closed, floquet): (Closed<N>, Floquet)) {
+    let known = &record["values"];
+    let (period, _) = closed.budget(true);
+    let error = (period.value - number(&known["period"])).abs();
+    assert!(error <= period.uncertainty, "{period:?}, {error:e}");
+    assert!(error < 1e-12 * period.value, "{period:?}, {error:e}");
+    assert_eq!(floquet.multipliers.len(), N - 1);
+    assert!(floquet.trivial_defect < 1e-10, "{floquet:?}");
+    let defect = floquet.liouville_defect.expect("the trace");
+    assert!(defect.abs() < 1e-10, "{floquet:?}");
+    let mut left = floquet.multipliers.clone();
+    for one in known["multipliers"].as_array().expect("multipliers") {
+        let (ln_abs, arg) = (number(&one["ln_abs"]), number(&one["arg"]).abs());
+        let off = |m: &twinslip::orbit::Multiplier| {
+            (m.ln_abs.value - ln_abs).abs() + (PI * m.angle_over_pi - arg).abs()
+        };
+        let nearest = (0..left.len())
+            .min_by(|&i, &j| off(&left[i]).total_cmp(&off(&left[j])))
+            .expect("as many");
+        let found = left.swap_remove(nearest);
+        let error = (found.ln_abs.value - ln_abs).abs();
+        assert!(error <= found.ln_abs.uncertainty, "{one}: {found:?}");
+        assert!(found.ln_abs.uncertainty < 1e-10, "{one}: {found:?}");
+        let complex = arg > 1e-6 && PI - arg > 1e-6;
+        assert_eq!(found.kind == Kind::Complex, complex, "{one}: {found:?}");
+        assert!(
+            (PI * found.angle_over_pi - arg).abs() < 1e-9,
+            "{one}: {found:?}"
+        );
+    }
+}
+
+#[test]
+fn locked_oscillators_have_the_multipliers_of_forty_digits() {
+    let all = data("foreign_orbits.json");
+    for name in [
+        "1a_two_coupled_vdp_antiphase_k0.2",
+        "1b_two_coupled_vdp_antiphase_k0.5",
+        "1c_two_coupled_vdp_inphase_k0.5",
+        "1d_two_coupled_vdp_symmetric_mu5",
+    ] {
+        let record = &all["records"][name];
+        let [mu, squared, k] = ["mu", "w2", "k"].map(|p| number(&record["parameters"][p]));
+        let field = Smooth {
+            equations: Pair { squared },
+            parameters: [mu, k],
+        };
+        let point = numbers(&record["values"]["point"]);
+        let period = number(&record["values"]["period"]);
+        // From a point and a period of four digits.
+        let rough = |x: f64| (x * 1e4).round() / 1e4;
+        let point: Vec<_> = point.into_iter().map(rough).collect();
+        assert_as_known(record, solved(&field, &point, rough(period)));
+    }
+}
+
+/// A system of three equations with others that know nothing of it, in coordinates that mix them all.
+#[derive(Debug, Clone, Copy)]
+struct Among<S>(S);
+
+/// The reflection across the plane at right angles to (1, 2, .. N).
+fn reflected<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
+    let along: f64 = (1..=N).map(|i| (i * i) as f64).sum();
+    let mut dot = T::constant(0.0);
+    for (i, x) in x.iter().enumerate() {
+        dot = dot + *x * (i + 1) as f64;
+    }
+    std::array::from_fn(|i| x[i] - dot * (2.0 * (i + 1) as f64 / along))
+}
+
+impl<S: Equations<3>, const N: usize> Equations<N> for Among<S> {
+    fn rates<T: Real>(&self, y: [T; N], parameters: [T; 2]) -> [T; N] {
+        let x = reflected(y);
+        let own = self.0.rates([x[0], x[1], x[2]], parameters);
+        let others = |i: usize| {
+            // Turning pairs that decay, the last alone.
+            let decay = -x[i] * (0.1 * i as f64);
+            match i % 2 {
+                1 if i + 1 < N => decay + x[i + 1] * 0.7,
+                0 => decay - x[i - 1] * 0.7,
+                _ => decay,
+            }
+        };
+        reflected(std::array::from_fn(
+            |i| {
+                if i < 3 { own[i] } else { others(i) }
+            },
+        ))
+    }
+}
+
+fn mixed<const N: usize>(x: &State<3>) -> State<N> {
+    let whole = std::array::from_fn(|i| if i < 3 { x[i] } else { 0.0 });
+    State::from(reflected::<f64, N>(whole))
+}
+
+/// Along a branch towards greater values of a parameter: the first zero of an test_function below `end`.
+fn first<S: Equations<N>, const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<S>, N>,
+    site: ContinuationPoint<N>,
+    (free, end): (usize, f64),
+    test_function: TestFunction,
+) -> Option<ContinuationPoint<N>> {
+    let settings = PalcSettings::branch(free, 0.3);
+    let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
+    let mut direction = here.along[0].clone();
+    if direction.parameters[free] < 0.0 {
+        direction = direction.scaled(-1.0);
+    }
+    let mut palc = Palc::from(corrector, settings, here.site, direction).expect("a palc");
+    let mut found = None;
+    let watched = [WatchedFunction::TestFunction(test_function)];
+    follow(&mut palc, &watched, 400, &mut |_, _, met| match met {
+        Met::Zero(_, at) => {
+            found = Some(at.site.clone());
+            Break(())
+        }
+        Met::Orbit(pace) if pace.here.site.at[free] > end => Break(()),
+        Met::Orbit(_) => Continue(()),
+    })
+    .expect("a branch");
+    let meets = [Condition::TestFunction(test_function)];
+    let sharp = corrector.correct(found?, &[free], &meets, Goal::SHARP);
+    Some(sharp.expect("the bifurcation").site)
+}
+
+fn torus_among_others<const N: usize>() {
+    let family = OverParameters(Among(Langford { omega: 3.5 }));
+    let (rho, turn) = (0.3, TAU / 12.0);
+    let radius = Langford::radius(rho);
+    let nodes = (0..12).map(|k| {
+        let (sin, cos) = (turn * f64::from(k)).sin_cos();
+        mixed(&State::<3>::new(radius * cos, radius * sin, 0.7))
+    });
+    let site = ContinuationPoint {
+        shooting: ShootingNodes {
+            nodes: nodes.collect(),
+            durations: vec![turn / 3.5; 12],
+        },
+        at: [rho, 0.0],
+    };
+    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
+    let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus).expect("a torus");
+    let error = (torus.at[0] / Langford::torus() - 1.0).abs();
+    assert!(error < 1e-10, "{N}: {error:e}");
+    // The pair that leaves: e^(+-i k r T), k = sqrt(2 (1 + 0.7 rho)).
+    let here = corrector.look(torus.clone(), &[0], &[]).expect("an orbit");
+    let field = Smooth {
+        equations: family.0,
+        parameters: torus.at,
+    };
+    let floquet = here.floquet(&|x| VectorField::<N>::f(&field, x));
+    let rho = Langford::torus();
+    let frequency = (2.0 * (1.0 + 0.7 * rho)).sqrt() * Langford::radius(rho);
+    let angle = (frequency * torus.shooting.period()).rem_euclid(TAU);
+    let angle = angle.min(TAU - angle) / PI;
+    let pair = &floquet.multipliers[..2];
+    for one in pair {
+        assert!(one.ln_abs.value.abs() < 1e-9, "{N}: {pair:?}");
+        assert!(
+            (one.angle_over_pi - angle).abs() < 1e-9,
+            "{N}: {pair:?}, {angle}"
+        );
+    }
+}
+
+#[test]
+fn a_torus_is_shed_where_it_is_in_three_dimensions() {
+    torus_among_others::<4>();
+    torus_among_others::<6>();
+    torus_among_others::<12>();
+}
+
+fn doublings<const N: usize>(expected: &[(f64, f64)]) {
+    let family = OverParameters(Among(Roessler { b: 0.2 }));
+    let field = Smooth {
+        equations: family.0,
+        parameters: [0.2, 2.5],
+    };
+    let mut tracer = Tracer::<N>::taylor(1e-10).expect("a tracer");
+    let start = mixed(&State::<3>::new(-3.0, 0.0, 0.1));
+    let start = tracer.flow(&field, &start, 300.0, None).expect("a run");
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.75).expect("a shooting");
+    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
+    let held = [Condition::Parameter(1, 2.5)];
+    let site = ContinuationPoint {
+        shooting,
+        at: [0.2, 2.5],
+    };
+    let orbit = corrector.correct(site, &[1], &held, Goal::SHARP);
+    let mut site = orbit.expect("an orbit").site;
+    for (i, &(c, period)) in expected.iter().enumerate() {
+        let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
+        let doubling = doubling.expect("a doubling");
+        let error = (doubling.at[1] / c - 1.0).abs();
+        assert!(error < 1e-10, "{N}, {i}: {}, {error:e}", doubling.at[1]);
+        let error = (doubling.shooting.period() / period - 1.0).abs();
+        assert!(error < 1e-10, "{N}, {i}: {error:e}");
+        let meets = [Condition::TestFunction(TestFunction::Doubling)];
+        let here = corrector.look(doubling, &[1], &meets).expect("an orbit");
+        let (twice, direction) = here.doubled().expect("a multiplier -1");
+        let settings = PalcSettings::branch(1, 0.3);
+        let begun = Palc::from(
+            &mut corrector,
+            settings,
+            twice.moved(&direction, 0.05),
+            direction,
+        );
+        site = begun.expect("onto the doubled branch").pace.here.site;
+    }
+}
+
+#[test]
+fn roesslers_cascade_in_three_four_and_twelve_dimensions() {
+    let all = data("foreign_orbits.json");
+    let expected = ["2_roessler_PD1", "2_roessler_PD2", "2_roessler_PD3"].map(|name| {
+        let values = &all["records"][name]["values"];
+        (number(&values["c"]), number(&values["period"]))
+    });
+    doublings::<3>(&expected);
+    doublings::<4>(&expected[..2]);
+    doublings::<12>(&expected[..1]);
+}
+
+/// A ring: x_i' = (x_{i+1} - x_{i-2}) x_{i-1} - x_i + F, in (F, nothing). Lorenz, E. N. (1996). Predictability - a problem partly
+/// solved. Proc. Seminar on Predictability, ECMWF, 1-18.
+#[derive(Debug, Clone, Copy)]
+struct Ring;
+
+impl<const N: usize> Equations<N> for Ring {
+    fn rates<T: Real>(&self, x: [T; N], [force, _]: [T; 2]) -> [T; N] {
+        let at = |i: usize| x[i % N];
+        std::array::from_fn(|i| (at(i + 1) - at(i + N - 2)) * at(i + N - 1) - x[i] + force)
+    }
+}
+
+fn wave(record: &Value, force: f64) -> (Closed<6>, Floquet) {
+    let values = &record["values"];
+    let field = Smooth {
+        equations: Ring,
+        parameters: [force, 0.0],
+    };
+    solved(
+        &field,
+        &numbers(&values["point"]),
+        number(&values["period"]),
+    )
+}
+
+#[test]
+fn waves_around_a_ring_of_six_have_five_multipliers_and_shed_a_torus() {
+    let all = data("foreign_orbits.json");
+    for (name, force) in [("4a_lorenz96_N6_F2", 2.0), ("4b_lorenz96_N6_F4", 4.0)] {
+        let record = &all["records"][name];
+        assert_as_known(record, wave(record, force));
+    }
+    let (closed, _) = wave(&all["records"]["4b_lorenz96_N6_F4"], 4.0);
+    let family = OverParameters(Ring);
+    let mut corrector = Corrector::<_, 6>::new(&family, 1e-14).expect("a corrector");
+    let site = ContinuationPoint {
+        shooting: closed.shooting,
+        at: [4.0, 0.0],
+    };
+    let torus = first(&mut corrector, site, (0, 7.0), TestFunction::Torus).expect("a torus");
+    let record = &all["records"]["4c_lorenz96_N6_neimark_sacker"];
+    let force = number(&record["parameters"]["F"]);
+    let error = (torus.at[0] / force - 1.0).abs();
+    assert!(error < 1e-11, "{}, {error:e}", torus.at[0]);
+    let period = number(&record["values"]["period"]);
+    let error = (torus.shooting.period() / period - 1.0).abs();
+    assert!(error < 1e-11, "{error:e}");
+    let here = corrector.look(torus, &[0], &[]).expect("an orbit");
+    let field = Smooth {
+        equations: Ring,
+        parameters: [force, 0.0],
+    };
+    let floquet = here.floquet(&|x| VectorField::<6>::f(&field, x));
+    let pair = floquet.multipliers[0];
+    let angle = number(&record["values"]["multipliers"][0]["arg"]).abs() / PI;
+    assert!(
+        pair.kind == Kind::Complex && pair.ln_abs.value.abs() < 1e-10,
+        "{pair:?}"
+    );
+    assert!(
+        (pair.angle_over_pi - angle).abs() < 1e-10,
+        "{pair:?}, {angle}"
+    );
+}
+
+/// Six van der Pol oscillators in a ring, x_i' = y_i, y_i' = mu (1 - x_i^2) y_i - x_i + k (x_{i+1} - 2 x_i + x_{i-1}), in
+/// (mu, k).
+#[derive(Debug, Clone, Copy)]
+struct Oscillators;
+
+impl Equations<12> for Oscillators {
+    fn rates<T: Real>(&self, z: [T; 12], [mu, k]: [T; 2]) -> [T; 12] {
+        let one = T::constant(1.0);
+        let x = |i: usize| z[2 * (i % 6)];
+        std::array::from_fn(|j| {
+            let (i, y) = (j / 2, z[j | 1]);
+            if j % 2 == 0 {
+                return y;
+            }
+            let pull = x(i + 1) - x(i) * 2.0 + x(i + 5);
+            mu * (one - x(i) * x(i)) * y - x(i) + k * pull
+        })
+    }
+}
+
+#[test]
+fn a_wave_around_six_oscillators_has_eleven_multipliers() {
+    let all = data("foreign_orbits.json");
+    let record = &all["records"]["5_ring6_vdp_rotating_wave"];
+    let field = Smooth {
+        equations: Oscillators,
+        parameters: [1.0, 0.3],
+    };
+    let values = &record["values"];
+    let found = solved(
+        &field,
+        &numbers(&values["point"]),
+        number(&values["period"]),
+    );
+    assert_as_known(record, found);
+}
+
+/// Of the equilibria along the first parameter of some equations: the labelled ones.
+fn labelled<S: Equations<N> + 'static, const N: usize>(
+    equations: S,
+    (from, to): (f64, f64),
+    held: f64,
+    start: State<N>,
+) -> Vec<FoundEquilibrium<N>> {
+    let fields = |parameters: [f64; 2]| {
+        Box::new(Smooth {
+            equations,
+            parameters,
+        }) as Box<dyn VectorField<N>>
+    };
+    let family = FieldEquilibria {
+        fields: &fields,
+        parameters: [from, held],
+        varied: 0,
+    };
+    let settings = Settings::new((from.min(to), from.max(to)), 0.2).expect("settings");
+    let mut found = Vec::new();
+    let onward = Onward::along(start, from, to > from);
+    family
+        .follow(&onward, &settings, &mut |point| {
+            found.extend(point.label.is_some().then(|| point.clone()));
+            Continue(())
+        })
+        .expect("a branch");
+    found
+}
+
+fn only<const N: usize>(all: &[FoundEquilibrium<N>], label: Label) -> Vec<&FoundEquilibrium<N>> {
+    all.iter().filter(|one| one.label == Some(label)).collect()
+}
+
+#[test]
+fn equilibria_of_rings_oscillate_where_their_eigenvalues_say() {
+    // x = F: F (e^(i a) - e^(-2 i a)) - 1, a = 2 pi j / N, is imaginary at F = 1 for N = 4 and 6.
+    fn hopf<const N: usize>(frequency: f64) {
+        let all = labelled(Ring, (0.2, 2.0), 0.0, State::<N>::repeat(0.2));
+        let hopf = only(&all, Label::Hb);
+        assert_eq!(hopf.len(), 1, "{N}");
+        assert!((hopf[0].parameter - 1.0).abs() < 1e-10, "{N}: {hopf:?}");
+        let period = hopf[0].period.expect("a period");
+        assert!(
+            (period * frequency / TAU - 1.0).abs() < 1e-10,
+            "{N}: {period}"
+        );
+    }
+    hopf::<4>(1.0);
+    hopf::<6>(3.0_f64.sqrt());
+}
+
+/// Lorenz, E. N. (1984). Irregularity: a fundamental property of the atmosphere. Tellus 36A, 98-110; in (F, G).
+#[derive(Debug, Clone, Copy)]
+struct Atmosphere;
+
+impl Equations<3> for Atmosphere {
+    fn rates<T: Real>(&self, [x, y, z]: [T; 3], [f, g]: [T; 2]) -> [T; 3] {
+        let (a, b) = (0.25, 4.0);
+        [
+            f * a - y * y - z * z - x * a,
+            x * y - x * z * b - y + g,
+            x * y * b + x * z - z,
+        ]
+    }
+}
+
+#[test]
+fn lorenzs_atmosphere_folds_oscillates_and_doubles() {
+    let all = data("foreign_orbits.json");
+    for name in [
+        "3a_lorenz84_equilibria_G0.5",
+        "3a_lorenz84_equilibria_G0.25",
+    ] {
+        let record = &all["records"][name];
+        let held = number(&record["parameters"]["G"]);
+        // At F = 0 near (0, G, 0).
+        let start = State::<3>::new(-held * held * 4.0 / 1.5, 0.7 * held, -0.3 * held);
+        let found = labelled(Atmosphere, (0.0, 2.0), held, start);
+        for (label, list) in [(Label::Lp, "folds"), (Label::Hb, "hopfs")] {
+            let mut known: Vec<_> = record["values"][list]
+                .as_array()
+                .expect("a list")
+                .iter()
+                .collect();
+            let ours = only(&found, label);
+            assert_eq!(ours.len(), known.len(), "{name}, {list}");
+            known.sort_by(|a, b| number(&b["F"]).total_cmp(&number(&a["F"])));
+            let mut ours: Vec<_> = ours.into_iter().collect();
+            ours.sort_by(|a, b| b.parameter.total_cmp(&a.parameter));
+            for (one, known) in ours.iter().zip(known) {
+                let error = (one.parameter / number(&known["F"]) - 1.0).abs();
+                assert!(error < 1e-10, "{name}, {list}: {error:e}");
+                if label == Label::Hb {
+                    let frequency = TAU / one.period.expect("a period");
+                    assert!((frequency / number(&known["omega"]) - 1.0).abs() < 1e-10);
+                    let exact = number(&known["first_lyapunov_coefficient_q_normalised"]);
+                    let coefficient = one.coefficient.expect("a coefficient");
+                    assert!(
+                        (coefficient / exact - 1.0).abs() < 1e-5,
+                        "{coefficient}, {exact}"
+                    );
+                }
+            }
+        }
+    }
+    let family = OverParameters(Atmosphere);
+    let record = &all["records"]["3b_lorenz84_orbit_F2_G0.5"];
+    let values = &record["values"];
+    let field = Smooth {
+        equations: Atmosphere,
+        parameters: [2.0, 0.5],
+    };
+    let (closed, floquet) = solved(
+        &field,
+        &numbers(&values["point"]),
+        number(&values["period"]),
+    );
+    let site = ContinuationPoint {
+        shooting: closed.shooting.clone(),
+        at: [2.0, 0.5],
+    };
+    assert_as_known(record, (closed, floquet));
+    let mut corrector = Corrector::<_, 3>::new(&family, 1e-14).expect("a corrector");
+    let doubling = first(&mut corrector, site, (0, 8.0), TestFunction::Doubling);
+    let doubling = doubling.expect("a doubling");
+    let record = &all["records"]["3c_lorenz84_PD_G0.5"];
+    for (found, exact) in [
+        (doubling.at[0], number(&record["parameters"]["F"])),
+        (
+            doubling.shooting.period(),
+            number(&record["values"]["period"]),
+        ),
+    ] {
+        assert!((found / exact - 1.0).abs() < 1e-11, "{found}, {exact}");
+    }
+}
