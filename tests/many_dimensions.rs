@@ -191,22 +191,26 @@ fn first<S: Equations<N>, const N: usize>(
     Some(sharp.expect("the bifurcation").site)
 }
 
-fn torus_among_others<const N: usize>() {
-    let family = OverParameters(Among(Langford { omega: 3.5 }));
-    let (rho, turn) = (0.3, TAU / 12.0);
-    let radius = Langford::radius(rho);
+/// The circle at eps = 0.
+fn langford<const N: usize>(rho: f64) -> ContinuationPoint<N> {
+    let (radius, turn) = (Langford::radius(rho), TAU / 12.0);
     let nodes = (0..12).map(|k| {
         let (sin, cos) = (turn * f64::from(k)).sin_cos();
         mixed(&State::<3>::new(radius * cos, radius * sin, 0.7))
     });
-    let site = ContinuationPoint {
+    ContinuationPoint {
         shooting: ShootingNodes {
             nodes: nodes.collect(),
             durations: vec![turn / 3.5; 12],
         },
         at: [rho, 0.0],
-    };
+    }
+}
+
+fn torus_among_others<const N: usize>() {
+    let family = OverParameters(Among(Langford { omega: 3.5 }));
     let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
+    let site = langford(0.3);
     let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus).expect("a torus");
     let error = (torus.at[0] / Langford::torus() - 1.0).abs();
     assert!(error < 1e-10, "{N}: {error:e}");
@@ -238,24 +242,29 @@ fn a_torus_is_shed_where_it_is_in_three_dimensions() {
     torus_among_others::<12>();
 }
 
-fn doublings<const N: usize>(expected: &[(f64, f64)]) {
-    let family = OverParameters(Among(Roessler { b: 0.2 }));
+/// The orbit at c = 2.5 that doubles first.
+fn roessler<const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<Among<Roessler>>, N>,
+) -> ContinuationPoint<N> {
+    let at = [0.2, 2.5];
     let field = Smooth {
-        equations: family.0,
-        parameters: [0.2, 2.5],
+        equations: corrector.family.0,
+        parameters: at,
     };
     let mut tracer = Tracer::<N>::taylor(1e-10).expect("a tracer");
     let start = mixed(&State::<3>::new(-3.0, 0.0, 0.1));
     let start = tracer.flow(&field, &start, 300.0, None).expect("a run");
-    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.75).expect("a shooting");
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
-    let held = [Condition::Parameter(1, 2.5)];
-    let site = ContinuationPoint {
-        shooting,
-        at: [0.2, 2.5],
-    };
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.75).expect("nodes");
+    let held = [Condition::Parameter(1, at[1])];
+    let site = ContinuationPoint { shooting, at };
     let orbit = corrector.correct(site, &[1], &held, Goal::SHARP);
-    let mut site = orbit.expect("an orbit").site;
+    orbit.expect("an orbit").site
+}
+
+fn doublings<const N: usize>(expected: &[(f64, f64)]) {
+    let family = OverParameters(Among(Roessler { b: 0.2 }));
+    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
+    let mut site = roessler(&mut corrector);
     for (i, &(c, period)) in expected.iter().enumerate() {
         let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
         let doubling = doubling.expect("a doubling");
@@ -273,7 +282,82 @@ fn doublings<const N: usize>(expected: &[(f64, f64)]) {
             twice.moved(&direction, 0.05),
             direction,
         );
-        site = begun.expect("onto the doubled branch").pace.here.site;
+        site = begun.expect("onto the doubled branch").now.here.site;
+    }
+}
+
+/// Along a curve of bifurcations from one of them: the parameters of so many orbits.
+fn curve<S: Equations<N>, const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<S>, N>,
+    site: ContinuationPoint<N>,
+    test_function: TestFunction,
+    (most, growing): (usize, usize),
+) -> Vec<[f64; 2]> {
+    let settings = PalcSettings::locus(test_function, 0.1);
+    let meets = [Condition::TestFunction(test_function)];
+    let here = corrector.look(site, &[0, 1], &meets).expect("an orbit");
+    let any = here.along[0].clone();
+    let direction = settings.direction(&here, &any).expect("a direction");
+    let sign = direction.parameters[growing].signum();
+    let begun = Palc::from(corrector, settings, here.site, direction.scaled(sign));
+    let mut palc = begun.expect("a continuation");
+    let mut passed = Vec::new();
+    follow(&mut palc, &[], most, &mut |_, _, met| {
+        if let Met::Orbit(point) = met {
+            passed.push(point.here.site.at);
+        }
+        Continue(())
+    })
+    .expect("a curve");
+    passed
+}
+
+/// In three dimensions the test functions are others, of the return map's trace and determinant.
+#[test]
+fn curves_of_tori_and_doublings_are_those_of_three_dimensions() {
+    fn tori<const N: usize>() -> Vec<[f64; 2]> {
+        let family = OverParameters(Among(Langford { omega: 3.5 }));
+        let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
+        let site = langford(0.3);
+        let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus);
+        let torus = torus.expect("a torus");
+        curve(&mut corrector, torus, TestFunction::Torus, (12, 1))
+    }
+    fn doublings<const N: usize>() -> Vec<[f64; 2]> {
+        let family = OverParameters(Among(Roessler { b: 0.2 }));
+        let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
+        let site = roessler(&mut corrector);
+        let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
+        let doubling = doubling.expect("a doubling");
+        curve(&mut corrector, doubling, TestFunction::Doubling, (12, 0))
+    }
+    /// The second parameter's value at the first one's, by the polynomial through the four nearest points.
+    fn at(curve: &[[f64; 2]], (of, value): (usize, f64)) -> f64 {
+        let mut near = curve.to_vec();
+        near.sort_by(|a, b| (a[of] - value).abs().total_cmp(&(b[of] - value).abs()));
+        let near = &near[..6];
+        near.iter()
+            .map(|p| {
+                let others = near.iter().filter(|q| q[of] != p[of]);
+                let basis = others.map(|q| (value - q[of]) / (p[of] - q[of]));
+                p[1 - of] * basis.product::<f64>()
+            })
+            .sum()
+    }
+    for (three, four, of) in [
+        (tori::<3>(), tori::<4>(), 1),
+        (doublings::<3>(), doublings::<4>(), 0),
+    ] {
+        assert_eq!((three.len(), four.len()), (12, 12));
+        let ends = [&three, &four].map(|curve| curve[11][of]);
+        assert!(
+            ends.iter().all(|end| (end - three[0][of]).abs() > 0.02),
+            "{ends:?}"
+        );
+        for p in &four[2..8] {
+            let error = (at(&three, (of, p[of])) / p[1 - of] - 1.0).abs();
+            assert!(error < 1e-6, "{p:?}, {error:e}");
+        }
     }
 }
 

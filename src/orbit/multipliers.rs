@@ -59,7 +59,7 @@ struct Spread {
 impl Spread {
     fn multiplier(&self, one: &LogEigenvalue) -> Multiplier {
         let arg = one.arg.abs();
-        if !(self.ln_abs < LOST) {
+        if self.ln_abs.is_nan() || self.ln_abs >= LOST {
             return Multiplier {
                 ln_abs: Uncertain::new(self.bound + TANGENT.ln(), 0.0),
                 angle_over_pi: 0.0,
