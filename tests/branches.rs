@@ -1,7 +1,7 @@
 //! `branch` and `locus` as a user meets them: reference points in the output, formats, resumption, refusals.
 
 use crate::command;
-use command::{csv, folder, number, object, run, twinslip};
+use command::{csv, folder, number, object, refused_in_one_line as refused, run, twinslip};
 use serde_json::Value;
 #[cfg(unix)]
 use std::{
@@ -369,19 +369,6 @@ fn points_are_bounded() {
         "locus pitchfork --max-points 0",
         "max-points is 0, but must be at least 1",
     );
-}
-
-/// Exit code 2, nothing on standard output, and one sentence.
-fn refused(arguments: &str, sentence: &str) {
-    let ended = twinslip(arguments);
-    assert_eq!(ended.code, 2, "{arguments}: {}", ended.err);
-    assert_eq!(ended.out, "", "{arguments}");
-    assert!(
-        ended.err.starts_with("error: ") && ended.err.contains(sentence),
-        "{arguments}: {}",
-        ended.err
-    );
-    assert_eq!(ended.err.lines().count(), 1, "{arguments}: {}", ended.err);
 }
 
 #[test]

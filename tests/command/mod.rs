@@ -1,9 +1,16 @@
 //! Runs the program as a user does.
 #![allow(dead_code)]
 
+#[cfg(unix)]
+pub mod durable;
+pub mod sweeps;
+
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
+
+/// A run of a moment.
+pub const RUN: &str = "integrate --driving 0.12 --stiffness 0.14 --until 10";
 
 /// How a run of the program ended.
 pub struct Ended {
@@ -42,6 +49,27 @@ pub fn object(arguments: &str) -> Value {
     let ended = twinslip(&format!("{arguments} --format json -q"));
     assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
     serde_json::from_str(&ended.out).expect("JSON")
+}
+
+/// Exit code 2, nothing on standard output, and the sentence.
+#[track_caller]
+pub fn refused(arguments: &str, sentence: &str) -> Ended {
+    let ended = twinslip(arguments);
+    assert_eq!(ended.code, 2, "{arguments}: {}", ended.err);
+    assert_eq!(ended.out, "", "{arguments}");
+    assert!(
+        ended.err.starts_with("error: ") && ended.err.contains(sentence),
+        "{arguments}: {}",
+        ended.err
+    );
+    ended
+}
+
+/// Refused with the sentence and no usage below it.
+#[track_caller]
+pub fn refused_in_one_line(arguments: &str, sentence: &str) {
+    let Ended { err, .. } = refused(arguments, sentence);
+    assert_eq!(err.lines().count(), 1, "{arguments}: {err}");
 }
 
 /// The rows of a CSV as texts, header first, without remarks.

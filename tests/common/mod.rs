@@ -4,6 +4,7 @@ pub mod heard;
 pub mod lorenz;
 pub mod pages;
 pub mod returns;
+pub mod sections;
 pub mod stiff_classics;
 pub mod trajectories;
 

@@ -1,0 +1,198 @@
+//! What the program says of results and of itself: tables, messages, version, completions, manual, help.
+
+use crate::command;
+use command::{folder, refused, run, twinslip};
+use std::process::Command;
+use twinslip::output::{Cell, RowWriter, TableRows};
+
+const COMMANDS: [&str; 14] = [
+    "law",
+    "integrate",
+    "equilibria",
+    "orbit",
+    "section",
+    "branch",
+    "locus",
+    "sweep",
+    "run",
+    "merge",
+    "reproduce",
+    "figure",
+    "completions",
+    "man",
+];
+
+/// The first columns and the last one; which are missing can be asked.
+#[test]
+fn tables_keep_to_the_width_of_the_terminal() {
+    let names = [
+        "symmetry",
+        "stress",
+        "state_1",
+        "a_name_that_is_longer",
+        "verdict",
+    ];
+    let names = names.map(str::to_owned);
+    let units = ["", "a sigma", "", "L", ""].map(str::to_owned);
+    let cells: [Cell; 5] = [
+        "symmetric".into(),
+        9.945522.into(),
+        0.5.into(),
+        1e-30.into(),
+        "unstable".into(),
+    ];
+    let made = |width: usize| {
+        let mut text = Vec::new();
+        let mut table = TableRows::within(width, &mut text, &names, &units).expect("a table");
+        table.row(&cells).expect("a row");
+        let hidden = table.hidden().to_vec();
+        (String::from_utf8(text).expect("UTF-8"), hidden)
+    };
+    let (whole, hidden) = made(usize::MAX);
+    assert!(hidden.is_empty() && whole.lines().count() == 3, "{whole}");
+    for width in [20, 30, 46, 62, 84, 85, 86, 200] {
+        let (text, hidden) = made(width);
+        let widest = text.lines().map(str::len).max().expect("lines");
+        // Two columns there are always.
+        assert!(widest <= width.max(30), "{width}: {text}");
+        assert!(
+            text.contains("symmetry") && text.contains("unstable"),
+            "{text}"
+        );
+        for name in &names {
+            assert_ne!(
+                text.contains(name),
+                hidden.contains(name),
+                "{width}: {name}"
+            );
+        }
+        assert_eq!(hidden.is_empty(), width >= 85, "{width}: {hidden:?}");
+    }
+}
+
+#[test]
+fn messages_write_numbers_as_people_do() {
+    let ended = twinslip("integrate --driving 10 --stiffness 0.14 --until 200 -o -");
+    let (count, _) = ended.err.split_once(" steps").expect("steps");
+    let (thousands, rest) = count.split_once(',').expect("more than a thousand steps");
+    assert!(thousands.len() <= 3 && rest.len() == 3, "{}", ended.err);
+    let (_, time) = ended.err.split_once("Jacobians, ").expect("a time");
+    assert!(time.trim_end().ends_with('s'), "{}", ended.err);
+    // Two digits of an uncertainty, and one sign for it.
+    let law = twinslip("law --points 2 --format csv");
+    let remark = law
+        .out
+        .lines()
+        .find(|line| line.contains("minimum of stress"));
+    let remark = remark.expect("a remark");
+    assert!(
+        remark.contains("405.1126615400") && remark.contains(" ± ") && !remark.contains("+-"),
+        "{remark}"
+    );
+    for part in remark.split(" ± ").skip(1) {
+        let digits = part.split(['e', ',']).next().expect("digits");
+        assert_eq!(digits.len(), "5.8".len(), "{remark}");
+    }
+}
+
+#[test]
+fn version_says_what_the_program_computes_with() {
+    let long = run(&["--version"]);
+    assert_eq!(long.code, 0);
+    let version = env!("CARGO_PKG_VERSION");
+    assert!(
+        long.out.starts_with(&format!("twinslip {version}\n")),
+        "{}",
+        long.out
+    );
+    assert!(long.out.contains("\nSUNDIALS "), "{}", long.out);
+    assert_eq!(run(&["-V"]).out, format!("twinslip {version}\n"));
+    let held = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+        .arg("--version")
+        .env("TWINSLIP_VECTORS", "none")
+        .output()
+        .expect("the program starts");
+    let held = String::from_utf8_lossy(&held.stdout).into_owned();
+    assert!(held.contains("\nvector instructions none ("), "{held}");
+}
+
+#[test]
+fn shells_complete_commands_options_and_names() {
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let ended = run(&["completions", shell]);
+        assert_eq!((ended.code, ended.err.as_str()), (0, ""), "{shell}");
+        for word in COMMANDS {
+            assert!(ended.out.contains(word), "{shell}: {word}");
+        }
+        assert!(ended.out.contains("residual-strength"), "{shell}");
+    }
+    for shell in ["bash", "zsh", "fish"] {
+        let script = run(&["completions", shell]).out;
+        for name in ["dieterich-ruina", "taylor", "asymmetric"] {
+            assert!(script.contains(name), "{shell}: {name}");
+        }
+        let solvers = cfg!(feature = "sundials");
+        assert!(script.contains("cvode-bdf") || !solvers, "{shell}");
+        // fish completes the names of options alone.
+        let words = script.contains("orbit-pitchfork");
+        assert_eq!(words, shell != "fish", "{shell}");
+    }
+    assert_eq!(run(&["completions", "tcsh"]).code, 2);
+}
+
+#[test]
+fn every_command_has_a_manual_page() {
+    let place = folder("man").join("new");
+    let ended = run(&["man", "--out", place.to_str().expect("UTF-8")]);
+    assert_eq!((ended.code, ended.err.as_str()), (0, ""));
+    let read = |name: String| std::fs::read_to_string(place.join(name)).expect("a page");
+    assert!(read("twinslip.1".into()).contains("Exit status"));
+    for command in COMMANDS {
+        let page = read(format!("twinslip-{command}.1"));
+        assert!(page.starts_with(".ie") || page.contains(".TH"), "{command}");
+    }
+    assert!(read("twinslip-integrate.1".into()).contains("Relative local error tolerance"));
+    let file = folder("man-file").join("file");
+    std::fs::write(&file, "").expect("written");
+    refused(&format!("man --out {}", file.display()), "cannot write");
+}
+
+#[test]
+fn help_shows_an_example_that_runs() {
+    for command in [
+        "law",
+        "integrate",
+        "equilibria",
+        "branch",
+        "locus",
+        "run",
+        "man",
+    ] {
+        let help = twinslip(&format!("{command} --help"));
+        assert_eq!(help.code, 0);
+        let (_, example) = help.out.split_once("Example").expect("an example");
+        assert!(
+            example.contains(&format!("twinslip {command} ")),
+            "{example}"
+        );
+        for line in example
+            .lines()
+            .filter_map(|line| line.trim().strip_prefix("twinslip "))
+        {
+            let place = folder(&format!("help-{command}"));
+            let status = Command::new(env!("CARGO_BIN_EXE_twinslip"))
+                .args(
+                    line.replace(
+                        "scenes/",
+                        &format!("{}/scenes/", env!("CARGO_MANIFEST_DIR")),
+                    )
+                    .split(' '),
+                )
+                .current_dir(place)
+                .output()
+                .expect("the program starts")
+                .status;
+            assert!(status.success(), "{line}");
+        }
+    }
+}
