@@ -6,6 +6,8 @@
 mod batch;
 pub mod classics;
 mod difference_chart;
+#[cfg(target_arch = "x86_64")]
+mod lanes;
 mod logarithmic;
 pub mod normal_form;
 mod response;

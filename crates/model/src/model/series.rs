@@ -53,6 +53,7 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 }
 
+#[cfg(target_arch = "x86_64")]
 type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
 type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
 

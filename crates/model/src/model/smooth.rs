@@ -135,18 +135,18 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_> {
-        if !self.is_small() {
-            return self.recorded().tangent(parameters);
-        }
-        // Those in the parameters fill lanes that there are.
-        let (equations, parameters) = (self.equations, self.parameters);
         #[cfg(target_arch = "x86_64")]
-        if let Some(simd) = crate::series::avx2() {
-            let gradient = Both([Four::new(simd, [0.0; 4]); 2]);
-            return Box::new(Variational::new(equations, parameters, gradient));
+        let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
+        #[cfg(not(target_arch = "x86_64"))]
+        let four = Some(Both([Both([0.0; 2]); 2]));
+        match four {
+            // Derivatives in the parameters fill lanes that there are.
+            Some(four) if self.is_small() => {
+                let gradient = Both([four; 2]);
+                Box::new(Variational::new(self.equations, self.parameters, gradient))
+            }
+            _ => self.recorded().tangent(parameters),
         }
-        let gradient = Both([Both([Both([0.0; 2]); 2]); 2]);
-        Box::new(Variational::new(equations, parameters, gradient))
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {

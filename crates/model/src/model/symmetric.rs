@@ -85,12 +85,13 @@ impl<L: Law> Analytic<2> for Symmetric<L> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
-        tangent(
+        let compiled = tangent(
             self.equivalent.law.core(),
             self.equivalent.as_pair(),
             (1.0, 1.0),
             parameters,
-        )
+        );
+        compiled.unwrap_or_else(|| self.recorded().tangent(parameters))
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {

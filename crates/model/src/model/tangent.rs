@@ -66,9 +66,11 @@ trait Shell: Copy {
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output;
 }
 
+#[cfg(not(target_arch = "x86_64"))]
 #[derive(Clone, Copy)]
 struct AnyProcessor;
 
+#[cfg(not(target_arch = "x86_64"))]
 impl Shell for AnyProcessor {
     #[inline(always)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
@@ -103,35 +105,31 @@ struct TangentSolution<S, E, X, L> {
     start: [f64; 2],
 }
 
-/// A solution with its derivatives, in the best arithmetic of this processor; without those in parameters it takes less.
+/// A solution with its derivatives, compiled for this processor; without those in parameters it takes less. `None` on an x86-64
+/// without AVX2, of which there are few: each kernel takes minutes to compile, and one for each processor is enough.
 pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     law: L,
     loading: Loading,
     weights: (f64, f64),
     parameters: bool,
-) -> Box<dyn Tangent<N> + 'a> {
+) -> Option<Box<dyn Tangent<N> + 'a>> {
     #[cfg(target_arch = "x86_64")]
-    if let Some(simd) = crate::series::avx2() {
-        let pair = Pair::new(simd, [0.0; 2]);
-        let four = Four::new(simd, [0.0; 4]);
-        return if parameters {
-            let any = Both([four; 2]);
-            Box::new(TangentSolution::new(simd, law, loading, weights, pair, any))
-        } else {
-            Box::new(TangentSolution::new(
-                simd, law, loading, weights, pair, four,
-            ))
-        };
-    }
-    let (pair, any) = (Both([0.0; 2]), Both([Both([Both([0.0; 2]); 2]); 2]));
-    Box::new(TangentSolution::new(
-        AnyProcessor,
-        law,
-        loading,
-        weights,
-        pair,
-        any,
-    ))
+    let (shell, pair, four) = {
+        let simd = crate::series::avx2()?;
+        (simd, Pair::new(simd, [0.0; 2]), Four::new(simd, [0.0; 4]))
+    };
+    #[cfg(not(target_arch = "x86_64"))]
+    let (shell, pair, four) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
+    let eight = Both([four; 2]);
+    Some(if parameters {
+        Box::new(TangentSolution::new(
+            shell, law, loading, weights, pair, eight,
+        ))
+    } else {
+        Box::new(TangentSolution::new(
+            shell, law, loading, weights, pair, four,
+        ))
+    })
 }
 
 impl<S: Shell, E: Spread<X>, X: Element, L: Law> TangentSolution<S, E, X, L> {

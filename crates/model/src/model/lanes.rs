@@ -1,0 +1,217 @@
+//! The vector registers of an x86-64 processor with a trajectory of two interfaces in every lane.
+
+use super::batch::{BatchSolution, MAX_LANES};
+use super::series::logarithms;
+use super::{Loading, stress_rate};
+use crate::friction::Law;
+use crate::series::{
+    Accuracy, Eight, Element, Expansion, Formula, Four, Order, Rates, Series, Stepper, WATCHED,
+    value,
+};
+
+/// Both interfaces of a trajectory in every lane of E, variables (tau, psi_1, psi_2).
+#[derive(Debug, Clone, Copy)]
+struct Trajectories<E, L> {
+    law: L,
+    driving: E,
+    stiffness: E,
+}
+
+impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
+    // |v| has a kink where v = 0, which is where tau = 0.
+    const KINK: Option<usize> = Some(0);
+
+    #[inline(always)]
+    fn rates<'t, O: Order>(&self, [tau, p, q]: [Series<'t, E, O>; 3]) -> Rates<'t, E, O, 3> {
+        let activation = self.law.activation(tau);
+        let first = self.law.slip_rate(activation, p);
+        let second = self.law.slip_rate(activation, q);
+        let loading = (value(self.driving), value(self.stiffness));
+        let mut watched = [first; WATCHED];
+        watched[1] = second;
+        Rates {
+            variables: [
+                stress_rate(loading, first + second),
+                self.law.evolution(first, p),
+                self.law.evolution(second, q),
+            ],
+            watched,
+        }
+    }
+
+    #[inline(always)]
+    fn units(&self, [tau, p, q]: &[E; 3], (rtol, atol): (f64, f64)) -> [E; 3] {
+        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+        let of_psi = tau.like(atol + rtol);
+        [of_tau, *p * of_psi, *q * of_psi]
+    }
+
+    #[inline(always)]
+    fn allows(&self, [tau, p, q]: &[E; 3]) -> E {
+        // psi_1 where psi_2 allows it, and no number where tau is not finite.
+        let zero = tau.like(0.0);
+        tau.mul_add(zero, *q)
+            .if_positive(tau.mul_add(zero, *p), tau.like(-1.0))
+    }
+}
+
+/// An element whose lanes are trajectories.
+pub(super) trait Wide: Element {
+    /// These numbers, as many as there are lanes.
+    fn filled(self, x: &[f64; MAX_LANES]) -> Self;
+    /// The numbers in the lanes, and zeros.
+    fn spilled(self) -> [f64; MAX_LANES];
+}
+
+macro_rules! wide {
+    ($name:ident $n:literal) => {
+        impl Wide for $name {
+            #[inline(always)]
+            fn filled(self, x: &[f64; MAX_LANES]) -> Self {
+                let mut lanes = [0.0; $n];
+                lanes.copy_from_slice(&x[..$n]);
+                self.like_lanes(lanes)
+            }
+            #[inline(always)]
+            fn spilled(self) -> [f64; MAX_LANES] {
+                let mut x = [0.0; MAX_LANES];
+                x[..$n].copy_from_slice(&self.lanes());
+                x
+            }
+        }
+    };
+}
+wide!(Four 4);
+wide!(Eight 8);
+
+pub(super) struct Lanes<S, E, L> {
+    simd: S,
+    stepper: Stepper<E, Trajectories<E, L>, 3>,
+    /// What begins with the next step: the lanes are negative here.
+    new: [f64; MAX_LANES],
+    starts: [[f64; MAX_LANES]; 3],
+    driving: [f64; MAX_LANES],
+    stiffness: [f64; MAX_LANES],
+    reaches: [f64; MAX_LANES],
+}
+
+impl<S, E: Wide, L: Law> Lanes<S, E, L> {
+    pub fn new(simd: S, law: L, zero: E) -> Self {
+        let formula = Trajectories {
+            law,
+            driving: zero,
+            stiffness: zero,
+        };
+        let mut lanes = Lanes {
+            simd,
+            stepper: Stepper::new(formula, zero),
+            new: [1.0; MAX_LANES],
+            starts: [[1.0; MAX_LANES]; 3],
+            driving: [0.0; MAX_LANES],
+            stiffness: [0.0; MAX_LANES],
+            reaches: [f64::INFINITY; MAX_LANES],
+        };
+        (0..E::LANES).for_each(|lane| lanes.seat(lane, (0.0, 0.0), [1.0; 3]));
+        lanes
+    }
+
+    fn seat(&mut self, lane: usize, (driving, stiffness): (f64, f64), x: [f64; 3]) {
+        self.new[lane] = -1.0;
+        self.driving[lane] = driving;
+        self.stiffness[lane] = stiffness;
+        for (starts, x) in self.starts.iter_mut().zip(x) {
+            starts[lane] = x;
+        }
+    }
+}
+
+/// A step, to be compiled for the processor's vector instructions.
+struct Advance<'a, S, E, L> {
+    lanes: &'a mut Lanes<S, E, L>,
+    accuracy: &'a Accuracy,
+    limits: &'a [f64; MAX_LANES],
+}
+
+impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
+    type Output = [f64; MAX_LANES];
+    #[inline(always)]
+    fn call(self) -> [f64; MAX_LANES] {
+        let lanes = self.lanes;
+        let any = lanes.stepper.state()[0];
+        let new = any.filled(&lanes.new);
+        if !new.none_negative() {
+            let formula = lanes.stepper.formula_mut();
+            formula.driving = any.filled(&lanes.driving);
+            formula.stiffness = any.filled(&lanes.stiffness);
+            let [tau, p, q] = &lanes.starts;
+            let starts = [any.filled(tau), any.filled(p), any.filled(q)];
+            lanes.stepper.start_where(new, starts);
+            lanes.new = [1.0; MAX_LANES];
+        }
+        let limit = any.filled(self.limits);
+        let steps = lanes.stepper.advance(self.accuracy, limit);
+        lanes.reaches = lanes.stepper.reach(0, self.accuracy.order, steps).spilled();
+        steps.spilled()
+    }
+}
+
+macro_rules! convoys {
+    ($($token:ident $element:ident)*) => { $(
+        impl<L: Law> BatchSolution for Lanes<pulp::x86::$token, $element, L> {
+            fn lanes(&self) -> usize {
+                $element::LANES
+            }
+
+            fn start(&mut self, lane: usize, loading: &Loading, y: &[f64; 3]) {
+                let x = [y[0], y[1].exp(), y[2].exp()];
+                self.seat(lane, (loading.driving, loading.stiffness), x);
+            }
+
+            fn idle(&mut self, lane: usize) {
+                self.seat(lane, (0.0, 0.0), [1.0; 3]);
+            }
+
+            fn advance(
+                &mut self,
+                accuracy: &Accuracy,
+                limits: &[f64; MAX_LANES],
+            ) -> [f64; MAX_LANES] {
+                let simd = self.simd;
+                simd.vectorize(Advance {
+                    lanes: self,
+                    accuracy,
+                    limits,
+                })
+            }
+
+            fn state(&self, lane: usize) -> [f64; 3] {
+                let [tau, p, q] = self.stepper.state().map(|x| x.lanes()[lane]);
+                [tau, p.ln(), q.ln()]
+            }
+
+            fn reaches(&self) -> &[f64; MAX_LANES] {
+                &self.reaches
+            }
+
+            fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>) {
+                into.order = order;
+                into.unit = self.stepper.unit().lanes()[lane];
+                into.chart = logarithms;
+                for (i, variable) in into.variables.iter_mut().enumerate() {
+                    let series = &self.stepper.series(i)[..=order];
+                    for (x, all) in variable.iter_mut().zip(series) {
+                        *x = all.lanes()[lane];
+                    }
+                }
+                for (i, rate) in into.slip_rates.iter_mut().enumerate() {
+                    let series = self.stepper.watched_series(i).unwrap_or_default();
+                    for (x, all) in rate.iter_mut().zip(series).take(order) {
+                        *x = all.lanes()[lane];
+                    }
+                }
+            }
+        }
+    )* };
+}
+convoys!(V3 Four V4 Eight);
