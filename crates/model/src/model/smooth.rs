@@ -5,7 +5,8 @@ use crate::number::Jet;
 #[cfg(target_arch = "x86_64")]
 use crate::series::Four;
 use crate::series::{
-    Both, Equations, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap, Variational, is_small,
+    Both, COMPILED, Equations, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap, Variational,
+    is_small,
 };
 
 /// Equations at given parameters.
@@ -123,11 +124,10 @@ impl<S: Equations<N>, const N: usize> Smooth<S, N> {
 
 impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        if self.is_small() {
-            Box::new(Plain::new(self.equations, self.parameters))
-        } else {
-            self.recorded().solution()
+        if const { N <= COMPILED } && self.is_small() {
+            return Box::new(Plain::new(self.equations, self.parameters));
         }
+        self.recorded().solution()
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {
@@ -135,18 +135,18 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
     }
 
     fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_> {
-        #[cfg(target_arch = "x86_64")]
-        let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
-        #[cfg(not(target_arch = "x86_64"))]
-        let four = Some(Both([Both([0.0; 2]); 2]));
-        match four {
-            // Derivatives in the parameters fill lanes that there are.
-            Some(four) if self.is_small() => {
+        if const { N <= COMPILED } && self.is_small() {
+            #[cfg(target_arch = "x86_64")]
+            let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
+            #[cfg(not(target_arch = "x86_64"))]
+            let four = Some(Both([Both([0.0; 2]); 2]));
+            if let Some(four) = four {
+                // Derivatives in the parameters fill lanes that there are.
                 let gradient = Both([four; 2]);
-                Box::new(Variational::new(self.equations, self.parameters, gradient))
+                return Box::new(Variational::new(self.equations, self.parameters, gradient));
             }
-            _ => self.recorded().tangent(parameters),
         }
+        self.recorded().tangent(parameters)
     }
 
     fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {

@@ -30,15 +30,20 @@ pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
     }
 }
 
+/// So many equations have compiled kernels, if they are short; for more these are not even compiled.
+pub(crate) const COMPILED: usize = 3;
+
 /// Whether the formula is small enough for code that is compiled for it: a few variables, and rows that there is room for.
 pub(crate) fn is_small<S: Equations<N>, const N: usize>(equations: &S, p: [f64; 2]) -> bool {
-    const MOST: usize = 3;
+    if const { N > COMPILED } {
+        return false;
+    }
     let memory = [const { Cell::new(1.0) }; ROWS * ROOM];
     let tape = Tape::new(&memory, Counting, N);
     let x = std::array::from_fn(|i| tape.variable(i));
     equations.rates(x, p.map(value));
     // What the outputs may take.
-    N <= MOST && tape.rows() + N <= ROWS
+    tape.rows() + N <= ROWS
 }
 
 /// The equations as a formula.

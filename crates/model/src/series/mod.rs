@@ -42,7 +42,7 @@ use crate::number::polynomial::evaluate;
 pub use columns::{JacobianSeries, Spread, VariationalEquations};
 pub use cubic::Jet3;
 pub use element::Element;
-pub(crate) use equations::is_small;
+pub(crate) use equations::{COMPILED, is_small};
 pub use equations::{Equations, Plain};
 pub use event::{Passage, Section, Zeros};
 pub use formula::{Formula, Rates, WATCHED};
