@@ -25,8 +25,10 @@ pub struct LogEigenvalue {
 
 /// QR steps for an eigenvalue, at most.
 const STEPS: usize = 60;
-/// The first steps of a block have no shift: they put what grows above what decays. So has every one of so many, against cycles.
-const UNSHIFTED: (usize, usize) = (2, 10);
+/// The first steps of a block have no shift: they put what grows above what decays.
+const UNSHIFTED: usize = 2;
+/// Every one of so many has a shift of no meaning, against cycles: that of a permutation is itself.
+const EXCEPTIONAL: usize = 10;
 
 /// The eigenvalues of A_{p-1} ... A_0, all of one size, the largest modulus first. `None` for no factors, for ones that are not
 /// finite, and where the QR steps do not converge.
@@ -117,10 +119,16 @@ impl Cycle {
             if steps == STEPS {
                 return None;
             }
-            let shifted = steps >= UNSHIFTED.0 && steps % UNSHIFTED.1 != 0;
-            let shift = if shifted { self.shift(low, high) } else { None };
-            self.step(low, high, shift.unwrap_or(C::ZERO));
             steps += 1;
+            let shift = if steps % EXCEPTIONAL == 0 {
+                let below = self.hessenberg[(low + 1, low)].norm();
+                Some(self.hessenberg[(low, low)] + C::new(0.75, 0.4375) * below)
+            } else if steps > UNSHIFTED {
+                self.shift(low, high)
+            } else {
+                None
+            };
+            self.step(low, high, shift.unwrap_or(C::ZERO));
         }
         Some(())
     }
@@ -213,6 +221,9 @@ impl Cycle {
 /// The rotation that takes the second component to zero; `None` where it is.
 fn cancelling(pair: [C; 2]) -> Option<GivensRotation<C>> {
     let pair = Vector2::from(pair);
+    if pair[1] == C::ZERO {
+        return None;
+    }
     // Squares of tiny numbers would be zero.
     let scaled = pair / C::from(pair.camax());
     GivensRotation::cancel_y(&scaled).map(|(rotation, _)| rotation)
