@@ -57,15 +57,27 @@ struct Cycle {
 impl Cycle {
     fn new(last: &DMatrix<f64>, others: &[DMatrix<f64>]) -> Self {
         let size = last.nrows();
-        let mut basis = DMatrix::<f64>::identity(size, size);
+        let mut basis = DMatrix::<C>::identity(size, size);
         let mut triangular = Vec::with_capacity(others.len());
         for factor in others {
-            let (q, r) = (factor * basis).qr().unpack();
-            triangular.push(r.map(C::from));
-            basis = q;
+            let mut r = factor.map(C::from) * basis;
+            basis = DMatrix::identity(size, size);
+            // By rotations: reflections would mix rows of very unlike sizes, and lose those whose squares are zero.
+            for column in 0..size {
+                for row in (column + 1..size).rev() {
+                    let pair = [r[(row - 1, column)], r[(row, column)]];
+                    if let Some(rotation) = cancelling(pair) {
+                        rotation.rotate(&mut r.fixed_rows_mut::<2>(row - 1));
+                        r[(row, column)] = C::ZERO;
+                        let mut columns = basis.fixed_columns_mut::<2>(row - 1);
+                        rotation.inverse().rotate_rows(&mut columns);
+                    }
+                }
+            }
+            triangular.push(r);
         }
         let mut cycle = Cycle {
-            hessenberg: (last * basis).map(C::from),
+            hessenberg: last.map(C::from) * basis,
             triangular,
         };
         for column in 0..size.saturating_sub(2) {
