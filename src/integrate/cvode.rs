@@ -34,12 +34,12 @@ fn clock(t: (f64, f64)) -> (f64, f64) {
 /// use twinslip::friction::{AnyLaw, Parameters};
 /// use twinslip::integrate::{CvodeIntegrator, Integrator, MAX_STEPS, Tolerances};
 /// use twinslip::model::{Loading, two_interfaces};
-/// use twinslip::sundials::Method;
+/// use twinslip::sundials::MultistepMethod;
 /// use twinslip::field::State;
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::named("spinodal", Parameters::heslot_1994())?;
 /// let field = two_interfaces(law, Loading::new(1000.0, 0.14)?);
-/// let mut cvode = CvodeIntegrator::new(Method::Bdf, Tolerances::equal(1e-8)?, MAX_STEPS)?;
+/// let mut cvode = CvodeIntegrator::new(MultistepMethod::Bdf, Tolerances::equal(1e-8)?, MAX_STEPS)?;
 /// let y0 = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
 /// let y = cvode.flow(&*field, (0.0, 200.0), &y0, None)?;
 /// assert!((y[0] - 8.78022825).abs() < 1e-6);

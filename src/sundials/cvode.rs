@@ -105,7 +105,7 @@ impl Drop for CvodeMemory {
 /// ```
 /// use twinslip::field::{Jacobian, State, VectorField};
 /// use twinslip::integrate::Tolerances;
-/// use twinslip::sundials::{Cvode, Method, Mode, Operations, Problem, Reason};
+/// use twinslip::sundials::{Cvode, Mode, MultistepMethod, Operations, Problem, Reason};
 /// struct Decay;
 /// impl VectorField<1> for Decay {
 ///     fn f(&self, y: &State<1>) -> State<1> { -y }
@@ -113,7 +113,7 @@ impl Drop for CvodeMemory {
 ///     fn second_derivative(&self, _: &State<1>, _: &State<1>, _: &State<1>) -> State<1> { State::zeros() }
 /// }
 /// # fn main() -> twinslip::Result<()> {
-/// let mut cvode = Cvode::<1>::new(Method::Bdf, Operations::Fixed)?;
+/// let mut cvode = Cvode::<1>::new(MultistepMethod::Bdf, Operations::Fixed)?;
 /// cvode.set_tolerances(Tolerances::equal(1e-10)?)?;
 /// cvode.start(0.0, &State::<1>::new(1.0))?;
 /// let arrival = cvode.advance(&Problem::new(&Decay), 2.0, Mode::Normal)?;

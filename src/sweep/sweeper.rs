@@ -20,9 +20,9 @@ const APART: f64 = 1e-4;
 /// ```
 /// use twinslip::friction::{AnyLaw, Parameters};
 /// use twinslip::section::Regime;
-/// use twinslip::sweep::{Grid, Range, Settings, Sweeper};
+/// use twinslip::sweep::{Grid, Range, Sweeper, SweepSettings};
 /// # fn main() -> twinslip::Result<()> {
-/// let settings = Settings {
+/// let settings = SweepSettings {
 ///     law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
 ///     grid: Grid::Plane {
 ///         driving: Range::parse("driving", "0.05:0.07:2")?,
