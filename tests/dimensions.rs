@@ -26,6 +26,61 @@ impl Equations<4> for Coupled {
     }
 }
 
+/// Three units that turn, in the parameters (a, k), with every function of angles.
+#[derive(Debug, Clone, Copy)]
+struct Turning;
+
+impl Turning {
+    fn rate<T: Real>(x: T, y: T, [a, k]: [T; 2]) -> T {
+        let pull = k * (y - x);
+        a - x.sin() * 0.7 + pull.tanh() + (x * y).atan() * x.cos() - (x * x + 2.0).log10()
+    }
+}
+
+impl Equations<3> for Turning {
+    #[inline(always)]
+    fn rates<T: Real>(&self, [x, y, z]: [T; 3], p: [T; 2]) -> [T; 3] {
+        [
+            Self::rate(x, y, p),
+            Self::rate(y, z, p),
+            Self::rate(z, x, p),
+        ]
+    }
+}
+
+impl Equations<4> for Turning {
+    fn rates<T: Real>(&self, [x, y, z, w]: [T; 4], p: [T; 2]) -> [T; 4] {
+        [
+            Self::rate(x, y, p),
+            Self::rate(y, z, p),
+            Self::rate(z, w, p),
+            Self::rate(w, x, p),
+        ]
+    }
+}
+
+#[test]
+fn functions_of_angles_are_right_in_three_and_in_four_equations() {
+    let parameters = [1.3, 0.4];
+    let equations = Turning;
+    check::<_, 3>(
+        Smooth {
+            equations,
+            parameters,
+        },
+        [0.3, -1.2, 2.0],
+        3.0,
+    );
+    check::<_, 4>(
+        Smooth {
+            equations,
+            parameters,
+        },
+        [0.3, -1.2, 2.0, 0.8],
+        3.0,
+    );
+}
+
 /// A ring of bistable units, x_i' = a x_i - x_i^3 + k (x_(i+1) - 2 x_i + x_(i-1)) + e^(-x_i^2), in the parameters (a, k).
 #[derive(Debug, Clone, Copy)]
 struct Ring<const N: usize>;

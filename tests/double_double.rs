@@ -44,7 +44,7 @@ fn pair(at: &[f64]) -> DoubleDouble {
 #[test]
 fn functions_have_thirty_digits_over_their_domains() {
     type Function = fn(DoubleDouble) -> DoubleDouble;
-    let functions: [(&str, Function, f64); 8] = [
+    let functions: [(&str, Function, f64); 13] = [
         ("exp", Real::exp, 3e-31),
         ("exp_m1", Real::exp_m1, 3e-31),
         ("ln", Real::ln, 3e-31),
@@ -53,6 +53,11 @@ fn functions_have_thirty_digits_over_their_domains() {
         ("sinh", Real::sinh, 5e-31),
         ("cosh", Real::cosh, 5e-31),
         ("asinh", Real::asinh, 3e-31),
+        ("sin", Real::sin, 3e-31),
+        ("cos", Real::cos, 3e-31),
+        ("atan", Real::atan, 3e-31),
+        ("tanh", Real::tanh, 5e-31),
+        ("log10", Real::log10, 5e-31),
     ];
     for (name, f, bound) in functions {
         let off = worst(table(name), 2, |at| f(pair(at)));
@@ -78,7 +83,16 @@ fn values_that_are_exact_are_given_exactly() {
     let zero = DoubleDouble::ZERO;
     let one = DoubleDouble::ONE;
     assert!(zero.exp() == one && zero.cosh() == one && one.ln() == zero && zero.ln_1p() == zero);
-    for f in [Real::exp_m1, Real::sinh, Real::asinh, Real::sqrt] {
+    assert!(zero.cos() == one && one.log10() == zero);
+    for f in [
+        Real::exp_m1,
+        Real::sinh,
+        Real::asinh,
+        Real::sqrt,
+        Real::sin,
+        Real::tanh,
+        Real::atan,
+    ] {
         assert_eq!(f(zero), zero);
     }
     // the low part of an argument counts, however close to the zero of the function
@@ -124,6 +138,13 @@ fn the_ends_of_the_range_are_infinite_zero_or_not_numbers() {
     is(of(-720.0).sinh(), -inf);
     is(of(-inf).cosh(), inf);
     is(of(-inf).asinh(), -inf);
+    is(of(-inf).tanh(), -1.0);
+    is(of(1e300).tanh(), 1.0);
+    is(of(inf).sin(), nan);
+    is(of(-inf).cos(), nan);
+    is(of(0.0).log10(), -inf);
+    is(of(inf).log10(), inf);
+    assert_eq!(of(-inf).atan(), -(of(1.0).atan() * 2.0));
     is(of(0.0).powf(1.5), 0.0);
     is(of(0.0).powf(-1.5), inf);
     is(of(-2.0).powf(1.5), nan);
@@ -152,6 +173,11 @@ fn the_ends_of_the_range_are_infinite_zero_or_not_numbers() {
         Real::sinh,
         Real::cosh,
         Real::asinh,
+        Real::sin,
+        Real::cos,
+        Real::atan,
+        Real::tanh,
+        Real::log10,
         Real::abs,
     ] {
         let value: DoubleDouble = f(of(nan));
@@ -237,6 +263,10 @@ proptest! {
         prop_assert_eq!((-a).sinh(), -a.sinh());
         prop_assert_eq!((-a).cosh(), a.cosh());
         prop_assert_eq!((-a).asinh(), -a.asinh());
+        prop_assert_eq!((-a).tanh(), -a.tanh());
+        prop_assert_eq!((-a).atan(), -a.atan());
+        prop_assert_eq!((-a).sin(), -a.sin());
+        prop_assert_eq!((-a).cos(), a.cos());
         prop_assert_eq!(a.partial_cmp(&b), (a - b).to_f64().partial_cmp(&0.0));
     }
 

@@ -9,7 +9,8 @@ use twinslip::number::{
 fn formula<T: Real>(x: T) -> T {
     let s = (x + 1.0).sqrt() * 0.5 + x.powf(1.4) / 3.0;
     let t = (x * 0.1).sinh() - (x * 0.2).cosh() + (x - 0.5).exp() * (-x).exp_m1();
-    (s.asinh() + x.ln_1p()) / (x.ln().abs() + 2.0) - t * 0.01
+    let u = x.sin() * x.cos() * 0.1 + (x * 0.5).tanh() - (x * 0.3).atan() + (x + 2.0).log10();
+    (s.asinh() + x.ln_1p()) / (x.ln().abs() + 2.0) - t * 0.01 + u * 0.1
 }
 
 /// Its derivative by jets.
@@ -94,6 +95,34 @@ proptest! {
         prop_assert!(bounds.lo() <= value && value <= bounds.hi());
         let point = formula(Interval::constant(x));
         prop_assert!(point.hi() - point.lo() < 1e-13, "{point:?}");
+    }
+
+    #[test]
+    fn waves_are_enclosed_over_intervals_of_any_width(lo in -20.0..20.0_f64, width in 0.0..8.0_f64) {
+        let x = Interval::new(lo, lo + width);
+        for (bounds, f) in [
+            (x.sin(), f64::sin as fn(f64) -> f64),
+            (x.cos(), f64::cos),
+            (x.tanh(), f64::tanh),
+            (x.atan(), f64::atan),
+        ] {
+            let values = (0..=1000).map(|i| f((lo + width * f64::from(i) / 1000.0).min(lo + width)));
+            let (least, largest) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+            prop_assert!(bounds.lo() <= least && largest <= bounds.hi());
+            prop_assert!(bounds.lo() >= least - 1e-4 && bounds.hi() <= largest + 1e-4, "{bounds:?}");
+        }
+    }
+
+    /// Slope and differences are far below the rounding of values that are nearly 1.
+    #[test]
+    fn saturated_hyperbolic_tangents_keep_their_digits(x in 0.0..300.0_f64, ln_gap in -300.0..0.0_f64) {
+        let e = |x: f64| (-2.0 * x).exp();
+        let slope = Jet::<f64, 1>::variable(-x, 0).tanh().gradient[0];
+        prop_assert!((slope / (4.0 * e(x) / (1.0 + e(x)).powi(2)) - 1.0).abs() < 1e-14);
+        let gap = ln_gap.exp();
+        let made = Difference::new(x + gap, x, gap).tanh().gap;
+        let exact = -2.0 * e(x) * (-2.0 * gap).exp_m1() / (1.0 + e(x)) / (1.0 + e(x + gap));
+        prop_assert!((made / exact - 1.0).abs() < 1e-12, "{made:e} {exact:e}");
     }
 
     #[test]

@@ -6,7 +6,7 @@ Run: python3 double_double.py > double_double.json
 """
 import json
 import random
-from mpmath import mp, mpf, asinh, cosh, exp, expm1, log, log1p, sinh, sqrt
+from mpmath import mp, mpf, asinh, atan, cos, cosh, exp, expm1, log, log10, log1p, sin, sinh, sqrt, tanh
 
 mp.dps = 120
 random.seed(1)
@@ -71,6 +71,16 @@ table = {
     "cosh": rows(cosh, exponential),
     "asinh": rows(asinh, signed(small + spread(0, 300, 10) + spread(-1, 2, 10))),
     "powf": powers,
+}
+# After the others, which keep their random arguments.
+turning = signed(small + [random.uniform(0, 10) for _ in range(20)] + spread(1, 8, 20)) + [
+    0.0] + [k * 1.5707963267948966 for k in (1, 2, 3, 4, 5, 1000, 1000001, 636619770)]
+table |= {
+    "sin": rows(sin, turning),
+    "cos": rows(cos, turning),
+    "atan": rows(atan, signed(small + spread(-1, 2, 20) + spread(0, 300, 15)) + [0.0, 1.0, 1e8, 1.1e8]),
+    "tanh": rows(tanh, signed(small + spread(-2, 2, 25)) + [0.0]),
+    "log10": rows(log10, logarithmic),
 }
 print("{")
 print(",\n".join(f'"{name}": ' + (json.dumps(data) if isinstance(data, str)

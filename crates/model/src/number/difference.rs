@@ -10,8 +10,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// `first`, `second` and `gap` = first - second.
 ///
 /// The addition theorems are left where values are so far apart, or of such signs, that subtraction does as well. Not so if
-/// they are ORDERED: where a formula takes logarithms and powers of numbers with first > second > 0 only, and magnitudes of
-/// two that have the same sign, the theorems serve at any distance, and the same operations are done whatever the numbers.
+/// they are ORDERED: where a formula takes logarithms and powers of numbers with first > second > 0 only, and magnitudes
+/// and inverse tangents of two that have the same sign, the theorems serve at any distance, and the same operations are done
+/// whatever the numbers.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Difference<T, const ORDERED: bool = false> {
     /// Value at the first point.
@@ -289,6 +290,49 @@ impl<T: Real, const ORDERED: bool> Real for Difference<T, ORDERED> {
             first: a.asinh(),
             second: b.asinh(),
             gap: argument.asinh(),
+        }
+    }
+    // sin a - sin b = 2 cos((a + b) / 2) sin((a - b) / 2), cos a - cos b = -2 sin((a + b) / 2) sin((a - b) / 2)
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (first, second) = (self.first.sin_cos(), self.second.sin_cos());
+        let (sin, cos) = ((self.first + self.second) * 0.5).sin_cos();
+        let half = (self.gap * 0.5).sin();
+        (
+            Difference {
+                first: first.0,
+                second: second.0,
+                gap: cos * half * 2.0,
+            },
+            Difference {
+                first: first.1,
+                second: second.1,
+                gap: sin * half * -2.0,
+            },
+        )
+    }
+    // tanh a - tanh b = sinh(a - b) / (cosh a cosh b)
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        if !ORDERED && self.gap.leading().abs() > 1.0 {
+            return self.direct(T::tanh);
+        }
+        Difference {
+            first: self.first.tanh(),
+            second: self.second.tanh(),
+            gap: self.gap.sinh() / self.first.cosh() / self.second.cosh(),
+        }
+    }
+    // atan a - atan b = atan((a - b) / (1 + a b)) for a b > -1
+    #[inline(always)]
+    fn atan(self) -> Self {
+        if self.far_apart() {
+            return self.direct(T::atan);
+        }
+        Difference {
+            first: self.first.atan(),
+            second: self.second.atan(),
+            gap: (self.gap / (self.first * self.second + 1.0)).atan(),
         }
     }
     #[inline(always)]

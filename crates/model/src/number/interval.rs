@@ -67,6 +67,36 @@ impl Interval {
         Interval { lo, hi }
     }
 
+    /// A wave of the mathematical library that is largest, 1, at so many turns and all turns after, and least half a turn later.
+    fn wave(self, g: impl Fn(f64) -> f64, crest: f64) -> Self {
+        /// So far from 0 the turns are not counted.
+        const FAR: f64 = 1e6;
+        /// What the count may be off by.
+        const UNSURE: f64 = 1e-9;
+        let turns = |x: f64| x / std::f64::consts::TAU;
+        if !(self.lo > -FAR && self.hi < FAR) {
+            return Interval { lo: -1.0, hi: 1.0 };
+        }
+        let meets = |at: f64| {
+            (turns(self.hi) - at + UNSURE).floor() >= (turns(self.lo) - at - UNSURE).ceil()
+        };
+        let (a, b) = (g(self.lo), g(self.hi));
+        let ends = Self::widened(a.min(b), a.max(b), LIBRARY_ULPS);
+        Interval {
+            lo: if meets(crest + 0.5) { -1.0 } else { ends.lo },
+            hi: if meets(crest) { 1.0 } else { ends.hi },
+        }
+        .within_one()
+    }
+
+    /// The part of it between -1 and 1.
+    fn within_one(self) -> Self {
+        Interval {
+            lo: self.lo.max(-1.0),
+            hi: self.hi.min(1.0),
+        }
+    }
+
     /// A non-decreasing function of the mathematical library.
     fn monotone(self, g: impl Fn(f64) -> f64) -> Self {
         Self::widened(g(self.lo), g(self.hi), LIBRARY_ULPS)
@@ -288,6 +318,18 @@ impl Real for Interval {
     }
     fn asinh(self) -> Self {
         self.monotone(<f64 as Real>::asinh)
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        (self.wave(f64::sin, 0.25), self.wave(f64::cos, 0.0))
+    }
+    fn tanh(self) -> Self {
+        self.monotone(f64::tanh).within_one()
+    }
+    fn atan(self) -> Self {
+        self.monotone(f64::atan)
+    }
+    fn log10(self) -> Self {
+        self.monotone(f64::log10)
     }
     fn abs(self) -> Self {
         if self.lo >= 0.0 {

@@ -223,6 +223,25 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         )
     }
     #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
+    }
+    #[inline(always)]
+    fn tanh(self) -> Self {
+        // 1 / cosh^2 with e = e^(-2|x|): neither overflows, nor cancels where tanh is nearly 1.
+        let e = (self.value.abs() * -2.0).exp();
+        let whole = e + 1.0;
+        self.chain(self.value.tanh(), e * 4.0 / (whole * whole))
+    }
+    #[inline(always)]
+    fn atan(self) -> Self {
+        self.chain(
+            self.value.atan(),
+            T::constant(1.0) / (self.value * self.value + 1.0),
+        )
+    }
+    #[inline(always)]
     fn abs(self) -> Self {
         self.chain(self.value.abs(), self.value.sign())
     }

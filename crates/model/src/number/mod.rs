@@ -65,6 +65,27 @@ pub trait Real:
     }
     /// inverse of the hyperbolic sine
     fn asinh(self) -> Self;
+    /// sine
+    #[inline(always)]
+    fn sin(self) -> Self {
+        self.sin_cos().0
+    }
+    /// cosine
+    #[inline(always)]
+    fn cos(self) -> Self {
+        self.sin_cos().1
+    }
+    /// sine and cosine, which share their work
+    fn sin_cos(self) -> (Self, Self);
+    /// hyperbolic tangent
+    fn tanh(self) -> Self;
+    /// inverse of the tangent
+    fn atan(self) -> Self;
+    /// logarithm to base 10
+    #[inline(always)]
+    fn log10(self) -> Self {
+        self.ln() / Self::constant(10.0).ln()
+    }
     /// absolute value
     fn abs(self) -> Self;
     /// one, with this number's sign
@@ -139,6 +160,22 @@ impl Real for f64 {
             f64::ln_1p(x + x * x / (1.0 + f64::sqrt(1.0 + x * x)))
         };
         value.copysign(self)
+    }
+    #[inline]
+    fn sin_cos(self) -> (f64, f64) {
+        self.sin_cos()
+    }
+    #[inline]
+    fn tanh(self) -> f64 {
+        self.tanh()
+    }
+    #[inline]
+    fn atan(self) -> f64 {
+        self.atan()
+    }
+    #[inline]
+    fn log10(self) -> f64 {
+        self.log10()
     }
     #[inline]
     fn abs(self) -> f64 {

@@ -196,6 +196,29 @@ impl Element for Jet3 {
             self.composed([c, s, c / 2.0, s / 6.0]),
         )
     }
+    #[inline(never)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (s, c) = self.0[0].sin_cos();
+        (
+            self.composed([s, c, -s / 2.0, -c / 6.0]),
+            self.composed([c, -s, -c / 2.0, s / 6.0]),
+        )
+    }
+    #[inline(never)]
+    fn atan(self) -> Self {
+        // atan' = r, atan'' = -2 x r^2, atan''' = (6 x^2 - 2) r^3, r = 1 / (1 + x^2)
+        let x = self.0[0];
+        let r = 1.0 / (1.0 + x * x);
+        let third = (6.0 * x * x - 2.0) * r * r * r;
+        self.composed([x.atan(), r, -x * r * r, third / 6.0])
+    }
+    #[inline(never)]
+    fn tanh(self) -> Self {
+        // tanh' = u, tanh'' = -2 y u, tanh''' = (6 y^2 - 2) u, u = 1 - y^2
+        let y = self.0[0].tanh();
+        let u = 1.0 - y * y;
+        self.composed([y, u, -y * u, (6.0 * y * y - 2.0) * u / 6.0])
+    }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.0[0] < 0.0 { a } else { b }
     }

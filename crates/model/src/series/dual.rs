@@ -144,6 +144,8 @@ impl<X: Element> Element for Dual<X> {
         exp_m1: |x| x.exp();
         ln: |x| 1.0 / x;
         ln_1p: |x| 1.0 / (x + 1.0);
+        atan: |x| 1.0 / (x * x + 1.0);
+        tanh: |x| 1.0 - x.tanh() * x.tanh();
     }
     #[inline(always)]
     fn powf(self, p: f64) -> Self {
@@ -154,6 +156,11 @@ impl<X: Element> Element for Dual<X> {
     fn sinh_cosh(self) -> (Self, Self) {
         let (sinh, cosh) = self.value.sinh_cosh();
         (self.chain(sinh, cosh), self.chain(cosh, sinh))
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let (sin, cos) = self.value.sin_cos();
+        (self.chain(sin, cos), self.chain(cos, -sin))
     }
     #[inline(always)]
     fn max(self, o: Self) -> Self {

@@ -73,6 +73,18 @@ pub trait Element:
     fn powf(self, p: f64) -> Self;
     /// sinh and cosh
     fn sinh_cosh(self) -> (Self, Self);
+    /// sine and cosine; likewise, as the next two.
+    fn sin_cos(self) -> (Self, Self) {
+        (lane_by_lane(self, f64::sin), lane_by_lane(self, f64::cos))
+    }
+    /// inverse of the tangent
+    fn atan(self) -> Self {
+        lane_by_lane(self, f64::atan)
+    }
+    /// hyperbolic tangent
+    fn tanh(self) -> Self {
+        lane_by_lane(self, f64::tanh)
+    }
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
     /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
@@ -301,6 +313,15 @@ impl Element for DoubleDouble {
     }
     fn sinh_cosh(self) -> (Self, Self) {
         (Real::sinh(self), Real::cosh(self))
+    }
+    fn sin_cos(self) -> (Self, Self) {
+        Real::sin_cos(self)
+    }
+    fn atan(self) -> Self {
+        Real::atan(self)
+    }
+    fn tanh(self) -> Self {
+        Real::tanh(self)
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }

@@ -80,6 +80,8 @@ impl<T: Element> Element for Both<T> {
         exp_m1();
         ln();
         ln_1p();
+        atan();
+        tanh();
         powf(p: f64);
         rough_log2();
         rough_exp2();
@@ -116,6 +118,11 @@ impl<T: Element> Element for Both<T> {
     #[inline(always)]
     fn sinh_cosh(self) -> (Self, Self) {
         let ((s1, c1), (s2, c2)) = (self.0[0].sinh_cosh(), self.0[1].sinh_cosh());
+        (Both([s1, s2]), Both([c1, c2]))
+    }
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        let ((s1, c1), (s2, c2)) = (self.0[0].sin_cos(), self.0[1].sin_cos());
         (Both([s1, s2]), Both([c1, c2]))
     }
     #[inline(always)]

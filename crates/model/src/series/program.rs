@@ -41,6 +41,12 @@ enum Operation {
     LogarithmOfOneMore(usize, usize),
     /// sinh a and, in that row, cosh a; the spare row holds j a_j
     Hyperbolic(usize, usize),
+    /// sin a and, in that row, cos a; the spare row holds j a_j
+    Circular(usize, usize),
+    /// atan a beside 1 + a^2; the spare row holds 1 / (1 + a_0^2), then j y_j
+    Arctangent(usize, usize),
+    /// tanh a and, in that row, 1 - tanh^2 a; the spare row holds j a_j
+    HyperbolicTangent(usize, usize),
     /// a^p; the spare row holds 1 / a_0, then j y_j
     Power(usize, f64),
     Sign(usize),
@@ -116,9 +122,9 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
     let mut needed = vec![false; nodes.len()];
     outputs.iter().for_each(|&at| needed[at] = true);
     for place in (0..nodes.len()).rev() {
-        // sinh and cosh are made together.
-        if let Node::Cosh(_, sinh) = nodes[place] {
-            needed[place] |= needed[sinh];
+        // sinh and cosh are made together, and so are sin and cos.
+        if let Node::Cosh(_, first) | Node::Cos(_, first) = nodes[place] {
+            needed[place] |= needed[first];
         }
         if !needed[place] {
             continue;
@@ -129,6 +135,8 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::Exponential(a)
             | Node::Logarithm(a)
             | Node::Sinh(a)
+            | Node::Sin(a)
+            | Node::HyperbolicTangent(a)
             | Node::Power(a, _)
             | Node::Sign(a) => needed[a] = true,
             Node::Sum(a, b)
@@ -138,6 +146,8 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::ExponentialLessOne(a, b)
             | Node::LogarithmOfOneMore(a, b)
             | Node::Cosh(a, b)
+            | Node::Cos(a, b)
+            | Node::Arctangent(a, b)
             | Node::Signed(a, b) => {
                 needed[a] = true;
                 needed[b] = true;
@@ -237,6 +247,30 @@ impl Assembly<'_> {
                 (Row(_), Row(sinh)) => return Row(sinh - 1),
                 (Number(x), _) => return Number(x.cosh()),
                 _ => unreachable!("sinh a is as constant as a"),
+            },
+            Node::Sin(a) => match at(a) {
+                Row(a) => {
+                    let cos = self.row();
+                    (Op::Circular(a, cos), true)
+                }
+                Number(x) => return Number(Real::sin_cos(x).0),
+            },
+            Node::Cos(a, sin) => match (at(a), at(sin)) {
+                (Row(_), Row(sin)) => return Row(sin - 1),
+                (Number(x), _) => return Number(Real::sin_cos(x).1),
+                _ => unreachable!("sin a is as constant as a"),
+            },
+            Node::Arctangent(a, u) => match (at(a), at(u)) {
+                (Row(a), Row(u)) => (Op::Arctangent(a, u), true),
+                (Number(x), _) => return Number(Real::atan(x)),
+                _ => unreachable!("1 + a^2 is as constant as a"),
+            },
+            Node::HyperbolicTangent(a) => match at(a) {
+                Row(a) => {
+                    let slope = self.row();
+                    (Op::HyperbolicTangent(a, slope), true)
+                }
+                Number(x) => return Number(Real::tanh(x)),
             },
             Node::Power(a, p) => match at(a) {
                 Row(a) => (Op::Power(a, f64::from_bits(p)), true),
@@ -411,6 +445,52 @@ impl<T: Element> ProgramRows<T> {
                     let s = self.convolution(spare, cosh, k, (1, k + 1)).scale(one_over);
                     self.set(cosh, k, c);
                     s
+                }
+            }
+            Operation::Circular(a, cos) => {
+                // k s_k = sum of j a_j c_(k-j), k c_k = -sum of j a_j s_(k-j) over 0 < j <= k
+                self.slope(a, spare, k);
+                if k == 0 {
+                    let (s, c) = self.get(a, 0).sin_cos();
+                    self.set(cos, 0, c);
+                    s
+                } else {
+                    let one_over = self.one_over(k);
+                    let c = self.convolution(spare, result, k, (1, k + 1));
+                    let s = self.convolution(spare, cos, k, (1, k + 1));
+                    self.set(cos, k, c.scale(-one_over));
+                    s.scale(one_over)
+                }
+            }
+            Operation::Arctangent(a, u) => {
+                // u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
+                if k == 0 {
+                    self.set(spare, 0, any.like(1.0) / self.get(u, 0));
+                    self.get(a, 0).atan()
+                } else {
+                    let sum = self
+                        .convolution(spare, u, k, (1, k))
+                        .scale(self.one_over(k));
+                    let new = (self.get(a, k) - sum) * self.get(spare, 0);
+                    self.set(spare, k, new.scale(DoubleDouble::from(k as f64)));
+                    new
+                }
+            }
+            Operation::HyperbolicTangent(a, u) => {
+                // k y_k = sum of j a_j u_(k-j) over 0 < j <= k, u_k = -sum of y_j y_(k-j) over 0 <= j <= k
+                self.slope(a, spare, k);
+                if k == 0 {
+                    let y = self.get(a, 0).tanh();
+                    self.set(u, 0, any.like(1.0) - y * y);
+                    y
+                } else {
+                    let y = self
+                        .convolution(spare, u, k, (1, k + 1))
+                        .scale(self.one_over(k));
+                    let first = self.get(result, 0);
+                    let squared = self.convolution(result, result, k, (1, k));
+                    self.set(u, k, -(first + first).mul_add(y, squared));
+                    y
                 }
             }
             Operation::Power(a, p) => self.power(a, p, (result, spare), k),

@@ -212,6 +212,8 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         ln_1p: |x| Element::ln_1p(x), |a| a.logarithm_of_one_more();
         sinh: |x| Element::sinh_cosh(x).0, |a| a.hyperbolic().0;
         cosh: |x| Element::sinh_cosh(x).1, |a| a.hyperbolic().1;
+        atan: |x| Element::atan(x), |a| a.arctangent();
+        tanh: |x| Element::tanh(x), |a| a.hyperbolic_tangent();
         abs: |x| Element::abs(x), |a| a.magnitude();
     }
 
@@ -223,6 +225,25 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
                 (row(sinh), row(cosh))
             }
             _ => (self.sinh(), self.cosh()),
+        }
+    }
+
+    #[inline(always)]
+    fn sin_cos(self) -> (Self, Self) {
+        match self.kind().released() {
+            Exact(x) => {
+                let (sin, cos) = Real::sin_cos(x);
+                (exact(sin), exact(cos))
+            }
+            Value(x) => {
+                let (sin, cos) = Element::sin_cos(x);
+                (value(sin), value(cos))
+            }
+            Row(a) => {
+                let (sin, cos) = a.circular();
+                (row(sin), row(cos))
+            }
+            Literal(_) => unreachable!("released"),
         }
     }
 

@@ -240,6 +240,65 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         )
     }
 
+    /// s = sin a, c = cos a from s' = c a', c' = -s a'.
+    #[inline(always)]
+    pub(super) fn circular(self) -> (Self, Self) {
+        let k = self.order();
+        let slopes = self.slopes();
+        let (s, c) = (self.another(), self.another());
+        if k == 0 {
+            let (sin, cos) = self.newest().sin_cos();
+            return (s.put(sin), c.put(cos));
+        }
+        // Twice one sum: what is begun of the next is added to what stands there, and c changes its sign.
+        let of_c = slopes.running_product(c);
+        let of_s = slopes.running_product(s);
+        let one_over = self.one_over_order();
+        (
+            s.put(self.mul_add(c.get(0), of_c * one_over)),
+            c.put(-self.mul_add(s.get(0), of_s * one_over)),
+        )
+    }
+
+    /// y = atan a from u y' = a', u = 1 + a^2: u_0 k y_k = k a_k - sum of u_(k-j) j y_j over 0 < j < k.
+    #[inline(always)]
+    pub(super) fn arctangent(self) -> Self {
+        let k = self.order();
+        let this = self.stored();
+        let u = this.product(this).plus(self.any().like(1.0)).stored();
+        let y = self.another();
+        // The first coefficient of this row is 1 / u_0.
+        let slopes = self.another();
+        if k == 0 {
+            slopes.put(u.get(0).like(1.0) / u.get(0));
+            return y.put(this.get(0).atan());
+        }
+        let sum = slopes.running_product(u);
+        let one_over = slopes.get(0);
+        let rest = sum * -(self.one_over_order() * one_over);
+        let new = this.mul_add(one_over, rest);
+        slopes.put(new * new.like(k as f64));
+        y.put(new)
+    }
+
+    /// y = tanh a from y' = u a', u = 1 - y^2.
+    #[inline(always)]
+    pub(super) fn hyperbolic_tangent(self) -> Self {
+        let k = self.order();
+        let slopes = self.slopes();
+        let (y, u) = (self.another(), self.another());
+        if k == 0 {
+            let tanh = self.newest().tanh();
+            u.put(tanh.like(1.0) - tanh * tanh);
+            return y.put(tanh);
+        }
+        let sum = slopes.running_product(u);
+        let new = self.mul_add(u.get(0), sum * self.one_over_order());
+        let first = y.get(0);
+        u.put(-(first + first).mul_add(new, y.running_product(y)));
+        y.put(new)
+    }
+
     /// l = ln a from a l' = a': a_0 k l_k = k a_k - sum of a_(k-j) j l_j over 0 < j < k.
     #[inline(always)]
     pub(super) fn logarithm(self) -> Self {

@@ -36,6 +36,12 @@ pub(super) enum Node {
     Sinh(NodeIndex),
     /// cosh a, and the node of sinh a, which stands before.
     Cosh(NodeIndex, NodeIndex),
+    Sin(NodeIndex),
+    /// cos a, and the node of sin a, which stands before.
+    Cos(NodeIndex, NodeIndex),
+    /// atan a, and the node of 1 + a^2.
+    Arctangent(NodeIndex, NodeIndex),
+    HyperbolicTangent(NodeIndex),
     /// a to the power of a constant, by its bits.
     Power(NodeIndex, u64),
     /// 1 with the sign of a.
@@ -133,6 +139,10 @@ impl Graph {
                 Node::LogarithmOfOneMore(a, _) => slope(a) / (at(a) + 1.0),
                 Node::Sinh(a) => slope(a) * at(a).cosh(),
                 Node::Cosh(a, sinh) => slope(a) * at(sinh),
+                Node::Sin(a) => slope(a) * at(a).cos(),
+                Node::Cos(a, sin) => -(slope(a) * at(sin)),
+                Node::Arctangent(a, u) => slope(a) / at(u),
+                Node::HyperbolicTangent(a) => slope(a) * (-(this * this) + 1.0),
                 Node::Power(a, p) => slope(a) * (this / at(a) * f64::from_bits(p)),
                 Node::Signed(a, b) => slope(a) * at(b).sign(),
             });
@@ -369,6 +379,29 @@ impl Real for Traced<'_> {
 
     fn cosh(self) -> Self {
         self.sinh_cosh().1
+    }
+
+    // Likewise.
+    #[inline(never)]
+    fn sin_cos(self) -> (Self, Self) {
+        let sin = self.unary(|x| Real::sin_cos(x).0, f64::sin, Node::Sin);
+        let cos = match self {
+            Constant(x) => Constant(Real::sin_cos(x).1),
+            _ => self.binary(sin, |a, _| a.cos(), Node::Cos),
+        };
+        (sin, cos)
+    }
+
+    #[inline(never)]
+    fn atan(self) -> Self {
+        match self {
+            Constant(x) => Constant(Real::atan(x)),
+            _ => self.binary(self * self + 1.0, |a, _| a.atan(), Node::Arctangent),
+        }
+    }
+
+    fn tanh(self) -> Self {
+        self.unary(Real::tanh, f64::tanh, Node::HyperbolicTangent)
     }
 
     // Near 0 it cancels, as the laws' own formulas never do.

@@ -60,6 +60,16 @@ const ODD_LINEAR: f64 = 1e-17;
 /// Above this e^-2x is nothing beside 1.
 const ONE_EXPONENTIAL: f64 = 40.0;
 
+/// pi/2 in four parts.
+const HALF_PI_PARTS: [f64; 4] = [
+    std::f64::consts::FRAC_PI_2,
+    6.123233995736766e-17,
+    -1.4973849048591698e-33,
+    5.562271104316826e-50,
+];
+/// Beyond, pi/2 would take more parts, and the digits of the double must do.
+const TURNS: f64 = 1e9;
+
 /// 2^k for a normal number.
 #[inline(always)]
 fn power_of_two(k: i32) -> f64 {
@@ -128,6 +138,34 @@ fn exponent_and_mantissa(x: DoubleDouble) -> (i32, DoubleDouble) {
     } else {
         (exponent - shift, m)
     }
+}
+
+/// sin r and cos r for |r| < 0.8, by their Taylor series.
+fn sin_cos_near_zero(r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
+    /// Terms beyond are below 1e-33.
+    const ORDER: i32 = 29;
+    let squared = r * r;
+    let (mut sin, mut cos) = (DoubleDouble::ONE, DoubleDouble::ONE);
+    // 1 - r^2/(2 3) (1 - r^2/(4 5) ...), 1 - r^2/(1 2) (1 - r^2/(3 4) ...)
+    let mut n = ORDER;
+    while n > 1 {
+        let of = |n: i32| squared / f64::from(n * (n - 1));
+        sin = -(of(n) * sin) + 1.0;
+        cos = -(of(n - 1) * cos) + 1.0;
+        n -= 2;
+    }
+    (sin * r, cos)
+}
+
+/// x less the nearest multiple of pi/2, and that multiple, for |x| < [`TURNS`].
+fn quarters(x: DoubleDouble) -> (DoubleDouble, i64) {
+    let k = (x.hi * std::f64::consts::FRAC_2_PI).round();
+    let mut rest = x;
+    for part in HALF_PI_PARTS {
+        let (product, error) = two_product(k, part);
+        rest = rest - product - error;
+    }
+    (rest, k as i64)
 }
 
 /// e^x / 2 for x > 40, however close to overflow.
@@ -247,6 +285,47 @@ impl Real for DoubleDouble {
             x.ln() + LN_2
         };
         value.with_sign_of(self)
+    }
+
+    // By e^(-2|x|) - 1, which neither overflows nor cancels.
+    fn tanh(self) -> Self {
+        let m = self.abs().scaled(-2.0).exp_m1();
+        (-m / (m + 2.0)).with_sign_of(self)
+    }
+
+    fn sin_cos(self) -> (Self, Self) {
+        let counted = self.hi.abs() < TURNS;
+        if !counted {
+            let (sin, cos) = self.hi.sin_cos();
+            return (sin.into(), cos.into());
+        }
+        let (rest, quarters) = quarters(self);
+        let (sin, cos) = sin_cos_near_zero(rest);
+        match quarters.rem_euclid(4) {
+            0 => (sin, cos),
+            1 => (cos, -sin),
+            2 => (-sin, -cos),
+            _ => (-cos, sin),
+        }
+    }
+
+    // The double's, and what is left by the addition theorem: its third power is nothing.
+    fn atan(self) -> Self {
+        /// Beyond, atan x = pi/2 - 1/x + 1/(3 x^3) to all digits.
+        const LARGE: f64 = 1e8;
+        if self.hi.is_nan() || self.hi.abs() < ODD_LINEAR {
+            return self;
+        }
+        if self.hi.abs() > LARGE {
+            let inverse = self.abs().recip();
+            let [first, second, ..] = HALF_PI_PARTS;
+            let third = inverse.hi * inverse.hi * inverse.hi / 3.0;
+            let value = DoubleDouble::new(first, second) - inverse + third;
+            return value.with_sign_of(self);
+        }
+        let near = DoubleDouble::from(self.hi.atan());
+        let (sin, cos) = Real::sin_cos(near);
+        near + (self * cos - sin) / (self * sin + cos)
     }
 
     #[inline(always)]

@@ -14,8 +14,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 ///
 /// Sums, products, quotients and square roots are within 1e-31 of the exact ones, relative; for the functions see
 /// [`Real`](super::Real), whose every function here is within 1e-30, powers within 1e-30 (1 + |p ln m|) for x = 2^k m,
-/// m between 0.7 and 1.5. That needs room for the second double: below 1e-290 digits are lost one by one, as with `f64`
-/// below 1e-308. What overflows is infinite, what has no value is NaN; both have the low part 0.
+/// m between 0.7 and 1.5, sine and cosine only for |x| < 1e9. That needs room for the second double: below 1e-290 digits are
+/// lost one by one, as with `f64` below 1e-308. What overflows is infinite, what has no value is NaN; both have the low part 0.
 ///
 /// ```
 /// use twinslip::number::DoubleDouble;
