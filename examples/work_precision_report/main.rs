@@ -49,10 +49,11 @@ fn main() -> Result<(), Box<dyn Error>> {
                 (scene, title)
             })
             .collect();
-        let svg = picture::svg(what, &titles, &rows)?;
+        let picture = picture::picture(what, &titles, &rows);
+        let svg = picture.svg()?;
         write(&folder.join(format!("{name}.svg")), svg.as_bytes())?;
         if std::env::args().any(|argument| argument == "--png") {
-            write(&folder.join(format!("{name}.png")), &picture::png(&svg)?)?;
+            write(&folder.join(format!("{name}.png")), &picture.png()?)?;
         }
         // Peers ran the flows only.
         let peers = if name == "tangent" { &[] } else { &peers[..] };
