@@ -2,11 +2,9 @@
 
 pub mod looks;
 pub mod sweeps;
+mod words;
 
-use resvg::usvg::{
-    Group, Node, Options, Paint, Rect, Text, TextChunk, TextSpan, Tree, fontdb::Database,
-};
-use std::sync::Arc;
+use resvg::usvg::{Group, Node, Options, Paint, Rect, Tree};
 use twinslip::output::plot::{Axis, Drawing, Panel};
 
 pub const INK: [u8; 3] = [40, 40, 40];
@@ -34,54 +32,20 @@ pub struct Seen {
 
 pub fn seen(drawing: &Drawing) -> Seen {
     let svg = drawing.svg().expect("a picture");
-    let font = std::fs::read(concat!(env!("CARGO_MANIFEST_DIR"), "/assets/font/plot.ttf"));
-    let mut fonts = Database::new();
-    fonts.load_font_data(font.expect("the font"));
-    let name = fonts.faces().next().expect("a face").families[0].0.clone();
-    fonts.set_sans_serif_family(name);
-    let options = Options {
-        fontdb: Arc::new(fonts),
-        ..Options::default()
-    };
-    let tree = Tree::from_str(&svg, &options).expect("SVG");
+    let tree = Tree::from_str(&svg, &Options::default()).expect("SVG");
+    let words = words::words(&svg);
     let mut seen = Seen {
         width: tree.size().width(),
         height: tree.size().height(),
-        words: Vec::new(),
+        sizes: words.iter().map(|words| words.size).collect(),
+        words: words
+            .into_iter()
+            .map(|words| (words.text, words.place))
+            .collect(),
         shapes: Vec::new(),
-        sizes: Vec::new(),
     };
     seen.collect(tree.root());
     seen
-}
-
-/// A subscript is smaller than what stands before it: it is read with an underscore, which is never drawn.
-fn read(chunk: &TextChunk) -> String {
-    let text = chunk.text();
-    assert!(!text.contains('_'), "an underscore is drawn: {text:?}");
-    let largest = largest(chunk);
-    let part = |span: &TextSpan| {
-        let words = &text[span.start()..span.end()];
-        let lower = if span.font_size().get() < largest {
-            "_"
-        } else {
-            ""
-        };
-        format!("{lower}{words}")
-    };
-    chunk.spans().iter().map(part).collect()
-}
-
-fn largest(chunk: &TextChunk) -> f32 {
-    let sizes = chunk.spans().iter().map(|span| span.font_size().get());
-    sizes.fold(0.0, f32::max)
-}
-
-fn sizes(text: &Text) -> Vec<f32> {
-    // In the units of the picture, as it is shown.
-    let scale = text.abs_transform().get_scale().0;
-    let chunks = text.chunks().iter();
-    chunks.map(|chunk| scale * largest(chunk)).collect()
 }
 
 fn rgb(paint: &Paint) -> [u8; 3] {
@@ -96,17 +60,13 @@ impl Seen {
         for node in group.children() {
             match node {
                 Node::Group(group) => self.collect(group),
-                Node::Text(text) => {
-                    let words: String = text.chunks().iter().map(read).collect();
-                    self.words
-                        .push((words.trim().to_owned(), text.abs_bounding_box()));
-                    self.sizes.extend(sizes(text));
-                }
                 Node::Path(path) => self.shapes.push(Shape {
                     stroke: path.stroke().map(|stroke| rgb(stroke.paint())),
                     fill: path.fill().map(|fill| rgb(fill.paint())),
                     place: path.abs_bounding_box(),
                 }),
+                // Words are read from the SVG itself.
+                Node::Text(_) => {}
                 Node::Image(_) => panic!("an image"),
             }
         }
