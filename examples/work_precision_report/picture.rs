@@ -1,7 +1,7 @@
 //! Work-precision diagrams: panels of points joined by lines, both axes logarithmic.
 
 use crate::common::results::{Row, distinct};
-use twinslip::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, Series, Symbol};
+use twinslip::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, PlotSeries, Symbol};
 
 const COLUMNS: usize = 3;
 /// Of the errors that are shown; smaller ones stand at the end.
@@ -90,7 +90,9 @@ fn panel(title: &str, times: (f64, f64), rows: &[&Row]) -> Panel {
         let points: Vec<(f64, f64)> = of_method.filter_map(|row| drawn(row)).collect();
         let (x, y) = points.iter().copied().unzip();
         if look.method != CHOOSES {
-            panel.series.push(Series::new("", x, y).colour(look.colour));
+            panel
+                .series
+                .push(PlotSeries::new("", x, y).colour(look.colour));
         }
         panel.marks.extend(points.iter().map(|&(x, y)| Mark {
             filled: look.filled,
