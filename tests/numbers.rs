@@ -115,7 +115,7 @@ proptest! {
 
     /// Slope and differences are far below the rounding of values that are nearly 1.
     #[test]
-    fn saturated_hyperbolic_tangents_keep_their_digits(x in 0.0..300.0_f64, ln_gap in -300.0..0.0_f64) {
+    fn saturated_hyperbolic_tangents_keep_their_digits(x in 0.0..150.0_f64, ln_gap in -300.0..0.0_f64) {
         let e = |x: f64| (-2.0 * x).exp();
         let slope = Jet::<f64, 1>::variable(-x, 0).tanh().gradient[0];
         prop_assert!((slope / (4.0 * e(x) / (1.0 + e(x)).powi(2)) - 1.0).abs() < 1e-14);

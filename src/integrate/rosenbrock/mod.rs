@@ -192,6 +192,8 @@ impl<const N: usize> Rosenbrock<N> {
         Ok((here, length.copysign(span)))
     }
 
+    // Not inlined: the matrices of all methods would stand on the stack at once.
+    #[inline(never)]
     fn flow_by<S: Scheme>(
         &mut self,
         field: &dyn VectorField<N>,
@@ -215,6 +217,7 @@ impl<const N: usize> Rosenbrock<N> {
         Ok(*trajectory.state())
     }
 
+    #[inline(never)]
     fn tangent_flow_by<S: Scheme>(
         &mut self,
         field: &dyn VectorField<N>,

@@ -292,6 +292,14 @@ impl<T: Real, const ORDERED: bool> Real for Difference<T, ORDERED> {
             gap: argument.asinh(),
         }
     }
+    #[inline(always)]
+    fn log10(self) -> Self {
+        Difference {
+            first: self.first.log10(),
+            second: self.second.log10(),
+            gap: self.ln().gap / T::constant(10.0).ln(),
+        }
+    }
     // sin a - sin b = 2 cos((a + b) / 2) sin((a - b) / 2), cos a - cos b = -2 sin((a + b) / 2) sin((a - b) / 2)
     #[inline(always)]
     fn sin_cos(self) -> (Self, Self) {

@@ -12,7 +12,7 @@ use std::fmt::Debug;
 /// dx/dt = f(x; p) in N variables with two control parameters: the right-hand side, written once for every number.
 ///
 /// Jets make derivatives of it, and series its solutions. It must be smooth along the solutions: of |x| they take the sign at
-/// the beginning of a step. Formulas of up to three variables and 64
+/// the beginning of a step. Formulas of up to three variables and some fifty
 /// series are compiled (one for each variable and product, two for a quotient, three for an exponential, four for a power); larger
 /// ones run in loops over their operations.
 pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
@@ -42,8 +42,8 @@ pub(crate) fn is_small<S: Equations<N>, const N: usize>(equations: &S, p: [f64; 
     let tape = Tape::new(&memory, Counting, N);
     let x = std::array::from_fn(|i| tape.variable(i));
     equations.rates(x, p.map(value));
-    // What the outputs may take.
-    tape.rows() + N <= ROWS
+    // What the outputs may take, and in tangents for each rate its slope, their sum, and the rate without directions.
+    tape.rows() + 4 * N <= ROWS
 }
 
 /// The equations as a formula.
