@@ -78,14 +78,14 @@ fn check<const N: usize>(
         };
         let by_value = |h: f64| moved(h).f(&y);
         assert_near(
-            field.parameter_derivative(&y, p) * value,
+            field.parameter_derivative(&y, p.place()) * value,
             derivative(by_value),
             scale,
             &format!("{what}, {p:?}"),
         );
         for i in 0..N {
             let e = unit::<N>(i);
-            let exact: Jacobian<N> = field.parameter_jacobian(&y, p) * value;
+            let exact: Jacobian<N> = field.parameter_jacobian(&y, p.place()) * value;
             let differenced = derivative(|h| moved(h).jacobian(&y) * e);
             assert_near(exact * e, differenced, scale, &format!("{what}, dJ/d{p:?}"));
         }

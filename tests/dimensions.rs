@@ -12,7 +12,9 @@ use twinslip::series::{Equations, Jet3};
 #[derive(Debug, Clone, Copy)]
 struct Coupled;
 
-impl Equations<4> for Coupled {
+impl Equations<4, 2> for Coupled {
+    const PARAMETERS: [&'static str; 2] = ["mu", "k"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, v, y, w]: [T; 4], [mu, k]: [T; 2]) -> [T; 4] {
         let one = T::constant(1.0);
@@ -37,7 +39,9 @@ impl Turning {
     }
 }
 
-impl Equations<3> for Turning {
+impl Equations<3, 2> for Turning {
+    const PARAMETERS: [&'static str; 2] = ["first", "second"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], p: [T; 2]) -> [T; 3] {
         [
@@ -48,7 +52,9 @@ impl Equations<3> for Turning {
     }
 }
 
-impl Equations<4> for Turning {
+impl Equations<4, 2> for Turning {
+    const PARAMETERS: [&'static str; 2] = ["first", "second"];
+
     fn rates<T: Real>(&self, [x, y, z, w]: [T; 4], p: [T; 2]) -> [T; 4] {
         [
             Self::rate(x, y, p),
@@ -85,7 +91,9 @@ fn functions_of_angles_are_right_in_three_and_in_four_equations() {
 #[derive(Debug, Clone, Copy)]
 struct Ring<const N: usize>;
 
-impl<const N: usize> Equations<N> for Ring<N> {
+impl<const N: usize> Equations<N, 2> for Ring<N> {
+    const PARAMETERS: [&'static str; 2] = ["a", "k"];
+
     fn rates<T: Real>(&self, x: [T; N], [a, k]: [T; 2]) -> [T; N] {
         std::array::from_fn(|i| {
             let (next, last) = (x[(i + 1) % N], x[(i + N - 1) % N]);
@@ -130,7 +138,9 @@ fn twelve_equations_are_right() {
 #[derive(Debug, Clone, Copy)]
 struct Long;
 
-impl Equations<3> for Long {
+impl Equations<3, 2> for Long {
+    const PARAMETERS: [&'static str; 2] = ["a", "b"];
+
     fn rates<T: Real>(&self, x: [T; 3], [a, b]: [T; 2]) -> [T; 3] {
         let one = x[0] / (x[0] + 0.0);
         let mut sum = T::constant(0.0);
@@ -150,7 +160,7 @@ fn a_long_formula_runs_in_loops() {
     let mut taylor = Taylor::new(Tolerances::equal(1e-14).unwrap(), MAX_STEPS).unwrap();
     let y = State::<3>::new(1.0, 2.0, -0.5);
     let end = taylor.flow(&field, (0.0, 2.0), &y, None).unwrap();
-    let (same, derivatives) = taylor.derivatives(&field, (0.0, 2.0), &y, true).unwrap();
+    let (same, derivatives) = taylor.derivatives(&field, (0.0, 2.0), &y, &[0, 1]).unwrap();
     for (i, rate) in [-0.7_f64, 0.2, -0.5].into_iter().enumerate() {
         let growth = (2.0 * rate).exp();
         assert!((end[i] / (growth * y[i]) - 1.0).abs() < 1e-13, "{i}");
@@ -168,7 +178,9 @@ fn a_long_formula_runs_in_loops() {
 #[derive(Debug, Clone, Copy)]
 struct Bent;
 
-impl Equations<4> for Bent {
+impl Equations<4, 2> for Bent {
+    const PARAMETERS: [&'static str; 2] = ["a", "b"];
+
     fn rates<T: Real>(&self, [x, y, _, u]: [T; 4], [a, b]: [T; 2]) -> [T; 4] {
         [T::constant(1.0), x.abs() - a * y, b, u * 0.0]
     }
@@ -198,7 +210,9 @@ fn no_step_leads_over_a_kink() {
 #[derive(Debug, Clone, Copy)]
 struct Choosing;
 
-impl Equations<4> for Choosing {
+impl Equations<4, 2> for Choosing {
+    const PARAMETERS: [&'static str; 2] = ["first", "second"];
+
     fn rates<T: Real>(&self, x: [T; 4], _: [T; 2]) -> [T; 4] {
         let zero = T::constant(0.0);
         let rate = if x[0].leading() < 1.0 {

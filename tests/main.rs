@@ -46,6 +46,7 @@ mod numbers;
 mod orbits;
 mod orbits_of_systems;
 mod page;
+mod parameters;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod periodic_schur;

@@ -24,7 +24,9 @@ struct Pair {
     squared: f64,
 }
 
-impl Equations<4> for Pair {
+impl Equations<4, 2> for Pair {
+    const PARAMETERS: [&'static str; 2] = ["mu", "k"];
+
     fn rates<T: Real>(&self, [x1, y1, x2, y2]: [T; 4], [mu, k]: [T; 2]) -> [T; 4] {
         let one = T::constant(1.0);
         [
@@ -46,8 +48,8 @@ fn numbers(list: &Value) -> Vec<f64> {
 
 /// The orbit through a point, closed, its period and its multipliers: the budgets as they are made of a slab's orbit, of the noise
 /// and of a second solution on other nodes.
-fn solved<S: Equations<N>, const N: usize>(
-    field: &Smooth<S, N>,
+fn solved<S: Equations<N, 2>, const N: usize>(
+    field: &Smooth<S, N, 2>,
     point: &[f64],
     period: f64,
 ) -> (Closed<N>, Uncertain, Floquet) {
@@ -64,8 +66,8 @@ fn solved<S: Equations<N>, const N: usize>(
     (closed, period, multipliers)
 }
 
-fn once<S: Equations<N>, const N: usize>(
-    field: &Smooth<S, N>,
+fn once<S: Equations<N, 2>, const N: usize>(
+    field: &Smooth<S, N, 2>,
     start: State<N>,
     period: f64,
     tolerance: f64,
@@ -74,7 +76,7 @@ fn once<S: Equations<N>, const N: usize>(
     let shooting = ShootingNodes::along(&mut tracer, field, &start, period).expect("a shooting");
     let mut loss = |x: &State<N>, duration: f64| {
         let mut tracer = Tracer::<N>::taylor(tolerance)?;
-        let arc = tracer.arc(field, x, duration, false)?;
+        let arc = tracer.arc(field, x, duration, &[])?;
         Ok((arc.end, arc.loss()))
     };
     let shooting = shooting.refined(&mut loss).expect("finer nodes");
@@ -160,7 +162,9 @@ fn reflected<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
     std::array::from_fn(|i| x[i] - dot * (2.0 * (i + 1) as f64 / along))
 }
 
-impl<S: Equations<3>, const N: usize> Equations<N> for Among<S> {
+impl<S: Equations<3, 2>, const N: usize> Equations<N, 2> for Among<S> {
+    const PARAMETERS: [&'static str; 2] = S::PARAMETERS;
+
     fn rates<T: Real>(&self, y: [T; N], parameters: [T; 2]) -> [T; N] {
         let x = reflected(y);
         let own = self.0.rates([x[0], x[1], x[2]], parameters);
@@ -187,8 +191,8 @@ fn mixed<const N: usize>(x: &State<3>) -> State<N> {
 }
 
 /// Along a branch towards greater values of a parameter: the first zero of an test_function below `end`.
-fn first<S: Equations<N>, const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<S>, N>,
+fn first<S: Equations<N, 2>, const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
     site: ContinuationPoint<N>,
     (free, end): (usize, f64),
     test_function: TestFunction,
@@ -233,7 +237,7 @@ fn langford<const N: usize>(rho: f64) -> ContinuationPoint<N> {
 }
 
 fn torus_among_others<const N: usize>() {
-    let family = OverParameters(Among(Langford { omega: 3.5 }));
+    let family = OverParameters::both(Among(Langford { omega: 3.5 }));
     let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
     let site = langford(0.3);
     let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus).expect("a torus");
@@ -241,10 +245,7 @@ fn torus_among_others<const N: usize>() {
     assert!(error < 1e-10, "{N}: {error:e}");
     // The pair that leaves: e^(+-i k r T), k = sqrt(2 (1 + 0.7 rho)).
     let here = corrector.look(torus.clone(), &[0], &[]).expect("an orbit");
-    let field = Smooth {
-        equations: family.0,
-        parameters: torus.at,
-    };
+    let field = family.at(torus.at);
     let floquet = here.floquet(&|x| VectorField::<N>::f(&field, x));
     let rho = Langford::torus();
     let frequency = (2.0 * (1.0 + 0.7 * rho)).sqrt() * Langford::radius(rho);
@@ -269,13 +270,10 @@ fn a_torus_is_shed_where_it_is_in_three_dimensions() {
 
 /// The orbit at c = 2.5 that doubles first.
 fn roessler<const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<Among<Roessler>>, N>,
+    corrector: &mut Corrector<'_, OverParameters<Among<Roessler>, N, 2>, N>,
 ) -> ContinuationPoint<N> {
     let at = [0.2, 2.5];
-    let field = Smooth {
-        equations: corrector.family.0,
-        parameters: at,
-    };
+    let field = corrector.family.at(at);
     let mut tracer = Tracer::<N>::taylor(1e-10).expect("a tracer");
     let start = mixed(&State::<3>::new(-3.0, 0.0, 0.1));
     let start = tracer.flow(&field, &start, 300.0, None).expect("a run");
@@ -287,7 +285,7 @@ fn roessler<const N: usize>(
 }
 
 fn doublings<const N: usize>(expected: &[(f64, f64)]) {
-    let family = OverParameters(Among(Roessler { b: 0.2 }));
+    let family = OverParameters::both(Among(Roessler { b: 0.2 }));
     let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
     let mut site = roessler(&mut corrector);
     for (i, &(c, period)) in expected.iter().enumerate() {
@@ -312,8 +310,8 @@ fn doublings<const N: usize>(expected: &[(f64, f64)]) {
 }
 
 /// Along a curve of bifurcations from one of them: the parameters of so many orbits.
-fn curve<S: Equations<N>, const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<S>, N>,
+fn curve<S: Equations<N, 2>, const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
     site: ContinuationPoint<N>,
     test_function: TestFunction,
     (most, growing): (usize, usize),
@@ -341,7 +339,7 @@ fn curve<S: Equations<N>, const N: usize>(
 #[test]
 fn curves_of_tori_and_doublings_are_those_of_three_dimensions() {
     fn tori<const N: usize>() -> Vec<[f64; 2]> {
-        let family = OverParameters(Among(Langford { omega: 3.5 }));
+        let family = OverParameters::both(Among(Langford { omega: 3.5 }));
         let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
         let site = langford(0.3);
         let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus);
@@ -349,7 +347,7 @@ fn curves_of_tori_and_doublings_are_those_of_three_dimensions() {
         curve(&mut corrector, torus, TestFunction::Torus, (12, 1))
     }
     fn doublings<const N: usize>() -> Vec<[f64; 2]> {
-        let family = OverParameters(Among(Roessler { b: 0.2 }));
+        let family = OverParameters::both(Among(Roessler { b: 0.2 }));
         let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
         let site = roessler(&mut corrector);
         let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
@@ -403,7 +401,9 @@ fn roesslers_cascade_in_three_four_and_twelve_dimensions() {
 #[derive(Debug, Clone, Copy)]
 struct Ring;
 
-impl<const N: usize> Equations<N> for Ring {
+impl<const N: usize> Equations<N, 2> for Ring {
+    const PARAMETERS: [&'static str; 2] = ["force", "unused"];
+
     fn rates<T: Real>(&self, x: [T; N], [force, _]: [T; 2]) -> [T; N] {
         let at = |i: usize| x[i % N];
         std::array::from_fn(|i| (at(i + 1) - at(i + N - 2)) * at(i + N - 1) - x[i] + force)
@@ -431,7 +431,7 @@ fn waves_around_a_ring_of_six_have_five_multipliers_and_shed_a_torus() {
         assert_as_known(record, wave(record, force));
     }
     let (closed, ..) = wave(&all["records"]["4b_lorenz96_N6_F4"], 4.0);
-    let family = OverParameters(Ring);
+    let family = OverParameters::both(Ring);
     let mut corrector = Corrector::<_, 6>::new(&family, 1e-14).expect("a corrector");
     let site = ContinuationPoint {
         shooting: closed.shooting,
@@ -468,7 +468,9 @@ fn waves_around_a_ring_of_six_have_five_multipliers_and_shed_a_torus() {
 #[derive(Debug, Clone, Copy)]
 struct Oscillators;
 
-impl Equations<12> for Oscillators {
+impl Equations<12, 2> for Oscillators {
+    const PARAMETERS: [&'static str; 2] = ["mu", "k"];
+
     fn rates<T: Real>(&self, z: [T; 12], [mu, k]: [T; 2]) -> [T; 12] {
         let one = T::constant(1.0);
         let x = |i: usize| z[2 * (i % 6)];
@@ -501,7 +503,7 @@ fn a_wave_around_six_oscillators_has_eleven_multipliers() {
 }
 
 /// Of the equilibria along the first parameter of some equations: the labelled ones.
-fn labelled<S: Equations<N> + 'static, const N: usize>(
+fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
     equations: S,
     (from, to): (f64, f64),
     held: f64,
@@ -556,7 +558,9 @@ fn equilibria_of_rings_oscillate_where_their_eigenvalues_say() {
 #[derive(Debug, Clone, Copy)]
 struct Atmosphere;
 
-impl Equations<3> for Atmosphere {
+impl Equations<3, 2> for Atmosphere {
+    const PARAMETERS: [&'static str; 2] = ["f", "g"];
+
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [f, g]: [T; 2]) -> [T; 3] {
         let (a, b) = (0.25, 4.0);
         [
@@ -606,7 +610,7 @@ fn lorenzs_atmosphere_folds_oscillates_and_doubles() {
             }
         }
     }
-    let family = OverParameters(Atmosphere);
+    let family = OverParameters::both(Atmosphere);
     let record = &all["records"]["3b_lorenz84_orbit_F2_G0.5"];
     let values = &record["values"];
     let field = Smooth {

@@ -80,7 +80,7 @@ fn first<F: ParametrisedField<3>>(
 
 #[test]
 fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
-    let family = OverParameters(Langford { omega: 3.5 });
+    let family = OverParameters::both(Langford { omega: 3.5 });
     let rho = 0.3;
     let radius = Langford::radius(rho);
     let turn = std::f64::consts::TAU / 12.0;
@@ -120,7 +120,7 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
 
 #[test]
 fn roesslers_orbit_doubles_its_period_and_again() {
-    let family = OverParameters(Roessler { b: 0.2 });
+    let family = OverParameters::both(Roessler { b: 0.2 });
     let start = State::<3>::new(-3.0, 0.0, 0.1);
     let site = settled(&family, [0.2, 2.5], start, (300.0, 5.75));
     let mut corrector = Corrector::<_, 3>::new(&family, 1e-14).expect("a corrector");
@@ -176,7 +176,7 @@ fn roesslers_orbit_doubles_its_period_and_again() {
 
 #[test]
 fn van_der_pols_period_at_damping_one_and_a_thousand() {
-    let family = OverParameters(VanDerPol);
+    let family = OverParameters::both(VanDerPol);
     let site = settled(&family, [1.0, 0.0], State::<2>::new(2.0, 0.0), (60.0, 6.66));
     let mut corrector = Corrector::<_, 2>::new(&family, 1e-15).expect("a corrector");
     let site = closed(&mut corrector, site, 0);
@@ -206,7 +206,7 @@ fn van_der_pols_period_at_damping_one_and_a_thousand() {
 
 #[test]
 fn brusselators_orbits_begin_with_the_period_of_their_hopf_point() {
-    let family = OverParameters(Brusselator);
+    let family = OverParameters::both(Brusselator);
     let start = State::<2>::new(1.2, 2.0);
     let site = settled(&family, [1.0, 2.05], start, (2000.0, 6.3));
     let mut corrector = Corrector::<_, 2>::new(&family, 1e-14).expect("a corrector");
@@ -255,6 +255,10 @@ impl VectorField<4> for WithAnother {
 struct FourOfThem;
 
 impl ParametrisedField<4> for FourOfThem {
+    fn plane(&self) -> [usize; 2] {
+        [0, 1]
+    }
+
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<4> + '_> {
         Box::new(WithAnother(at))
     }
@@ -379,7 +383,9 @@ fn along<F: ParametrisedField<N>, const N: usize>(
 #[derive(Debug, Clone, Copy)]
 struct Reaction;
 
-impl Equations<3> for Reaction {
+impl Equations<3, 2> for Reaction {
+    const PARAMETERS: [&'static str; 2] = ["p1", "p3"];
+
     fn rates<T: Real>(&self, [u, v, w]: [T; 3], [p1, p3]: [T; 2]) -> [T; 3] {
         let one = T::constant(1.0);
         let rate = p1 * w.exp();
@@ -397,7 +403,9 @@ impl Equations<3> for Reaction {
 #[derive(Debug, Clone, Copy)]
 struct FitzHughNagumo;
 
-impl Equations<2> for FitzHughNagumo {
+impl Equations<2, 2> for FitzHughNagumo {
+    const PARAMETERS: [&'static str; 2] = ["v", "w"];
+
     fn rates<T: Real>(&self, [v, w]: [T; 2], [current, eps]: [T; 2]) -> [T; 2] {
         [v - v * v * v / 3.0 - w + current, eps * (v - w * 0.8 + 0.7)]
     }
@@ -406,7 +414,7 @@ impl Equations<2> for FitzHughNagumo {
 /// On other scales steps are shorter; a branch ends where it gets nowhere, not where steps are short.
 #[test]
 fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
-    let family = OverParameters(Reaction);
+    let family = OverParameters::both(Reaction);
     let start = State::<3>::new(0.5, 0.4, 2.0);
     let site = settled(&family, [0.21, 1.55], start, (400.0, 7.1585));
     let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
@@ -419,7 +427,7 @@ fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
         "{orbits:?}"
     );
     // Through the canards, where steps are short, to the Hopf point v = -sqrt(1 - 0.8 eps).
-    let family = OverParameters(FitzHughNagumo);
+    let family = OverParameters::both(FitzHughNagumo);
     let start = State::<2>::new(1.0, 0.0);
     let (eps, period) = (0.08, 39.47);
     let site = settled(&family, [0.5, eps], start, (2000.0, period));

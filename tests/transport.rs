@@ -57,7 +57,9 @@ fn functions_are_right_to_third_order() {
 #[derive(Debug, Clone, Copy)]
 struct Wheel;
 
-impl Equations<2> for Wheel {
+impl Equations<2, 2> for Wheel {
+    const PARAMETERS: [&'static str; 2] = ["x", "y"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y]: [T; 2], [mu, beta]: [T; 2]) -> [T; 2] {
         let squared = x * x + y * y;
@@ -119,7 +121,7 @@ fn check_flow(field: &dyn VectorField<3>, y: [f64; 3], t: f64, h: f64) {
     }
     // The linear part is the tangent.
     let (_, d) = taylor(1e-15)
-        .derivatives(field, (0.0, t), &State::from(y), false)
+        .derivatives(field, (0.0, t), &State::from(y), &[])
         .unwrap();
     let tangent = Jacobian::<3>::from(d.start);
     for k in 0..2 {

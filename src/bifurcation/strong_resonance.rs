@@ -56,7 +56,7 @@ struct AxisPassage {
     v: f64,
 }
 
-fn field(mu: [f64; 2]) -> Smooth<StrongResonance, 2> {
+fn field(mu: [f64; 2]) -> Smooth<StrongResonance, 2, 2> {
     Smooth {
         equations: StrongResonance,
         parameters: mu,
@@ -150,7 +150,7 @@ impl ResonanceCycle {
         let mu = [mu1, mu2];
         let (time, _) = around.turn(mu, amplitude)?;
         let start = State::<2>::new(amplitude, 0.0);
-        let (_, d) = taylor(amplitude, mu2)?.derivatives(&field(mu), (0.0, time), &start, false)?;
+        let (_, d) = taylor(amplitude, mu2)?.derivatives(&field(mu), (0.0, time), &start, &[])?;
         let turns = match around {
             Around::Origin => 2.0,
             Around::Beside => 1.0,

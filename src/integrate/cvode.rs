@@ -5,7 +5,7 @@
 
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Jacobian, State, VectorField, checked_places};
 use crate::sundials::{
     Cvode, ErrorControl, Mode, MultistepMethod, Operations, Problem, Reason, Sensitivity,
     SensitivityMethod,
@@ -221,11 +221,35 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
+        let (end, tangent, _) = self.derivatives(field, t, y0, &[])?;
+        Ok((end, tangent))
+    }
+
+    fn work(&self) -> Work {
+        self.work
+    }
+}
+
+impl<const N: usize> CvodeIntegrator<N> {
+    /// The state at `t.1` with its derivatives in `y0` and in the parameters of these places among those of
+    /// [`VectorField::parametrised`]: forward sensitivities.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a place where there is no parameter; those of [`Integrator::flow`].
+    pub fn derivatives(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        free: &[usize],
+    ) -> Result<(State<N>, Jacobian<N>, Vec<State<N>>)> {
+        checked_places(field, free)?;
         self.work = Work::default();
-        let unit: Vec<State<N>> = Jacobian::<N>::identity()
+        let mut columns: Vec<State<N>> = Jacobian::<N>::identity()
             .column_iter()
             .map(|column| column.into_owned())
             .collect();
+        columns.resize(N + free.len(), State::zeros());
         let settings = Sensitivity {
             scheme: SensitivityMethod::Simultaneous,
             tolerances: None,
@@ -233,18 +257,30 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
         };
         let clock = clock(t);
         self.solver
-            .start_with_sensitivities(clock.0, y0, &unit, &settings)?;
+            .start_with_sensitivities(clock.0, y0, &columns, &settings)?;
         if t.0 == t.1 {
-            return Ok((*y0, Jacobian::identity()));
+            return Ok((*y0, Jacobian::identity(), columns.split_off(N)));
         }
-        let ended = self.run(field, clock, y0, None);
+        let forcing =
+            |column: usize, y: &State<N>| match (column.checked_sub(N), field.parametrised()) {
+                (Some(i), Some(field)) => field.parameter_derivative(y, free[i]),
+                _ => State::zeros(),
+            };
+        let problem = Problem {
+            forcing: (!free.is_empty()).then_some(&forcing),
+            ..Problem::new(field)
+        };
+        self.solver.set_stop_time(Some(clock.1));
+        let ended = self.solver.advance(&problem, clock.1, Mode::Normal);
+        let ended = ended.map_err(|error| self.explain(field, clock, error));
         self.record();
         ended?;
-        let columns = self.solver.sensitivities()?;
-        Ok((self.solver.state(), Jacobian::from_columns(&columns)))
-    }
-
-    fn work(&self) -> Work {
-        self.work
+        let mut columns = self.solver.sensitivities()?;
+        let in_parameters = columns.split_off(N);
+        Ok((
+            self.solver.state(),
+            Jacobian::from_columns(&columns),
+            in_parameters,
+        ))
     }
 }

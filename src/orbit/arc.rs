@@ -11,7 +11,8 @@ pub struct Arc<const N: usize> {
     pub end: State<N>,
     /// The derivative of the end in the start.
     pub tangent: Jacobian<N>,
-    /// The derivatives of the end in V_H and K; zero from methods that make none, and where not asked for.
+    /// The derivatives of the end in the two parameters that were asked for; zero from methods that make none, and where none
+    /// were.
     pub parameters: [State<N>; 2],
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
@@ -172,7 +173,7 @@ impl<const N: usize> Tracer<N> {
         }
     }
 
-    /// The arc of this duration from `start`, with the derivatives in the parameters where asked for.
+    /// The arc of this duration from `start`, with the derivatives in the parameters of these places: two, or none.
     ///
     /// # Errors
     /// Those of [`Integrator::flow`].
@@ -181,16 +182,18 @@ impl<const N: usize> Tracer<N> {
         field: &dyn VectorField<N>,
         start: &State<N>,
         duration: f64,
-        parameters: bool,
+        free: &[usize],
     ) -> Result<Arc<N>> {
         self.allowed(duration)?;
         let span = (0.0, duration);
         let (made, work) = match &mut self.method {
             ArcIntegrator::Taylor(taylor) => {
-                let made = taylor.derivatives(field, span, start, parameters);
+                let made = taylor.derivatives(field, span, start, free);
                 let made = made.map(|(end, d)| {
                     let logs = (Some(d.log_determinant), d.log_transverse);
-                    (end, d.start.into(), d.parameters.map(State::from), logs)
+                    let mut columns = d.parameters.iter().copied().map(State::from);
+                    let columns = [(); 2].map(|()| columns.next().unwrap_or_else(State::zeros));
+                    (end, d.start.into(), columns, logs)
                 });
                 (made, Integrator::<N>::work(taylor))
             }

@@ -1,17 +1,21 @@
-//! Parametrised vector fields: two parameters, along which orbits are continued.
+//! Families of vector fields over the plane of two of their parameters, in which orbits are continued.
 
 use super::continuation_point::ContinuationPoint;
 use super::interface_system::InterfaceSystem;
 use super::shooting_nodes::ShootingNodes;
-use crate::field::{Jacobian, State, VectorField};
-use crate::model::{Loading, Smooth, from_difference_chart, to_difference_chart};
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State, VectorField, place};
+use crate::model::{Loading, Parameter, Smooth, from_difference_chart, to_difference_chart};
 use crate::series::Equations;
 
 /// Vector fields over a plane of two parameters.
 ///
 /// Continuation moves in coordinates of the plane that suit it: logarithms where decades are spanned.
 pub trait ParametrisedField<const N: usize>: Sync {
-    /// The field at these coordinates, whose Taylor tangents have the derivatives in both parameters.
+    /// The places, among all of the field's parameters, of the two that span the plane.
+    fn plane(&self) -> [usize; 2];
+
+    /// The field at these coordinates.
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_>;
 
     /// The parameters themselves.
@@ -38,16 +42,63 @@ fn projection<const N: usize>(along: &State<N>) -> Jacobian<N> {
     Jacobian::<N>::identity() - along * along.transpose() / along.norm_squared()
 }
 
-/// Any system over its two parameters as they are.
+/// Any system over two of its parameters as they are, the others being held.
 #[derive(Debug, Clone, Copy)]
-pub struct OverParameters<S>(pub S);
+pub struct OverParameters<S, const N: usize, const P: usize> {
+    field: Smooth<S, N, P>,
+    plane: [usize; 2],
+}
 
-impl<S: Equations<N>, const N: usize> ParametrisedField<N> for OverParameters<S> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> OverParameters<S, N, P> {
+    /// Over the parameters of these names; the others have the field's values.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is not among [`Equations::PARAMETERS`], or if both are the same.
+    pub fn new(field: Smooth<S, N, P>, names: [&str; 2]) -> Result<Self> {
+        let [first, second] = names.map(|name| place(&S::PARAMETERS, name));
+        let plane = [first?, second?];
+        if plane[0] == plane[1] {
+            return Err(Error::parameter(
+                "the plane of parameters",
+                names[0],
+                "two different parameters",
+            ));
+        }
+        Ok(OverParameters { field, plane })
+    }
+
+    /// The field at these values of the two.
+    pub fn at(&self, at: [f64; 2]) -> Smooth<S, N, P> {
+        let mut field = self.field;
+        for (place, value) in self.plane.into_iter().zip(at) {
+            field.parameters[place] = value;
+        }
+        field
+    }
+}
+
+impl<S: Equations<N, 2>, const N: usize> OverParameters<S, N, 2> {
+    /// A system of two parameters over both.
+    pub fn both(equations: S) -> Self {
+        OverParameters {
+            field: Smooth {
+                equations,
+                parameters: [0.0; 2],
+            },
+            plane: [0, 1],
+        }
+    }
+}
+
+impl<S: Equations<N, P>, const N: usize, const P: usize> ParametrisedField<N>
+    for OverParameters<S, N, P>
+{
+    fn plane(&self) -> [usize; 2] {
+        self.plane
+    }
+
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_> {
-        Box::new(Smooth {
-            equations: self.0,
-            parameters: at,
-        })
+        Box::new(self.at(at))
     }
 
     fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -77,6 +128,10 @@ impl OverLoadings {
 }
 
 impl ParametrisedField<3> for OverLoadings {
+    fn plane(&self) -> [usize; 2] {
+        Parameter::PLANE
+    }
+
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
         self.slab(at).whole()
     }
@@ -91,6 +146,10 @@ impl ParametrisedField<3> for OverLoadings {
 }
 
 impl ParametrisedField<2> for OverLoadings {
+    fn plane(&self) -> [usize; 2] {
+        Parameter::PLANE
+    }
+
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<2> + '_> {
         self.slab(at).plane()
     }
@@ -111,6 +170,10 @@ impl ParametrisedField<2> for OverLoadings {
 pub struct OverDifferenceChart(pub OverLoadings);
 
 impl ParametrisedField<3> for OverDifferenceChart {
+    fn plane(&self) -> [usize; 2] {
+        Parameter::PLANE
+    }
+
     fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
         self.0.slab(at).in_difference_chart()
     }

@@ -101,9 +101,7 @@ pub fn squares<F: ParametrisedField<3>>(
         let (mut x, mut at) = (*node, 0.0);
         let mut sum = Matrix2::zeros();
         for &(point, weight) in &points {
-            let part = tracer
-                .arc(&*field, &x, (point - at) * duration, false)
-                .ok()?;
+            let part = tracer.arc(&*field, &x, (point - at) * duration, &[]).ok()?;
             (x, at) = (part.end, point);
             moved = part.tangent * moved;
             let across = family.across(&x, &field.f(&x)) * moved;

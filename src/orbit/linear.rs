@@ -36,7 +36,7 @@ impl<const N: usize> Linear<N> {
         shooting: &ShootingNodes<N>,
     ) -> Result<Self> {
         let frames = shooting.nodes.iter().map(|x| frame(&field.f(x))).collect();
-        Self::in_frames(tracer, field, shooting, false, frames)
+        Self::in_frames(tracer, field, shooting, &[], frames)
     }
 
     /// In the family's planes, with the derivatives in the parameters.
@@ -48,7 +48,7 @@ impl<const N: usize> Linear<N> {
     ) -> Result<Self> {
         let normal = |x: &State<N>| frame(&family.normal(field.f(x)));
         let frames = shooting.nodes.iter().map(normal).collect();
-        Self::in_frames(tracer, field, shooting, true, frames)
+        Self::in_frames(tracer, field, shooting, &family.plane(), frames)
     }
 
     /// The same in the planes of another linearisation nearby, so that the maps can be compared.
@@ -58,14 +58,14 @@ impl<const N: usize> Linear<N> {
         field: &dyn VectorField<N>,
         shooting: &ShootingNodes<N>,
     ) -> Result<Self> {
-        Self::in_frames(tracer, field, shooting, false, self.frames.clone())
+        Self::in_frames(tracer, field, shooting, &[], self.frames.clone())
     }
 
     fn in_frames(
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
         shooting: &ShootingNodes<N>,
-        parameters: bool,
+        free: &[usize],
         frames: Vec<Jacobian<N>>,
     ) -> Result<Self> {
         let count = shooting.nodes.len();
@@ -78,7 +78,7 @@ impl<const N: usize> Linear<N> {
             slowness: Vec::with_capacity(count),
         };
         for (k, (x, &duration)) in shooting.nodes.iter().zip(&shooting.durations).enumerate() {
-            let arc = tracer.arc(field, x, duration, parameters)?;
+            let arc = tracer.arc(field, x, duration, free)?;
             let next = (k + 1) % count;
             let onto = linear.frames[next];
             let normal = onto.column(0);

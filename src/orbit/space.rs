@@ -69,7 +69,7 @@ impl Space<3> for Whole<'_> {
         x: &State<3>,
         duration: f64,
     ) -> Result<(State<3>, f64)> {
-        let arc = tracers.here.arc(self.0, x, duration, false)?;
+        let arc = tracers.here.arc(self.0, x, duration, &[])?;
         Ok((arc.end, arc.loss()))
     }
 
@@ -104,7 +104,7 @@ impl Plane<'_> {
     ) -> Result<Option<Arc<3>>> {
         let embedded = State::<3>::new(x[0], x[1], x[1]);
         self.whole
-            .map(|whole| tracers.whole.arc(whole, &embedded, duration, false))
+            .map(|whole| tracers.whole.arc(whole, &embedded, duration, &[]))
             .transpose()
     }
 }
@@ -123,7 +123,7 @@ impl Space<2> for Plane<'_> {
         Ok(match self.across(tracers, x, duration)? {
             Some(arc) => (State::<2>::new(arc.end[0], arc.end[1]), arc.loss()),
             None => {
-                let arc = tracers.here.arc(self.plane, x, duration, false)?;
+                let arc = tracers.here.arc(self.plane, x, duration, &[])?;
                 (arc.end, arc.loss())
             }
         })

@@ -254,7 +254,7 @@ fn carry<const N: usize>(
     segment: &mut GrowthSegment<N>,
 ) -> Result<()> {
     let span = (0.0, next.time - here.time);
-    let (end, tangent) = taylor.derivatives(field, span, &here.state, false)?;
+    let (end, tangent) = taylor.derivatives(field, span, &here.state, &[])?;
     *frame = Jacobian::from(tangent.start) * *frame;
     let along = frame.column(0).norm().ln();
     // The flow's direction anew at each point: it would turn into one that grows.

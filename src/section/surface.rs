@@ -253,7 +253,7 @@ pub(crate) fn derivative_along<const N: usize>(
         let next = points.get(k + 1);
         let end = next.map_or(now, |(end, _)| *end);
         let span = (0.0, (end - *begin).hi());
-        let (to, tangent) = taylor.derivatives(field, span, y, false)?;
+        let (to, tangent) = taylor.derivatives(field, span, y, &[])?;
         state = to;
         let f = field.f(&to);
         // Between, the section that the flow crosses at a right angle.

@@ -88,10 +88,10 @@ impl<Q: Quadratic> Analytic<3> for Field<Q> {
     fn reference(&self) -> Box<dyn Solution<3> + '_> {
         unreachable!("no test asks for 31 digits")
     }
-    fn tangent(&self, _: bool) -> Box<dyn Tangent<3> + '_> {
+    fn tangent(&self, _: &[usize]) -> Box<dyn Tangent<3> + '_> {
         Box::new(Track::new(self.0, true))
     }
-    fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {
+    fn reference_tangent(&self, _: &[usize]) -> Box<dyn Tangent<3> + '_> {
         unreachable!("no test asks for 31 digits")
     }
 }
@@ -219,7 +219,7 @@ impl<Q: Quadratic> Tangent<3> for Track<Q> {
     fn derivatives(&self) -> Derivatives<3> {
         Derivatives {
             start: self.columns,
-            parameters: [[0.0; 3]; 2],
+            parameters: Vec::new(),
             log_determinant: self.log_determinant,
             log_transverse: None,
         }

@@ -163,11 +163,10 @@ fn stick_slip_agrees_with_central_differences_in_state_and_parameters() {
     let mut cvode = cvode::<3>(MultistepMethod::Bdf, Operations::Fixed, 1e-11, 1e-11);
     let mut columns = unit::<3>();
     columns.extend([State::<3>::zeros(); 2]);
-    let parameters = [Parameter::Driving, Parameter::Stiffness];
     let problem = Problem {
         forcing: Some(&|column, y| match column {
             0..3 => State::zeros(),
-            _ => field.parameter_derivative(y, parameters[column - 3]),
+            _ => field.parameter_derivative(y, Parameter::PLANE[column - 3]),
         }),
         ..Problem::new(&*field)
     };

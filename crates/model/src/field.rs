@@ -3,6 +3,7 @@
 //! The trait is object-safe on purpose: static and dynamic dispatch take the same time on these systems, and an integrator
 //! then is compiled once per dimension and not once per law.
 
+use crate::error::{Error, Result};
 use crate::series::{Jet3, Solution, Tangent, TaylorMap};
 use nalgebra::{SMatrix, SVector};
 
@@ -40,10 +41,50 @@ pub trait VectorField<const N: usize>: Send + Sync {
         None
     }
 
+    /// The field as one of those that differ by parameters, where it is.
+    fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
+        None
+    }
+
     /// The field in power series, where it can be written so: what a Taylor integrator steps with.
     fn analytic(&self) -> Option<&dyn Analytic<N>> {
         None
     }
+}
+
+/// A field with named parameters, in any of which it can be differentiated.
+pub trait Parametrised<const N: usize> {
+    /// The names of the parameters: a parameter is asked for by its place among them.
+    fn names(&self) -> &[&'static str];
+
+    /// df/dp of the parameter at this place.
+    fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N>;
+
+    /// dJ/dp of the parameter at this place.
+    fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N>;
+}
+
+/// The place of a parameter among some names.
+///
+/// # Errors
+/// [`Error::Parameter`] for a name that is not there.
+pub fn place(names: &[&'static str], name: &str) -> Result<usize> {
+    let place = names.iter().position(|one| *one == name);
+    place.ok_or_else(|| Error::unknown("parameter", name, names))
+}
+
+/// These places, or an error for one where the field has no parameter.
+#[doc(hidden)]
+pub fn checked_places<const N: usize>(field: &dyn VectorField<N>, free: &[usize]) -> Result<()> {
+    let known = field.parametrised().map_or(0, |field| field.names().len());
+    let Some(place) = free.iter().find(|&&place| place >= known) else {
+        return Ok(());
+    };
+    Err(Error::parameter(
+        "the place of a parameter",
+        place,
+        format!("below {known}, the number of parameters of this field"),
+    ))
 }
 
 /// A field whose solutions are made as power series in time.
@@ -54,11 +95,12 @@ pub trait Analytic<const N: usize> {
     /// A solution in 31 digits, to be started.
     fn reference(&self) -> Box<dyn Solution<N> + '_>;
 
-    /// A solution with its derivatives in its start, and in the parameters if asked for, to be started.
-    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_>;
+    /// A solution with its derivatives in its start and in the parameters of these places among [`VectorField::parametrised`]'s,
+    /// to be started.
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_>;
 
-    /// The same, with all derivatives, in 31 digits.
-    fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_>;
+    /// The same in 31 digits.
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_>;
 
     /// A solution to third order in two variations, which are those of this start; `None` where the field has none.
     fn transport(&self, _start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {

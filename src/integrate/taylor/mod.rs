@@ -13,7 +13,7 @@ pub use batch::{Batch, BatchObserver, BatchRun};
 
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
-use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
 use crate::number::DoubleDouble;
 use crate::series::{Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, TaylorMap};
 use std::cell::LazyCell;
@@ -109,25 +109,26 @@ impl Taylor {
         })
     }
 
-    /// The state at `t.1` and its derivatives in `y0`, and with `parameters` those in V_H and K, which are zero otherwise. The
-    /// integral of the trace of the Jacobian comes along.
+    /// The state at `t.1` and its derivatives in `y0` and in the parameters of these places among those of
+    /// [`VectorField::parametrised`]. The integral of the trace of the Jacobian comes along.
     ///
     /// # Errors
-    /// Those of [`Integrator::flow`].
+    /// [`Error::Parameter`] for a place where there is no parameter; those of [`Integrator::flow`].
     pub fn derivatives<const N: usize>(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
-        parameters: bool,
+        free: &[usize],
     ) -> Result<(State<N>, Derivatives<N>)> {
         self.work = Work::default();
+        checked_places(field, free)?;
         let analytic = analytic(field)?;
         let mut tangent = match self.arithmetic {
-            Arithmetic::Double => analytic.tangent(parameters),
-            Arithmetic::DoubleDouble => analytic.reference_tangent(),
+            Arithmetic::Double => analytic.tangent(free),
+            Arithmetic::DoubleDouble => analytic.reference_tangent(free),
         };
-        let (end, _) = self.palc(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
+        let (end, _) = self.trajectory(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
         Ok((end, tangent.derivatives()))
     }
 
@@ -194,7 +195,7 @@ impl Taylor {
             last = h;
             false
         };
-        self.palc(field, t, &start, &mut *transport, None, &mut halt)?;
+        self.trajectory(field, t, &start, &mut *transport, None, &mut halt)?;
         Ok((transport, last))
     }
 
@@ -209,7 +210,7 @@ impl Taylor {
     ) -> Result<(State<N>, f64)> {
         self.work = Work::default();
         let mut solution = analytic(field)?.solution();
-        self.palc(field, t, y0, &mut *solution, observer, halt)
+        self.trajectory(field, t, y0, &mut *solution, observer, halt)
     }
 
     /// The order of a step.
@@ -222,7 +223,7 @@ impl Taylor {
         self.max_steps = max_steps;
     }
 
-    fn palc<const N: usize>(
+    fn trajectory<const N: usize>(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
@@ -317,7 +318,7 @@ impl<const N: usize> Integrator<N> for Taylor {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        let end = self.palc(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
+        let end = self.trajectory(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
         Ok(end.0)
     }
 
@@ -327,7 +328,7 @@ impl<const N: usize> Integrator<N> for Taylor {
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        let (end, derivatives) = self.derivatives(field, t, y0, false)?;
+        let (end, derivatives) = self.derivatives(field, t, y0, &[])?;
         Ok((end, Jacobian::from(derivatives.start)))
     }
 

@@ -33,7 +33,9 @@ impl Lorenz {
     }
 }
 
-impl Equations<3> for Lorenz {
+impl Equations<3, 2> for Lorenz {
+    const PARAMETERS: [&'static str; 2] = ["rho", "beta"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [rho, beta]: [T; 2]) -> [T; 3] {
         [(y - x) * self.sigma, x * (rho - z) - y, x * y - beta * z]
@@ -57,7 +59,9 @@ impl Roessler {
     }
 }
 
-impl Equations<3> for Roessler {
+impl Equations<3, 2> for Roessler {
+    const PARAMETERS: [&'static str; 2] = ["a", "c"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [a, c]: [T; 2]) -> [T; 3] {
         [-(y + z), x + a * y, z * (x - c) + self.b]
@@ -83,7 +87,9 @@ impl Brusselator {
     }
 }
 
-impl Equations<2> for Brusselator {
+impl Equations<2, 2> for Brusselator {
+    const PARAMETERS: [&'static str; 2] = ["a", "b"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y]: [T; 2], [a, b]: [T; 2]) -> [T; 2] {
         let reaction = x * x * y;
@@ -107,7 +113,9 @@ impl VanDerPol {
     }
 }
 
-impl Equations<2> for VanDerPol {
+impl Equations<2, 2> for VanDerPol {
+    const PARAMETERS: [&'static str; 2] = ["mu", "b"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y]: [T; 2], [mu, b]: [T; 2]) -> [T; 2] {
         let damping = mu * (T::constant(1.0) - x * x);
@@ -141,7 +149,9 @@ impl Langford {
     }
 }
 
-impl Equations<3> for Langford {
+impl Equations<3, 2> for Langford {
+    const PARAMETERS: [&'static str; 2] = ["rho", "eps"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [rho, eps]: [T; 2]) -> [T; 3] {
         let growth = z - 0.7;

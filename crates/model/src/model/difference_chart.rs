@@ -8,7 +8,7 @@
 //! range.
 
 use super::{Driven, Loading, Parameter, Smooth, stress_rate};
-use crate::field::{Jacobian, State};
+use crate::field::State;
 use crate::friction::Law;
 use crate::number::{Difference, Real};
 use crate::series::Equations;
@@ -26,15 +26,17 @@ pub struct DifferenceChart<L> {
 
 impl<L: Law> DifferenceChart<L> {
     /// The field at a loading.
-    pub fn at(self, loading: &Loading) -> Smooth<Self, 3> {
+    pub fn at(self, loading: &Loading) -> Smooth<Self, 3, 2> {
         Smooth {
             equations: self,
-            parameters: [loading.driving, loading.stiffness],
+            parameters: (*loading).into(),
         }
     }
 }
 
-impl<L: Law> Equations<3> for DifferenceChart<L> {
+impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
+    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
+
     #[inline(always)]
     fn rates<T: Real>(
         &self,
@@ -81,26 +83,10 @@ pub fn from_difference_chart(x: &State<3>) -> State<3> {
     State::<3>::new(x[0], x[1] + ratio, x[1])
 }
 
-impl<L: Law> Driven<3> for Smooth<DifferenceChart<L>, 3> {
-    fn parameter_derivative(&self, y: &State<3>, p: Parameter) -> State<3> {
-        Smooth::parameter_derivative(self, y, index(p))
-    }
-
-    fn parameter_jacobian(&self, y: &State<3>, p: Parameter) -> Jacobian<3> {
-        Smooth::parameter_jacobian(self, y, index(p))
-    }
-
+impl<L: Law> Driven<3> for Smooth<DifferenceChart<L>, 3, 2> {
     fn slip_rates(&self, x: &State<3>) -> [f64; 2] {
         let law = &self.equations.law;
         let (second, gap) = (x[1].exp(), x[2].exp());
         [second + gap, second].map(|psi| law.slip_rate(law.activation(x[0]), psi))
-    }
-}
-
-/// The place of a parameter.
-fn index(p: Parameter) -> usize {
-    match p {
-        Parameter::Driving => 0,
-        Parameter::Stiffness => 1,
     }
 }

@@ -1,12 +1,12 @@
 //! Equations (11) and (19) in ln psi, for every number: what references, third-order maps and recorded formulas are made of.
 
 use super::response::Response;
-use super::{Loading, stress_rate};
+use super::{Loading, Parameter, Smooth, stress_rate};
 use crate::friction::Law;
 use crate::number::Real;
 use crate::series::{Equations, Recorded};
 
-/// One interface (11), two (19), or two that move alike, in (tau, w_1, ...), w = ln psi, and in the parameters (V_H, K).
+/// One interface (11), two (19), or two that move alike, in (tau, w_1, ...), w = ln psi.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Logarithmic<L> {
     pub law: L,
@@ -21,7 +21,9 @@ impl<L: Law> Logarithmic<L> {
     }
 }
 
-impl<L: Law> Equations<2> for Logarithmic<L> {
+impl<L: Law> Equations<2, 2> for Logarithmic<L> {
+    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
+
     #[inline(always)]
     fn rates<T: Real>(&self, [tau, w]: [T; 2], [driving, stiffness]: [T; 2]) -> [T; 2] {
         let one = self.response(self.law.activation(tau), w);
@@ -34,7 +36,9 @@ impl<L: Law> Equations<2> for Logarithmic<L> {
     }
 }
 
-impl<L: Law> Equations<3> for Logarithmic<L> {
+impl<L: Law> Equations<3, 2> for Logarithmic<L> {
+    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
+
     #[inline(always)]
     fn rates<T: Real>(&self, [tau, w1, w2]: [T; 3], [driving, stiffness]: [T; 2]) -> [T; 3] {
         let activation = self.law.activation(tau);
@@ -56,14 +60,22 @@ impl<L: Law> Equations<3> for Logarithmic<L> {
 
 impl<L: Law> Logarithmic<L> {
     /// The formula, to be recorded.
-    pub fn recorded<const N: usize>(self, loading: &Loading) -> Recorded<Self, N>
+    pub fn recorded<const N: usize>(self, loading: Loading) -> Recorded<Self, N, 2>
     where
-        Self: Equations<N>,
+        Self: Equations<N, 2>,
     {
         Recorded {
             equations: self,
-            parameters: [loading.driving, loading.stiffness],
+            parameters: loading.into(),
             symmetric: N == 2,
+        }
+    }
+
+    /// The field.
+    pub fn at<const N: usize>(self, loading: Loading) -> Smooth<Self, N, 2> {
+        Smooth {
+            equations: self,
+            parameters: loading.into(),
         }
     }
 }

@@ -28,11 +28,11 @@ pub use symmetric::Symmetric;
 pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Parametrised, State, VectorField};
 use crate::friction::{AnyLaw, Law, positive, with_law};
 use std::ops::{Mul, Sub};
 
-/// The two control parameters of the paper.
+/// The two control parameters of the paper: those of all systems of interfaces, in this order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Parameter {
     /// V_H, the driving velocity in V*.
@@ -41,12 +41,21 @@ pub enum Parameter {
     Stiffness,
 }
 
-/// A system that depends on V_H and K.
-pub trait Driven<const N: usize>: VectorField<N> {
-    /// df/dp.
-    fn parameter_derivative(&self, y: &State<N>, p: Parameter) -> State<N>;
-    /// dJ/dp.
-    fn parameter_jacobian(&self, y: &State<N>, p: Parameter) -> Jacobian<N>;
+impl Parameter {
+    /// Their names.
+    pub const NAMES: [&'static str; 2] = ["driving", "stiffness"];
+
+    /// The places of V_H and K.
+    pub const PLANE: [usize; 2] = [Parameter::Driving.place(), Parameter::Stiffness.place()];
+
+    /// The place of this one among the parameters of a system of interfaces.
+    pub const fn place(self) -> usize {
+        self as usize
+    }
+}
+
+/// Interfaces under one stress.
+pub trait Driven<const N: usize>: VectorField<N> + Parametrised<N> {
     /// The slip rates of both interfaces, in V*; a single one stands in both places.
     fn slip_rates(&self, y: &State<N>) -> [f64; 2];
 }
@@ -68,6 +77,13 @@ impl Loading {
             driving: positive("driving", driving)?,
             stiffness: positive("stiffness", stiffness)?,
         })
+    }
+}
+
+impl From<Loading> for [f64; 2] {
+    /// In the order of [`Parameter::NAMES`].
+    fn from(Loading { driving, stiffness }: Loading) -> Self {
+        [driving, stiffness]
     }
 }
 

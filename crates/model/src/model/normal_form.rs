@@ -14,7 +14,9 @@ use crate::series::Equations;
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StrongResonance;
 
-impl Equations<2> for StrongResonance {
+impl Equations<2, 2> for StrongResonance {
+    const PARAMETERS: [&'static str; 2] = ["mu_1", "mu_2"];
+
     #[inline(always)]
     fn rates<T: Real>(&self, [v, w]: [T; 2], [mu1, mu2]: [T; 2]) -> [T; 2] {
         let squared = v * v;

@@ -4,8 +4,8 @@ use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::SeriesSolution;
 use super::tangent::tangent;
-use super::{Driven, Loading, Parameter};
-use crate::field::{Analytic, Jacobian, State, VectorField};
+use super::{Driven, Loading, Parameter, Smooth};
+use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
 use crate::series::{Equations, Recorded, Solution, Tangent};
 
@@ -27,8 +27,12 @@ impl<L: Law> SingleInterface<L> {
         }
     }
 
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 2> {
-        self.equations().recorded(&self.loading)
+    fn whole(&self) -> Smooth<Logarithmic<L>, 2, 2> {
+        self.equations().at(self.loading)
+    }
+
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 2, 2> {
+        self.equations().recorded(self.loading)
     }
 
     /// The loading under which two equal interfaces move as this one: K (V_H - v) = K/2 (2 V_H - 2 v).
@@ -77,6 +81,10 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
         self.law.lasts().then(|| self.law.name())
     }
 
+    fn parametrised(&self) -> Option<&dyn Parametrised<2>> {
+        Some(self)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<2>> {
         Some(self)
     }
@@ -91,35 +99,31 @@ impl<L: Law> Analytic<2> for SingleInterface<L> {
         self.recorded().reference()
     }
 
-    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
-        let compiled = tangent(self.law.core(), self.as_pair(), (2.0, 0.5), parameters);
-        compiled.unwrap_or_else(|| self.recorded().tangent(parameters))
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
+        let compiled = tangent(self.law.core(), self.as_pair(), [2.0, 0.5], free);
+        compiled.unwrap_or_else(|| self.recorded().tangent(free))
     }
 
-    fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {
-        self.recorded().reference_tangent()
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
+        self.recorded().reference_tangent(free)
+    }
+}
+
+impl<L: Law> Parametrised<2> for SingleInterface<L> {
+    fn names(&self) -> &[&'static str] {
+        &Parameter::NAMES
+    }
+
+    fn parameter_derivative(&self, y: &State<2>, place: usize) -> State<2> {
+        self.whole().parameter_derivative(y, place)
+    }
+
+    fn parameter_jacobian(&self, y: &State<2>, place: usize) -> Jacobian<2> {
+        self.whole().parameter_jacobian(y, place)
     }
 }
 
 impl<L: Law> Driven<2> for SingleInterface<L> {
-    fn parameter_derivative(&self, y: &State<2>, p: Parameter) -> State<2> {
-        let rate = match p {
-            Parameter::Driving => self.loading.stiffness,
-            Parameter::Stiffness => self.loading.driving - self.slip_rates(y)[0],
-        };
-        State::<2>::new(rate, 0.0)
-    }
-
-    fn parameter_jacobian(&self, y: &State<2>, p: Parameter) -> Jacobian<2> {
-        let mut j = Jacobian::<2>::zeros();
-        if p == Parameter::Stiffness {
-            let one = self.slopes(y);
-            j[(0, 0)] = -one.v.gradient[0];
-            j[(0, 1)] = -one.v.gradient[1];
-        }
-        j
-    }
-
     fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
         [self.law.slip_rate(self.law.activation(y[0]), y[1].exp()); 2]
     }

@@ -1,12 +1,12 @@
 //! Any small system of [`Equations`] as a vector field: everything from the right-hand side, written once.
 
-use crate::field::{Analytic, Jacobian, State, VectorField};
+use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::number::Jet;
 #[cfg(target_arch = "x86_64")]
 use crate::series::Four;
 use crate::series::{
-    Both, COMPILED, Equations, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap, Variational,
-    is_small,
+    Both, COMPILED, Equations, FREE, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap,
+    Variational, is_small,
 };
 
 /// Equations at given parameters.
@@ -18,31 +18,33 @@ use crate::series::{
 /// # fn main() -> twinslip::Result<()> {
 /// let lorenz = Smooth { equations: Lorenz::classical(), parameters: [28.0, 8.0 / 3.0] };
 /// let mut taylor = Taylor::new(Tolerances::equal(1e-14)?, MAX_STEPS)?;
-/// let (_, derivatives) = taylor.derivatives(&lorenz, (0.0, 1.0), &State::<3>::new(1.0, 2.0, 20.0), true)?;
+/// let (_, derivatives) = taylor.derivatives(&lorenz, (0.0, 1.0), &State::<3>::new(1.0, 2.0, 20.0), &[0, 1])?;
 /// // volumes shrink by the same factor everywhere
 /// assert!((derivatives.log_determinant + 10.0 + 1.0 + 8.0 / 3.0).abs() < 1e-13);
 /// # Ok(())
 /// # }
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Smooth<S, const N: usize> {
+pub struct Smooth<S, const N: usize, const P: usize> {
     /// The right-hand side.
     pub equations: S,
-    /// The two control parameters.
-    pub parameters: [f64; 2],
+    /// The parameters, as named by [`Equations::PARAMETERS`].
+    pub parameters: [f64; P],
 }
 
-impl<S: Equations<N>, const N: usize> Smooth<S, N> {
-    /// df/dp of the i-th parameter.
-    pub fn parameter_derivative(&self, y: &State<N>, i: usize) -> State<N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Parametrised<N> for Smooth<S, N, P> {
+    fn names(&self) -> &[&'static str] {
+        &S::PARAMETERS
+    }
+
+    fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
         let mut parameters = self.parameters.map(constant);
-        parameters[i].gradient = [1.0];
+        parameters[place].gradient = [1.0];
         let x = y.data.0[0].map(constant);
         State::from(self.equations.rates(x, parameters).map(|f| f.gradient[0]))
     }
 
-    /// dJ/dp of the i-th parameter.
-    pub fn parameter_jacobian(&self, y: &State<N>, i: usize) -> Jacobian<N> {
+    fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
         let inner = |value: f64| Jet::<f64, N> {
             value,
             gradient: [0.0; N],
@@ -52,7 +54,7 @@ impl<S: Equations<N>, const N: usize> Smooth<S, N> {
             gradient: [inner(0.0)],
         };
         let mut parameters = self.parameters.map(|p| fixed(inner(p)));
-        parameters[i].gradient = [inner(1.0)];
+        parameters[place].gradient = [inner(1.0)];
         let x = Jet::variables(y.data.0[0]).map(fixed);
         let rates = self.equations.rates(x, parameters);
         Jacobian::from_fn(|i, j| rates[i].gradient[0].gradient[j])
@@ -67,7 +69,11 @@ fn constant(value: f64) -> Jet<f64, 1> {
     }
 }
 
-impl<S: Equations<N>, const N: usize> VectorField<N> for Smooth<S, N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> VectorField<N> for Smooth<S, N, P> {
+    fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
+        Some(self)
+    }
+
     fn lasting(&self) -> Option<&'static str> {
         self.equations.lasting()
     }
@@ -108,12 +114,12 @@ impl<S: Equations<N>, const N: usize> VectorField<N> for Smooth<S, N> {
     }
 }
 
-impl<S: Equations<N>, const N: usize> Smooth<S, N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Smooth<S, N, P> {
     fn is_small(&self) -> bool {
         is_small(&self.equations, self.parameters)
     }
 
-    fn recorded(&self) -> Recorded<S, N> {
+    fn recorded(&self) -> Recorded<S, N, P> {
         Recorded {
             equations: self.equations,
             parameters: self.parameters,
@@ -122,7 +128,7 @@ impl<S: Equations<N>, const N: usize> Smooth<S, N> {
     }
 }
 
-impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<S, N, P> {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
         if const { N <= COMPILED } && self.is_small() {
             return Box::new(Plain::new(self.equations, self.parameters));
@@ -134,8 +140,8 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
         self.recorded().reference()
     }
 
-    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<N> + '_> {
-        if const { N <= COMPILED } && self.is_small() {
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
+        if const { N <= COMPILED } && free.len() <= FREE && self.is_small() {
             #[cfg(target_arch = "x86_64")]
             let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
             #[cfg(not(target_arch = "x86_64"))]
@@ -143,14 +149,19 @@ impl<S: Equations<N>, const N: usize> Analytic<N> for Smooth<S, N> {
             if let Some(four) = four {
                 // Derivatives in the parameters fill lanes that there are.
                 let gradient = Both([four; 2]);
-                return Box::new(Variational::new(self.equations, self.parameters, gradient));
+                return Box::new(Variational::new(
+                    self.equations,
+                    self.parameters,
+                    free,
+                    gradient,
+                ));
             }
         }
-        self.recorded().tangent(parameters)
+        self.recorded().tangent(free)
     }
 
-    fn reference_tangent(&self) -> Box<dyn Tangent<N> + '_> {
-        self.recorded().reference_tangent()
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
+        self.recorded().reference_tangent(free)
     }
 
     fn transport(&self, start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {

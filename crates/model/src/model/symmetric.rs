@@ -7,8 +7,8 @@
 use super::logarithmic::Logarithmic;
 use super::series::SeriesSolution;
 use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, SingleInterface};
-use crate::field::{Analytic, Jacobian, State, VectorField};
+use super::{Driven, Loading, Parameter, SingleInterface, Smooth};
+use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
 use crate::series::{Recorded, Solution, Tangent};
 
@@ -19,12 +19,20 @@ pub struct Symmetric<L> {
 }
 
 impl<L: Law> Symmetric<L> {
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 2> {
-        let two = Logarithmic {
+    /// (19) with w_1 = w_2, for every number.
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
             law: self.equivalent.law,
             alike: 2.0,
-        };
-        two.recorded(&self.equivalent.as_pair())
+        }
+    }
+
+    fn whole(&self) -> Smooth<Logarithmic<L>, 2, 2> {
+        self.equations().at(self.equivalent.as_pair())
+    }
+
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 2, 2> {
+        self.equations().recorded(self.equivalent.as_pair())
     }
 
     /// Of two interfaces with this law and loading.
@@ -38,14 +46,6 @@ impl<L: Law> Symmetric<L> {
                 law,
                 loading: halved,
             },
-        }
-    }
-
-    /// d(equivalent parameter)/d(parameter).
-    fn weight(p: Parameter) -> f64 {
-        match p {
-            Parameter::Driving => 0.5,
-            Parameter::Stiffness => 2.0,
         }
     }
 }
@@ -67,6 +67,10 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
         self.equivalent.lasting()
     }
 
+    fn parametrised(&self) -> Option<&dyn Parametrised<2>> {
+        Some(self)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<2>> {
         Some(self)
     }
@@ -84,30 +88,36 @@ impl<L: Law> Analytic<2> for Symmetric<L> {
         self.recorded().reference()
     }
 
-    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<2> + '_> {
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
         let compiled = tangent(
             self.equivalent.law.core(),
             self.equivalent.as_pair(),
-            (1.0, 1.0),
-            parameters,
+            [1.0, 1.0],
+            free,
         );
-        compiled.unwrap_or_else(|| self.recorded().tangent(parameters))
+        compiled.unwrap_or_else(|| self.recorded().tangent(free))
     }
 
-    fn reference_tangent(&self) -> Box<dyn Tangent<2> + '_> {
-        self.recorded().reference_tangent()
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
+        self.recorded().reference_tangent(free)
+    }
+}
+
+impl<L: Law> Parametrised<2> for Symmetric<L> {
+    fn names(&self) -> &[&'static str] {
+        &Parameter::NAMES
+    }
+
+    fn parameter_derivative(&self, y: &State<2>, place: usize) -> State<2> {
+        self.whole().parameter_derivative(y, place)
+    }
+
+    fn parameter_jacobian(&self, y: &State<2>, place: usize) -> Jacobian<2> {
+        self.whole().parameter_jacobian(y, place)
     }
 }
 
 impl<L: Law> Driven<2> for Symmetric<L> {
-    fn parameter_derivative(&self, y: &State<2>, p: Parameter) -> State<2> {
-        self.equivalent.parameter_derivative(y, p) * Self::weight(p)
-    }
-
-    fn parameter_jacobian(&self, y: &State<2>, p: Parameter) -> Jacobian<2> {
-        self.equivalent.parameter_jacobian(y, p) * Self::weight(p)
-    }
-
     fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
         self.equivalent.slip_rates(y)
     }

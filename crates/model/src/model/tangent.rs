@@ -90,7 +90,9 @@ impl Shell for V3 {
 struct TangentSolution<S, E, X, L> {
     shell: S,
     /// V_H and K of the pair that moves as the system does, per those of the system.
-    weights: (f64, f64),
+    weights: [f64; 2],
+    /// The places of the parameters in which derivatives are asked for.
+    free: Vec<usize>,
     stepper: Stepper<E, LinearisedInterfaces<E, L>, 2>,
     columns: VariationalEquations<X>,
     stiffness: E,
@@ -105,13 +107,14 @@ struct TangentSolution<S, E, X, L> {
     start: [f64; 2],
 }
 
-/// A solution with its derivatives, compiled for this processor; without those in parameters it takes less. `None` on an x86-64
+/// A solution with its derivatives in its start and in the parameters of these places, compiled for this processor; without
+/// parameters it takes less. `None` on an x86-64
 /// without AVX2, of which there are few: each kernel takes minutes to compile, and one for each processor is enough.
 pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     law: L,
     loading: Loading,
-    weights: (f64, f64),
-    parameters: bool,
+    weights: [f64; 2],
+    free: &[usize],
 ) -> Option<Box<dyn Tangent<N> + 'a>> {
     #[cfg(target_arch = "x86_64")]
     let (shell, pair, four) = {
@@ -121,19 +124,27 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     #[cfg(not(target_arch = "x86_64"))]
     let (shell, pair, four) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
     let eight = Both([four; 2]);
-    Some(if parameters {
+    Some(if free.is_empty() {
         Box::new(TangentSolution::new(
-            shell, law, loading, weights, pair, eight,
+            shell, law, loading, weights, free, pair, four,
         ))
     } else {
         Box::new(TangentSolution::new(
-            shell, law, loading, weights, pair, four,
+            shell, law, loading, weights, free, pair, eight,
         ))
     })
 }
 
 impl<S: Shell, E: Spread<X>, X: Element, L: Law> TangentSolution<S, E, X, L> {
-    fn new(shell: S, law: L, loading: Loading, weights: (f64, f64), zero: E, any: X) -> Self {
+    fn new(
+        shell: S,
+        law: L,
+        loading: Loading,
+        weights: [f64; 2],
+        free: &[usize],
+        zero: E,
+        any: X,
+    ) -> Self {
         let formula = LinearisedInterfaces(Interfaces {
             law,
             driving: zero.like(loading.driving),
@@ -142,6 +153,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law> TangentSolution<S, E, X, L> {
         TangentSolution {
             shell,
             weights,
+            free: free.to_vec(),
             stepper: Stepper::new(formula, zero),
             columns: VariationalEquations::new([any; 3], any, any),
             stiffness: zero.like(loading.stiffness),
@@ -308,22 +320,13 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N>
             let states = [psi1.lane(lane) / psi[0], psi2.lane(lane) / psi[1]];
             chart::<N>(tau.lane(lane), states)
         };
-        let parameter = |lane: usize, weight: f64| {
-            if lane < X::LANES {
-                column(lane).map(|x| x * weight)
-            } else {
-                [0.0; N]
-            }
-        };
+        let parameter = |&place: &usize| column(N + place).map(|x| x * self.weights[place]);
         // The trace in ln psi is less by the growth of ln psi.
         let end: [f64; 2] = self.stepper.state()[1].ln().interfaces();
         let growth: f64 = (0..N - 1).map(|i| end[i] - self.start[i]).sum();
         Derivatives {
             start: std::array::from_fn(column),
-            parameters: [
-                parameter(N, self.weights.0),
-                parameter(N + 1, self.weights.1),
-            ],
+            parameters: self.free.iter().map(parameter).collect(),
             log_determinant: self.log_determinant.first() - growth,
             log_transverse: (N == 2).then(|| self.log_transverse.first() - growth),
         }

@@ -4,8 +4,8 @@ use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::series::SeriesSolution;
 use super::tangent::tangent;
-use super::{Driven, Loading, Parameter};
-use crate::field::{Analytic, Jacobian, State, VectorField};
+use super::{Driven, Loading, Parameter, Smooth};
+use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
 use crate::series::{Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
@@ -55,6 +55,10 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
         self.law.lasts().then(|| self.law.name())
     }
 
+    fn parametrised(&self) -> Option<&dyn Parametrised<3>> {
+        Some(self)
+    }
+
     fn analytic(&self) -> Option<&dyn Analytic<3>> {
         Some(self)
     }
@@ -69,8 +73,12 @@ impl<L: Law> TwoInterfaces<L> {
         }
     }
 
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 3> {
-        self.equations().recorded(&self.loading)
+    fn whole(&self) -> Smooth<Logarithmic<L>, 3, 2> {
+        self.equations().at(self.loading)
+    }
+
+    fn recorded(&self) -> Recorded<Logarithmic<L>, 3, 2> {
+        self.equations().recorded(self.loading)
     }
 
     #[inline]
@@ -94,13 +102,13 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
         self.recorded().reference()
     }
 
-    fn tangent(&self, parameters: bool) -> Box<dyn Tangent<3> + '_> {
-        let compiled = tangent(self.law.core(), self.loading, (1.0, 1.0), parameters);
-        compiled.unwrap_or_else(|| self.recorded().tangent(parameters))
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
+        let compiled = tangent(self.law.core(), self.loading, [1.0, 1.0], free);
+        compiled.unwrap_or_else(|| self.recorded().tangent(free))
     }
 
-    fn reference_tangent(&self) -> Box<dyn Tangent<3> + '_> {
-        self.recorded().reference_tangent()
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
+        self.recorded().reference_tangent(free)
     }
 
     fn transport(&self, start: [Jet3; 3]) -> Option<Box<dyn TaylorMap<3> + '_>> {
@@ -108,26 +116,21 @@ impl<L: Law> Analytic<3> for TwoInterfaces<L> {
     }
 }
 
+impl<L: Law> Parametrised<3> for TwoInterfaces<L> {
+    fn names(&self) -> &[&'static str] {
+        &Parameter::NAMES
+    }
+
+    fn parameter_derivative(&self, y: &State<3>, place: usize) -> State<3> {
+        self.whole().parameter_derivative(y, place)
+    }
+
+    fn parameter_jacobian(&self, y: &State<3>, place: usize) -> Jacobian<3> {
+        self.whole().parameter_jacobian(y, place)
+    }
+}
+
 impl<L: Law> Driven<3> for TwoInterfaces<L> {
-    fn parameter_derivative(&self, y: &State<3>, p: Parameter) -> State<3> {
-        let rate = match p {
-            Parameter::Driving => self.loading.stiffness,
-            Parameter::Stiffness => self.loading.driving - self.slip_rates(y).iter().sum::<f64>(),
-        };
-        State::<3>::new(rate, 0.0, 0.0)
-    }
-
-    fn parameter_jacobian(&self, y: &State<3>, p: Parameter) -> Jacobian<3> {
-        let mut j = Jacobian::<3>::zeros();
-        if p == Parameter::Stiffness {
-            let [first, second] = self.slopes(y);
-            j[(0, 0)] = -(first.v.gradient[0] + second.v.gradient[0]);
-            j[(0, 1)] = -first.v.gradient[1];
-            j[(0, 2)] = -second.v.gradient[1];
-        }
-        j
-    }
-
     fn slip_rates(&self, y: &State<3>) -> [f64; 2] {
         let s = self.law.activation(y[0]);
         [1, 2].map(|i| self.law.slip_rate(s, y[i].exp()))

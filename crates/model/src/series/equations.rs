@@ -9,18 +9,21 @@ use crate::number::{DoubleDouble, Real};
 use std::cell::Cell;
 use std::fmt::Debug;
 
-/// dx/dt = f(x; p) in N variables with two control parameters: the right-hand side, written once for every number.
+/// dx/dt = f(x; p) in N variables with P named parameters: the right-hand side, written once for every number.
 ///
 /// Jets make derivatives of it, and series its solutions. It must be smooth along the solutions: of |x| they take the sign at
 /// the beginning of a step. Formulas of up to three variables and some fifty
 /// series are compiled (one for each variable and product, two for a quotient, three for an exponential, four for a power); larger
 /// ones run in loops over their operations.
-pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
+pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync {
+    /// The names of the parameters, in the order in which `rates` takes them. Derivatives are had in any of them.
+    const PARAMETERS: [&'static str; P];
+
     /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
-    fn rates<T: Real>(&self, x: [T; N], parameters: [T; 2]) -> [T; N];
+    fn rates<T: Real>(&self, x: [T; N], parameters: [T; P]) -> [T; N];
 
     /// Slip rates along the solution, of one interface or two, for fields that have any.
-    fn slip_rates<T: Real>(&self, _x: [T; N], _parameters: [T; 2]) -> [Option<T>; 2] {
+    fn slip_rates<T: Real>(&self, _x: [T; N], _parameters: [T; P]) -> [Option<T>; 2] {
         [None; 2]
     }
 
@@ -34,7 +37,10 @@ pub trait Equations<const N: usize>: Copy + Debug + Send + Sync {
 pub(crate) const COMPILED: usize = 3;
 
 /// Whether the formula is small enough for code that is compiled for it: a few variables, and rows that there is room for.
-pub(crate) fn is_small<S: Equations<N>, const N: usize>(equations: &S, p: [f64; 2]) -> bool {
+pub(crate) fn is_small<S: Equations<N, P>, const N: usize, const P: usize>(
+    equations: &S,
+    p: [f64; P],
+) -> bool {
     if const { N > COMPILED } {
         return false;
     }
@@ -48,12 +54,12 @@ pub(crate) fn is_small<S: Equations<N>, const N: usize>(equations: &S, p: [f64; 
 
 /// The equations as a formula.
 #[derive(Debug, Clone, Copy)]
-struct Fixed<S> {
+struct Fixed<S, const P: usize> {
     equations: S,
-    parameters: [f64; 2],
+    parameters: [f64; P],
 }
 
-impl<S: Equations<N>, const N: usize> Formula<f64, N> for Fixed<S> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Formula<f64, N> for Fixed<S, P> {
     #[inline(always)]
     fn rates<'t, O: Order>(&self, x: [Series<'t, f64, O>; N]) -> Rates<'t, f64, O, N> {
         Rates {
@@ -76,13 +82,13 @@ impl<S: Equations<N>, const N: usize> Formula<f64, N> for Fixed<S> {
 }
 
 /// A solution of the equations on its way. A step may err by `atol + rtol |x_i|` in x_i, in each of them.
-pub struct Plain<S, const N: usize> {
-    stepper: Stepper<f64, Fixed<S>, N>,
+pub struct Plain<S, const N: usize, const P: usize> {
+    stepper: Stepper<f64, Fixed<S, P>, N>,
 }
 
-impl<S: Equations<N>, const N: usize> Plain<S, N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Plain<S, N, P> {
     /// To be started.
-    pub fn new(equations: S, parameters: [f64; 2]) -> Self {
+    pub fn new(equations: S, parameters: [f64; P]) -> Self {
         let formula = Fixed {
             equations,
             parameters,
@@ -93,7 +99,7 @@ impl<S: Equations<N>, const N: usize> Plain<S, N> {
     }
 }
 
-impl<S: Equations<N>, const N: usize> Solution<N> for Plain<S, N> {
+impl<S: Equations<N, P>, const N: usize, const P: usize> Solution<N> for Plain<S, N, P> {
     fn start(&mut self, y: &[f64; N]) {
         self.stepper.start(*y);
     }

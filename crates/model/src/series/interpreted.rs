@@ -28,6 +28,10 @@ pub(super) trait Trajectory {
     fn series(&self, i: usize, into: &mut [f64]);
     /// The same of the slip rate of an interface; zeros where there is none.
     fn slip_rates(&self, interface: usize, into: &mut [f64]);
+    /// In how many parameters it has derivatives.
+    fn free(&self) -> usize {
+        0
+    }
     /// The derivative of the i-th variable in a component of the start, or after these in a parameter; zero if not asked for.
     fn derivative(&self, _i: usize, _direction: usize) -> f64 {
         0.0

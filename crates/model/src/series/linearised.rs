@@ -334,6 +334,10 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         self.solution.slip_rates(interface, into);
     }
 
+    fn free(&self) -> usize {
+        self.parameters
+    }
+
     fn derivative(&self, i: usize, direction: usize) -> f64 {
         if direction < self.columns.variables + self.parameters {
             self.columns.get(i, direction)

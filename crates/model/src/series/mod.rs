@@ -54,7 +54,7 @@ pub use recorded::Recorded;
 pub use stepper::Stepper;
 pub use tape::Order;
 pub use transport::TaylorMap;
-pub use variational::Variational;
+pub use variational::{FREE, Variational};
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
 #[doc(hidden)]
@@ -88,20 +88,20 @@ pub trait Solution<const N: usize> {
     fn expansion(&self, order: usize, into: &mut Expansion<N>);
 }
 
-/// A solution with its derivatives in its start and in the parameters, on its way. Started with y, those in y are the identity
+/// A solution with its derivatives in its start and in some parameters, on its way. Started with y, those in y are the identity
 /// and those in parameters zero; every step has all of them within the accuracy.
 pub trait Tangent<const N: usize>: Solution<N> {
     /// The derivatives of the state reached.
     fn derivatives(&self) -> Derivatives<N>;
 }
 
-/// Derivatives of a state in its start and in the parameters.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// Derivatives of a state in its start and in parameters.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Derivatives<const N: usize> {
     /// In the j-th component of the start: column j.
     pub start: [[f64; N]; N],
-    /// In the two control parameters: V_H and K of the slab, those of an [`Equations`].
-    pub parameters: [[f64; N]; 2],
+    /// In the parameters that were asked for, in that order.
+    pub parameters: Vec<[f64; N]>,
     /// The integral of the trace of the Jacobian: by Liouville's theorem the logarithm of the determinant of `start`, of which
     /// it knows nothing.
     pub log_determinant: f64,

@@ -20,11 +20,11 @@ const REFERENCE_ROOM: usize = REFERENCE_ORDER + 1;
 
 /// Equations at given parameters, whose solutions are made by a recorded formula.
 #[derive(Debug, Clone, Copy)]
-pub struct Recorded<S, const N: usize> {
+pub struct Recorded<S, const N: usize, const P: usize> {
     /// The right-hand side.
     pub equations: S,
-    /// The two control parameters.
-    pub parameters: [f64; 2],
+    /// The parameters.
+    pub parameters: [f64; P],
     /// Whether they are the symmetric subspace of two equal parts under one common variable, the first: the difference between
     /// the parts then grows as the last variable does on its own.
     pub symmetric: bool,
@@ -35,7 +35,8 @@ struct Recording<'a> {
     record: RecordFormula<'a>,
     variables: usize,
     slip_rates: usize,
-    parameters: usize,
+    /// In how many parameters it has derivatives.
+    free: usize,
     symmetric: bool,
 }
 
@@ -56,7 +57,7 @@ impl<'a> Recording<'a> {
     }
 
     fn tangent(self) -> Box<dyn Trajectory + 'a> {
-        let (shape, kind) = (self.shape(), (self.parameters, self.symmetric));
+        let (shape, kind) = (self.shape(), (self.free, self.symmetric));
         let solution = Interpreted::new(self.record, shape, ROOM, 0.0);
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = avx2() {
@@ -67,7 +68,7 @@ impl<'a> Recording<'a> {
     }
 
     fn reference_tangent(self) -> Box<dyn Trajectory + 'a> {
-        let (shape, kind) = (self.shape(), (self.parameters, self.symmetric));
+        let (shape, kind) = (self.shape(), (self.free, self.symmetric));
         let zero = DoubleDouble::ZERO;
         let solution = Interpreted::new(self.record, shape, REFERENCE_ROOM, zero);
         Box::new(Linearised::new(solution, kind, REFERENCE_ROOM, zero))
@@ -114,7 +115,7 @@ impl<const N: usize> Tangent<N> for Known<Box<dyn Trajectory + '_>, N> {
         let (log_determinant, log_transverse) = self.0.log_growth();
         Derivatives {
             start: std::array::from_fn(column),
-            parameters: [column(N), column(N + 1)],
+            parameters: (0..self.0.free()).map(|i| column(N + i)).collect(),
             log_determinant,
             log_transverse,
         }
@@ -132,96 +133,81 @@ impl<const N: usize> TaylorMap<N> for Known<Box<Transported<'_>>, N> {
     }
 }
 
-impl<'a, S: Equations<N> + 'a, const N: usize> Recorded<S, N> {
+impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> Recorded<S, N, P> {
     /// A solution.
     pub fn solution(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(Derived::Nothing).solution()))
+        Box::new(Known(self.recording(None).solution()))
     }
 
     /// A solution in 31 digits.
     pub fn reference(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(Derived::Nothing).reference()))
+        Box::new(Known(self.recording(None).reference()))
     }
 
-    /// A solution with its derivatives, in those parameters too if asked for.
-    pub fn tangent(self, parameters: bool) -> Box<dyn Tangent<N> + 'a> {
-        let recording = if parameters {
-            self.recording(Derived::InParameters)
-        } else {
-            self.recording(Derived::InVariables)
-        };
-        Box::new(Known(recording.tangent()))
+    /// A solution with its derivatives in its start and in the parameters of these places.
+    pub fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+        Box::new(Known(self.recording(Some(free)).tangent()))
     }
 
-    /// The same, with all derivatives, in 31 digits.
-    pub fn reference_tangent(self) -> Box<dyn Tangent<N> + 'a> {
-        let recording = self.recording(Derived::InParameters);
-        Box::new(Known(recording.reference_tangent()))
+    /// The same in 31 digits.
+    pub fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+        Box::new(Known(self.recording(Some(free)).reference_tangent()))
     }
 
     /// A solution to third order in two variations, which are those of this start.
     pub fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
-        let recording = self.recording(Derived::Nothing);
+        let recording = self.recording(None);
         Box::new(Known(Box::new(recording.transport(&start))))
     }
 
-    /// The formula, and as many derivatives as asked for: none, those in the variables, or those in the parameters too.
-    fn recording(self, derivatives: Derived) -> Recording<'a> {
+    /// The formula; with the places of parameters its derivatives in the variables and in these.
+    fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
+        let free = free.map(<[usize]>::to_vec);
         let constant = self.parameters.map(f64::constant);
         let slip_rates = self.equations.slip_rates([1.0; N], constant);
         Recording {
             slip_rates: slip_rates.iter().flatten().count(),
             symmetric: self.symmetric,
             variables: N,
-            parameters: match derivatives {
-                Derived::InParameters => 2,
-                _ => 0,
-            },
+            free: free.as_ref().map_or(0, Vec::len),
             record: Box::new(move |x| {
                 let graph = Graph::default();
                 let x = std::array::from_fn(|i| graph.variable(i, x[i]));
-                let p = [0, 1].map(|q| graph.variable(N + q, self.parameters[q]));
+                let p = std::array::from_fn(|q| graph.variable(N + q, self.parameters[q]));
                 let rates = self.equations.rates(x, p);
                 let slip_rates = self.equations.slip_rates(x, p);
-                assemble(&graph, &self.parameters, (&rates, &slip_rates), derivatives)
+                assemble(
+                    &graph,
+                    &self.parameters,
+                    (&rates, &slip_rates),
+                    free.as_deref(),
+                )
             }),
         }
     }
 }
 
-/// Which derivatives are recorded.
-#[derive(Debug, Clone, Copy)]
-enum Derived {
-    Nothing,
-    InVariables,
-    InParameters,
-}
-
-/// The program of these rates and slip rates. Its outputs: the rates, the slip rates, the Jacobian row by row, and for each
-/// rate its derivatives in the parameters.
+/// The program of these rates and slip rates. Its outputs: the rates, the slip rates, and with places of parameters the Jacobian
+/// row by row and for each rate its derivatives in these.
 fn assemble(
     graph: &Graph,
     parameters: &[f64],
     (rates, slip_rates): (&[Traced<'_>], &[Option<Traced<'_>>]),
-    derivatives: Derived,
+    free: Option<&[usize]>,
 ) -> Program {
     let n = rates.len();
     let mut outputs = rates.to_vec();
     outputs.extend(slip_rates.iter().flatten());
-    let mut append = |variables: std::ops::Range<usize>| {
-        let columns: Vec<Vec<Traced<'_>>> =
-            variables.map(|i| graph.derivatives(rates, i)).collect();
+    let mut append = |variables: Vec<usize>| {
+        let columns = variables.into_iter().map(|i| graph.derivatives(rates, i));
+        let columns: Vec<Vec<Traced<'_>>> = columns.collect();
         for i in 0..n {
             outputs.extend(columns.iter().map(|column| column[i]));
         }
     };
-    match derivatives {
-        Derived::Nothing => {}
-        Derived::InVariables => append(0..n),
-        Derived::InParameters => {
-            append(0..n);
-            append(n..n + parameters.len());
-        }
+    if let Some(free) = free {
+        append((0..n).collect());
+        append(free.iter().map(|q| n + q).collect());
     }
     Program::new(graph, (n, parameters), &outputs)
 }

@@ -19,14 +19,14 @@ use pulp::NullaryFnOnce;
 
 /// The equations on duals, with the trace of the Jacobian watched first.
 #[derive(Debug, Clone, Copy)]
-struct WithTrace<S, X> {
+struct WithTrace<S, X, const P: usize> {
     equations: S,
-    parameters: [Dual<X>; 2],
+    parameters: [Dual<X>; P],
     /// 1 in the lanes that change along the solution, 0 in those that stand for directions.
     changing: X,
 }
 
-impl<S, X: Element> WithTrace<S, X> {
+impl<S, X: Element, const P: usize> WithTrace<S, X, P> {
     /// A rate without the derivatives in directions.
     #[inline(always)]
     fn changing<'t, O: Order>(&self, rate: Series<'t, Dual<X>, O>) -> Series<'t, Dual<X>, O> {
@@ -46,14 +46,16 @@ fn slope<X: Element, O: Order>(
     rate.lanewise(|d| d.like(d.gradient.lane(lane)))
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> Formula<Dual<X>, N> for WithTrace<S, X> {
+impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> Formula<Dual<X>, N>
+    for WithTrace<S, X, P>
+{
     #[inline(always)]
     fn rates<'t, O: Order>(&self, x: [Series<'t, Dual<X>, O>; N]) -> Rates<'t, Dual<X>, O, N> {
         // Two or three, one by one: what is in a loop folds too late.
         let mut rates = self.equations.rates(x, self.parameters.map(value));
-        let mut trace = slope(rates[0], N + 2) + slope(rates[1], N + 3);
+        let mut trace = slope(rates[0], N + FREE) + slope(rates[1], N + FREE + 1);
         if N == 3 {
-            trace = trace + slope(rates[2], N + 4);
+            trace = trace + slope(rates[2], N + FREE + 2);
             rates[2] = self.changing(rates[2]);
         }
         rates[0] = self.changing(rates[0]);
@@ -88,31 +90,44 @@ impl<S: Equations<N>, X: Element, const N: usize> Formula<Dual<X>, N> for WithTr
     }
 }
 
-/// A solution of the equations with its derivatives in its start and in both parameters; X has at least 2 N + 2 lanes.
+/// Parameters that there are lanes for.
+pub const FREE: usize = 2;
+
+/// A solution of the equations with its derivatives in its start and in one or two of the parameters; X has at least 2 N + 2
+/// lanes.
 ///
 /// A step may err by `atol + rtol |x_i|` in x_i. In a column of derivatives it may err by `rtol` of the largest of its
 /// components, each counted in units of 1 + |x_i|.
-pub struct Variational<S, X, const N: usize> {
-    stepper: Stepper<Dual<X>, WithTrace<S, X>, N>,
+pub struct Variational<S, X, const N: usize, const P: usize> {
+    stepper: Stepper<Dual<X>, WithTrace<S, X, P>, N>,
+    /// In how many parameters.
+    free: usize,
     log_determinant: f64,
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> Variational<S, X, N> {
-    /// To be started; `gradient` is any.
-    pub fn new(equations: S, parameters: [f64; 2], gradient: X) -> Self {
-        assert!(2 * N + 2 <= X::LANES, "more variables than lanes");
+impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> Variational<S, X, N, P> {
+    /// To be started, with derivatives in the parameters of these places, of which there are no more than [`FREE`]; `gradient` is
+    /// any.
+    pub fn new(equations: S, parameters: [f64; P], free: &[usize], gradient: X) -> Self {
+        assert!(
+            2 * N + FREE <= X::LANES && free.len() <= FREE,
+            "more variables than lanes"
+        );
         let zero = gradient.like(0.0);
         let mut changing = zero;
-        for lane in 0..N + 2 {
+        for lane in 0..N + FREE {
             changing = changing.with_lane(lane, 1.0);
         }
         let parameter = |i: usize| Dual {
             value: parameters[i],
-            gradient: zero.with_lane(N + i, 1.0),
+            gradient: match free.iter().position(|&at| at == i) {
+                Some(lane) => zero.with_lane(N + lane, 1.0),
+                None => zero,
+            },
         };
         let formula = WithTrace {
             equations,
-            parameters: [parameter(0), parameter(1)],
+            parameters: std::array::from_fn(parameter),
             changing,
         };
         let any = Dual {
@@ -120,6 +135,7 @@ impl<S: Equations<N>, X: Element, const N: usize> Variational<S, X, N> {
             gradient,
         };
         Variational {
+            free: free.len(),
             stepper: Stepper::new(formula, any),
             log_determinant: 0.0,
         }
@@ -170,13 +186,15 @@ impl<S: Equations<N>, X: Element, const N: usize> Variational<S, X, N> {
 }
 
 /// A step, to be compiled for the processor.
-struct VariationalStep<'a, S, X, const N: usize> {
-    track: &'a mut Variational<S, X, N>,
+struct VariationalStep<'a, S, X, const N: usize, const P: usize> {
+    track: &'a mut Variational<S, X, N, P>,
     accuracy: &'a Accuracy,
     limit: Dual<X>,
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> NullaryFnOnce for VariationalStep<'_, S, X, N> {
+impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> NullaryFnOnce
+    for VariationalStep<'_, S, X, N, P>
+{
     type Output = Dual<X>;
     #[inline(always)]
     fn call(self) -> Dual<X> {
@@ -184,13 +202,15 @@ impl<S: Equations<N>, X: Element, const N: usize> NullaryFnOnce for VariationalS
     }
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> Solution<N> for Variational<S, X, N> {
+impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> Solution<N>
+    for Variational<S, X, N, P>
+{
     fn start(&mut self, y: &[f64; N]) {
         let zero = self.stepper.state()[0].like(0.0);
         let mut x = [zero; N];
         for (i, x) in x.iter_mut().enumerate() {
             x.value = y[i];
-            x.gradient = zero.gradient.with_lane(i, 1.0).with_lane(N + 2 + i, 1.0);
+            x.gradient = zero.gradient.with_lane(i, 1.0).with_lane(N + FREE + i, 1.0);
         }
         self.stepper.start(x);
         self.log_determinant = 0.0;
@@ -222,12 +242,14 @@ impl<S: Equations<N>, X: Element, const N: usize> Solution<N> for Variational<S,
     }
 }
 
-impl<S: Equations<N>, X: Element, const N: usize> Tangent<N> for Variational<S, X, N> {
+impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> Tangent<N>
+    for Variational<S, X, N, P>
+{
     fn derivatives(&self) -> Derivatives<N> {
         let column = |lane: usize| self.stepper.state().map(|x| x.gradient.lane(lane));
         Derivatives {
             start: std::array::from_fn(column),
-            parameters: [column(N), column(N + 1)],
+            parameters: (0..self.free).map(|i| column(N + i)).collect(),
             log_determinant: self.log_determinant,
             log_transverse: None,
         }
