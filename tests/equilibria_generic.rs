@@ -101,11 +101,10 @@ fn only<const N: usize>(points: &[FoundEquilibrium<N>], label: Label) -> Vec<Fou
 
 #[test]
 fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
-    let fields = |p: [f64; 2]| Box::new(Lorenz { rho: p[0] }) as Box<dyn VectorField<3>>;
+    let fields = |rho| Box::new(Lorenz { rho }) as Box<dyn VectorField<3>>;
     let family = FieldEquilibria {
         fields: &fields,
-        parameters: [0.0, 0.0],
-        varied: 0,
+        along: "rho",
     };
     for longest in [0.5, 2.0] {
         let settings = Settings::new((0.0, 30.0), longest).unwrap();
@@ -148,13 +147,11 @@ fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
 
 #[test]
 fn the_brusselator_oscillates_beyond_its_hopf_point() {
-    let fields =
-        |p: [f64; 2]| Box::new(Brusselator { a: p[0], b: p[1] }) as Box<dyn VectorField<2>>;
     for a in [0.7, 1.0, 2.0] {
+        let fields = |b| Box::new(Brusselator { a, b }) as Box<dyn VectorField<2>>;
         let family = FieldEquilibria {
             fields: &fields,
-            parameters: [a, 0.0],
-            varied: 1,
+            along: "b",
         };
         let settings = Settings::new((0.5, 8.0), 0.3).unwrap();
         let start = State::<2>::new(a, 0.5 / a);
@@ -172,11 +169,10 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
 
 #[test]
 fn both_folds_of_a_cubic() {
-    let fields = |p: [f64; 2]| Box::new(Folded { p: p[0] }) as Box<dyn VectorField<1>>;
+    let fields = |p| Box::new(Folded { p }) as Box<dyn VectorField<1>>;
     let family = FieldEquilibria {
         fields: &fields,
-        parameters: [0.0, 0.0],
-        varied: 0,
+        along: "p",
     };
     let mut settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
     settings.wanted = vec![-0.5];
@@ -250,9 +246,8 @@ impl VectorField<2> for Conservative {
 #[test]
 fn a_conservative_system_has_no_hopf_points() {
     let family = FieldEquilibria {
-        fields: &|p: [f64; 2]| Box::new(Conservative { p: p[0] }),
-        parameters: [0.0, 0.0],
-        varied: 0,
+        fields: &|p| Box::new(Conservative { p }),
+        along: "p",
     };
     for longest in [0.3, 0.05, 0.01] {
         let settings = Settings::new((-2.0, 2.0), longest).unwrap();

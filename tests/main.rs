@@ -7,6 +7,7 @@ mod command;
 mod common;
 mod drawn;
 
+mod arcs;
 mod batch;
 mod branches;
 mod branches_equilibria;

@@ -190,7 +190,7 @@ fn mixed<const N: usize>(x: &State<3>) -> State<N> {
     State::from(reflected::<f64, N>(whole))
 }
 
-/// Along a branch towards greater values of a parameter: the first zero of an test_function below `end`.
+/// Along a branch towards greater values of a parameter: the first zero of a test function below `end`.
 fn first<S: Equations<N, 2>, const N: usize>(
     corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
     site: ContinuationPoint<N>,
@@ -509,16 +509,15 @@ fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
     held: f64,
     start: State<N>,
 ) -> Vec<FoundEquilibrium<N>> {
-    let fields = |parameters: [f64; 2]| {
+    let fields = |first: f64| {
         Box::new(Smooth {
             equations,
-            parameters,
+            parameters: [first, held],
         }) as Box<dyn VectorField<N>>
     };
     let family = FieldEquilibria {
         fields: &fields,
-        parameters: [from, held],
-        varied: 0,
+        along: S::PARAMETERS[0],
     };
     let settings = Settings::new((from.min(to), from.max(to)), 0.2).expect("settings");
     let mut found = Vec::new();

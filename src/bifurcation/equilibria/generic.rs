@@ -1,9 +1,9 @@
 //! Equilibria of any small system with a parameter: f(y; p) = 0 followed in p, with folds, branch points and Hopf points.
 //!
-//! A family of fields is a function of its two parameters. Test functions: the tangent's component along p (fold); the determinant
+//! A family of fields is a function of one parameter. Test functions: the tangent's component along p (fold); the determinant
 //! of the extended Jacobian over the tangent (branch point); the determinant of the bialternate product 2 J (.) 1, the product of
-//! all sums of two eigenvalues (Hopf; Kuznetsov 2004, section 10.2.2). The derivative in p is a difference of fourth order, so
-//! special points have some 11 digits; third derivatives, for the first Lyapunov coefficient, are differences too.
+//! all sums of two eigenvalues (Hopf; Kuznetsov 2004, section 10.2.2). The derivative in p is that of the field, or where
+//! the field has no parameter of this name a difference of fourth order, with some 11 digits of special points; third derivatives, for the first Lyapunov coefficient, are differences too.
 //!
 //! Limits: two sums of eigenvalues that vanish together, and several branches through one point, are not untangled.
 
@@ -13,30 +13,27 @@ use crate::continuation::{
     Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, ZeroProblem, follow,
 };
 use crate::error::{Error, Result};
-use crate::field::{State, VectorField};
+use crate::field::{State, VectorField, place};
 use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
-/// The fields with these values of the parameters.
-pub type Fields<'a, const N: usize> = &'a dyn Fn([f64; 2]) -> Box<dyn VectorField<N>>;
+/// The field at a value of the parameter.
+pub type Fields<'a, const N: usize> = &'a dyn Fn(f64) -> Box<dyn VectorField<N>>;
 
-/// The equilibria of a family of fields along one of its parameters.
+/// The equilibria of a family of fields along one parameter.
 #[derive(Clone, Copy)]
 pub struct FieldEquilibria<'a, const N: usize> {
     /// The fields.
     pub fields: Fields<'a, N>,
-    /// The parameters; that of the other number is held.
-    pub parameters: [f64; 2],
-    /// Which is varied: 0 or 1.
-    pub varied: usize,
+    /// The parameter's name, by which the fields know its derivatives.
+    pub along: &'a str,
 }
 
 impl<const N: usize> std::fmt::Debug for FieldEquilibria<'_, N> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Family")
-            .field("parameters", &self.parameters)
-            .field("varied", &self.varied)
+            .field("along", &self.along)
             .finish_non_exhaustive()
     }
 }
@@ -92,13 +89,17 @@ const CHANGE: f64 = 1e-3;
 
 impl<const N: usize> FieldEquilibria<'_, N> {
     fn field(&self, parameter: f64) -> Box<dyn VectorField<N>> {
-        let mut parameters = self.parameters;
-        parameters[self.varied] = parameter;
-        (self.fields)(parameters)
+        (self.fields)(parameter)
     }
 
     /// df/dp.
     fn in_parameter(&self, y: &State<N>, p: f64) -> State<N> {
+        let here = self.field(p);
+        if let Some(field) = here.parametrised()
+            && let Ok(place) = place(field.names(), self.along)
+        {
+            return field.parameter_derivative(y, place);
+        }
         let h = CHANGE * (1.0 + p.abs());
         let f = |p: f64| self.field(p).f(y);
         ((f(p + h) - f(p - h)) * 8.0 - (f(p + 2.0 * h) - f(p - 2.0 * h))) / (12.0 * h)
@@ -128,16 +129,13 @@ impl<const N: usize> FieldEquilibria<'_, N> {
     /// The equilibria from a start until the range ends.
     ///
     /// # Errors
-    /// Those of [`follow`]; [`Error::Parameter`] if `varied` is neither 0 nor 1.
+    /// Those of [`follow`].
     pub fn follow(
         &self,
         onward: &Onward<N>,
         settings: &Settings,
         seen: &mut dyn FnMut(&FoundEquilibrium<N>) -> ControlFlow<()>,
     ) -> Result<Branch> {
-        if self.varied > 1 {
-            return Err(Error::parameter("varied", self.varied, "0 or 1"));
-        }
         let start = Start {
             u: DVector::from_column_slice(onward.state.as_slice()),
             lambda: onward.parameter,
