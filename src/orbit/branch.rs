@@ -14,7 +14,7 @@ use super::space::{Plane, Space, Whole};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::State;
-use crate::model::Parameter;
+use crate::model::{DRIVING, Parameter};
 
 /// Size of the first orbit.
 const FIRST: f64 = 0.02;
@@ -117,7 +117,8 @@ where
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
     let family = OverLoadings(*slab);
     let mut corrector = Corrector::by(&family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
-    let Ok(mut palc) = Palc::from_hopf(&mut corrector, PalcSettings::branch(0, LONGEST), hopf)
+    let Ok(mut palc) =
+        Palc::from_hopf(&mut corrector, PalcSettings::branch(DRIVING, LONGEST), hopf)
     else {
         return Ok(());
     };
@@ -126,15 +127,15 @@ where
             break;
         };
         let (old, new) = (&before.here.site, &palc.now.here.site);
-        if (new.at[0] - wanted) * (old.at[0] - wanted) <= 0.0 {
+        if (new.at[DRIVING] - wanted) * (old.at[DRIVING] - wanted) <= 0.0 {
             // The nearer of both is the guess.
-            let nearer = (old.at[0] - wanted).abs() < (new.at[0] - wanted).abs();
+            let nearer = (old.at[DRIVING] - wanted).abs() < (new.at[DRIVING] - wanted).abs();
             let guess = if nearer { old } else { new };
             if let Ok(closed) = close(tracer, space.field(), guess.shooting.clone()) {
                 found.push(closed.shooting);
             }
         }
-        let far = (new.at[0] - begin).abs() > reach;
+        let far = (new.at[DRIVING] - begin).abs() > reach;
         if far || palc.ends_at(old, hopfs).is_some() || palc.mesh().is_err() {
             break;
         }

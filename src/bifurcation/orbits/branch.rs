@@ -7,7 +7,6 @@ use super::rows::symmetry;
 use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
     Corrector, HopfPoint, OverLoadings, Palc, PalcSettings, ParametrisedField, Regular, Switch,
@@ -86,10 +85,7 @@ impl<'r> BranchSet<'r> {
         BranchSet {
             request,
             family: OverLoadings(request.slab),
-            free: match request.along {
-                Parameter::Driving => 0,
-                Parameter::Stiffness => 1,
-            },
+            free: request.along.place(),
             range: (a.min(b), a.max(b)),
             count: 0,
             hopfs: Vec::new(),

@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::normal_form::Form;
 use crate::bifurcation::{Criticality, Label, Special};
+use crate::model::{DRIVING, Parameter, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, OverLoadings, Regular, TestFunction,
@@ -86,10 +87,10 @@ impl<const N: usize> Decided<N> {
         log_stiffness: f64,
     ) -> Option<Self> {
         let mut corrector = Corrector::new(family, FINE).ok()?;
-        let held = Condition::Parameter(1, log_stiffness);
+        let held = Condition::Parameter(STIFFNESS, log_stiffness);
         let conditions = [Condition::TestFunction(test_function), held];
         let here = corrector
-            .correct(site.clone(), &[0, 1], &conditions, Goal::SHARP)
+            .correct(site.clone(), &Parameter::PLANE, &conditions, Goal::SHARP)
             .ok()?;
         let way = CubicCoefficient::along(family, &here.site, test_function)?;
         Some(Decided {
@@ -123,7 +124,7 @@ impl<const N: usize> Decided<N> {
         }
         let (mut zero, mut kept) = (None, 0_i32);
         for _ in 0..STEPS {
-            let (from, to) = (a.site.at[1], b.site.at[1]);
+            let (from, to) = (a.site.at[STIFFNESS], b.site.at[STIFFNESS]);
             let at = (from * right - to * left) / (right - left);
             let nearer = if (at - from).abs() < (at - to).abs() {
                 &a
@@ -162,7 +163,12 @@ impl<const N: usize> Decided<N> {
         const BESIDE: f64 = 1e-4;
         /// Rounding, in the logarithms.
         const ROUNDING: f64 = 1e-13;
-        let other = Self::beside(&self.site, family, test_function, self.site.at[1] + BESIDE)?;
+        let other = Self::beside(
+            &self.site,
+            family,
+            test_function,
+            self.site.at[STIFFNESS] + BESIDE,
+        )?;
         let slope = (other.coefficient.value - self.coefficient.value) / BESIDE;
         let off = (self.coefficient.value.abs() + self.coefficient.uncertainty) / slope.abs();
         let uncertain = |of: &dyn Fn(&Self) -> f64| {
@@ -175,8 +181,8 @@ impl<const N: usize> Decided<N> {
             TestFunction::Doubling => Label::Gpd,
             _ => Label::Cp,
         };
-        let driving = uncertain(&|d| d.site.at[0].exp());
-        let stiffness = uncertain(&|d| d.site.at[1].exp());
+        let driving = uncertain(&|d| d.site.at[DRIVING].exp());
+        let stiffness = uncertain(&|d| d.site.at[STIFFNESS].exp());
         Some(Special {
             period: Some(uncertain(&|d| d.site.shooting.period())),
             note: (label == Label::Cp).then(|| DEGENERATE.into()),
@@ -192,8 +198,14 @@ pub(super) fn degenerate_pitchfork(
 ) -> Option<Special> {
     /// How far to both sides it is looked for, in ln K.
     const FAR: f64 = 0.01;
-    let [below, above] = [-FAR, FAR]
-        .map(|off| Decided::beside(near, family, TestFunction::Transverse, near.at[1] + off));
+    let [below, above] = [-FAR, FAR].map(|off| {
+        Decided::beside(
+            near,
+            family,
+            TestFunction::Transverse,
+            near.at[STIFFNESS] + off,
+        )
+    });
     below?.change(&above?, family, TestFunction::Transverse)
 }
 

@@ -6,6 +6,7 @@ use super::half_curve::{HalfCurve, Pass};
 use super::locus::Locus;
 use crate::bifurcation::EventObserver;
 use crate::error::Result;
+use crate::model::STIFFNESS;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, OverLoadings, Palc, PalcSettings, Regular,
     TangentVector,
@@ -84,7 +85,7 @@ fn first<const N: usize>(
 where
     OverLoadings: Chart<N>,
 {
-    let fixed = settings.and(Condition::Parameter(1, seed.at[1]));
+    let fixed = settings.and(Condition::Parameter(STIFFNESS, seed.at[STIFFNESS]));
     let closed: Regular<N> = corrector
         .correct(seed, &settings.free, &fixed, Goal::STEP)
         .ok()?;

@@ -3,6 +3,7 @@
 //! A change of sign shows a zero. Two zeros in one step show by the slopes: the cubic with the values and slopes at both ends
 //! dips to zero, or does not fit the midpoint; the step is then halved for a look.
 
+use crate::model::STIFFNESS;
 use crate::orbit::{
     Condition, Corrector, DirectedPoint, Goal, Palc, ParametrisedField, Regular, Spectrum,
     TestFunction,
@@ -210,7 +211,7 @@ pub(super) fn landed<F: ParametrisedField<N>, const N: usize>(
     zero: &Zero<N>,
     goal: Goal,
 ) -> Option<Regular<N>> {
-    if zero.watch == WatchedFunction::Turn(1) && palc.settings.test_function.is_some() {
+    if zero.watch == WatchedFunction::Turn(STIFFNESS) && palc.settings.test_function.is_some() {
         // Along a curve of bifurcations a turn has no condition of its own.
         return turned(palc, before, length, zero.at);
     }
@@ -272,7 +273,7 @@ fn turned<F: ParametrisedField<N>, const N: usize>(
     /// Iterations, and a slope that is small enough.
     const ITERATIONS: usize = 8;
     const FLAT: f64 = 1e-3;
-    let slope = |now: &DirectedPoint<N>| now.direction.parameters[1];
+    let slope = |now: &DirectedPoint<N>| now.direction.parameters[STIFFNESS];
     let mut low = (0.0, slope(before));
     let mut high = (length, slope(&palc.now));
     let (mut at, mut found) = (first, None);

@@ -12,6 +12,7 @@ use super::top::top;
 use crate::bifurcation::{Event, EventObserver, Label, LocusRequest, LocusRow, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
+use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{ContinuationPoint, DirectedPoint, OverLoadings, Palc, Regular, TestFunction};
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -50,8 +51,8 @@ impl Pass {
     /// Whether both are the same orbit.
     pub fn is(&self, other: &Self) -> bool {
         let near = |a: f64, b: f64| (a - b).abs() < SAME;
-        near(self.at[0], other.at[0])
-            && near(self.at[1], other.at[1])
+        near(self.at[DRIVING], other.at[DRIVING])
+            && near(self.at[STIFFNESS], other.at[STIFFNESS])
             && near(self.period, other.period)
     }
 }
@@ -113,7 +114,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
 
     fn watches<const N: usize>(&self) -> Vec<WatchedFunction> {
         let request = self.request;
-        let mut watches = vec![WatchedFunction::Turn(1)];
+        let mut watches = vec![WatchedFunction::Turn(STIFFNESS)];
         match self.test_function {
             TestFunction::Torus => {
                 let resonances = RESONANCES.iter();

@@ -6,6 +6,7 @@
 
 use super::chart::Chart;
 use crate::bifurcation::{Label, Special};
+use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Noise, ParametrisedField, Regular, TestFunction,
@@ -204,7 +205,7 @@ impl<const N: usize> RefinedPoint<N> {
                 meets: self.meets.clone(),
                 free: self.free.clone(),
             }),
-            ..Special::new(label, self.at[0], self.at[1])
+            ..Special::new(label, self.at[DRIVING], self.at[STIFFNESS])
         }
     }
 }

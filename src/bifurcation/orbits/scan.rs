@@ -6,7 +6,7 @@ use super::detect::WatchedFunction;
 use super::follow::{Met, follow};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::model::Parameter;
+use crate::model::{DRIVING, Parameter};
 use crate::orbit::{
     ContinuationPoint, Corrector, HopfPoint, InterfaceSystem, OverLoadings, Palc, PalcSettings,
     TestFunction, Tracer, hopf_points,
@@ -93,12 +93,12 @@ where
     ) -> Result<()> {
         let family = OverLoadings(*slab);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
-        let inside = |site: &ContinuationPoint<N>| (from..=to).contains(&site.at[0]);
+        let inside = |site: &ContinuationPoint<N>| (from..=to).contains(&site.at[DRIVING]);
         // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
         let last_one = i + 1 == hopfs.len();
         let tracer = Tracer::limited(TOLERANCE, WORK, WORK)?;
         let mut corrector = Corrector::<_, N>::by(&family, tracer);
-        let settings = PalcSettings::branch(0, LONGEST);
+        let settings = PalcSettings::branch(DRIVING, LONGEST);
         let Ok(mut palc) = Palc::from_hopf(&mut corrector, settings, &hopfs[i]) else {
             return Ok(());
         };
@@ -144,7 +144,7 @@ where
 /// Along a branch a fold is a turn of V_H.
 fn watch(test_function: TestFunction) -> WatchedFunction {
     match test_function {
-        TestFunction::Fold => WatchedFunction::Turn(0),
+        TestFunction::Fold => WatchedFunction::Turn(DRIVING),
         other => WatchedFunction::TestFunction(other),
     }
 }

@@ -4,6 +4,7 @@
 //! interpolated through a few, over the distance along one direction, and the interpolating polynomial has its top where the
 //! curve has. Two widths of the interval show what the interpolation errs by.
 
+use crate::model::Parameter;
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, PalcSettings, ParametrisedField, Regular,
@@ -98,7 +99,7 @@ fn stationary<F: ParametrisedField<N>, const N: usize>(
             Condition::Plane(direction, &at),
         ];
         let orbit = corrector
-            .correct(at.clone(), &[0, 1], &conditions, Goal::SHARP)
+            .correct(at.clone(), &Parameter::PLANE, &conditions, Goal::SHARP)
             .ok()?;
         [v[i], k[i]] = orbit.site.at;
         t[i] = orbit.site.shooting.period();

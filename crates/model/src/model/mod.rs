@@ -41,12 +41,17 @@ pub enum Parameter {
     Stiffness,
 }
 
+/// The place of V_H among the parameters of interfaces, and in their plane.
+pub const DRIVING: usize = Parameter::Driving.place();
+/// The place of K.
+pub const STIFFNESS: usize = Parameter::Stiffness.place();
+
 impl Parameter {
     /// Their names.
     pub const NAMES: [&'static str; 2] = ["driving", "stiffness"];
 
     /// The places of V_H and K.
-    pub const PLANE: [usize; 2] = [Parameter::Driving.place(), Parameter::Stiffness.place()];
+    pub const PLANE: [usize; 2] = [DRIVING, STIFFNESS];
 
     /// The place of this one among the parameters of a system of interfaces.
     pub const fn place(self) -> usize {
