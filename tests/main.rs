@@ -66,6 +66,7 @@ mod scorecard;
 mod section_exponents;
 mod section_landings;
 mod section_regimes;
+mod sections_of_systems;
 mod stress;
 mod strong_resonance;
 #[cfg(feature = "sundials")]

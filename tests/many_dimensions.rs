@@ -1,5 +1,6 @@
 //! Periodic orbits, multipliers and bifurcations of systems of four, six and twelve equations.
 
+use crate::common::among::{Among, mixed};
 use crate::common::{data, number};
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
@@ -146,48 +147,6 @@ fn locked_oscillators_have_the_multipliers_of_forty_digits() {
         let point: Vec<_> = point.into_iter().map(rough).collect();
         assert_as_known(record, solved(&field, &point, rough(period)));
     }
-}
-
-/// A system of three equations with others that know nothing of it, in coordinates that mix them all.
-#[derive(Debug, Clone, Copy)]
-struct Among<S>(S);
-
-/// The reflection across the plane at right angles to (1, 2, .. N).
-fn reflected<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
-    let along: f64 = (1..=N).map(|i| (i * i) as f64).sum();
-    let mut dot = T::constant(0.0);
-    for (i, x) in x.iter().enumerate() {
-        dot = dot + *x * (i + 1) as f64;
-    }
-    std::array::from_fn(|i| x[i] - dot * (2.0 * (i + 1) as f64 / along))
-}
-
-impl<S: Equations<3, 2>, const N: usize> Equations<N, 2> for Among<S> {
-    const PARAMETERS: [&'static str; 2] = S::PARAMETERS;
-
-    fn rates<T: Real>(&self, y: [T; N], parameters: [T; 2]) -> [T; N] {
-        let x = reflected(y);
-        let own = self.0.rates([x[0], x[1], x[2]], parameters);
-        let others = |i: usize| {
-            // Turning pairs that decay, the last alone.
-            let decay = -x[i] * (0.1 * i as f64);
-            match i % 2 {
-                1 if i + 1 < N => decay + x[i + 1] * 0.7,
-                0 => decay - x[i - 1] * 0.7,
-                _ => decay,
-            }
-        };
-        reflected(std::array::from_fn(
-            |i| {
-                if i < 3 { own[i] } else { others(i) }
-            },
-        ))
-    }
-}
-
-fn mixed<const N: usize>(x: &State<3>) -> State<N> {
-    let whole = std::array::from_fn(|i| if i < 3 { x[i] } else { 0.0 });
-    State::from(reflected::<f64, N>(whole))
 }
 
 /// Along a branch towards greater values of a parameter: the first zero of a test function below `end`.

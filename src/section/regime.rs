@@ -6,8 +6,9 @@ use super::periodicity::{Periodic, periodicity};
 use super::returns::{Ended, Return, ReturnRecord};
 use super::surface::Surface;
 use crate::error::Result;
-use crate::field::VectorField;
+use crate::field::{State, VectorField};
 use crate::number::Uncertain;
+use nalgebra::{DMatrix, DVector};
 
 /// Returns without which neither torus nor chaos is told.
 pub const FEWEST_RETURNS: usize = 200;
@@ -111,7 +112,7 @@ pub fn verdict<const N: usize>(
             ..RegimeVerdict::of(Regime::Periodic)
         });
     }
-    if N != 3 {
+    if N < 3 {
         return Ok(RegimeVerdict::undecided(
             "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more",
         ));
@@ -192,10 +193,15 @@ fn wandering<const N: usize>(
     )
 }
 
-/// Coordinates of the returns within the section.
+/// Two coordinates of the returns within the section; of more, those along the principal axes of the returns.
 pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]) -> Vec<[f64; 2]> {
     let origin = returns[0].state;
     let inside = surface.directions(&origin);
+    let inside = if N > 3 {
+        principal(&inside, &origin, returns)
+    } else {
+        inside
+    };
     let along = |point: &Return<N>, j: usize| -> f64 {
         (0..N)
             .map(|i| inside[(i, j)] * (point.state[i] - origin[i]))
@@ -205,6 +211,29 @@ pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]
         .iter()
         .map(|point| [along(point, 0), along(point, 1)])
         .collect()
+}
+
+/// The two orthogonal directions, out of all these, in which the returns spread most.
+fn principal<const N: usize>(
+    inside: &DMatrix<f64>,
+    origin: &State<N>,
+    returns: &[Return<N>],
+) -> DMatrix<f64> {
+    let count = returns.len() as f64;
+    let coordinates = |point: &Return<N>| {
+        let moved = point.state - origin;
+        DVector::from_fn(N - 1, |j, _| inside.column(j).dot(&moved))
+    };
+    let all: Vec<DVector<f64>> = returns.iter().map(coordinates).collect();
+    let mean = all.iter().fold(DVector::zeros(N - 1), |sum, x| sum + x) / count;
+    let covariance = all.iter().fold(DMatrix::zeros(N - 1, N - 1), |sum, x| {
+        let off = x - &mean;
+        sum + &off * off.transpose()
+    });
+    let eigen = covariance.symmetric_eigen();
+    let mut order: Vec<usize> = (0..N - 1).collect();
+    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
+    inside * eigen.eigenvectors.select_columns(&order[..2])
 }
 
 /// Whether many points repeat after some number of returns.

@@ -1,5 +1,6 @@
 //! Reference data and small comparisons, shared by the tests.
 
+pub mod among;
 pub mod heard;
 pub mod lorenz;
 pub mod pages;

@@ -1,0 +1,48 @@
+//! Systems of three equations in more dimensions.
+
+use twinslip::field::State;
+use twinslip::number::Real;
+use twinslip::series::Equations;
+
+/// A system of three equations with others that know nothing of it, in coordinates that mix them all.
+#[derive(Debug, Clone, Copy)]
+pub struct Among<S>(pub S);
+
+/// The reflection across the plane at right angles to (1, 2, .. N).
+fn reflected<T: Real, const N: usize>(x: [T; N]) -> [T; N] {
+    let along: f64 = (1..=N).map(|i| (i * i) as f64).sum();
+    let mut dot = T::constant(0.0);
+    for (i, x) in x.iter().enumerate() {
+        dot = dot + *x * (i + 1) as f64;
+    }
+    std::array::from_fn(|i| x[i] - dot * (2.0 * (i + 1) as f64 / along))
+}
+
+impl<S: Equations<3, 2>, const N: usize> Equations<N, 2> for Among<S> {
+    const PARAMETERS: [&'static str; 2] = S::PARAMETERS;
+
+    fn rates<T: Real>(&self, y: [T; N], parameters: [T; 2]) -> [T; N] {
+        let x = reflected(y);
+        let own = self.0.rates([x[0], x[1], x[2]], parameters);
+        let others = |i: usize| {
+            // Turning pairs that decay, the last alone.
+            let decay = -x[i] * (0.1 * i as f64);
+            match i % 2 {
+                1 if i + 1 < N => decay + x[i + 1] * 0.7,
+                0 => decay - x[i - 1] * 0.7,
+                _ => decay,
+            }
+        };
+        reflected(std::array::from_fn(
+            |i| {
+                if i < 3 { own[i] } else { others(i) }
+            },
+        ))
+    }
+}
+
+/// The point of the whole at a point of the three, the others at rest.
+pub fn mixed<const N: usize>(x: &State<3>) -> State<N> {
+    let whole = std::array::from_fn(|i| if i < 3 { x[i] } else { 0.0 });
+    State::from(reflected::<f64, N>(whole))
+}
