@@ -73,7 +73,7 @@ pub mod internals {
     pub use crate::cli::program;
     #[cfg(feature = "mpi")]
     pub use crate::cli::sweep::wire::{pack, unpack};
-    pub use crate::cli::words::{count, several, time};
+    pub use crate::cli::words::{count, flagged, several, time};
     pub use crate::integrate::rosenbrock::control::{error_norm, first_step};
     pub use crate::integrate::rosenbrock::factors::Factors;
     pub use crate::integrate::singularity::time_to_singularity;

@@ -181,6 +181,7 @@ fn pieces_tell_what_they_do_and_how_far_they_are() {
         force: false,
         png: false,
         report: false,
+        command: |product| product.id.to_owned(),
         threads: Some(2),
         machine: BTreeMap::new(),
         program: String::new(),

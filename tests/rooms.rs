@@ -254,6 +254,77 @@ fn the_readme_draws_these_rooms() {
     }
 }
 
+/// The string literals of a source, as they are written; comments and characters are none.
+fn literals(text: &str) -> Vec<&str> {
+    let mut found = Vec::new();
+    let mut rest = text;
+    while let Some(at) = rest.find(['"', '/', '\'', 'r']) {
+        let word_before = rest[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let here = &rest[at..];
+        let hashes = here[1..].bytes().take_while(|&byte| byte == b'#').count();
+        let raw = here.starts_with('r') && !word_before && here[1 + hashes..].starts_with('"');
+        let length = if here.starts_with("//") {
+            here.find('\n').unwrap_or(here.len())
+        } else if raw {
+            let (begin, end) = (2 + hashes, format!("\"{}", "#".repeat(hashes)));
+            let inside = here[begin..].find(&end).expect("an end");
+            found.push(&here[begin..begin + inside]);
+            begin + inside + end.len()
+        } else if let Some(inside) = here.strip_prefix('"') {
+            let mut escaped = false;
+            let end = inside.find(|c| {
+                let closes = c == '"' && !escaped;
+                escaped = c == '\\' && !escaped;
+                closes
+            });
+            let end = end.expect("an end");
+            found.push(&inside[..end]);
+            end + 2
+        } else if here.starts_with("'\\") {
+            // An escaped character: at least one letter more before its end.
+            here[3..].find('\'').map_or(1, |end| end + 4)
+        } else if let Some(inside) = here.strip_prefix('\'') {
+            // A character, or else a lifetime.
+            let second = inside.char_indices().nth(1);
+            second
+                .filter(|(_, c)| *c == '\'')
+                .map_or(1, |(end, _)| end + 2)
+        } else {
+            1
+        };
+        rest = &here[length..];
+    }
+    found
+}
+
+#[test]
+fn only_the_command_line_speaks_of_flags() {
+    // A scene and a sweep make command lines of their own of what they are given.
+    let lines = ["src/scene/file.rs", "src/scene/sweep/words.rs"];
+    let is_flag = |text: &str| {
+        let mut after = text.split("--").skip(1);
+        after.any(|word| word.starts_with(|c: char| c.is_ascii_lowercase() || c == '{'))
+    };
+    assert_eq!(
+        literals(
+            r##"f('"', '\'', "a\"--b") // "no"
+            &'a str r#"x "--y"# "##
+        ),
+        ["a\\\"--b", "x \"--y"]
+    );
+    let mut wrong = Vec::new();
+    for (room, file) in files() {
+        let made = lines.iter().any(|line| file.ends_with(line));
+        if room == "cli" || made {
+            continue;
+        }
+        let text = fs::read_to_string(&file).expect("readable");
+        let flags = literals(&text).into_iter().filter(|text| is_flag(text));
+        wrong.extend(flags.map(|text| format!("{}: {text:?}", file.display())));
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 #[test]
 fn only_the_sundials_room_allows_unsafe() {
     for (room, file) in files() {

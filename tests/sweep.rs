@@ -388,7 +388,7 @@ fn a_point_that_fails_is_a_row() {
     for row in &rows {
         assert_eq!(row.regime, Regime::Undecided);
         let note = row.note.as_ref().expect("a reason");
-        assert!(note.contains("--max-steps"), "{note}");
+        assert!(note.contains("`max_steps`"), "{note}");
     }
 }
 

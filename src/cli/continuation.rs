@@ -4,7 +4,7 @@ use super::progress::{Progress, during};
 use super::report::{Report, unit_names};
 use super::resume::{EarlierRun, Expected, beside, row_key, special_key};
 use super::rows::CurveRow;
-use super::words::{several, time};
+use super::words::{flagged, several, time};
 use super::{Ending, interrupt, say, special, written};
 use crate::bifurcation::{Criticality, Event, EventObserver, Label, Special, orbits};
 use crate::error::{Error, Result};
@@ -343,7 +343,8 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
     }
 
     fn take(&mut self, event: Event) -> ControlFlow<()> {
-        if let Event::Special(special) = event {
+        if let Event::Special(mut special) = event {
+            special.note = special.note.as_deref().map(flagged);
             if let Err(error) = self.special(&special) {
                 self.broken = Some(error);
                 return ControlFlow::Break(());

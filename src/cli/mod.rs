@@ -3,6 +3,7 @@
 mod branch;
 mod continuation;
 mod equilibria;
+mod examples;
 mod integrate;
 mod interrupt;
 mod law;
@@ -87,7 +88,12 @@ pub fn program() -> clap::Command {
         }
         text
     });
-    CommandLine::command().long_version(text.as_str())
+    let program = CommandLine::command().long_version(text.as_str());
+    examples::EXAMPLES
+        .into_iter()
+        .fold(program, |program, (name, example)| {
+            program.mut_subcommand(name, |command| command.after_help(example))
+        })
 }
 
 /// How a command ended, if it ended well.
@@ -172,8 +178,10 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
-/// A message on standard error. That nobody reads it, or that it can't be written, is no error.
+/// A message on standard error, with flags for the options that it names. That nobody reads it, or that it can't be written, is
+/// no error.
 fn say(text: impl std::fmt::Display) {
+    let text = words::flagged(&text.to_string());
     let _ = writeln!(std::io::stderr().lock(), "{text}");
 }
 

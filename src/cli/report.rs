@@ -1,5 +1,6 @@
 //! What all commands share: format and place of the output, the object around a result, remarks, messages.
 
+use super::words::flagged;
 use super::{Ending, interrupt, say};
 use crate::error::{Error, Result};
 use crate::integrate::Work;
@@ -242,7 +243,7 @@ impl<'a> Report<'a> {
             numerics,
             result,
             work,
-            error: error.map(|error| system.units.told(error.clone()).to_string()),
+            error: error.map(|error| flagged(&system.units.told(error.clone()).to_string())),
         };
         let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
         bytes.push(b'\n');

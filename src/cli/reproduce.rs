@@ -115,6 +115,7 @@ fn make(
         force: matches!(kept, DirectoryKind::Whole { force: true }),
         png: making.png,
         report: kept != DirectoryKind::Files,
+        command: |product| format!("twinslip reproduce --only {}", product.id),
         threads: making.threads,
         program: program(&machine),
         machine,

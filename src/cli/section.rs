@@ -3,7 +3,7 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
-use super::words::{count, several, time};
+use super::words::{count, flagged, several, time};
 use super::{Ending, say, written};
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -170,7 +170,7 @@ fn result<'a>(
         let defect = found.and_then(|x| x.liouville_defect).map(rate);
         put("liouville_defect", json!(defect));
     }
-    put("note", json!(outcome.note));
+    put("note", json!(outcome.note.as_deref().map(flagged)));
     SectionResult { rows, verdict }
 }
 

@@ -1,4 +1,43 @@
-//! Numbers in messages, as people write them.
+//! Messages as people write and type them: numbers, and the options of this command line.
+
+use std::collections::BTreeSet;
+use std::sync::LazyLock;
+
+/// The flags of all commands, without their hyphens in front.
+static FLAGS: LazyLock<BTreeSet<String>> = LazyLock::new(|| {
+    let program = super::program();
+    let commands = program.get_subcommands();
+    let flags =
+        commands.flat_map(|command| command.get_arguments().filter_map(|arg| arg.get_long()));
+    flags.map(str::to_owned).collect()
+});
+
+/// A text of the library as it is told here: an option's name in backticks becomes its flag, `max_steps` thus --max-steps. Other
+/// words in backticks stay.
+pub fn flagged(text: &str) -> String {
+    let mut told = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some((before, after)) = rest.split_once('`') {
+        told.push_str(before);
+        let named = after.split_once('`').and_then(|(name, behind)| {
+            let flag = name.replace('_', "-");
+            FLAGS.contains(&flag).then_some((flag, behind))
+        });
+        match named {
+            Some((flag, behind)) => {
+                told.push_str("--");
+                told.push_str(&flag);
+                rest = behind;
+            }
+            None => {
+                told.push('`');
+                rest = after;
+            }
+        }
+    }
+    told.push_str(rest);
+    told
+}
 
 /// A count with its thousands apart: `63,183`.
 pub fn count(n: usize) -> String {

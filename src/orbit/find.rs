@@ -151,14 +151,14 @@ where
     if guesses.closed.is_empty() && tracer.used_up().is_some() {
         return Err(no_orbit(
             format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
-            "give a --start on the orbit and its --period-guess, or other --driving and --stiffness",
+            "give a `start` on the orbit and its `period_guess`, or other `driving` and `stiffness`",
         ));
     }
     if guesses.closed.is_empty() {
         return Err(guesses.otherwise.unwrap_or_else(|| {
             no_orbit(
                 "no periodic orbit of this symmetry was met".into(),
-                "give a --start near it, or other --driving and --stiffness",
+                "give a `start` near it, or other `driving` and `stiffness`",
             )
         }));
     }
@@ -210,7 +210,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
             self.otherwise = Some(other_orbit(
                 "the search ended on the symmetric orbit".into(),
                 shooting.period(),
-                "give a --start near an asymmetric one, or ask for --symmetry symmetric",
+                "give a `start` near an asymmetric one, or ask for `symmetry` symmetric",
             ));
             return false;
         }

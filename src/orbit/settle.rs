@@ -103,7 +103,7 @@ pub(super) fn settle<const N: usize>(
             }
             return Err(no_orbit(
                 "the run comes to rest at an equilibrium".into(),
-                "give a --start from which it does not, or other --driving and --stiffness",
+                "give a `start` from which it does not, or other `driving` and `stiffness`",
             ));
         }
         let level = 0.5 * (low + high);
@@ -135,6 +135,6 @@ pub(super) fn settle<const N: usize>(
     }
     Err(no_orbit(
         "the run settles on no periodic orbit".into(),
-        "look at it with `section`, or give a --start near the orbit",
+        "look at it with `section`, or give a `start` near the orbit",
     ))
 }

@@ -139,7 +139,7 @@ pub fn close<const N: usize>(
                     "Newton's method shrank the orbit to an equilibrium, to {:e} of its size",
                     shooting.extent()
                 ),
-                "give a --start farther from the equilibrium, or a --period-guess",
+                "give a `start` farther from the equilibrium, or a `period_guess`",
             ));
         }
         let period = shooting.period();

@@ -125,7 +125,7 @@ pub(super) fn solve<const N: usize>(
         return Err(other_orbit(
             format!("the cycle found is a shorter one traversed {times} times"),
             period,
-            "give a shorter --period-guess, or a --start farther from that orbit",
+            "give a shorter `period_guess`, or a `start` farther from that orbit",
         ));
     }
     let finer = first

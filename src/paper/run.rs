@@ -40,6 +40,8 @@ pub struct Selection {
     /// Whether the directory is kept as a whole: with a manifest, by which what stands is not made again, and with the report.
     /// Otherwise there are just the products.
     pub report: bool,
+    /// The command that makes a product alone, which its CSV tells.
+    pub command: fn(&Product) -> String,
     /// Threads; as many as there are processors without.
     pub threads: Option<usize>,
     /// What the manifest says of program and machine.
@@ -281,7 +283,8 @@ impl Workshop<'_> {
             drawing,
             method,
         } = make(&self.pieces)?;
-        let mut contents = vec![sheet.csv(&remarks(product, &method))?];
+        let mut contents =
+            vec![sheet.csv(&remarks(product, &(self.order.command)(product), &method))?];
         if let Some(drawing) = drawing {
             contents.push(drawing.svg()?.into_bytes());
             if self.order.png {
@@ -330,10 +333,10 @@ fn file_error(action: &'static str, path: &Path, error: std::io::Error) -> Error
 }
 
 /// The `# ` lines of a CSV.
-fn remarks(product: &Product, method: &str) -> Vec<String> {
+fn remarks(product: &Product, command: &str, method: &str) -> Vec<String> {
     let mut remarks = vec![
         format!("twinslip {}", env!("CARGO_PKG_VERSION")),
-        format!("command: twinslip reproduce --only {}", product.id),
+        format!("command: {command}"),
         format!("{}: {}", product.id, product.title),
     ];
     if !product.scenes.is_empty() {

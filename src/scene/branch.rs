@@ -95,7 +95,7 @@ impl BranchParameter {
             })
         };
         range(
-            "the range --from --to",
+            "the range `from` `to`",
             (
                 end("from", options.from, self.range.0)?,
                 end("to", options.to, self.range.1)?,
@@ -217,7 +217,7 @@ fn loading(system: &System, along: &BranchParameter, from: f64) -> Result<Loadin
     let twice = |given: Option<f64>| match given {
         None => Ok(()),
         Some(_) => Err(Error::Input(format!(
-            "--{0} can't be given with --along {0}, for it varies; use --from and --to",
+            "`{0}` can't be given with `along` {0}, for it varies; use `from` and `to`",
             along.name
         ))),
     };

@@ -49,7 +49,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line(
         "events",
         plan.events.map_or_else(
-            || "off: --events is not given".into(),
+            || "off: `events` is not given".into(),
             |threshold| {
                 let how = location(plan.method.series());
                 format!("on: slip faster than V_H whose peak exceeds {threshold} V_H, by {how}")
@@ -68,7 +68,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
                 "on: twice the distance to a second run in double-double arithmetic, and the rounding of the start by a tangent flow, at the end only"
                     .into()
             }
-            None => "off: --estimate-error is not given".into(),
+            None => "off: `estimate_error` is not given".into(),
         },
     );
     text

@@ -94,20 +94,21 @@ impl SceneFile {
 
     /// The same error, with the file and, if it names a key of this file, the line.
     pub fn locate(&self, error: &Error) -> Error {
-        let named = match error {
-            Error::Parameter { name, .. } => Some(name.trim_start_matches("psi in --").to_owned()),
-            Error::Input(text) => text
-                .split_whitespace()
-                .map(|word| word.trim_matches(|c: char| !c.is_alphanumeric() && c != '-'))
-                .map(|word| word.trim_start_matches("--").to_owned())
-                .find(|word| self.flags.iter().any(|(flag, ..)| flag == word)),
+        let text = match error {
+            Error::Parameter { name, .. } => name,
+            Error::Input(text) => text,
             _ => return error.clone(),
         };
-        let line = self
-            .flags
-            .iter()
-            .find(|(flag, ..)| Some(flag) == named.as_ref())
-            .map_or(String::new(), |(.., line)| format!("{line}:"));
+        // A field's name stands in backticks and has underscores where its key has hyphens.
+        let words = text.split_whitespace().map(|word| {
+            let word = word.trim_matches(|c: char| !c.is_alphanumeric());
+            word.replace('_', "-")
+        });
+        let mut lines = words.filter_map(|word| {
+            let found = self.flags.iter().find(|(flag, ..)| *flag == word);
+            found.map(|(.., line)| format!("{line}:"))
+        });
+        let line = lines.next().unwrap_or_default();
         Error::Input(format!("{}:{line} {error}", self.name))
     }
 }

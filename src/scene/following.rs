@@ -3,7 +3,7 @@
 use super::continuation::ContinuationOptions;
 use super::units::{Quantity, Units};
 use crate::equilibrium::Symmetry;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, option_name};
 use crate::friction::positive;
 use crate::integrate::Choice;
 
@@ -42,7 +42,7 @@ impl Following {
         let second = options.crosscheck.as_deref().filter(|&name| name != "none");
         if second.is_some() && !orbits {
             return Err(Error::Input(
-                "--crosscheck goes with orbits: equilibria and their bifurcations are not integrated".into(),
+                "`crosscheck` goes with orbits: equilibria and their bifurcations are not integrated".into(),
             ));
         }
         Ok(Following {
@@ -94,7 +94,8 @@ pub(super) fn number(name: &str, text: &str, word: &str) -> Result<f64> {
     match word.trim().parse::<f64>() {
         Ok(x) => positive(name, x),
         Err(_) => Err(Error::Input(format!(
-            "--{name} {text}: {word:?} is not a number"
+            "{} {text}: {word:?} is not a number",
+            option_name(name)
         ))),
     }
 }
@@ -137,12 +138,12 @@ pub(super) fn explain_symmetry(symmetry: Option<Symmetry>, interfaces: usize) ->
 /// The lines of a plan on steps, accuracy, landings and the crosscheck.
 pub(super) fn explain(following: &Following, at: &[f64]) -> String {
     let landings = match at.len() {
-        0 => "off: no --at values are given".to_owned(),
+        0 => "off: no `at` values are given".to_owned(),
         n => format!("on {n} values, each solved for"),
     };
     let second = match following.second {
         Some(second) => format!("{}, of every special point", second.name()),
-        None => "off: --crosscheck is not given".to_owned(),
+        None => "off: `crosscheck` is not given".to_owned(),
     };
     format!(
         "  step limits       times {}

@@ -5,7 +5,7 @@ use super::following::{self, Following, landings, number, range};
 use super::system::System;
 use super::units::{Quantity, Units};
 use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits, within};
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, option_name};
 use crate::model::Loading;
 use crate::orbit::InterfaceSystem;
 use crate::sweep::fields;
@@ -123,12 +123,13 @@ fn ends(
     };
     let [from, to] = fields(text)[..] else {
         return Err(Error::Input(format!(
-            "--{name} {text} must be A:B, two numbers with a colon between"
+            "{} {text} must be A:B, two numbers with a colon between",
+            option_name(name)
         )));
     };
     let (from, to) = (number(name, text, from)?, number(name, text, to)?);
     let (from, to) = range(
-        &format!("--{name}"),
+        &option_name(name),
         (units.inward(quantity, from), units.inward(quantity, to)),
     )?;
     Ok((from.min(to), from.max(to)))
@@ -143,7 +144,7 @@ fn not_fixed(options: &LocusOptions) -> Result<()> {
     match given.iter().find(|(_, value)| value.is_some()) {
         None => Ok(()),
         Some((name, _)) => Err(Error::Input(format!(
-            "--{name} varies along a curve and can't be given; use --{name}-range, or --at-{name} to land on a value"
+            "`{name}` varies along a curve and can't be given; use `{name}_range`, or `at_{name}` to land on a value"
         ))),
     }
 }
@@ -222,7 +223,7 @@ impl LocusPlan {
         let criticality = if self.request.criticality {
             "on: the normal form's coefficient at every point"
         } else {
-            "off at rows: --criticality is not given"
+            "off at rows: `criticality` is not given"
         };
         let at = [&self.request.at_driving[..], &self.request.at_stiffness[..]];
         format!(

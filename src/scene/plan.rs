@@ -107,7 +107,7 @@ impl Plan {
         let dimension = Dimension::of(&system, &start);
         let until = options
             .until
-            .ok_or_else(|| Error::Input("--until T is missing: when shall the run end?".into()))?;
+            .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
         let until = system
             .units
             .inward(Quantity::Time, positive("until", until)?);
@@ -211,7 +211,7 @@ fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<S
         return Err(Error::parameter(
             "every",
             every,
-            "at least a billionth of --until",
+            "at least a billionth of `until`",
         ));
     }
     Ok(Sampling::Every(interval))
@@ -241,7 +241,7 @@ pub fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f6
     for (w, &psi) in log_state.iter_mut().zip(&numbers[1..]) {
         *w = system
             .units
-            .inward(Quantity::State, positive("psi in --start", psi)?)
+            .inward(Quantity::State, positive("psi in `start`", psi)?)
             .ln();
     }
     if system.interfaces == 1 {
@@ -264,7 +264,7 @@ fn near_symmetric(
         None => beside(&system.law, w, NEAR_SYMMETRIC),
         Some(by) if system.law.bounds_state() && w + by > 0.0 => {
             return Err(Error::Input(format!(
-                "--start near-symmetric:{by}: EPS moves psi from {:.6} at the steady state to {:.6}, but this law keeps psi in (0, 1]; EPS must be at most {:.6e} here",
+                "`start` near-symmetric:{by}: EPS moves psi from {:.6} at the steady state to {:.6}, but this law keeps psi in (0, 1]; EPS must be at most {:.6e} here",
                 w.exp(),
                 (w + by).exp(),
                 -w
@@ -283,7 +283,7 @@ fn near_symmetric(
 fn bounded(log_state: [f64; 2], system: &System) -> Result<()> {
     match log_state.into_iter().find(|&w| w > 0.0) {
         Some(w) if system.law.bounds_state() => Err(Error::parameter(
-            "psi in --start",
+            "psi in `start`",
             w.exp(),
             "in (0, 1], where this law keeps the state",
         )),
@@ -295,7 +295,7 @@ fn start_number(part: &str, whole: &str) -> Result<f64> {
     match part.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(x),
         _ => Err(Error::Input(format!(
-            "--start {whole:?}: {part:?} is not a finite number"
+            "`start` {whole:?}: {part:?} is not a finite number"
         ))),
     }
 }
@@ -303,6 +303,6 @@ fn start_number(part: &str, whole: &str) -> Result<f64> {
 fn unreadable(text: &str, system: &System) -> Error {
     let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][system.interfaces - 1];
     Error::Input(format!(
-        "--start {text:?} must be {shape} or near-symmetric[:EPS]"
+        "`start` {text:?} must be {shape} or near-symmetric[:EPS]"
     ))
 }

@@ -114,7 +114,7 @@ impl System {
 
     fn needed(&self, name: &str, symbol: &str, value: Option<f64>) -> Result<f64> {
         value.ok_or_else(|| {
-            Error::Input(format!("--{name} {symbol} is missing, and has no default"))
+            Error::Input(format!("`{name}` {symbol} is missing, and has no default"))
         })
     }
 

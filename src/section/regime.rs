@@ -154,7 +154,7 @@ fn wandering<const N: usize>(
     if disorder < REGULAR {
         if repeats(points, accuracy) {
             return RegimeVerdict::undecided(
-                "the returns repeat; a long period, or one that drowns in the error of the run, cannot be told from a torus: lower --rtol",
+                "the returns repeat; a long period, or one that drowns in the error of the run, cannot be told from a torus: lower `rtol`",
             );
         }
         let curve = invariant_curve(points);
@@ -171,7 +171,7 @@ fn wandering<const N: usize>(
                 "the returns look quasi-periodic but no second exponent vanishes; record more",
             ),
             (None, None) => RegimeVerdict::undecided(
-                "the returns look quasi-periodic on no simple curve; the exponents (--lyapunov) may tell",
+                "the returns look quasi-periodic on no simple curve; the exponents (`lyapunov`) may tell",
             ),
             (Some(true), _) | (None, Some(_)) => RegimeVerdict {
                 curve,
@@ -181,7 +181,7 @@ fn wandering<const N: usize>(
     }
     let Some(exponents) = exponents else {
         return RegimeVerdict::undecided(
-            "the returns are neither periodic nor quasi-periodic; the exponents (--lyapunov) may tell, or skip more",
+            "the returns are neither periodic nor quasi-periodic; the exponents (`lyapunov`) may tell, or skip more",
         );
     };
     if exponents.converged && exponents.values.first().is_some_and(positive) && disorder > IRREGULAR

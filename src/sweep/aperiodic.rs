@@ -35,7 +35,7 @@ impl Classifier {
         }
         if half.iter().all(|at| alike(&at.state)) {
             return Err(
-                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise --max-returns",
+                "equal interfaces, whose motion is plane and so neither a torus nor chaos, close in on nothing yet; raise `max_returns`",
             );
         }
         let seen = aperiodic(&run.surface, half, self.settings.rtol, None);
@@ -59,7 +59,7 @@ impl Classifier {
         if disorder < REGULAR {
             return self.with_tangents(run);
         }
-        Err("the returns are neither regular nor irregular yet; raise --max-returns")
+        Err("the returns are neither regular nor irregular yet; raise `max_returns`")
     }
 
     /// Chaos, by the exponents along the last returns: of ever more, until they tell. `None` where no runs beside it can be
@@ -75,7 +75,7 @@ impl Classifier {
         loop {
             count = count.min(settled).min(*FOR_EXPONENTS.end());
             if count < FEWEST_FOR_EXPONENTS {
-                return Some(Err("too few returns for exponents; raise --max-returns"));
+                return Some(Err("too few returns for exponents; raise `max_returns`"));
             }
             let late: &[Return<3>] = &all[all.len() - count..];
             let found = stretching(run, late, flows, self.settings.rtol)?;

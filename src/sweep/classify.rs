@@ -90,7 +90,7 @@ impl Classifier {
         if run.recorder.steps >= self.settings.max_steps {
             return Some(undecided(
                 run,
-                "its steps are used up; raise --max-steps".into(),
+                "its steps are used up; raise `max_steps`".into(),
             ));
         }
         if let Some(q) = run.candidate.take() {

@@ -121,7 +121,7 @@ impl SweepSettings {
     /// Whether they can be computed with.
     ///
     /// # Errors
-    /// [`Error::Parameter`] and [`Error::Input`], in the names of the command line.
+    /// [`Error::Parameter`] and [`Error::Input`], in the names of the options.
     pub fn checked(&self) -> Result<()> {
         let names = match self.grid {
             Grid::Plane { .. } => ["driving", "stiffness"],
@@ -134,7 +134,7 @@ impl SweepSettings {
             Loading::new(loading.driving, loading.stiffness)?;
             if self.follow || self.starts != 1 {
                 return Err(Error::Input(
-                    "a basin has one start at each point and none to follow; leave out --starts and --follow".into(),
+                    "a basin has one start at each point and none to follow; leave out `starts` and `follow`".into(),
                 ));
             }
         }

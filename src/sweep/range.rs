@@ -1,6 +1,6 @@
 //! The values of a grid along one of its axes.
 
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, option_name};
 
 /// More values than this along one axis are a slip of the pen.
 const MOST: usize = 10_000_000;
@@ -45,7 +45,8 @@ impl Range {
     pub fn parse(name: &str, text: &str) -> Result<Self> {
         let unreadable = || {
             Error::Input(format!(
-                "--{name} {text:?} must be A:B:N or A:B:Nlog, N values from A to B"
+                "{} {text:?} must be A:B:N or A:B:Nlog, N values from A to B",
+                option_name(name)
             ))
         };
         let [from, to, count] = fields(text)[..] else {

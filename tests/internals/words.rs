@@ -1,6 +1,26 @@
 //! Numbers as people write them.
 
-use twinslip::internals::{count, several, time};
+use twinslip::internals::{count, flagged, several, time};
+
+#[test]
+fn an_option_is_told_as_its_flag() {
+    for (text, told) in [
+        ("raise `max_steps`", "raise --max-steps"),
+        (
+            "`start` 1,2 and `period-guess`",
+            "--start 1,2 and --period-guess",
+        ),
+        (
+            "look at it with `section`, or give a `start`",
+            "look at it with `section`, or give a --start",
+        ),
+        ("one ` alone, then `rtol", "one ` alone, then `rtol"),
+        ("`a``rtol``", "`a`--rtol`"),
+    ] {
+        assert_eq!(flagged(text), told);
+    }
+}
+
 #[test]
 fn numbers_are_written_as_people_write_them() {
     let counts = [0, 999, 1000, 63_183, 10_000_000].map(count);

@@ -149,7 +149,7 @@ pub enum Error {
     },
     /// A branch or curve has more points than are allowed.
     #[error(
-        "stopped after {limit} points, as many as allowed; raise --max-points, or --step-limit for longer steps"
+        "stopped after {limit} points, as many as allowed; raise `max_points`, or `step_limit` for longer steps"
     )]
     TooManyPoints {
         /// The bound.
@@ -319,6 +319,12 @@ pub fn did_you_mean<'a>(given: &str, known: impl Iterator<Item = &'a str>) -> St
         })
 }
 
+/// An option in a message: its field's name in backticks, whether it is given by that or as a flag has it, with hyphens.
+#[doc(hidden)]
+pub fn option_name(name: &str) -> String {
+    format!("`{}`", name.replace('-', "_"))
+}
+
 /// A count with its thousands apart: `63,183`.
 #[doc(hidden)]
 pub fn count(n: usize) -> String {
@@ -433,7 +439,7 @@ fn too_many_steps(units: &MessageUnits, limit: usize, t: f64, end: f64) -> Strin
         String::new()
     };
     format!(
-        "{} steps were used up at t = {}{before}; raise --max-steps, loosen the tolerance or shorten the run",
+        "{} steps were used up at t = {}{before}; raise `max_steps`, loosen the tolerance or shorten the run",
         count(limit),
         measured(t, units.time)
     )
@@ -473,7 +479,7 @@ fn stuck(units: &MessageUnits, driving: f64, stiffness: f64) -> String {
     let driving = measured(driving, units.slip_rate);
     let stiffness = measured(stiffness, units.stiffness);
     format!(
-        "the curve ends at V_H = {driving}, K = {stiffness}, where the method goes no further; try a smaller --step-limit"
+        "the curve ends at V_H = {driving}, K = {stiffness}, where the method goes no further; try a smaller `step_limit`"
     )
 }
 

@@ -56,10 +56,10 @@ impl Format {
             Some("json") => Ok(Format::Json),
             None | Some("csv" | "txt" | "dat") => Ok(Format::Csv),
             Some(other) => Err(Error::Input(format!(
-                "--output {}: data is written as .csv or .json, not as .{other}; choose such a name, or say --format{}",
+                "`output` {}: data is written as .csv or .json, not as .{other}; choose such a name, or say `format`{}",
                 file.display(),
                 match other {
-                    "svg" | "png" => "; pictures are drawn by --plot",
+                    "svg" | "png" => "; pictures are drawn by `plot`",
                     "parquet" => "; Parquet is written by sweep alone",
                     _ => "",
                 }

@@ -141,10 +141,10 @@ impl RowFile {
                 Ok(Some(claimed))
             }
             (Some(Status::Unfinished), _) => Err(wrong(
-                "it holds an unfinished run; go on with it by --resume (branch, locus, sweep) or replace it with --force",
+                "it holds an unfinished run; go on with it by `resume` (branch, locus, sweep) or replace it with `force`",
             )),
             (None, _) => Err(wrong(
-                "it is there already and no run of this program has ended in it; replace it with --force",
+                "it is there already and no run of this program has ended in it; replace it with `force`",
             )),
         }
     }

@@ -3,7 +3,7 @@
 use super::super::interrupt;
 use super::super::progress::Progress;
 use super::super::report::{Report, unit_names};
-use super::super::words::{count, several, time};
+use super::super::words::{count, flagged, several, time};
 use super::file;
 use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
@@ -125,6 +125,11 @@ impl<'a> SweepOut<'a> {
 
     /// The next rows.
     pub fn take(&mut self, rows: &[SweepRow]) -> ControlFlow<()> {
+        let told = rows.iter().map(|row| SweepRow {
+            note: row.note.as_deref().map(flagged),
+            ..row.clone()
+        });
+        let rows: &[SweepRow] = &told.collect::<Vec<_>>();
         if let Err(error) = self.write(rows) {
             self.broken = Some(error);
             return ControlFlow::Break(());

@@ -87,6 +87,6 @@ fn tangents(plan: &SectionPlan) -> &'static str {
     if plan.lyapunov {
         "on, for the Lyapunov exponents: ln |mu| / T of a periodic orbit; else carried by power series along a run of their own from the first return, at 1e-13, so that the error of the method is no bias"
     } else {
-        "off but for the periodic point: --lyapunov is not given"
+        "off but for the periodic point: `lyapunov` is not given"
     }
 }

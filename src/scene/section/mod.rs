@@ -83,7 +83,7 @@ impl SectionPlan {
             return Err(Error::parameter(
                 "returns",
                 options.returns,
-                "at least 60 with --lyapunov",
+                "at least 60 with `lyapunov`",
             ));
         }
         if options.skip > MOST_RETURNS {
@@ -119,7 +119,7 @@ impl SectionPlan {
 fn stress(text: &str, system: &System, loading: &Loading) -> Result<f64> {
     let unreadable = || {
         Error::Input(format!(
-            "--surface {text:?} must be stress=auto or stress=VALUE"
+            "`surface` {text:?} must be stress=auto or stress=VALUE"
         ))
     };
     let value = text.strip_prefix("stress=").ok_or_else(unreadable)?;

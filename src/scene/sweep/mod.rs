@@ -12,7 +12,7 @@ use super::continuation::LocusOptions;
 use super::locus::LocusPlan;
 use super::system::System;
 use super::units::Quantity;
-use crate::error::{Error, Result, count};
+use crate::error::{Error, Result, count, option_name};
 use crate::model::Loading;
 use crate::sweep::{Grid, SweepSettings, threads_checked};
 use clap::Parser;
@@ -54,7 +54,12 @@ impl SweepPlan {
         }
         threads_checked(options.threads)?;
         let needed = |name: &str, text: &Option<String>| {
-            let missing = || Error::Input(format!("--{name} A:B:N is missing, and has no default"));
+            let missing = || {
+                Error::Input(format!(
+                    "{} A:B:N is missing, and has no default",
+                    option_name(name)
+                ))
+            };
             Grain::parse(name, text.as_deref().ok_or_else(missing)?)
         };
         let driving = needed("driving", &options.driving)?;
@@ -170,11 +175,11 @@ impl SweepPlan {
             true => {
                 "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed in one go"
             }
-            false => "off: --follow is not given; points are computed on their own",
+            false => "off: `follow` is not given; points are computed on their own",
         };
         let lyapunov = match settings.lyapunov {
             true => "of every point",
-            false => "only where the regime needs them: --lyapunov is not given",
+            false => "only where the regime needs them: `lyapunov` is not given",
         };
         format!(
             "plan of this command
@@ -200,7 +205,7 @@ fn loading(system: &System, driving: &Grain, stiffness: &Grain) -> Result<Loadin
     for grain in [driving, stiffness] {
         if !grain.single {
             return Err(Error::Input(format!(
-                "with --basin --{} must be a single value, not {grain}",
+                "with `basin` `{}` must be a single value, not {grain}",
                 grain.name
             )));
         }

@@ -57,7 +57,7 @@ impl PictureFormat {
             Some("svg") => Ok(PictureFormat::Svg),
             Some("png") => Ok(PictureFormat::Png),
             _ => Err(Error::Input(format!(
-                "--plot {}: the name must end in .svg or .png",
+                "`plot` {}: the name must end in .svg or .png",
                 path.display()
             ))),
         }
