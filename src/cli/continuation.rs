@@ -13,8 +13,8 @@ use crate::orbit::InterfaceSystem;
 use crate::output::{
     self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot, seven_digits,
 };
-use crate::scene::{OutputOptions, Quantity, System, Units};
-use crate::views::{self, Column, special_columns};
+use crate::scene::{Column, OutputOptions, Quantity, System, Units};
+use crate::views::{self, special_columns};
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};

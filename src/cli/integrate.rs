@@ -6,25 +6,12 @@ use super::stream::StreamOut;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Cell, Format, Place, RowList, object, plot};
-use crate::scene::{
-    IntegrateOptions, Keeping, OutputColumn, Plan, Quantity, RunOutcome, SlipEvent, System, explain,
-};
+use crate::output::{Format, Place, RowList, object, plot};
+use crate::scene::{IntegrateOptions, Keeping, Plan, RunOutcome, explain, pictured_columns};
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
-
-const EVENT_COLUMNS: [(&str, Quantity); 8] = [
-    ("onset", Quantity::Time),
-    ("recurrence", Quantity::Time),
-    ("duration", Quantity::Time),
-    ("stress_drop", Quantity::Stress),
-    ("peak_slip_rate", Quantity::SlipRate),
-    ("slip_1", Quantity::Length),
-    ("slip_2", Quantity::Length),
-    ("leader", Quantity::Number),
-];
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     let plan = Plan::new(options)?;
@@ -47,11 +34,11 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         };
         say(explain(&plan, keeping).trim_end());
     }
-    let columns = plan.columns.iter().map(|c| (c.name(), c.quantity()));
-    let pictured = OutputColumn::pictured(plan.system.interfaces);
+    let columns = views::names(&plan.columns, false);
+    let pictured = views::names(&pictured_columns(plan.system.interfaces), false);
     let numbers = numerics(&plan);
-    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns.collect(), kept) {
-        Ok(out) => out.drawing(pictured.iter().map(OutputColumn::name).collect()),
+    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns, kept) {
+        Ok(out) => out.drawing(pictured.into_iter().map(|(name, _)| name).collect()),
         Err(error) => return written(Err(error), &report.place),
     };
     if plan.observed() {
@@ -159,14 +146,18 @@ fn write(
     } else {
         writeln!(to)
     };
-    let columns = EVENT_COLUMNS.map(|(name, _)| name.to_owned());
-    let units = unit_names(&plan.system.units, EVENT_COLUMNS.iter().map(|(_, q)| *q));
+    let (columns, units) = (
+        views::event_columns(plan.system.interfaces),
+        &plan.system.units,
+    );
+    let (names, quantities): (Vec<_>, Vec<_>) = views::names(&columns, false).into_iter().unzip();
+    let unit_names = unit_names(units, quantities.into_iter());
     let format = events.map_or(report.format, |(_, format)| *format);
     let all = begun
-        .and_then(|()| report.rows_as(format, to, &remarks, &columns, &units))
+        .and_then(|()| report.rows_as(format, to, &remarks, &names, &unit_names))
         .and_then(|mut writer| {
             let mut events = outcome.events.iter();
-            events.try_for_each(|event| writer.row(&cells(event, &plan.system)))
+            events.try_for_each(|event| writer.row(&views::cells(&columns, event, units, false)))
         });
     written(all, &place)
 }
@@ -188,52 +179,11 @@ fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> Integrati
         last
     });
     let events = plan.events.is_some().then(|| {
-        let events = outcome.events.iter();
-        events
-            .map(|event| event_object(event, &plan.system))
-            .collect()
+        let columns = views::event_columns(plan.system.interfaces);
+        let object = |event| views::object(&columns, event, &plan.system.units);
+        outcome.events.iter().map(object).collect()
     });
     IntegrationResult { rows, last, events }
-}
-
-/// An event in the user's units; a single interface has no second slip, and neither it nor equal ones have a leader.
-fn cells(event: &SlipEvent, system: &System) -> Vec<Cell> {
-    let two = system.interfaces == 2;
-    let [first, second] = event.slip;
-    let values = [
-        Some(event.onset),
-        event.recurrence,
-        Some(event.duration),
-        Some(event.stress_drop),
-        Some(event.peak_slip_rate),
-        Some(first),
-        two.then_some(second),
-    ];
-    let mut cells: Vec<Cell> = EVENT_COLUMNS
-        .iter()
-        .zip(values)
-        .map(|((_, quantity), x)| x.map(|x| system.units.outward(*quantity, x)).into())
-        .collect();
-    let leader = event.leader().filter(|_| two);
-    cells.push(leader.map_or(Cell::Missing, |leader| Cell::Text(leader.to_string())));
-    cells
-}
-
-fn event_object(event: &SlipEvent, system: &System) -> Map<String, Value> {
-    EVENT_COLUMNS
-        .iter()
-        .zip(cells(event, system))
-        .map(|((name, _), cell)| {
-            let value = match cell {
-                // The leader is a number here, and a word without a point in tables.
-                Cell::Text(leader) if *name == "leader" => json!(leader.parse::<u8>().ok()),
-                Cell::Number(x) => json!(x),
-                Cell::Text(text) => json!(text),
-                Cell::Missing => Value::Null,
-            };
-            ((*name).to_owned(), value)
-        })
-        .collect()
 }
 
 fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {

@@ -1,14 +1,15 @@
 //! What all commands share: format and place of the output, the object around a result, remarks, messages.
 
 use super::words::flagged;
-use super::{Ending, interrupt, say};
+use super::{Ending, interrupt, say, written};
 use crate::error::{Error, Result};
 use crate::integrate::Work;
 use crate::number::Uncertain;
 use crate::output::{
     self, CsvRows, Envelope, Format, Over, Place, RowFile, RowWriter, Status, TableRows, plot,
 };
-use crate::scene::{OutputOptions, Quantity, System, Units};
+use crate::scene::{Column, OutputOptions, Quantity, System, Units};
+use crate::views;
 use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal, Write};
@@ -201,6 +202,27 @@ impl<'a> Report<'a> {
             Format::Table => self.table(to, columns, units)?,
             Format::Csv | Format::Json => Box::new(CsvRows::new(to, remarks, columns)?),
         })
+    }
+
+    /// Writes all rows as a table or CSV, below remarks.
+    pub fn write_all<'r, R: 'r>(
+        &self,
+        units: &Units,
+        remarks: Vec<String>,
+        columns: &[Column<R>],
+        rows: impl IntoIterator<Item = &'r R>,
+    ) -> Result<Ending> {
+        let table = self.format == Format::Table;
+        let (names, quantities): (Vec<_>, Vec<_>) =
+            views::names(columns, table).into_iter().unzip();
+        let unit_names = unit_names(units, quantities.into_iter());
+        let all = self
+            .begin(remarks, &names, &unit_names)
+            .and_then(|mut writer| {
+                let mut rows = rows.into_iter();
+                rows.try_for_each(|row| writer.row(&views::cells(columns, row, units, table)))
+            });
+        self.ended(written(all, &self.place))
     }
 
     /// Opens a table no wider than the terminal, and says which columns that has no room for.

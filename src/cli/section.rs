@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::number::Uncertain;
 use crate::output::{Cell, Format, RowList, plot};
 use crate::scene::{
-    CheckedExponents, Quantity, SectionColumn, SectionOptions, SectionOutcome, SectionPlan,
-    explain_section, run_section,
+    CheckedExponents, Quantity, SectionOptions, SectionOutcome, SectionPlan, explain_section,
+    run_section, section_columns,
 };
 use crate::section::Regime;
 use crate::views;
@@ -28,8 +28,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     if options.output.explain {
         say(explain_section(&plan).trim_end());
     }
-    let columns = SectionColumn::all(plan.system.interfaces);
-    let columns = columns.iter().map(|c| (c.name(), c.quantity())).collect();
+    let columns = views::names(&section_columns(plan.system.interfaces), false);
     let numbers = numerics(&plan);
     let drawn = options.plot.is_some();
     let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns, drawn) {

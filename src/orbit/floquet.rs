@@ -30,6 +30,17 @@ pub enum Kind {
     BelowFloor,
 }
 
+impl Kind {
+    /// In a word or two.
+    pub fn name(self) -> &'static str {
+        match self {
+            Kind::Real => "real",
+            Kind::Complex => "complex",
+            Kind::BelowFloor => "below floor",
+        }
+    }
+}
+
 /// A nontrivial multiplier.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Multiplier {
@@ -48,6 +59,11 @@ impl Multiplier {
             angle_over_pi: if negative { 1.0 } else { 0.0 },
             kind: Kind::Real,
         }
+    }
+
+    /// arg mu / pi, where it is known.
+    pub fn known_angle(&self) -> Option<f64> {
+        (self.kind != Kind::BelowFloor).then_some(self.angle_over_pi)
     }
 
     /// mu itself; zero where its logarithm is below what a double holds.

@@ -5,6 +5,8 @@
 
 pub(crate) mod clock;
 mod figures;
+mod going;
+mod piece;
 mod pieces;
 mod product;
 mod record;
@@ -13,7 +15,9 @@ mod run;
 pub mod scorecard;
 mod sheet;
 
-pub use pieces::{Branches, Curves, Going, Map, Pieces, Reached, Run};
+pub use going::{Going, Reached};
+pub use piece::{Branches, Curves, Equilibria, LawCurve, Map, PeriodicOrbit, Run};
+pub use pieces::Pieces;
 pub use product::{Made, Make, PRODUCTS, Product};
 pub use record::{ProductEntry, Record, Written, hash};
 pub use run::{Done, RunEvent, Selection, reproduce};

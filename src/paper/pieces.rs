@@ -1,14 +1,15 @@
 //! What scenes compute: runs, return maps, branches and curves, each once however many figures show it.
 
 use super::clock::timed;
-use crate::bifurcation::{BranchRow, Event, Label, LocusRow, Special};
+use super::going::{Going, Hears, Kept, Reached, Voice};
+use super::piece::{Branches, Curves, Equilibria, LawCurve, Map, PeriodicOrbit, Piece, Run};
+use crate::bifurcation::{Event, Label, Special};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Parameters};
-use crate::integrate::Control;
 use crate::output::RowList;
 use crate::scene::{
-    BranchKind, BranchPlan, Command, LocusPlan, OutputColumn, Plan, RunOutcome, Sampling,
-    SceneFile, SectionColumn, SectionOutcome, SectionPlan, Sink, run, run_section, shipped,
+    BranchKind, BranchPlan, Column, Command, EquilibriaPlan, LawPlan, LocusPlan, OrbitPlan, Plan,
+    Sampling, SceneFile, SectionPlan, pictured_columns, run, run_section, section_columns, shipped,
     shipped_names,
 };
 use std::collections::BTreeMap;
@@ -17,85 +18,8 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 
-/// A run in time, with its points as they are drawn.
-#[derive(Debug)]
-pub struct Run {
-    /// What was run.
-    pub plan: Plan,
-    /// In the columns of [`OutputColumn::pictured`].
-    pub rows: RowList,
-    /// What it came to.
-    pub outcome: RunOutcome,
-}
-
-/// The returns of a run.
-#[derive(Debug)]
-pub struct Map {
-    /// What was run.
-    pub plan: SectionPlan,
-    /// In the columns of [`SectionColumn::all`].
-    pub rows: RowList,
-    /// What it came to.
-    pub outcome: SectionOutcome,
-}
-
-/// Branches as a parameter varies.
-#[derive(Debug)]
-pub struct Branches {
-    /// What was followed.
-    pub plan: BranchPlan,
-    /// The points.
-    pub rows: Vec<BranchRow>,
-    /// The special ones.
-    pub special: Vec<Special>,
-}
-
-/// Curves in the (V_H, K) plane.
-#[derive(Debug)]
-pub struct Curves {
-    /// What was followed.
-    pub plan: LocusPlan,
-    /// The points.
-    pub rows: Vec<LocusRow>,
-    /// The special ones.
-    pub special: Vec<Special>,
-}
-
-#[derive(Debug, Clone)]
-enum Piece {
-    Run(Arc<Run>),
-    Map(Arc<Map>),
-    Branches(Arc<Branches>),
-    Curves(Arc<Curves>),
-}
-
-/// How far a piece has come.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Reached {
-    /// Such a part of its run, in percent.
-    Percent(u32),
-    /// So many points of its branches or curves.
-    Points(usize),
-    /// All of it.
-    Whole,
-}
-
-/// A piece on its way.
-#[derive(Debug, Clone, Copy)]
-pub struct Going<'a> {
-    /// Its scene.
-    pub scene: &'a str,
-    /// What it computes, in words.
-    pub what: &'a str,
-    /// How far it has come.
-    pub reached: Reached,
-}
-
 /// A piece, or why there is none, and the processor time that it took.
 type Computed = (Result<Piece>, Duration);
-
-/// Whom pieces tell how far they have come.
-type Hears<'a> = &'a (dyn Fn(Going<'_>) + Sync);
 
 /// All pieces, computed when they are first asked for; safe to ask from several threads.
 pub struct Pieces<'a> {
@@ -172,6 +96,39 @@ impl<'a> Pieces<'a> {
         }
     }
 
+    /// The periodic orbit of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn orbit(&self, scene: &str) -> Result<Arc<PeriodicOrbit>> {
+        match self.piece(scene)? {
+            Piece::Orbit(orbit) => Ok(orbit),
+            _ => Err(not(scene, "an orbit")),
+        }
+    }
+
+    /// The steady states of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn equilibria(&self, scene: &str) -> Result<Arc<Equilibria>> {
+        match self.piece(scene)? {
+            Piece::Equilibria(equilibria) => Ok(equilibria),
+            _ => Err(not(scene, "the equilibria at a point")),
+        }
+    }
+
+    /// The friction law of a scene.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn law_of(&self, scene: &str) -> Result<Arc<LawCurve>> {
+        match self.piece(scene)? {
+            Piece::Law(law) => Ok(law),
+            _ => Err(not(scene, "a law")),
+        }
+    }
+
     /// The processor time that the piece of a scene took; `None` if nobody asked for it.
     pub fn took(&self, scene: &str) -> Option<Duration> {
         let computed = self.cells.get(scene)?.get()?;
@@ -202,7 +159,21 @@ impl<'a> Pieces<'a> {
             Command::Section(options) => self.map_of(name, SectionPlan::new(&options)?),
             Command::Branch(options) => self.branches_of(name, BranchPlan::new(&options)?),
             Command::Locus(options) => self.curves_of(name, LocusPlan::new(&options)?),
-            _ => Err(not(name, "a run, a map, a branch or a curve")),
+            Command::Orbit(options) => self.orbit_of(name, OrbitPlan::new(&options)?),
+            Command::Equilibria(options) => {
+                let plan = EquilibriaPlan::new(&options)?;
+                let found = plan.solve()?;
+                Ok(Piece::Equilibria(Arc::new(Equilibria { plan, found })))
+            }
+            Command::Law(options) => {
+                let plan = LawPlan::new(&options)?;
+                Ok(Piece::Law(Arc::new(LawCurve {
+                    points: plan.points(),
+                    landmarks: plan.landmarks()?,
+                    plan,
+                })))
+            }
+            Command::Sweep(_) => Err(not(name, "what figures show, but a sweep")),
         }
     }
 
@@ -221,13 +192,9 @@ impl<'a> Pieces<'a> {
             picture: true,
             ..plan
         };
-        let columns = OutputColumn::pictured(plan.system.interfaces);
+        let columns = pictured_columns(plan.system.interfaces);
         let voice = self.voice(name, "a run in time");
-        let mut kept = self.keep(
-            columns.iter().map(OutputColumn::name).collect(),
-            true,
-            &voice,
-        );
+        let mut kept = self.keep(&columns, true, &voice);
         let outcome = run(&plan, &mut kept)?;
         self.ended(&outcome.failure)?;
         let rows = kept.rows;
@@ -240,10 +207,9 @@ impl<'a> Pieces<'a> {
     }
 
     fn map_of(&self, name: &str, plan: SectionPlan) -> Result<Piece> {
-        let columns = SectionColumn::all(plan.system.interfaces);
+        let columns = section_columns(plan.system.interfaces);
         let voice = self.voice(name, "a return map");
-        let columns = columns.iter().map(SectionColumn::name).collect();
-        let mut kept = self.keep(columns, false, &voice);
+        let mut kept = self.keep(&columns, false, &voice);
         let outcome = run_section(&plan, &mut kept)?;
         self.ended(&outcome.failure)?;
         let rows = kept.rows;
@@ -311,10 +277,30 @@ impl<'a> Pieces<'a> {
         })))
     }
 
-    fn keep<'b>(&'b self, columns: Vec<String>, pictured: bool, voice: &'b Voice<'b>) -> Kept<'b> {
+    fn orbit_of(&self, name: &str, plan: OrbitPlan) -> Result<Piece> {
+        let voice = self.voice(name, "a periodic orbit");
         voice.says(Reached::Percent(0));
+        let found = plan.find()?;
+        self.going_on()?;
+        let checked = plan.crosscheck(&found.orbit)?;
+        voice.says(Reached::Whole);
+        Ok(Piece::Orbit(Arc::new(PeriodicOrbit {
+            plan,
+            found,
+            checked,
+        })))
+    }
+
+    fn keep<'b, R>(
+        &'b self,
+        columns: &[Column<R>],
+        pictured: bool,
+        voice: &'b Voice<'b>,
+    ) -> Kept<'b> {
+        voice.says(Reached::Percent(0));
+        let names = columns.iter().map(|column| column.name.to_string());
         Kept {
-            rows: RowList::new(columns),
+            rows: RowList::new(names.collect()),
             pictured,
             stop: self.stop,
             voice,
@@ -356,58 +342,4 @@ fn whole(special: &[Special]) -> Result<()> {
 
 fn not(scene: &str, what: &str) -> Error {
     Error::Input(format!("the scene {scene} is not {what}"))
-}
-
-/// One piece's part of the talk.
-struct Voice<'a> {
-    hears: Hears<'a>,
-    scene: &'a str,
-    what: &'a str,
-}
-
-impl Voice<'_> {
-    fn says(&self, reached: Reached) {
-        (self.hears)(Going {
-            scene: self.scene,
-            what: self.what,
-            reached,
-        });
-    }
-}
-
-/// Keeps what a run yields.
-struct Kept<'a> {
-    rows: RowList,
-    /// Points of the picture are kept and not rows.
-    pictured: bool,
-    stop: &'a AtomicBool,
-    voice: &'a Voice<'a>,
-    /// What was told last.
-    percent: u32,
-}
-
-impl Sink for Kept<'_> {
-    fn row(&mut self, row: &[f64]) -> Control {
-        if !self.pictured {
-            self.rows.numbers.extend_from_slice(row);
-        }
-        Control::Continue
-    }
-
-    fn drawn(&mut self, point: &[f64]) {
-        self.rows.numbers.extend_from_slice(point);
-    }
-
-    fn reached(&mut self, fraction: f64) -> Control {
-        let percent = (100.0 * fraction) as u32;
-        if percent > self.percent {
-            self.percent = percent;
-            self.voice.says(Reached::Percent(percent));
-        }
-        if self.stop.load(Ordering::Relaxed) {
-            Control::Stop
-        } else {
-            Control::Continue
-        }
-    }
 }

@@ -2,7 +2,8 @@
 //! there.
 
 use super::clock::timed;
-use super::pieces::{Going, Pieces};
+use super::going::Going;
+use super::pieces::Pieces;
 use super::product::{Made, Make, Product};
 use super::record::{self, ProductEntry, Record, Written};
 use super::{report, scorecard};

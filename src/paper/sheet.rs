@@ -1,11 +1,11 @@
 //! The numbers behind a picture, as CSV: several sets of rows one below the other, each under its own name.
 
-use super::pieces::{Branches, Curves, Map, Run};
+use super::piece::{Branches, Curves, Map, Run};
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::output::{Cell, CsvRows, RowList, RowWriter};
-use crate::scene::{BranchKind, Units};
-use crate::views::{self, Column, branch_columns, locus_columns, special_columns};
+use crate::scene::{BranchKind, Column, Units};
+use crate::views::{self, branch_columns, locus_columns, special_columns};
 
 /// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
 #[derive(Debug, Clone, Default, PartialEq)]

@@ -1,144 +1,168 @@
-//! The columns of a run, and how each follows from the state: nothing else is computed.
+//! Columns: what rows show, under which names and in which units. Declared once; CSV, tables, objects and pictures follow.
 
-use super::system::System;
 use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
-use crate::field::State;
-use crate::friction::{AnyLaw, Law};
+use crate::number::Uncertain;
+use std::borrow::Cow;
+use std::fmt;
+use std::sync::Arc;
 
-/// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Instant {
-    /// Time.
-    pub time: f64,
-    /// tau.
-    pub stress: f64,
-    /// ln psi of each interface.
-    pub log_state: [f64; 2],
-    /// Slip of each interface since the start.
-    pub slip: [f64; 2],
+/// What a row has in a column, dimensionless.
+#[derive(Debug, Clone, PartialEq)]
+pub enum CellValue {
+    /// A number, where there is one.
+    Number(Option<f64>),
+    /// A number with its error budget.
+    Uncertain(Option<Uncertain>),
+    /// A word.
+    Word(Option<String>),
+    /// A count.
+    Count(usize),
 }
 
-impl Instant {
-    /// From a state in dimension 2, (tau, w), or 3, (tau, w_1, w_2).
-    pub fn new<const N: usize>(time: f64, y: &State<N>, slip: [f64; 2]) -> Self {
-        Instant {
-            time,
-            stress: y[0],
-            log_state: [y[1], y[N - 1]],
-            slip,
-        }
+impl From<f64> for CellValue {
+    fn from(x: f64) -> Self {
+        CellValue::Number(Some(x))
     }
 }
 
-/// One column of a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum OutputColumn {
-    /// `time`
-    Time,
-    /// `stress`
-    Stress,
-    /// `state_1`, `state_2`
-    State(usize),
-    /// `log_state_1`, `log_state_2`
-    LogState(usize),
-    /// `slip_rate_1`, `slip_rate_2`
-    SlipRate(usize),
-    /// `slip_1`, `slip_2`
-    Slip(usize),
+impl From<Option<f64>> for CellValue {
+    fn from(x: Option<f64>) -> Self {
+        CellValue::Number(x)
+    }
 }
 
-impl OutputColumn {
-    /// All columns of a system of one or two interfaces, in the order of the output.
-    pub fn all(interfaces: usize) -> Vec<OutputColumn> {
-        let mut all = vec![OutputColumn::Time, OutputColumn::Stress];
-        for column in [
-            OutputColumn::State,
-            OutputColumn::LogState,
-            OutputColumn::SlipRate,
-            OutputColumn::Slip,
-        ] {
-            all.extend((0..interfaces).map(column));
+impl From<Uncertain> for CellValue {
+    fn from(x: Uncertain) -> Self {
+        CellValue::Uncertain(Some(x))
+    }
+}
+
+impl From<Option<Uncertain>> for CellValue {
+    fn from(x: Option<Uncertain>) -> Self {
+        CellValue::Uncertain(x)
+    }
+}
+
+impl From<&'static str> for CellValue {
+    fn from(word: &'static str) -> Self {
+        CellValue::Word(Some(word.to_owned()))
+    }
+}
+
+impl From<Option<&'static str>> for CellValue {
+    fn from(word: Option<&'static str>) -> Self {
+        CellValue::Word(word.map(str::to_owned))
+    }
+}
+
+impl From<usize> for CellValue {
+    fn from(n: usize) -> Self {
+        CellValue::Count(n)
+    }
+}
+
+/// A column of rows of the kind R.
+pub struct Column<R> {
+    /// Its name in CSV and JSON.
+    pub name: Cow<'static, str>,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// Whether it has an error budget.
+    pub uncertain: bool,
+    /// Whether a table, which has less room, shows it.
+    pub in_table: bool,
+    /// What a row has in it.
+    entry: Arc<dyn Fn(&R) -> CellValue + Send + Sync>,
+}
+
+impl<R> Column<R> {
+    /// A column that tables show too.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        quantity: Quantity,
+        entry: impl Fn(&R) -> CellValue + Send + Sync + 'static,
+    ) -> Self {
+        Column {
+            name: name.into(),
+            quantity,
+            uncertain: false,
+            in_table: true,
+            entry: Arc::new(entry),
         }
-        all
     }
 
-    /// The columns that a picture shows.
-    pub fn pictured(interfaces: usize) -> Vec<OutputColumn> {
-        let shown = |column: &OutputColumn| {
-            !matches!(column, OutputColumn::LogState(_) | OutputColumn::Slip(_))
+    /// With an error budget.
+    pub fn uncertain(
+        name: impl Into<Cow<'static, str>>,
+        quantity: Quantity,
+        entry: impl Fn(&R) -> CellValue + Send + Sync + 'static,
+    ) -> Self {
+        Column {
+            uncertain: true,
+            ..Column::new(name, quantity, entry)
+        }
+    }
+
+    /// The same, but no table shows it.
+    pub fn not_in_table(self) -> Self {
+        Column {
+            in_table: false,
+            ..self
+        }
+    }
+
+    /// What a row has in it, dimensionless.
+    pub fn entry(&self, row: &R) -> CellValue {
+        (self.entry)(row)
+    }
+
+    /// The number that a row has in it, in the user's units; NaN where there is none.
+    pub fn number(&self, row: &R, units: &Units) -> f64 {
+        let x = match self.entry(row) {
+            CellValue::Number(x) => x,
+            CellValue::Uncertain(x) => x.map(|x| x.value),
+            CellValue::Count(n) => return n as f64,
+            CellValue::Word(_) => None,
         };
-        OutputColumn::all(interfaces)
-            .into_iter()
-            .filter(shown)
-            .collect()
+        x.map_or(f64::NAN, |x| units.outward(self.quantity, x))
     }
 
-    /// The columns of a comma-separated list of names.
+    /// Those of a comma-separated list of names.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a name that is none, with the nearest that is one.
-    pub fn listed(names: &str, interfaces: usize) -> Result<Vec<OutputColumn>> {
-        let all = OutputColumn::all(interfaces);
-        names
-            .split(',')
-            .map(str::trim)
-            .map(|name| {
-                let found = all.iter().copied().find(|column| column.name() == name);
-                found.ok_or_else(|| {
-                    let known: Vec<String> = all.iter().map(OutputColumn::name).collect();
-                    let known: Vec<&str> = known.iter().map(String::as_str).collect();
-                    Error::unknown("columns", name, &known)
-                })
+    pub fn listed(all: &[Self], names: &str) -> Result<Vec<Self>> {
+        let one = |name: &str| {
+            let found = all.iter().find(|column| column.name == name);
+            found.cloned().ok_or_else(|| {
+                let known: Vec<&str> = all.iter().map(|column| &*column.name).collect();
+                Error::unknown("columns", name, &known)
             })
-            .collect()
-    }
-
-    /// The name in CSV and JSON.
-    pub fn name(&self) -> String {
-        match self {
-            OutputColumn::Time => "time".into(),
-            OutputColumn::Stress => "stress".into(),
-            OutputColumn::State(i) => format!("state_{}", i + 1),
-            OutputColumn::LogState(i) => format!("log_state_{}", i + 1),
-            OutputColumn::SlipRate(i) => format!("slip_rate_{}", i + 1),
-            OutputColumn::Slip(i) => format!("slip_{}", i + 1),
-        }
-    }
-
-    /// What it measures.
-    pub fn quantity(&self) -> Quantity {
-        match self {
-            OutputColumn::Time => Quantity::Time,
-            OutputColumn::Stress => Quantity::Stress,
-            OutputColumn::State(_) => Quantity::State,
-            OutputColumn::LogState(_) => Quantity::LogState,
-            OutputColumn::SlipRate(_) => Quantity::SlipRate,
-            OutputColumn::Slip(_) => Quantity::Length,
-        }
-    }
-
-    fn value(&self, law: &AnyLaw, units: &Units, at: &Instant) -> f64 {
-        let x = match *self {
-            OutputColumn::Time => at.time,
-            OutputColumn::Stress => at.stress,
-            OutputColumn::State(i) => at.log_state[i].exp(),
-            OutputColumn::LogState(i) => at.log_state[i],
-            OutputColumn::SlipRate(i) => {
-                law.slip_rate(law.activation(at.stress), at.log_state[i].exp())
-            }
-            OutputColumn::Slip(i) => at.slip[i],
         };
-        units.outward(self.quantity(), x)
+        names.split(',').map(str::trim).map(one).collect()
     }
 }
 
-/// Fills a row with the columns at an instant, in the user's units.
-pub(super) fn fill(row: &mut Vec<f64>, columns: &[OutputColumn], system: &System, at: &Instant) {
-    row.clear();
-    row.extend(
-        columns
-            .iter()
-            .map(|column| column.value(&system.law, &system.units, at)),
-    );
+impl<R> Clone for Column<R> {
+    fn clone(&self) -> Self {
+        Column {
+            name: self.name.clone(),
+            entry: Arc::clone(&self.entry),
+            ..*self
+        }
+    }
+}
+
+/// Columns of one kind of rows that have the same name are the same.
+impl<R> PartialEq for Column<R> {
+    fn eq(&self, other: &Self) -> bool {
+        self.name == other.name
+    }
+}
+
+impl<R> fmt::Debug for Column<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} [{:?}]", self.name, self.quantity)
+    }
 }

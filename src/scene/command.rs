@@ -69,9 +69,10 @@ impl Command {
         arguments.extend(scene.arguments(replaced));
         arguments.extend(added.iter().cloned());
         let line = SceneLine::try_parse_from(arguments).map_err(|error| {
-            // The first line is the sentence; what follows is advice on flags, which a scene does not have.
+            // What stands before the first empty line is the sentence; advice on flags follows, which a scene does not have.
             let text = error.to_string();
-            let sentence = text.lines().next().unwrap_or_default();
+            let lines = text.lines().take_while(|line| !line.is_empty());
+            let sentence = lines.map(str::trim).collect::<Vec<_>>().join(" ");
             let sentence = sentence.trim_start_matches("error: ").to_owned();
             scene.locate(&Error::Input(sentence))
         })?;

@@ -29,13 +29,17 @@ mod branch;
 mod column;
 mod command;
 mod continuation;
+mod equilibria;
 mod estimate;
 mod event;
 mod explain;
 mod file;
 mod following;
+mod instant;
+mod law;
 mod locus;
 mod options;
+mod orbit;
 mod plan;
 mod run;
 mod section;
@@ -46,22 +50,27 @@ mod system;
 mod units;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
-pub use column::{Instant, OutputColumn};
+pub use column::{CellValue, Column};
 pub use command::Command;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions};
+pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use following::Following;
+pub use instant::{Instant, pictured_columns, run_columns};
+pub use law::{LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,
 };
+pub use orbit::OrbitPlan;
 pub use plan::{Dimension, Plan, Sampling, start, tolerances};
 pub use run::{RunOutcome, Sink, run};
 pub use section::{
-    CheckedExponents, SectionColumn, SectionOutcome, SectionPlan, explain_section, run_section,
+    CheckedExponents, SectionOutcome, SectionPlan, SectionRow, explain_section, run_section,
+    section_columns,
 };
 pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};

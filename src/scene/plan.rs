@@ -1,8 +1,9 @@
 //! From options to a plan: what is integrated, in which dimension, and which extras the outputs need. What no output needs
 //! is not in the plan, and so is not done.
 
-use super::column::OutputColumn;
+use super::column::Column;
 use super::estimate::Companion;
+use super::instant::{Instant, run_columns};
 use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
 use super::units::Quantity;
@@ -78,7 +79,7 @@ pub struct Plan {
     /// When there are rows.
     pub sampling: Sampling,
     /// What a row holds.
-    pub columns: Vec<OutputColumn>,
+    pub columns: Vec<Column<Instant>>,
     /// The threshold of stick-slip events over V_H, where they are asked for.
     pub events: Option<f64>,
     /// Whether the run is drawn, which takes points between the steps and whatever rows are asked for.
@@ -112,10 +113,10 @@ impl Plan {
             .units
             .inward(Quantity::Time, positive("until", until)?);
         let sampling = sampling(options, &system, until)?;
-        let columns = match &options.columns {
-            Some(names) => OutputColumn::listed(names, system.interfaces)?,
-            None => OutputColumn::all(system.interfaces),
-        };
+        let mut columns = run_columns(system.interfaces);
+        if let Some(names) = &options.columns {
+            columns = Column::listed(&columns, names)?;
+        }
         let (method, tolerances) = numerics(&options.numerics)?;
         Ok(Plan {
             loading,
@@ -159,7 +160,7 @@ impl Plan {
             || self
                 .columns
                 .iter()
-                .any(|c| matches!(c, OutputColumn::Slip(_)))
+                .any(|column| column.quantity == Quantity::Length)
     }
 
     /// Whether anything must be seen between start and end.

@@ -1,8 +1,9 @@
 //! From a plan to rows: one flow, watched only as far as the plan needs.
 
-use super::column::{Instant, OutputColumn, fill};
+use super::column::Column;
 use super::estimate::{estimate, timed};
 use super::event::{Detector, SlipEvent};
+use super::instant::{Instant, pictured_columns};
 use super::plan::{Dimension, Plan, Sampling};
 use super::slip::{Slips, at, slips};
 use crate::error::{Error, Result};
@@ -18,7 +19,7 @@ const PICTURED: usize = 4;
 pub trait Sink {
     /// A row, in the plan's columns and the user's units.
     fn row(&mut self, row: &[f64]) -> Control;
-    /// A point of the picture, in the columns [`OutputColumn::pictured`] and the user's units.
+    /// A point of the picture, in the columns [`pictured_columns`] and the user's units.
     fn drawn(&mut self, _point: &[f64]) {}
     /// The run has come to this fraction of its time.
     fn reached(&mut self, fraction: f64) -> Control;
@@ -119,7 +120,7 @@ struct RunObserver<'a, const N: usize> {
     /// The slips there, in all digits.
     slips: Slips,
     row: Vec<f64>,
-    pictured: Vec<OutputColumn>,
+    pictured: Vec<Column<Instant>>,
     /// Rows at fixed times made so far.
     sampled: usize,
     stopped: bool,
@@ -139,10 +140,10 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             detector: plan
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
-            here: Instant::new(0.0, y0, [0.0; 2]),
+            here: Instant::new(plan.system.law, 0.0, y0, [0.0; 2]),
             slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
-            pictured: OutputColumn::pictured(plan.system.interfaces),
+            pictured: pictured_columns(plan.system.interfaces),
             sampled: 0,
             stopped: false,
         }
@@ -174,7 +175,8 @@ impl<'a, const N: usize> RunObserver<'a, N> {
                 before
             }
         };
-        let instant = |t: f64| Instant::new(t, &at(step, t), slip(t).map(DoubleDouble::hi));
+        let law = self.plan.system.law;
+        let instant = |t: f64| Instant::new(law, t, &at(step, t), slip(t).map(DoubleDouble::hi));
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
             self.emit(&instant(t));
             self.sampled += 1;
@@ -182,11 +184,11 @@ impl<'a, const N: usize> RunObserver<'a, N> {
         if self.plan.picture {
             for part in 1..=PICTURED {
                 let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&Instant::new(t, &at(step, t), [0.0; 2]));
+                self.draw(&Instant::new(law, t, &at(step, t), [0.0; 2]));
             }
         }
         self.slips = slip(step.t1);
-        self.here = Instant::new(step.t1, step.y1, self.slips.map(DoubleDouble::hi));
+        self.here = Instant::new(law, step.t1, step.y1, self.slips.map(DoubleDouble::hi));
         if self.plan.sampling == Sampling::EveryStep {
             let here = self.here;
             self.emit(&here);
@@ -225,12 +227,12 @@ impl<'a, const N: usize> RunObserver<'a, N> {
     }
 
     fn draw(&mut self, at: &Instant) {
-        fill(&mut self.row, &self.pictured, &self.plan.system, at);
+        fill(&mut self.row, &self.pictured, self.plan, at);
         self.sink.drawn(&self.row);
     }
 
     fn emit(&mut self, at: &Instant) {
-        fill(&mut self.row, &self.plan.columns, &self.plan.system, at);
+        fill(&mut self.row, &self.plan.columns, self.plan, at);
         if self.sink.row(&self.row) == Control::Stop {
             self.stopped = true;
         }
@@ -242,13 +244,13 @@ impl<'a, const N: usize> RunObserver<'a, N> {
         if let Ok(y) = end
             && !self.stopped
         {
-            self.here = Instant::new(plan.until, y, self.here.slip);
+            self.here = Instant::new(plan.system.law, plan.until, y, self.here.slip);
         }
         if plan.sampling == Sampling::FinalOnly && end.is_ok() && !self.stopped {
             let here = self.here;
             self.emit(&here);
         }
-        fill(&mut self.row, &plan.columns, &plan.system, &self.here);
+        fill(&mut self.row, &plan.columns, plan, &self.here);
         RunOutcome {
             last: known.then_some(self.row),
             events: self.detector.map_or_else(Vec::new, Detector::into_events),
@@ -259,4 +261,11 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             stopped: self.stopped,
         }
     }
+}
+
+/// Fills a row with the columns at an instant, in the user's units.
+fn fill(row: &mut Vec<f64>, columns: &[Column<Instant>], plan: &Plan, at: &Instant) {
+    let units = &plan.system.units;
+    row.clear();
+    row.extend(columns.iter().map(|column| column.number(at, units)));
 }

@@ -1,9 +1,8 @@
 //! What the rows of branches and curves, and special points, show.
 
-use super::{CellValue, Column};
 use crate::bifurcation::{BranchRow, Criticality, Label, LocusRow, Special};
 use crate::equilibrium::Symmetry;
-use crate::scene::Quantity;
+use crate::scene::{CellValue, Column, Quantity};
 
 /// The columns of branches of orbits or of equilibria; a table leaves out what is less looked at.
 pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>> {
@@ -57,7 +56,7 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
         ]
     };
     for column in &mut columns {
-        column.in_table = !left_out.contains(&column.name);
+        column.in_table = !left_out.contains(&&*column.name);
     }
     columns
 }
@@ -89,23 +88,25 @@ pub fn special_columns() -> Vec<Column<Special>> {
     use Quantity::{Number, SlipRate, Stiffness, Time};
     vec![
         Column::new("label", Number, |one: &Special| one.label.name().into()),
-        Column::new("name", Number, |one| one.label.meaning().into()),
-        Column::new("branch", Number, |one| one.branch.into()),
-        Column::new("symmetry", Number, |one| {
+        Column::new("name", Number, |one: &Special| one.label.meaning().into()),
+        Column::new("branch", Number, |one: &Special| one.branch.into()),
+        Column::new("symmetry", Number, |one: &Special| {
             one.symmetry.map(Symmetry::name).into()
         }),
-        Column::uncertain("driving", SlipRate, |one| one.driving.into()),
-        Column::uncertain("stiffness", Stiffness, |one| one.stiffness.into()),
-        Column::uncertain("period", Time, |one| one.period.into()),
-        Column::new("criticality", Number, |one| {
+        Column::uncertain("driving", SlipRate, |one: &Special| one.driving.into()),
+        Column::uncertain("stiffness", Stiffness, |one: &Special| one.stiffness.into()),
+        Column::uncertain("period", Time, |one: &Special| one.period.into()),
+        Column::new("criticality", Number, |one: &Special| {
             one.criticality.map(Criticality::name).into()
         }),
-        Column::new("coefficient", Number, |one| one.coefficient.into()),
-        Column::new("note", Number, |one| {
+        Column::new("coefficient", Number, |one: &Special| {
+            one.coefficient.into()
+        }),
+        Column::new("note", Number, |one: &Special| {
             // A row is a line, whatever the reason says.
             CellValue::Word(one.note.as_ref().map(|note| note.replace('\n', " ")))
         }),
-        Column::new("coefficient_uncertainty", Number, |one| {
+        Column::new("coefficient_uncertainty", Number, |one: &Special| {
             one.coefficient_uncertainty.into()
         }),
     ]

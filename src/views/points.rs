@@ -1,9 +1,9 @@
 //! What the rows of a sweep show, and how they are read again.
 
-use super::{CellValue, Column, PointOutcome};
+use super::PointOutcome;
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;
-use crate::scene::{Quantity, Units};
+use crate::scene::{CellValue, Column, Quantity, Units};
 use crate::section::Regime;
 use crate::sweep::SweepRow;
 

@@ -2,10 +2,36 @@
 
 use crate::output::RowList;
 use crate::output::plot::{Axis, Panel, PlotSeries, Stroke};
-use crate::scene::{Dimension, Plan, Quantity};
+use crate::scene::{CellValue, Column, Dimension, Plan, Quantity, SlipEvent};
 use crate::views;
 
-/// Stress, states and slip rates against time, from points in the columns [`crate::scene::OutputColumn::pictured`].
+/// The columns of stick-slip events; a single interface has no second slip, and neither it nor equal ones have a leader.
+pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
+    use Quantity::{Length, Number, SlipRate, Stress, Time};
+    type Event = SlipEvent;
+    let two = interfaces == 2;
+    vec![
+        Column::new("onset", Time, |event: &Event| event.onset.into()),
+        Column::new("recurrence", Time, |event: &Event| event.recurrence.into()),
+        Column::new("duration", Time, |event: &Event| event.duration.into()),
+        Column::new("stress_drop", Stress, |event: &Event| {
+            event.stress_drop.into()
+        }),
+        Column::new("peak_slip_rate", SlipRate, |event: &Event| {
+            event.peak_slip_rate.into()
+        }),
+        Column::new("slip_1", Length, |event: &Event| event.slip[0].into()),
+        Column::new("slip_2", Length, move |event: &Event| {
+            two.then_some(event.slip[1]).into()
+        }),
+        Column::new("leader", Number, move |event: &Event| {
+            let leader = event.leader().filter(|_| two);
+            leader.map_or(CellValue::Word(None), CellValue::Count)
+        }),
+    ]
+}
+
+/// Stress, states and slip rates against time, from points in the columns [`crate::scene::pictured_columns`].
 pub fn panels_in_time(plan: &Plan, rows: &RowList) -> Vec<Panel> {
     let units = &plan.system.units;
     let time = Axis::linear(format!("time t [{}]", units.short_name(Quantity::Time)));

@@ -4,9 +4,9 @@ use super::runs::{column, combined, in_time, method, title as title_of};
 use crate::error::Result;
 use crate::friction::steady_stress;
 use crate::output::plot::{Axis, Block, Drawing, Key, Mark, Panel, PlotSeries, Symbol};
-use crate::paper::pieces::{Pieces, Run};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
+use crate::paper::{Pieces, Run};
 
 /// The figure.
 pub const FIGURE: Product = Product {

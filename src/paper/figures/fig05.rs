@@ -5,9 +5,9 @@ use crate::bifurcation::BranchRow;
 use crate::error::Result;
 use crate::friction::steady_stress;
 use crate::output::plot::{Axis, Block, Drawing, Panel, PlotSeries, Stroke};
-use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
+use crate::paper::{Branches, Pieces};
 use crate::views::{branch_lines, named_strokes};
 
 /// The figure.

@@ -4,9 +4,9 @@ use super::plane::{keys, labels, mark, marks, method};
 use crate::bifurcation::{BranchRow, Label};
 use crate::error::Result;
 use crate::output::plot::{Axis, Drawing, Panel};
-use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
+use crate::paper::{Branches, Pieces};
 use crate::views::{branch_lines, named_strokes};
 
 /// The figure.

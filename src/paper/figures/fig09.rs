@@ -5,9 +5,9 @@ use super::plane::{marks, method};
 use crate::bifurcation::{BranchRow, Label};
 use crate::error::Result;
 use crate::output::plot::{Axis, Block, Drawing, Mark, Panel};
-use crate::paper::pieces::{Branches, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
+use crate::paper::{Branches, Pieces};
 use crate::views::branch_lines;
 
 /// The figure.

@@ -4,9 +4,9 @@ use super::plane::{lines, mark, method, symbol};
 use crate::bifurcation::{Label, LocusRow};
 use crate::error::Result;
 use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
-use crate::paper::pieces::{Curves, Pieces};
 use crate::paper::product::{Made, Make, Product};
 use crate::paper::sheet::Sheet;
+use crate::paper::{Curves, Pieces};
 
 /// The figure.
 pub const FIGURE: Product = Product {

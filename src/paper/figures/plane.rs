@@ -2,7 +2,7 @@
 
 use crate::bifurcation::{BranchRow, Label, LocusRow, Special};
 use crate::output::plot::{Key, Mark, PlotSeries, Stroke, Symbol};
-use crate::paper::pieces::{Branches, Curves};
+use crate::paper::{Branches, Curves};
 
 /// How a kind of special point is drawn: shape, whether it is filled, its words.
 pub fn symbol(label: Label) -> Option<(Symbol, bool, &'static str)> {

@@ -4,9 +4,9 @@ use crate::error::Result;
 use crate::friction::steady_stress;
 use crate::output::RowList;
 use crate::output::plot::{Axis, Block, Drawing, Note, Panel, PlotSeries, Stroke};
-use crate::paper::pieces::{Map, Pieces, Run};
 use crate::paper::product::Made;
 use crate::paper::sheet::Sheet;
+use crate::paper::{Map, Pieces, Run};
 use crate::scene::Dimension;
 use crate::views;
 

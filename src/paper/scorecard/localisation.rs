@@ -139,7 +139,7 @@ fn later(run_of: &Run, exchanged: bool) -> Result<[f64; 2]> {
         .last
         .ok_or_else(|| missing("a run without an end"))?;
     let at = |name: &str| {
-        let column = plan.columns.iter().position(|column| column.name() == name);
+        let column = plan.columns.iter().position(|column| column.name == name);
         column
             .map(|i| last[i])
             .ok_or_else(|| missing("a run without slip rates"))

@@ -2,11 +2,13 @@
 
 mod explain;
 mod exponents;
+mod row;
 mod run;
 
 pub use explain::explain_section;
 pub use exponents::CheckedExponents;
-pub use run::{SectionColumn, SectionOutcome, run_section};
+pub use row::{SectionRow, section_columns};
+pub use run::{SectionOutcome, run_section};
 
 use super::options::SectionOptions;
 use super::plan::{Dimension, numerics, start};

@@ -2,9 +2,9 @@
 
 use super::super::plan::Dimension;
 use super::super::run::Sink;
-use super::super::units::Quantity;
 use super::SectionPlan;
 use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, of_record};
+use super::row::RowMaker;
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Work};
@@ -18,56 +18,6 @@ use crate::section::{
 /// Where exponents are asked for, the run takes this part of the time, and has come to this part when their own run is done.
 const RUN: f64 = 0.2;
 const OWN_RUN: f64 = 0.4;
-
-/// One column of a return map.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SectionColumn {
-    /// `n`, the number of the return after those let pass, from 0.
-    Number,
-    /// `time`
-    Time,
-    /// `log_state_1`, `log_state_2`
-    LogState(usize),
-    /// `slip_rate_1`, `slip_rate_2`
-    SlipRate(usize),
-    /// `slip_rate_sum`
-    Sum,
-    /// `next_slip_rate_sum`, at the return that follows.
-    NextSum,
-}
-
-impl SectionColumn {
-    /// All of a system of one or two interfaces.
-    pub fn all(interfaces: usize) -> Vec<Self> {
-        let mut all = vec![SectionColumn::Number, SectionColumn::Time];
-        all.extend((0..interfaces).map(SectionColumn::LogState));
-        all.extend((0..interfaces).map(SectionColumn::SlipRate));
-        all.extend([SectionColumn::Sum, SectionColumn::NextSum]);
-        all
-    }
-
-    /// The name in CSV and JSON.
-    pub fn name(&self) -> String {
-        match self {
-            SectionColumn::Number => "n".into(),
-            SectionColumn::Time => "time".into(),
-            SectionColumn::LogState(i) => format!("log_state_{}", i + 1),
-            SectionColumn::SlipRate(i) => format!("slip_rate_{}", i + 1),
-            SectionColumn::Sum => "slip_rate_sum".into(),
-            SectionColumn::NextSum => "next_slip_rate_sum".into(),
-        }
-    }
-
-    /// What it measures.
-    pub fn quantity(&self) -> Quantity {
-        match self {
-            SectionColumn::Number => Quantity::Number,
-            SectionColumn::Time => Quantity::Time,
-            SectionColumn::LogState(_) => Quantity::LogState,
-            _ => Quantity::SlipRate,
-        }
-    }
-}
 
 /// What a return map came to, dimensionless.
 #[derive(Debug, Clone, PartialEq)]
@@ -284,50 +234,4 @@ fn by_orbit<const N: usize>(
     let (period, found) = of_orbit(plan, periodic)?;
     periodic.period = period;
     Some(found)
-}
-
-/// Makes a row of each return and the next.
-struct RowMaker<'a, const N: usize> {
-    plan: &'a SectionPlan,
-    field: &'a dyn Driven<N>,
-    /// The last return, as a row without its end.
-    open: Option<Vec<f64>>,
-    made: usize,
-}
-
-impl<'a, const N: usize> RowMaker<'a, N> {
-    fn new(plan: &'a SectionPlan, field: &'a dyn Driven<N>) -> Self {
-        RowMaker {
-            plan,
-            field,
-            open: None,
-            made: 0,
-        }
-    }
-
-    fn next(&mut self, at: &Return<N>, sink: &mut dyn Sink) -> Control {
-        let (units, interfaces) = (&self.plan.system.units, self.plan.system.interfaces);
-        let v = self.field.slip_rates(&at.state);
-        let sum = units.outward(Quantity::SlipRate, v[..interfaces].iter().sum());
-        let told = self.open.take().map(|mut row| {
-            row.push(sum);
-            self.made += 1;
-            sink.row(&row)
-        });
-        let states = [at.state[1], at.state[N - 1]];
-        let mut row = vec![self.made as f64, units.outward(Quantity::Time, at.time)];
-        row.extend(
-            states[..interfaces]
-                .iter()
-                .map(|&w| units.outward(Quantity::LogState, w)),
-        );
-        row.extend(
-            v[..interfaces]
-                .iter()
-                .map(|&v| units.outward(Quantity::SlipRate, v)),
-        );
-        row.push(sum);
-        self.open = Some(row);
-        told.unwrap_or(Control::Continue)
-    }
 }

@@ -1,0 +1,97 @@
+//! What one scene computes.
+
+use crate::bifurcation::{BranchRow, LocusRow, Special};
+use crate::orbit::{Crosscheck, FoundOrbit};
+use crate::output::RowList;
+use crate::scene::{
+    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, LawLandmarks, LawPlan, LawPoint, LocusPlan,
+    OrbitPlan, Plan, RunOutcome, SectionOutcome, SectionPlan,
+};
+use std::sync::Arc;
+
+/// A run in time, with its points as they are drawn.
+#[derive(Debug)]
+pub struct Run {
+    /// What was run.
+    pub plan: Plan,
+    /// In the columns of [`pictured_columns`](crate::scene::pictured_columns).
+    pub rows: RowList,
+    /// What it came to.
+    pub outcome: RunOutcome,
+}
+
+/// The returns of a run.
+#[derive(Debug)]
+pub struct Map {
+    /// What was run.
+    pub plan: SectionPlan,
+    /// In the columns of [`section_columns`](crate::scene::section_columns).
+    pub rows: RowList,
+    /// What it came to.
+    pub outcome: SectionOutcome,
+}
+
+/// Branches as a parameter varies.
+#[derive(Debug)]
+pub struct Branches {
+    /// What was followed.
+    pub plan: BranchPlan,
+    /// The points.
+    pub rows: Vec<BranchRow>,
+    /// The special ones.
+    pub special: Vec<Special>,
+}
+
+/// Curves in the (V_H, K) plane.
+#[derive(Debug)]
+pub struct Curves {
+    /// What was followed.
+    pub plan: LocusPlan,
+    /// The points.
+    pub rows: Vec<LocusRow>,
+    /// The special ones.
+    pub special: Vec<Special>,
+}
+
+/// A periodic orbit.
+#[derive(Debug)]
+pub struct PeriodicOrbit {
+    /// What was looked for.
+    pub plan: OrbitPlan,
+    /// What was found.
+    pub found: FoundOrbit,
+    /// The same by the second method, where the plan has one.
+    pub checked: Option<Crosscheck>,
+}
+
+/// All steady states at a driving velocity.
+#[derive(Debug)]
+pub struct Equilibria {
+    /// What was looked for.
+    pub plan: EquilibriaPlan,
+    /// What was found.
+    pub found: ClassifiedEquilibria,
+}
+
+/// A steady-state friction law.
+#[derive(Debug)]
+pub struct LawCurve {
+    /// What was evaluated.
+    pub plan: LawPlan,
+    /// The points.
+    pub points: Vec<LawPoint>,
+    /// Its extrema.
+    pub landmarks: LawLandmarks,
+}
+
+/// What a scene computes.
+#[derive(Debug, Clone)]
+pub(super) enum Piece {
+    Run(Arc<Run>),
+    Map(Arc<Map>),
+    Branches(Arc<Branches>),
+    Curves(Arc<Curves>),
+    Orbit(Arc<PeriodicOrbit>),
+    Equilibria(Arc<Equilibria>),
+    Law(Arc<LawCurve>),
+}

@@ -1,0 +1,71 @@
+//! The points of a run in time, and their columns: what no column asks for is not computed.
+
+use super::column::Column;
+use super::units::Quantity;
+use crate::field::State;
+use crate::friction::{AnyLaw, Law};
+
+/// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Instant {
+    /// The law of every interface.
+    pub law: AnyLaw,
+    /// Time.
+    pub time: f64,
+    /// tau.
+    pub stress: f64,
+    /// ln psi of each interface.
+    pub log_state: [f64; 2],
+    /// Slip of each interface since the start.
+    pub slip: [f64; 2],
+}
+
+impl Instant {
+    /// From a state in dimension 2, (tau, w), or 3, (tau, w_1, w_2).
+    pub fn new<const N: usize>(law: AnyLaw, time: f64, y: &State<N>, slip: [f64; 2]) -> Self {
+        Instant {
+            law,
+            time,
+            stress: y[0],
+            log_state: [y[1], y[N - 1]],
+            slip,
+        }
+    }
+
+    /// The slip rate of an interface, 0 or 1, in V*.
+    pub fn slip_rate(&self, interface: usize) -> f64 {
+        let activation = self.law.activation(self.stress);
+        self.law
+            .slip_rate(activation, self.log_state[interface].exp())
+    }
+}
+
+/// All columns of a run of one or two interfaces, in the order of the output.
+pub fn run_columns(interfaces: usize) -> Vec<Column<Instant>> {
+    use Quantity::{Length, LogState, SlipRate, State, Stress, Time};
+    let each = |name: &'static str, quantity, entry: fn(&Instant, usize) -> f64| {
+        (0..interfaces).map(move |i| {
+            Column::new(
+                format!("{name}_{}", i + 1),
+                quantity,
+                move |at: &Instant| entry(at, i).into(),
+            )
+        })
+    };
+    let mut columns = vec![
+        Column::new("time", Time, |at: &Instant| at.time.into()),
+        Column::new("stress", Stress, |at: &Instant| at.stress.into()),
+    ];
+    columns.extend(each("state", State, |at, i| at.log_state[i].exp()));
+    columns.extend(each("log_state", LogState, |at, i| at.log_state[i]));
+    columns.extend(each("slip_rate", SlipRate, Instant::slip_rate));
+    columns.extend(each("slip", Length, |at, i| at.slip[i]));
+    columns
+}
+
+/// Those that a picture shows.
+pub fn pictured_columns(interfaces: usize) -> Vec<Column<Instant>> {
+    let mut columns = run_columns(interfaces);
+    columns.retain(|column| !matches!(column.quantity, Quantity::LogState | Quantity::Length));
+    columns
+}

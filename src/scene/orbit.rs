@@ -1,0 +1,187 @@
+//! A periodic orbit from options: which one, where the search begins, how accurately, and by which second method.
+
+use super::options::OrbitOptions;
+use super::plan::{start, tolerances};
+use super::system::System;
+use super::units::Quantity;
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::friction::positive;
+use crate::integrate::Choice;
+use crate::orbit::{
+    Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
+    find,
+};
+
+/// A periodic orbit that is asked for, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct OrbitPlan {
+    /// What slides.
+    pub system: System,
+    /// The same for the search.
+    pub slab: InterfaceSystem,
+    /// Which orbit, and where the search begins.
+    pub query: Query,
+    /// By which method.
+    pub accuracy: OrbitAccuracy,
+    /// By which second method once more.
+    pub second: Option<OrbitAccuracy>,
+}
+
+impl OrbitPlan {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &OrbitOptions) -> Result<Self> {
+        let system = System::new(&options.model)?;
+        let slab = InterfaceSystem {
+            law: system.law,
+            interfaces: system.interfaces,
+            loading: system.loading()?,
+        };
+        let name = options.symmetry.as_str();
+        let symmetry = Symmetry::named(name)
+            .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))?;
+        let query = Query {
+            symmetry,
+            begin: begin(options, &system, &slab)?,
+        };
+        let accuracy = accuracy(options)?;
+        Ok(OrbitPlan {
+            second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            slab,
+            query,
+            accuracy,
+            system,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let dimension = match (self.query.symmetry, self.slab.interfaces) {
+            (Symmetry::Asymmetric, _) => "3",
+            (Symmetry::Symmetric, 2) => {
+                "2: both interfaces move alike; the multiplier across is a quadrature"
+            }
+            (Symmetry::Symmetric, _) => "2",
+        };
+        let guess = match self.query.begin {
+            InitialGuess::At {
+                period: Some(_), ..
+            } => "the start, over the period given",
+            InitialGuess::At { .. } => "the returns of the start, else what it settles on",
+            InitialGuess::Anywhere => {
+                "what runs settle on, else the branch from the nearest Hopf point"
+            }
+            InitialGuess::Hopf => "the branch from the nearest Hopf point, past its folds",
+        };
+        let second = match &self.second {
+            Some(second) => format!(
+                "{}, from nodes cut to three digits; rtol {:e}",
+                second.method.name(),
+                second.tolerances.rtol
+            ),
+            None => "off: `crosscheck` none".to_owned(),
+        };
+        format!(
+            "plan of this command
+  dimension         {dimension}
+  guess             {guess}
+  method            {}, tangents on, multiple shooting; rtol {:e}
+  uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser
+  crosscheck        {second}
+  dense output      on, for the extremes alone",
+            method_name(self.accuracy.method),
+            self.accuracy.tolerances.rtol
+        )
+    }
+
+    /// Finds the orbit.
+    ///
+    /// # Errors
+    /// Those of [`find()`].
+    pub fn find(&self) -> Result<FoundOrbit> {
+        find(&self.slab, &self.query, &self.accuracy)
+    }
+
+    /// The orbit once more, by the second method; `None` where there is none.
+    ///
+    /// # Errors
+    /// Those of [`crosscheck`].
+    pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
+        let again = |second| crosscheck(&self.slab, orbit, second);
+        self.second.as_ref().map(again).transpose()
+    }
+}
+
+/// Where the search begins.
+fn begin(options: &OrbitOptions, system: &System, slab: &InterfaceSystem) -> Result<InitialGuess> {
+    let inward = |t| {
+        Ok(system
+            .units
+            .inward(Quantity::Time, positive("period-guess", t)?))
+    };
+    let period = options.period_guess.map(inward).transpose()?;
+    Ok(match options.start.as_deref() {
+        None => InitialGuess::Anywhere,
+        Some("hopf") if period.is_some() => {
+            return Err(Error::Input(
+                "`period_guess` goes with a `start` near the orbit, not with `start` hopf".into(),
+            ));
+        }
+        Some("hopf") => InitialGuess::Hopf,
+        Some(text) => InitialGuess::At {
+            start: start(text, system, &slab.loading)?,
+            period,
+        },
+    })
+}
+
+/// The method with its tolerances, or those that are given.
+fn accuracy(options: &OrbitOptions) -> Result<OrbitAccuracy> {
+    let usual = OrbitAccuracy::of(Choice::named(&options.method)?);
+    if options.max_steps == 0 {
+        return Err(Error::parameter("max-steps", 0, "at least 1"));
+    }
+    let given = match (options.rtol, options.atol) {
+        (None, None) => usual.tolerances,
+        (rtol, atol) => tolerances(rtol.unwrap_or(usual.tolerances.rtol), atol)?,
+    };
+    Ok(OrbitAccuracy {
+        max_steps: options.max_steps,
+        tolerances: given,
+        ..usual
+    })
+}
+
+fn method_name(choice: Choice) -> &'static str {
+    match choice {
+        Choice::Auto => Choice::Taylor.name(),
+        other => other.name(),
+    }
+}
+
+/// The method of the crosscheck: another one than the first.
+fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
+    #[cfg(feature = "sundials")]
+    const DEFAULT: &str = "cvode-bdf";
+    #[cfg(not(feature = "sundials"))]
+    const DEFAULT: &str = "rodas5p";
+    let name = match name {
+        Some("none") => return Ok(None),
+        Some(name) => name,
+        None if method_name(first) == DEFAULT => Choice::Taylor.name(),
+        None => DEFAULT,
+    };
+    let method = Choice::named_by("crosscheck", name)?;
+    if method_name(method) == method_name(first) {
+        return Err(Error::Input(format!(
+            "`crosscheck` {name} is the method of the orbit itself; choose another, or none"
+        )));
+    }
+    Ok(Some(OrbitAccuracy {
+        checked: false,
+        ..OrbitAccuracy::of(method)
+    }))
+}

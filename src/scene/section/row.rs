@@ -1,0 +1,102 @@
+//! The rows of a return map: a return, and the slip rate at the next.
+
+use super::super::column::Column;
+use super::super::run::Sink;
+use super::super::units::Quantity;
+use super::SectionPlan;
+use crate::integrate::Control;
+use crate::model::Driven;
+use crate::section::Return;
+
+/// A return to the section, dimensionless. With one interface both entries of a pair are the same.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SectionRow {
+    /// Its number after the returns let pass, from 0.
+    pub number: usize,
+    /// When it is.
+    pub time: f64,
+    /// ln psi of each interface.
+    pub log_state: [f64; 2],
+    /// The slip rate of each interface.
+    pub slip_rate: [f64; 2],
+    /// The slip rate of the interfaces together.
+    pub slip_rate_sum: f64,
+    /// The same at the return that follows.
+    pub next_slip_rate_sum: f64,
+}
+
+/// The columns of a return map of one or two interfaces.
+pub fn section_columns(interfaces: usize) -> Vec<Column<SectionRow>> {
+    use Quantity::{LogState, Number, SlipRate, Time};
+    let mut columns = vec![
+        Column::new("n", Number, |row: &SectionRow| row.number.into()),
+        Column::new("time", Time, |row: &SectionRow| row.time.into()),
+    ];
+    columns.extend((0..interfaces).map(|i| {
+        Column::new(
+            format!("log_state_{}", i + 1),
+            LogState,
+            move |row: &SectionRow| row.log_state[i].into(),
+        )
+    }));
+    columns.extend((0..interfaces).map(|i| {
+        Column::new(
+            format!("slip_rate_{}", i + 1),
+            SlipRate,
+            move |row: &SectionRow| row.slip_rate[i].into(),
+        )
+    }));
+    columns.extend([
+        Column::new("slip_rate_sum", SlipRate, |row: &SectionRow| {
+            row.slip_rate_sum.into()
+        }),
+        Column::new("next_slip_rate_sum", SlipRate, |row: &SectionRow| {
+            row.next_slip_rate_sum.into()
+        }),
+    ]);
+    columns
+}
+
+/// Makes a row of each return and the next.
+pub(super) struct RowMaker<'a, const N: usize> {
+    plan: &'a SectionPlan,
+    field: &'a dyn Driven<N>,
+    columns: Vec<Column<SectionRow>>,
+    /// The last return, whose next is not known yet.
+    open: Option<SectionRow>,
+    made: usize,
+}
+
+impl<'a, const N: usize> RowMaker<'a, N> {
+    pub fn new(plan: &'a SectionPlan, field: &'a dyn Driven<N>) -> Self {
+        RowMaker {
+            plan,
+            field,
+            columns: section_columns(plan.system.interfaces),
+            open: None,
+            made: 0,
+        }
+    }
+
+    /// The row of the return before is complete with this one.
+    pub fn next(&mut self, at: &Return<N>, sink: &mut dyn Sink) -> Control {
+        let slip_rate = self.field.slip_rates(&at.state);
+        let sum = slip_rate[..self.plan.system.interfaces].iter().sum();
+        let told = self.open.take().map(|mut row| {
+            row.next_slip_rate_sum = sum;
+            self.made += 1;
+            let units = &self.plan.system.units;
+            let numbers = self.columns.iter().map(|column| column.number(&row, units));
+            sink.row(&numbers.collect::<Vec<f64>>())
+        });
+        self.open = Some(SectionRow {
+            number: self.made,
+            time: at.time,
+            log_state: [at.state[1], at.state[N - 1]],
+            slip_rate,
+            slip_rate_sum: sum,
+            next_slip_rate_sum: f64::NAN,
+        });
+        told.unwrap_or(Control::Continue)
+    }
+}
