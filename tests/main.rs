@@ -61,6 +61,7 @@ mod rosenbrock_extremes;
 mod rosenbrock_tangent;
 mod run;
 mod scenes;
+mod scenes_of_states;
 mod schema;
 mod scorecard;
 mod section_exponents;
