@@ -3,12 +3,11 @@
 use crate::equilibrium::Equilibrium;
 use crate::scene::{CellValue, ClassifiedEquilibrium, Column, Quantity};
 
-type Row = ClassifiedEquilibrium;
-
 /// The columns of the steady states of so many interfaces. A table has room for what is looked at first: of the eigenvalues for the
 /// leading one, which decides.
-pub fn equilibria_columns(interfaces: usize) -> Vec<Column<Row>> {
+pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium>> {
     use Quantity::{Growth, LogState, Number, SlipRate, State, Stress};
+    type Row = ClassifiedEquilibrium;
     let each = |name: &str, quantity, list: fn(&Equilibrium) -> Vec<f64>| -> Vec<Column<Row>> {
         let column = |i| {
             Column::new(format!("{name}_{}", i + 1), quantity, move |row: &Row| {

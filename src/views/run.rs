@@ -8,23 +8,24 @@ use crate::views;
 /// The columns of stick-slip events; a single interface has no second slip, and neither it nor equal ones have a leader.
 pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
     use Quantity::{Length, Number, SlipRate, Stress, Time};
-    type Event = SlipEvent;
     let two = interfaces == 2;
     vec![
-        Column::new("onset", Time, |event: &Event| event.onset.into()),
-        Column::new("recurrence", Time, |event: &Event| event.recurrence.into()),
-        Column::new("duration", Time, |event: &Event| event.duration.into()),
-        Column::new("stress_drop", Stress, |event: &Event| {
+        Column::new("onset", Time, |event: &SlipEvent| event.onset.into()),
+        Column::new("recurrence", Time, |event: &SlipEvent| {
+            event.recurrence.into()
+        }),
+        Column::new("duration", Time, |event: &SlipEvent| event.duration.into()),
+        Column::new("stress_drop", Stress, |event: &SlipEvent| {
             event.stress_drop.into()
         }),
-        Column::new("peak_slip_rate", SlipRate, |event: &Event| {
+        Column::new("peak_slip_rate", SlipRate, |event: &SlipEvent| {
             event.peak_slip_rate.into()
         }),
-        Column::new("slip_1", Length, |event: &Event| event.slip[0].into()),
-        Column::new("slip_2", Length, move |event: &Event| {
+        Column::new("slip_1", Length, |event: &SlipEvent| event.slip[0].into()),
+        Column::new("slip_2", Length, move |event: &SlipEvent| {
             two.then_some(event.slip[1]).into()
         }),
-        Column::new("leader", Number, move |event: &Event| {
+        Column::new("leader", Number, move |event: &SlipEvent| {
             let leader = event.leader().filter(|_| two);
             leader.map_or(CellValue::Word(None), CellValue::Count)
         }),
