@@ -401,8 +401,8 @@ pub const MAX_POINTS: usize = 20_000;
 /// Hands rows on as long as there are no more than `limit`.
 ///
 /// # Errors
-/// [`Error::TooManyPoints`] where there are, after these; those of `follow`.
-pub(crate) fn within(
+/// [`Error::TooManyPoints`] where there are more, after these; those of `follow`.
+fn within(
     limit: usize,
     seen: EventObserver<'_>,
     follow: impl FnOnce(EventObserver<'_>) -> Result<()>,

@@ -4,9 +4,7 @@ use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{
-    BranchRequest, BranchRow, EventObserver, Parameter, equilibria, orbits, within,
-};
+use crate::bifurcation::{BranchRequest, BranchRow, EventObserver, Parameter, equilibria, orbits};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
@@ -205,10 +203,10 @@ impl BranchPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        within(request.max_points, seen, |seen| match self.of {
+        match self.of {
             BranchKind::Equilibria => equilibria::branch(&request, seen),
             BranchKind::Orbits => orbits::branch(&request, seen),
-        })
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::continuation::LocusOptions;
 use super::following::{self, Following, landings, number, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits, within};
+use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits};
 use crate::error::{Error, Result, option_name};
 use crate::model::Loading;
 use crate::orbit::InterfaceSystem;
@@ -245,13 +245,11 @@ impl LocusPlan {
             skip: known.to_vec(),
             ..self.request.clone()
         };
-        within(request.max_points, seen, |seen| {
-            if self.curve.orbits {
-                orbits::locus(&request, seen)
-            } else {
-                equilibria::locus(&request, seen)
-            }
-        })
+        if self.curve.orbits {
+            orbits::locus(&request, seen)
+        } else {
+            equilibria::locus(&request, seen)
+        }
     }
 }
 

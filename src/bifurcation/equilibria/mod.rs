@@ -21,7 +21,7 @@ mod stationary;
 mod trace;
 mod vertical;
 
-use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, Parameter, Special};
+use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, Parameter, Special, within};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
@@ -38,10 +38,12 @@ use special::Teller;
 ///
 /// # Errors
 /// [`Error::Parameter`] or [`Error::Input`] for a request that makes no sense; those of
-/// [`steady_states`](crate::equilibrium::steady_states). That the observer ended it is none.
+/// [`steady_states`](crate::equilibrium::steady_states); [`Error::TooManyPoints`]. That the observer ended it is none.
 pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
-    branch::branch(request, seen)
+    within(request.max_points, seen, |seen| {
+        branch::branch(request, seen)
+    })
 }
 
 /// The curves of pitchforks, of folds or of Hopf points of equilibria within ranges of V_H and K.
@@ -53,6 +55,10 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
 /// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
 pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
+    within(request.max_points, seen, |seen| curve(request, seen))
+}
+
+fn curve(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     let tolerance = request.tolerance;
     let mut teller = Teller::new(seen, tolerance, &request.skip);
     // an observer's end is no error

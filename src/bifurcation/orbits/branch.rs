@@ -4,7 +4,7 @@
 use super::chart::Chart;
 use super::orbit_branch::OrbitBranch;
 use super::rows::symmetry;
-use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria};
+use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria, within};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -40,18 +40,21 @@ pub(super) fn new_corrector<F: ParametrisedField<N>, const N: usize>(
 /// asymmetric ones, from pitchforks of orbits that none of these has come to, and from period doublings.
 ///
 /// # Errors
-/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; that a branch ends early is none.
+/// Those of [`BranchRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`](crate::Error::TooManyPoints);
+/// that a branch ends early is none.
 pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked()?;
     let wants = |symmetry| request.symmetry.is_none_or(|only| only == symmetry);
-    let mut branches = BranchSet::new(request);
-    if wants(Symmetry::Symmetric) && branches.symmetric(seen)?.is_break() {
-        return Ok(());
-    }
-    if request.slab.interfaces == 2 && wants(Symmetry::Asymmetric) {
-        let _ = branches.asymmetric(seen)?;
-    }
-    Ok(())
+    within(request.max_points, seen, |seen| {
+        let mut branches = BranchSet::new(request);
+        if wants(Symmetry::Symmetric) && branches.symmetric(seen)?.is_break() {
+            return Ok(());
+        }
+        if request.slab.interfaces == 2 && wants(Symmetry::Asymmetric) {
+            let _ = branches.asymmetric(seen)?;
+        }
+        Ok(())
+    })
 }
 
 /// A period doubling, and how often the period has doubled before it.

@@ -8,7 +8,7 @@ use super::chart::Chart;
 use super::curve::through;
 use super::half_curve::Pass;
 use super::scan::Scan;
-use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest};
+use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest, within};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::orbit::{ContinuationPoint, InterfaceSystem, OverLoadings, TestFunction};
@@ -18,7 +18,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 ///
 /// # Errors
 /// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of
-/// [`LocusRequest::checked`], of the equilibria and of the flow.
+/// [`LocusRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`].
 pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
     loci(std::slice::from_ref(request), &mut |_, event| seen(event))
 }
@@ -43,20 +43,30 @@ pub fn loci(
             Some(scans) if scans.serves(request) => scans,
             _ => Scans::new(&ordered[i..]),
         };
-        let mut count = 0;
-        for symmetry in own {
-            let seen: EventObserver<'_> = &mut |event| seen(i, event);
-            let told = match symmetry {
-                Symmetry::Symmetric => {
-                    Locus::<2>::all(request, &mut scan.symmetric, &mut count, seen)?
+        let (mut count, mut stopped) = (0, false);
+        let mut hand_on = |event| {
+            let onward = seen(i, event);
+            stopped = onward.is_break();
+            onward
+        };
+        within(request.max_points, &mut hand_on, |seen| {
+            for symmetry in own {
+                let told = match symmetry {
+                    Symmetry::Symmetric => {
+                        Locus::<2>::all(request, &mut scan.symmetric, &mut count, seen)?
+                    }
+                    Symmetry::Asymmetric => {
+                        Locus::<3>::all(request, &mut scan.asymmetric, &mut count, seen)?
+                    }
+                };
+                if told.is_break() {
+                    break;
                 }
-                Symmetry::Asymmetric => {
-                    Locus::<3>::all(request, &mut scan.asymmetric, &mut count, seen)?
-                }
-            };
-            if told.is_break() {
-                return Ok(());
             }
+            Ok(())
+        })?;
+        if stopped {
+            return Ok(());
         }
         scans = Some(scan);
     }
