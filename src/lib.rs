@@ -21,8 +21,11 @@
 //! | [`bifurcation::equilibria`] | branches of equilibria, and curves of their bifurcations in the (V_H, K) plane |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
 //! | [`sweep::run()`] | maps of regimes over a grid of (V_H, K), or of starts |
-//! | [`scene::Plan`] | what a run computes: only what its outputs need |
-//! | [`paper::reproduce()`] | the paper's figures, Table 1, scorecard and report, of which only what is missing is computed |
+//! | `scene::Plan` | what a run computes: only what its outputs need (feature `cli`) |
+//! | `paper::reproduce()` | the paper's figures, Table 1, scorecard and report, of which only what is missing is computed (feature `cli`) |
+//!
+//! The default features `cli` and `sundials` are the command and the C solvers. Without them this is the library alone, which few
+//! other packages are compiled for; `plot` adds `output`: tables, files, pictures and pages.
 //!
 //! Everything is dimensionless unless it says otherwise: stress tau in a sigma, slip rate v in V*, length in L, time in
 //! L/V*. K = k L / (a sigma), R = t** V*/L, beta = b/a, gamma0 = 2 exp(-a_v/a). Numbers in parentheses are the equations of
@@ -36,6 +39,7 @@
 // Bottom up: a room imports only from those above it here. The drawing in the README says from which.
 pub use twinslip_error as error;
 pub use twinslip_model::{field, friction, model, number, series};
+#[cfg(feature = "plot")]
 pub use twinslip_output as output;
 
 pub mod contract;
@@ -57,12 +61,16 @@ pub mod sweep;
 
 pub mod bifurcation;
 
+#[cfg(feature = "cli")]
 pub mod scene;
 
+#[cfg(feature = "cli")]
 pub mod views;
 
+#[cfg(feature = "cli")]
 pub mod paper;
 
+#[cfg(feature = "cli")]
 pub mod cli;
 
 /// What the tests of this repository reach for. Nothing here is kept as it is.
@@ -70,21 +78,28 @@ pub mod cli;
 pub mod internals {
     pub use crate::bifurcation::equilibria::hopf::certain_zero;
     pub use crate::bifurcation::equilibria::hopf_special::by_both;
-    pub use crate::cli::program;
-    #[cfg(feature = "mpi")]
-    pub use crate::cli::sweep::wire::{pack, unpack};
-    pub use crate::cli::words::{count, flagged, several, time};
     pub use crate::integrate::rosenbrock::control::{error_norm, first_step};
     pub use crate::integrate::rosenbrock::factors::Factors;
     pub use crate::integrate::singularity::time_to_singularity;
     pub use crate::orbit::branch::period_from_hopf;
     pub use crate::orbit::floquet::pair;
-    pub use crate::paper::clock::timed;
     #[cfg(feature = "sundials")]
     pub use crate::sundials::{compatible, counted};
-    pub use crate::views::sweep::tints::{LIGHTEST, RegimeKind};
+    #[cfg(feature = "cli")]
+    pub use command::*;
+
+    #[cfg(feature = "cli")]
+    mod command {
+        pub use crate::cli::program;
+        #[cfg(feature = "mpi")]
+        pub use crate::cli::sweep::wire::{pack, unpack};
+        pub use crate::cli::words::{count, flagged, several, time};
+        pub use crate::paper::clock::timed;
+        pub use crate::views::sweep::tints::{LIGHTEST, RegimeKind};
+    }
 }
 
+#[cfg(feature = "cli")]
 #[doc = include_str!("../docs/guide.md")]
 pub mod guide {}
 

@@ -46,6 +46,7 @@ mod many_dimensions;
 mod numbers;
 mod orbits;
 mod orbits_of_systems;
+mod packages;
 mod page;
 mod parameters;
 #[cfg(feature = "parquet")]

@@ -133,7 +133,10 @@ pub fn record_finely<const N: usize>(
 }
 
 /// As [`spectrum`]; `see` is told how far it has come, after each return, and may stop it: then there is none.
-pub(crate) fn spectrum_watched<const N: usize>(
+///
+/// # Errors
+/// Those of [`spectrum`].
+pub fn spectrum_watched<const N: usize>(
     field: &dyn VectorField<N>,
     record: &ReturnRecord<N>,
     see: &mut dyn FnMut(f64) -> Control,

@@ -10,9 +10,10 @@ mod returns;
 mod surface;
 
 pub use curve::{InvariantCurve, invariant_curve, regularity, weighted_mean};
-pub(crate) use lyapunov::{ALIGNMENT, GrowthSegment, spectrum_watched, summary};
+pub(crate) use lyapunov::{ALIGNMENT, GrowthSegment, summary};
 pub use lyapunov::{
     Exponents, FEWEST_FOR_EXPONENTS, LyapunovSpectrum, at_equilibrium, record_finely, spectrum,
+    spectrum_watched,
 };
 pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 pub(crate) use periodicity::{PeriodicSearch, reduce};
