@@ -142,13 +142,15 @@ fn sources(dir: &Path, found: &mut Vec<PathBuf>) {
     }
 }
 
+/// The lines that are no comments.
+fn code(text: &str) -> impl Iterator<Item = &str> {
+    let lines = text.lines();
+    lines.filter(|l| !l.trim_start().starts_with("//"))
+}
+
 /// Names of rooms after `crate::`, in code and not in comments, single or in braces.
 fn imports(text: &str) -> Vec<String> {
-    let code: String = text
-        .lines()
-        .filter(|l| !l.trim_start().starts_with("//"))
-        .collect::<Vec<_>>()
-        .join("\n");
+    let code = code(text).collect::<Vec<_>>().join("\n");
     let mut names = Vec::new();
     for rest in code.split("crate::").skip(1) {
         let word = |s: &str| {
@@ -331,6 +333,64 @@ fn only_the_sundials_room_allows_unsafe() {
         let text = fs::read_to_string(&file).expect("readable");
         if text.contains("unsafe_code") || text.contains("unsafe {") {
             assert_eq!(room, "sundials", "{} has unsafe code", file.display());
+        }
+    }
+}
+
+/// What is named after `path::`, single or in braces.
+fn named_after<'t>(path: &str, text: &'t str) -> Vec<&'t str> {
+    let mut names = Vec::new();
+    for (before, rest) in text
+        .match_indices(path)
+        .map(|(i, _)| (&text[..i], &text[i + path.len()..]))
+    {
+        if !before.ends_with(word) {
+            let list = rest
+                .strip_prefix('{')
+                .and_then(|list| list.split('}').next());
+            let first = list.or_else(|| rest.split(|c| !word(c)).next());
+            names.extend(first.unwrap_or("").split(',').map(str::trim));
+        }
+    }
+    names
+}
+
+fn word(c: char) -> bool {
+    c.is_alphanumeric() || c == '_'
+}
+
+/// A law is a file and its entry in the list of `friction/mod.rs`: elsewhere in the sources only laws that build on another one name
+/// it, and the paper, which is about some of them.
+#[test]
+fn a_law_is_one_file_and_one_entry() {
+    let mut laws = Vec::new();
+    let mut others = Vec::new();
+    let mut list = String::new();
+    for (room, file) in files() {
+        let text = fs::read_to_string(&file).expect("readable");
+        if file.ends_with("friction/mod.rs") {
+            list = code(&text).collect::<Vec<_>>().join("\n");
+        } else if let Some((_, rest)) = text.split_once("\nimpl Law for ") {
+            assert_eq!(room, "friction");
+            let stem = file.file_stem().and_then(|s| s.to_str()).expect("ASCII");
+            let name = rest.split(|c| !word(c)).next().expect("a type");
+            laws.push((name.to_owned(), stem.to_owned()));
+        } else if room != "paper" {
+            others.push((file, code(&text).collect::<Vec<_>>().join("\n")));
+        }
+    }
+    assert!(laws.len() >= 5, "{laws:?}");
+    let times = |name: &str| list.split(|c| !word(c)).filter(|w| *w == name).count();
+    for (law, stem) in &laws {
+        assert_eq!(times(law), 1, "{law} in the list");
+        assert_eq!(times(stem), 2, "{stem} as a module and in the list");
+    }
+    for (file, text) in &others {
+        for path in ["friction::", "AnyLaw::", "super::"] {
+            for name in named_after(path, text) {
+                let known = laws.iter().any(|(law, _)| law == name);
+                assert!(!known, "{} names {name}", file.display());
+            }
         }
     }
 }

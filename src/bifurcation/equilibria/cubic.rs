@@ -6,7 +6,7 @@
 
 use super::crossing::{self, QuadraticRoot};
 use crate::equilibrium::{Interface, routh_hurwitz};
-use crate::friction::{AnyLaw, with_law};
+use crate::friction::AnyLaw;
 use crate::number::polynomial::{evaluate, roots};
 
 /// P_3 of two interfaces that slide at different rates.
@@ -28,7 +28,7 @@ pub struct Tangency {
 impl CharacteristicCubic {
     /// At the rates V_1 and V_2, in this order: the paper's V_1 is the one on the weakening part.
     pub fn new(law: &AnyLaw, [v_1, v_2]: [f64; 2]) -> Self {
-        let at = |v| with_law!(law, law => Interface::at(law, v));
+        let at = |v| Interface::at(law, v);
         CharacteristicCubic {
             one: at(v_1),
             two: at(v_2),

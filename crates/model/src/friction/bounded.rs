@@ -1,7 +1,7 @@
 //! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
 //! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
 
-use super::{Law, Spinodal};
+use super::{Law, Parameters, Spinodal};
 use crate::number::Real;
 
 /// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -15,7 +15,21 @@ pub struct Bounded {
     pub r: f64,
 }
 
+impl Parameters {
+    /// Law (6): the state bounded, no residual strength.
+    pub fn bounded(self) -> Bounded {
+        Bounded {
+            beta: self.beta,
+            gamma0: self.gamma0,
+            r: self.healing_time,
+        }
+    }
+}
+
 impl Bounded {
+    /// The name by which the command line knows the law.
+    pub const NAME: &str = "bounded";
+
     #[inline(always)]
     fn as_limit(&self) -> Spinodal {
         let Bounded { beta, gamma0, r } = *self;
@@ -36,7 +50,15 @@ impl Law for Bounded {
     }
 
     fn name(&self) -> &'static str {
-        "bounded"
+        Self::NAME
+    }
+
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        vec![
+            ("beta", &mut self.beta),
+            ("gamma0", &mut self.gamma0),
+            ("r", &mut self.r),
+        ]
     }
 
     #[inline(always)]

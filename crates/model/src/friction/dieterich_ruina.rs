@@ -1,6 +1,6 @@
 //! The Dieterich-Ruina law with the ageing evolution, equations (4) and (8). Velocity weakening throughout for beta > 1.
 
-use super::Law;
+use super::{Law, Parameters};
 use crate::number::Real;
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = 1 - v psi, with psi in L/V*.
@@ -12,6 +12,21 @@ pub struct DieterichRuina {
     pub gamma0: f64,
 }
 
+impl Parameters {
+    /// Law (4): Dieterich-Ruina.
+    pub fn dieterich_ruina(self) -> DieterichRuina {
+        DieterichRuina {
+            beta: self.beta,
+            gamma0: self.gamma0,
+        }
+    }
+}
+
+impl DieterichRuina {
+    /// The name by which the command line knows the law.
+    pub const NAME: &str = "dieterich-ruina";
+}
+
 impl Law for DieterichRuina {
     type Core = DieterichRuina;
     const UNROLLED: bool = true;
@@ -21,7 +36,11 @@ impl Law for DieterichRuina {
     }
 
     fn name(&self) -> &'static str {
-        "dieterich-ruina"
+        Self::NAME
+    }
+
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        vec![("beta", &mut self.beta), ("gamma0", &mut self.gamma0)]
     }
 
     // exp(-a_v/a) = gamma0 / 2

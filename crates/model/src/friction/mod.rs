@@ -4,24 +4,19 @@
 //! tau = F(v, psi) with its inverse v(tau, psi), and the evolution of the state; steady state, extrema and the critical
 //! stiffness follow from them.
 //!
-//! A new law is one file and one arm in [`AnyLaw`]: the tests then run over it too.
+//! A new law is one file and its entry in the list of laws: the tests then run over it too.
 
 mod bounded;
 mod dieterich_ruina;
 mod direct;
-mod regularised;
+mod regularised_ageing;
 mod rounding;
 mod slip;
 mod spinodal;
 mod steady;
 
-pub use bounded::Bounded;
-pub use dieterich_ruina::DieterichRuina;
-pub use regularised::RegularisedAgeing;
 #[doc(hidden)]
 pub use rounding::{effects, rounding};
-pub use slip::Slip;
-pub use spinodal::Spinodal;
 pub use steady::{
     Extremum, ExtremumKind, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
     steady_log_activation, steady_log_slope, steady_slope, steady_stress, steady_stress_within,
@@ -51,6 +46,9 @@ pub trait Law: Copy + Debug + Send + Sync {
 
     /// The name by which the command line knows the law.
     fn name(&self) -> &'static str;
+
+    /// Its constants with their names, to see what changes with them.
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)>;
 
     /// s(tau), the activation by the stress. Same sign as the slip rate.
     fn activation<T: Real>(&self, tau: T) -> T;
@@ -152,49 +150,6 @@ impl Parameters {
     pub fn heslot_1994() -> Self {
         Self::new(0.0349, 0.0489, 0.369, 100.0, 1e-3).expect("the preset is valid")
     }
-
-    /// Law (35): spinodal.
-    pub fn spinodal(self) -> Spinodal {
-        Spinodal {
-            beta: self.beta,
-            gamma0: self.gamma0,
-            r: self.healing_time,
-            c: self.residual_strength,
-        }
-    }
-
-    /// Law (6): the state bounded, no residual strength.
-    pub fn bounded(self) -> Bounded {
-        Bounded {
-            beta: self.beta,
-            gamma0: self.gamma0,
-            r: self.healing_time,
-        }
-    }
-
-    /// Law (5) with the ageing evolution of (4).
-    pub fn regularised_ageing(self) -> RegularisedAgeing {
-        RegularisedAgeing {
-            beta: self.beta,
-            gamma0: self.gamma0,
-        }
-    }
-
-    /// Law (4): Dieterich-Ruina.
-    pub fn dieterich_ruina(self) -> DieterichRuina {
-        DieterichRuina {
-            beta: self.beta,
-            gamma0: self.gamma0,
-        }
-    }
-
-    /// The slip law of Ruina (1983).
-    pub fn slip(self) -> Slip {
-        Slip {
-            beta: self.beta,
-            gamma0: self.gamma0,
-        }
-    }
 }
 
 /// ln psi beside that of a steady state, by so much; towards less where more would leave the states of the law.
@@ -218,63 +173,60 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// Any of the laws, chosen at run time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum AnyLaw {
-    /// (35)
-    Spinodal(Spinodal),
-    /// (6)
-    Bounded(Bounded),
-    /// (5)
-    RegularisedAgeing(RegularisedAgeing),
-    /// (4)
-    DieterichRuina(DieterichRuina),
-    /// Ruina (1983)
-    Slip(Slip),
-}
+/// What there is once for all laws, from their list: the type of each, [`AnyLaw`], and the dispatch.
+macro_rules! laws {
+    ($d:tt $($(#[$equation:meta])* $file:ident::$law:ident,)+) => {
+        $(pub use $file::$law;)+
 
-/// Runs the expression with `$law` bound to the law inside: everything below is then compiled for that law.
-#[doc(hidden)]
-#[macro_export]
-macro_rules! with_law {
-    ($any:expr, $law:ident => $body:expr) => {
-        match $any {
-            $crate::friction::AnyLaw::Spinodal($law) => $body,
-            $crate::friction::AnyLaw::Bounded($law) => $body,
-            $crate::friction::AnyLaw::RegularisedAgeing($law) => $body,
-            $crate::friction::AnyLaw::DieterichRuina($law) => $body,
-            $crate::friction::AnyLaw::Slip($law) => $body,
+        /// Any of the laws, chosen at run time.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        pub enum AnyLaw {
+            $($(#[$equation])* $law($law),)+
+        }
+
+        impl AnyLaw {
+            /// The names by which the command line knows the laws.
+            pub const NAMES: [&'static str; [$($law::NAME),+].len()] = [$($law::NAME),+];
+
+            /// The law of that name.
+            ///
+            /// # Errors
+            /// [`Error::Parameter`] for a name that is not in [`AnyLaw::NAMES`].
+            pub fn named(name: &str, parameters: Parameters) -> Result<Self> {
+                match name {
+                    $($law::NAME => Ok(AnyLaw::$law(parameters.$file())),)+
+                    _ => Err(Error::unknown("law", name, &AnyLaw::NAMES)),
+                }
+            }
+        }
+
+        /// Runs the expression with `law` bound to the law inside: it is then compiled for each law.
+        macro_rules! with_law {
+            ($d any:expr, $d law:ident => $d body:expr) => {
+                match $d any {
+                    $($crate::friction::AnyLaw::$law($d law) => $d body,)+
+                }
+            };
         }
     };
 }
-#[doc(hidden)]
-pub use crate::with_law;
+
+// The list: the equation, and the file with the type; `Parameters` has a method of the file's name that makes it.
+laws! { $
+    /// (35)
+    spinodal::Spinodal,
+    /// (6)
+    bounded::Bounded,
+    /// (5)
+    regularised_ageing::RegularisedAgeing,
+    /// (4)
+    dieterich_ruina::DieterichRuina,
+    /// Ruina (1983)
+    slip::Slip,
+}
+pub(crate) use with_law;
 
 impl AnyLaw {
-    /// The names by which the command line knows the laws.
-    pub const NAMES: [&'static str; 5] = [
-        "spinodal",
-        "bounded",
-        "regularised-ageing",
-        "dieterich-ruina",
-        "slip",
-    ];
-
-    /// The law of that name.
-    ///
-    /// # Errors
-    /// [`Error::Parameter`] for a name that is not in [`AnyLaw::NAMES`].
-    pub fn named(name: &str, parameters: Parameters) -> Result<Self> {
-        Ok(match name {
-            "spinodal" => AnyLaw::Spinodal(parameters.spinodal()),
-            "bounded" => AnyLaw::Bounded(parameters.bounded()),
-            "regularised-ageing" => AnyLaw::RegularisedAgeing(parameters.regularised_ageing()),
-            "dieterich-ruina" => AnyLaw::DieterichRuina(parameters.dieterich_ruina()),
-            "slip" => AnyLaw::Slip(parameters.slip()),
-            _ => return Err(Error::unknown("law", name, &AnyLaw::NAMES)),
-        })
-    }
-
     /// The name by which the command line knows this law.
     pub fn name(&self) -> &'static str {
         Law::name(self)
@@ -288,6 +240,9 @@ impl Law for AnyLaw {
     }
     fn name(&self) -> &'static str {
         with_law!(self, law => law.name())
+    }
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        with_law!(self, law => law.constants())
     }
     fn activation<T: Real>(&self, tau: T) -> T {
         with_law!(self, law => law.activation(tau))

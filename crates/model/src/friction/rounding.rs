@@ -1,39 +1,31 @@
 //! What the rounding of the law's own parameters does: 0.0489/0.0349 is no double, and the truth is that of the decimals.
 
-use super::AnyLaw;
+use super::{AnyLaw, Law};
 
 /// How much a parameter is changed to see its effect, relative.
 const CHANGE: f64 = 1e-6;
 /// How much the parameters may be off: b/a by two roundings and a division.
 const ROUNDING: f64 = 2.0 * f64::EPSILON;
 
-/// How much gamma0 = 2 exp(-a_v/a) may be off: by a_v/a times more.
-fn rounding_of(gamma0: f64) -> f64 {
-    ROUNDING * (1.0 + (0.5 * gamma0).ln().abs())
+/// How much a constant may be off, relative: gamma0 = 2 exp(-a_v/a) by a_v/a times more than others.
+fn rounding_of(name: &str, value: f64) -> f64 {
+    match name {
+        "gamma0" => ROUNDING * (1.0 + (0.5 * value).ln().abs()),
+        _ => ROUNDING,
+    }
 }
 
-/// The law with each of its parameters changed, and how much of the change rounding makes.
+/// The law with each of its constants changed, and how much of the change rounding makes.
 fn changed(law: &AnyLaw) -> Vec<(AnyLaw, f64)> {
-    macro_rules! each {
-        ($kind:ident, $law:expr, $($field:ident),+) => {
-            vec![$({
-                let mut other = *$law;
-                other.$field *= 1.0 + CHANGE;
-                let rounding = match stringify!($field) {
-                    "gamma0" => rounding_of($law.gamma0),
-                    _ => ROUNDING,
-                };
-                (AnyLaw::$kind(other), rounding / CHANGE)
-            }),+]
-        };
-    }
-    match law {
-        AnyLaw::Spinodal(l) => each!(Spinodal, l, beta, gamma0, r, c),
-        AnyLaw::Bounded(l) => each!(Bounded, l, beta, gamma0, r),
-        AnyLaw::RegularisedAgeing(l) => each!(RegularisedAgeing, l, beta, gamma0),
-        AnyLaw::DieterichRuina(l) => each!(DieterichRuina, l, beta, gamma0),
-        AnyLaw::Slip(l) => each!(Slip, l, beta, gamma0),
-    }
+    let count = { *law }.constants().len();
+    let change = |i: usize| {
+        let mut other = *law;
+        let (name, constant) = other.constants().swap_remove(i);
+        let rounding = rounding_of(name, *constant);
+        *constant *= 1.0 + CHANGE;
+        (other, rounding / CHANGE)
+    };
+    (0..count).map(change).collect()
 }
 
 /// What a number that depends on the law is off by the rounding of the parameters; infinite where it does not exist.

@@ -2,7 +2,7 @@
 //!
 //! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
 
-use super::{DieterichRuina, Law};
+use super::{DieterichRuina, Law, Parameters};
 use crate::number::Real;
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
@@ -14,7 +14,20 @@ pub struct Slip {
     pub gamma0: f64,
 }
 
+impl Parameters {
+    /// The slip law of Ruina (1983).
+    pub fn slip(self) -> Slip {
+        Slip {
+            beta: self.beta,
+            gamma0: self.gamma0,
+        }
+    }
+}
+
 impl Slip {
+    /// The name by which the command line knows the law.
+    pub const NAME: &str = "slip";
+
     fn direct_effect(&self) -> DieterichRuina {
         DieterichRuina {
             beta: self.beta,
@@ -31,7 +44,11 @@ impl Law for Slip {
     }
 
     fn name(&self) -> &'static str {
-        "slip"
+        Self::NAME
+    }
+
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        vec![("beta", &mut self.beta), ("gamma0", &mut self.gamma0)]
     }
 
     #[inline(always)]

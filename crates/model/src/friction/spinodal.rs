@@ -1,7 +1,7 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::{Law, direct};
+use super::{Law, Parameters, direct};
 use crate::number::Real;
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -17,7 +17,22 @@ pub struct Spinodal {
     pub c: f64,
 }
 
+impl Parameters {
+    /// Law (35): spinodal.
+    pub fn spinodal(self) -> Spinodal {
+        Spinodal {
+            beta: self.beta,
+            gamma0: self.gamma0,
+            r: self.healing_time,
+            c: self.residual_strength,
+        }
+    }
+}
+
 impl Spinodal {
+    /// The name by which the command line knows the law.
+    pub const NAME: &str = "spinodal";
+
     // c + (1+R) psi
     #[inline(always)]
     fn strength<T: Real>(&self, psi: T) -> T {
@@ -35,7 +50,16 @@ impl Law for Spinodal {
     }
 
     fn name(&self) -> &'static str {
-        "spinodal"
+        Self::NAME
+    }
+
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        vec![
+            ("beta", &mut self.beta),
+            ("gamma0", &mut self.gamma0),
+            ("r", &mut self.r),
+            ("c", &mut self.c),
+        ]
     }
 
     #[inline(always)]

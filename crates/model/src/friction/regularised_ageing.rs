@@ -1,6 +1,6 @@
 //! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
 
-use super::{Law, direct};
+use super::{Law, Parameters, direct};
 use crate::number::Real;
 
 /// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
@@ -12,6 +12,21 @@ pub struct RegularisedAgeing {
     pub gamma0: f64,
 }
 
+impl Parameters {
+    /// Law (5) with the ageing evolution of (4).
+    pub fn regularised_ageing(self) -> RegularisedAgeing {
+        RegularisedAgeing {
+            beta: self.beta,
+            gamma0: self.gamma0,
+        }
+    }
+}
+
+impl RegularisedAgeing {
+    /// The name by which the command line knows the law.
+    pub const NAME: &str = "regularised-ageing";
+}
+
 impl Law for RegularisedAgeing {
     type Core = RegularisedAgeing;
 
@@ -20,7 +35,11 @@ impl Law for RegularisedAgeing {
     }
 
     fn name(&self) -> &'static str {
-        "regularised-ageing"
+        Self::NAME
+    }
+
+    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+        vec![("beta", &mut self.beta), ("gamma0", &mut self.gamma0)]
     }
 
     #[inline(always)]
