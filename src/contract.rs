@@ -38,6 +38,7 @@ impl Tolerances {
 
 /// What an integration cost. A result, never a log line.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct Work {
     /// Accepted steps.
     pub steps: usize,

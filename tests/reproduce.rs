@@ -199,6 +199,7 @@ fn pieces_tell_what_they_do_and_how_far_they_are() {
             }
             RunEvent::Making(product) => format!("making {}", product.id),
             RunEvent::Made(product, _) => format!("made {}", product.id),
+            other => format!("{other:?}"),
         };
         told.lock().expect("no panic").push(words);
     };

@@ -17,6 +17,7 @@ pub use crate::model::Parameter;
 
 /// What a point is, in AUTO's letters where AUTO has them.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[non_exhaustive]
 pub enum Label {
     /// Pitchfork or branch point of equilibria.
     Bp,
@@ -161,6 +162,7 @@ impl Label {
 
 /// To which side the bifurcating solutions lie.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Criticality {
     /// They are stable where what they come from is unstable.
     Supercritical,
@@ -183,6 +185,7 @@ impl Criticality {
 
 /// A special point.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Special {
     /// What it is.
     pub label: Label,
@@ -240,6 +243,7 @@ impl Special {
 
 /// A point of a branch.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct BranchRow {
     /// The number of the branch, from 0: one run may follow several.
     pub branch: usize,
@@ -269,6 +273,7 @@ pub struct BranchRow {
 
 /// A point of a curve in the (V_H, K) plane.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct LocusRow {
     /// The number of the curve, from 0: a locus may consist of several.
     pub curve: usize,
@@ -288,8 +293,25 @@ pub struct LocusRow {
     pub label: Option<Label>,
 }
 
+impl LocusRow {
+    /// A point of which nothing else is known.
+    pub fn new(curve: usize, symmetry: Symmetry, driving: Uncertain, stiffness: Uncertain) -> Self {
+        LocusRow {
+            curve,
+            symmetry,
+            driving,
+            stiffness,
+            period: None,
+            angle_over_pi: None,
+            criticality: None,
+            label: None,
+        }
+    }
+}
+
 /// What is found on the way.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Event {
     /// A point of a branch.
     Branch(BranchRow),

@@ -30,6 +30,7 @@ pub enum Around {
 
 /// A cycle of (39)-(40).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct ResonanceCycle {
     /// (mu_1, mu_2) at which it is one.
     pub mu: [f64; 2],
@@ -43,6 +44,7 @@ pub struct ResonanceCycle {
 
 /// The homoclinic orbits of the origin.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Homoclinic {
     /// (mu_1, mu_2) at which they are.
     pub mu: [f64; 2],

@@ -41,6 +41,7 @@ pub trait ZeroProblem {
 
 /// A point of the curve.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CurvePoint {
     /// The unknowns.
     pub u: DVector<f64>,
@@ -74,6 +75,7 @@ pub struct Start {
 
 /// Why a point is shown.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum PointKind {
     /// The first one, and the last one too where the curve is closed.
     Begin,
@@ -91,6 +93,7 @@ pub enum PointKind {
 
 /// Why the curve was followed no further.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Stop {
     /// lambda reached an end of its range.
     RangeEnd,
@@ -140,6 +143,7 @@ pub trait CurveObserver {
 
 /// A curve as far as it was followed.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Branch {
     /// All points with what they are.
     pub points: Vec<(CurvePoint, PointKind)>,

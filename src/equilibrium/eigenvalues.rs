@@ -14,6 +14,7 @@ use nalgebra::Complex;
 
 /// What is known of the stability.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Verdict {
     /// All eigenvalues have negative real parts, certainly.
     Stable,
@@ -36,6 +37,7 @@ impl Verdict {
 
 /// Eigenvalues, largest real part first, and the verdict.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Stability {
     /// In V*/L; one beyond the range of doubles is left out.
     pub eigenvalues: Vec<Complex<f64>>,

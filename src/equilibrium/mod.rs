@@ -243,6 +243,7 @@ fn state(law: &AnyLaw, v: DoubleDouble, within: Interval) -> (f64, [f64; 2]) {
 
 /// All steady states at one driving velocity.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SteadyStates {
     /// By stress, descending.
     pub equilibria: Vec<Equilibrium>,

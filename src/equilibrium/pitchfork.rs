@@ -7,6 +7,7 @@ use crate::number::{Difference, Jet, Real, bracketed_root};
 
 /// The pitchfork at an extremum of tau_ss.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Pitchfork {
     /// Maximum V_M or minimum V_m.
     pub kind: ExtremumKind,

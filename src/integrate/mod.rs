@@ -29,6 +29,7 @@ pub(crate) use singularity::step_underflow;
 use std::ops::Deref;
 
 /// One accepted step, as an observer sees it.
+#[non_exhaustive]
 pub struct Step<'a, const N: usize> {
     /// Time and state at the beginning.
     pub t0: f64,

@@ -6,6 +6,7 @@ use crate::integrate::{Choice, Integrator, MAX_STEPS, Taylor, Tolerances, Work};
 
 /// A piece of a trajectory, from a start that the caller knows.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub struct Arc<const N: usize> {
     /// The state at its end.
     pub end: State<N>,

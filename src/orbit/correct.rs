@@ -27,6 +27,7 @@ pub enum Condition<'a, const N: usize> {
 
 /// An orbit with what is known of its surroundings.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Regular<const N: usize> {
     /// Where it is.
     pub site: ContinuationPoint<N>,

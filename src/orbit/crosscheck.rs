@@ -9,6 +9,7 @@ use crate::error::Result;
 
 /// What the second method found.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Crosscheck {
     /// The second method's orbit.
     pub orbit: Orbit,

@@ -21,6 +21,7 @@ use nalgebra::Complex;
 
 /// What a multiplier is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Kind {
     /// A real number.
     Real,
@@ -43,6 +44,7 @@ impl Kind {
 
 /// A nontrivial multiplier.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Multiplier {
     /// ln |mu|.
     pub ln_abs: Uncertain,
@@ -79,6 +81,7 @@ impl Multiplier {
 
 /// The multipliers of an orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Floquet {
     /// The nontrivial ones, the largest first; of a complex pair the one with positive imaginary part.
     pub multipliers: Vec<Multiplier>,

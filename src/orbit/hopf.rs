@@ -12,6 +12,7 @@ type C = Complex<f64>;
 
 /// A Hopf point.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct HopfPoint {
     /// V_H.
     pub driving: f64,

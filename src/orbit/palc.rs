@@ -12,6 +12,7 @@ use std::fmt;
 
 /// Where a continuation stands.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct DirectedPoint<const N: usize> {
     /// The orbit and its surroundings.
     pub here: Regular<N>,
@@ -66,6 +67,7 @@ pub struct Palc<'c, 'f, F, const N: usize> {
 
 /// Why a continuation goes no further.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum PalcEnd {
     /// Newton's method fails, down to steps of this length.
     NoOrbit {

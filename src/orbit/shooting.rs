@@ -11,6 +11,7 @@ use crate::number::Uncertain;
 
 /// A closed shooting: a periodic orbit, with the derivatives along it.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Closed<const N: usize> {
     /// The nodes and durations.
     pub shooting: ShootingNodes<N>,

@@ -16,6 +16,7 @@ use crate::number::Uncertain;
 
 /// A periodic orbit.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Orbit {
     /// Symmetric: both interfaces move alike (also said of a single one).
     pub symmetry: Symmetry,

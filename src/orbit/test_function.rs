@@ -29,6 +29,7 @@ pub enum TestFunction {
 
 /// What the test functions are made of, or its change.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Spectrum {
     /// The number of variables: one more than there are nontrivial multipliers.
     pub dimension: usize,

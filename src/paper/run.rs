@@ -53,6 +53,7 @@ pub struct Selection {
 
 /// What happens on the way.
 #[derive(Debug, Clone, Copy)]
+#[non_exhaustive]
 pub enum RunEvent<'a> {
     /// What will be made; the others stand.
     Begun {
@@ -71,6 +72,7 @@ pub enum RunEvent<'a> {
 
 /// What became of an order.
 #[derive(Debug, Default)]
+#[non_exhaustive]
 pub struct Done {
     /// What was made, with the seconds of processor time that it took, all its pieces included.
     pub made: Vec<(&'static Product, f64)>,

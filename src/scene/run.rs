@@ -27,6 +27,7 @@ pub trait Sink {
 
 /// What a run came to.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RunOutcome {
     /// The last row, in all columns asked for; `None` if a run that nobody watched failed.
     pub last: Option<Vec<f64>>,

@@ -16,6 +16,7 @@ const ROUNDING: f64 = 1e-7;
 
 /// An invariant curve, or several that are visited in turn.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct InvariantCurve {
     /// How many there are.
     pub curves: usize,

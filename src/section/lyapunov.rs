@@ -42,6 +42,7 @@ const EIGENVALUES: f64 = 8.0 * f64::EPSILON;
 
 /// The Lyapunov exponents of a run, in descending order.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct LyapunovSpectrum<const N: usize> {
     /// Exponents in one over time, each with an interval of 99 % confidence from block averages and the bias of the run. That of
     /// the flow's own direction is zero; its interval is what the run and the tangents can tell of that.

@@ -38,6 +38,7 @@ const REPEATS: usize = 3;
 
 /// An attracting periodic point of a return map.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Periodic<const N: usize> {
     /// q: the map returns to the point after so many returns, and not earlier.
     pub returns: usize,

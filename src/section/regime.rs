@@ -33,6 +33,7 @@ const STAYED: f64 = 0.1;
 
 /// What a flow does in the end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Regime {
     /// It rests.
     Steady,
@@ -61,6 +62,7 @@ impl Regime {
 
 /// A regime, with what it rests on.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct RegimeVerdict<const N: usize> {
     /// The regime.
     pub regime: Regime,

@@ -57,6 +57,7 @@ pub fn usual_patience(driving: f64, stiffness: f64) -> f64 {
 
 /// How a recording ended.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub enum Ended<const N: usize> {
     /// With all returns.
     Complete,

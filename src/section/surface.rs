@@ -145,6 +145,7 @@ impl<const N: usize> Surface<N> {
 
 /// Where the return map leads.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Landing<const N: usize> {
     /// The time it takes.
     pub time: f64,

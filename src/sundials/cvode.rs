@@ -42,6 +42,7 @@ pub enum Mode {
 
 /// Why [`Cvode::advance`] returned.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Reason {
     /// The time asked for is reached.
     Time,
@@ -57,6 +58,7 @@ pub enum Reason {
 
 /// Where [`Cvode::advance`] returned, and why.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Arrival {
     /// Time of [`Cvode::state`].
     pub t: f64,

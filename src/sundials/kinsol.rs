@@ -117,6 +117,7 @@ impl<const N: usize> Default for KinsolSettings<N> {
 
 /// How an iteration ended that KINSOL calls successful.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub enum Outcome {
     /// The residual tolerance is met.
     Converged,
@@ -130,6 +131,7 @@ pub enum Outcome {
 
 /// What a solution cost.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]
+#[non_exhaustive]
 pub struct KinsolWork {
     /// Newton iterations.
     pub iterations: usize,

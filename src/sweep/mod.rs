@@ -164,6 +164,7 @@ impl SweepSettings {
 
 /// What was found at a point.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SweepRow {
     /// The point's number.
     pub number: usize,

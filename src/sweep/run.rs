@@ -17,6 +17,7 @@ const MOST_THREADS: usize = 1024;
 
 /// Which units: `first`, and then every `every`-th.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct UnitShare {
     /// The first one.
     pub first: usize,

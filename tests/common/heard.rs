@@ -46,6 +46,7 @@ impl Heard {
             Event::Branch(row) => self.rows.push(row),
             Event::Locus(row) => self.points.push(row),
             Event::Special(special) => self.special.push(special),
+            other => panic!("nothing else is told of: {other:?}"),
         }
         Continue(())
     }

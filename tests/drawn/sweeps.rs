@@ -60,16 +60,8 @@ fn the_legend_has_what_there_is_and_no_more() {
     ];
     found[4].lyapunov_max = Some(Uncertain::new(2e-4, 1e-6));
     found[5].lyapunov_max = Some(Uncertain::new(8e-4, 1e-6));
-    let curve = |stiffness: f64| LocusRow {
-        curve: 0,
-        symmetry: Symmetry::Asymmetric,
-        driving: Uncertain::new(10.0 * stiffness, 0.0),
-        stiffness: Uncertain::new(stiffness, 0.0),
-        period: None,
-        angle_over_pi: None,
-        criticality: None,
-        label: None,
-    };
+    let exact = |x| Uncertain::new(x, 0.0);
+    let curve = |k| LocusRow::new(0, Symmetry::Asymmetric, exact(10.0 * k), exact(k));
     let rows = [curve(0.1), curve(0.2)];
     let sides = (&side(1.0, 2.0, 3), &side(0.1, 0.2, 2));
     let curves: [(&str, &[LocusRow]); 2] = [("TR", &rows), ("PD", &[])];

@@ -18,6 +18,7 @@ pub struct CharacteristicCubic {
 
 /// A stiffness at which Q_3 touches L.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Tangency {
     /// K.
     pub stiffness: f64,

@@ -40,6 +40,7 @@ impl<const N: usize> std::fmt::Debug for FieldEquilibria<'_, N> {
 
 /// A point of a branch of equilibria.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct FoundEquilibrium<const N: usize> {
     /// The state.
     pub state: State<N>,

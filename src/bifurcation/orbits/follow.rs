@@ -16,6 +16,7 @@ pub enum Met<'a, const N: usize> {
 
 /// Why a continuation ended.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub enum End {
     /// By the observer.
     Interrupted,

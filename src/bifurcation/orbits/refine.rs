@@ -34,6 +34,7 @@ impl DefiningCondition {
 
 /// The orbit of a special point.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SpecialOrbit {
     /// Whether its variables are those of the difference chart: (tau, ln psi_2, ln D).
     pub(super) in_difference_chart: bool,
@@ -56,6 +57,7 @@ impl SpecialOrbit {
 
 /// A special orbit.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct RefinedPoint<const N: usize> {
     /// The best solution.
     pub orbit: Regular<N>,

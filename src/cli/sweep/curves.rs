@@ -168,16 +168,7 @@ fn point(line: &str) -> Option<LocusRow> {
     let mut cells = line.split(',');
     let curve = cells.next()?.parse().ok()?;
     let symmetry = Symmetry::named(cells.next()?)?;
-    let mut number = || -> Option<f64> { cells.next()?.parse().ok() };
+    let mut number = || Some(Uncertain::new(cells.next()?.parse().ok()?, 0.0));
     let (driving, stiffness) = (number()?, number()?);
-    Some(LocusRow {
-        curve,
-        symmetry,
-        driving: Uncertain::new(driving, 0.0),
-        stiffness: Uncertain::new(stiffness, 0.0),
-        period: None,
-        angle_over_pi: None,
-        criticality: None,
-        label: None,
-    })
+    Some(LocusRow::new(curve, symmetry, driving, stiffness))
 }

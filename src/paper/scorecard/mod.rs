@@ -92,6 +92,7 @@ pub enum Answer {
 
 /// The same by another method.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Second {
     /// The method.
     pub method: &'static str,
@@ -101,6 +102,7 @@ pub struct Second {
 
 /// A number or a claim of the paper.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct Entry {
     /// Its name, unlike all others.
     pub id: &'static str,

@@ -18,6 +18,7 @@ use crate::series::Zeros;
 
 /// One stick-slip event, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct SlipEvent {
     /// Time of the stress maximum.
     pub onset: f64,

@@ -19,6 +19,7 @@ const SAME_PERIOD: f64 = 1e-6;
 
 /// The Lyapunov exponents of a run, dimensionless, with what checks them.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct CheckedExponents {
     /// In descending order.
     pub exponents: Vec<Uncertain>,

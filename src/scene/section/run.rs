@@ -21,6 +21,7 @@ const OWN_RUN: f64 = 0.4;
 
 /// What a return map came to, dimensionless.
 #[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
 pub struct SectionOutcome {
     /// What the run has settled on.
     pub regime: Regime,

@@ -62,6 +62,7 @@ pub enum ExtremumKind {
 
 /// An extremum of tau_ss(V), with bounds that hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Extremum {
     /// Maximum or minimum.
     pub kind: ExtremumKind,
@@ -95,6 +96,7 @@ impl Extremum {
 
 /// A maximum of k_c(V).
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct StiffnessMaximum {
     /// Where it is.
     pub slip_rate: Uncertain,

@@ -76,6 +76,7 @@ impl Material {
 
 /// The units of the dimensionless system, in SI.
 #[derive(Debug, Clone, Copy, PartialEq)]
+#[non_exhaustive]
 pub struct Scales {
     /// a sigma in Pa
     pub stress: f64,

@@ -112,6 +112,7 @@ pub struct Derivatives<const N: usize> {
 
 /// The series of a solution at the beginning of a step, in the variables that it is made in.
 #[derive(Debug, Clone)]
+#[non_exhaustive]
 pub struct Expansion<const N: usize> {
     /// The time of the beginning, in 31 digits: stress and state can change ten thousand times faster than time.
     pub begin: DoubleDouble,
