@@ -12,10 +12,11 @@ use twinslip::equilibrium::Symmetry;
 use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
+use twinslip::internals::newton_step;
 use twinslip::model::Loading;
 use twinslip::orbit::{
     InitialGuess, InterfaceSystem, OrbitAccuracy, Query, ShootingNodes, Tracer, close, find,
-    floquet, newton_step,
+    floquet,
 };
 
 fn slab(driving: f64, stiffness: f64) -> InterfaceSystem {

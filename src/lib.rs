@@ -11,7 +11,6 @@
 //! | [`field::VectorField`] | what a dynamical system is |
 //! | [`model::TwoInterfaces`] | the system (19); also [`model::SingleInterface`], [`model::Symmetric`] |
 //! | [`series::Equations`] | any other small system, from its right-hand side written once; with it [`model::Smooth`] is a field |
-//! | [`series::Formula`] | a differential equation whose solutions are made as power series |
 //! | `sundials::Cvode`, `sundials::Kinsol` | CVODES and KINSOL as safe types (feature `sundials`) |
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
@@ -76,13 +75,19 @@ pub mod cli;
 /// What the tests of this repository reach for. Nothing here is kept as it is.
 #[doc(hidden)]
 pub mod internals {
+    pub use twinslip_model::internals::*;
+
     pub use crate::bifurcation::equilibria::hopf::certain_zero;
     pub use crate::bifurcation::equilibria::hopf_special::by_both;
     pub use crate::integrate::rosenbrock::control::{error_norm, first_step};
     pub use crate::integrate::rosenbrock::factors::Factors;
     pub use crate::integrate::singularity::time_to_singularity;
     pub use crate::orbit::branch::period_from_hopf;
+    pub use crate::orbit::cyclic::solve as solve_cyclic;
     pub use crate::orbit::floquet::pair;
+    pub use crate::orbit::periodic_schur::{LogEigenvalue, eigenvalues};
+    pub use crate::orbit::shooting::newton_step;
+    pub use crate::section::curve::weighted_mean;
     #[cfg(feature = "sundials")]
     pub use crate::sundials::{compatible, counted};
     #[cfg(feature = "cli")]

@@ -5,8 +5,8 @@
 
 use proptest::prelude::*;
 use pulp::x86::{V3, V4};
+use twinslip::internals::{Eight, Element, Four, Pair};
 use twinslip::number::{DoubleDouble, Real};
-use twinslip::series::{Eight, Element, Four, Pair};
 
 /// What a function makes of eight numbers, in registers of every width that this processor has.
 fn in_all_widths(x: [f64; 8], f: Function) -> Vec<[f64; 8]> {

@@ -3,7 +3,7 @@
 use crate::common::{data, number};
 use nalgebra::{Complex, DMatrix};
 use serde_json::Value;
-use twinslip::orbit::periodic_schur::{LogEigenvalue, eigenvalues};
+use twinslip::internals::{LogEigenvalue, eigenvalues};
 
 fn list(value: &Value) -> &[Value] {
     value.as_array().expect("a list")

@@ -7,7 +7,8 @@ use twinslip::Error;
 use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Control, Integrator, MAX_STEPS, Taylor, Tolerances};
-use twinslip::section::{Ended, invariant_curve, regularity, return_map, weighted_mean};
+use twinslip::internals::weighted_mean;
+use twinslip::section::{Ended, invariant_curve, regularity, return_map};
 
 /// Every crossing is found and landed on, whatever the method: their number is that of the sign changes on a fine grid.
 #[test]

@@ -5,10 +5,11 @@ use twinslip::Error;
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
+use twinslip::internals::Element;
 use twinslip::model::classics::Lorenz;
 use twinslip::model::{DifferenceChart, Loading, Smooth, to_difference_chart, two_interfaces};
 use twinslip::number::Real;
-use twinslip::series::{Element, Equations, Jet3};
+use twinslip::series::{Equations, Jet3};
 
 fn taylor(tolerance: f64) -> Taylor {
     Taylor::new(Tolerances::equal(tolerance).unwrap(), MAX_STEPS).unwrap()

@@ -70,6 +70,7 @@ enum CliCommand {
 }
 
 /// The whole command line, with all that `--version` tells.
+#[doc(hidden)]
 pub fn program() -> clap::Command {
     static VERSION: OnceLock<String> = OnceLock::new();
     let text = VERSION.get_or_init(|| {

@@ -17,7 +17,8 @@ pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;
 pub use rosenbrock::{Rosenbrock, RosenbrockMethod};
-pub use tableau::{MAX_STAGES, RODAS4, RODAS5P, ROS23, Tableau};
+#[doc(hidden)]
+pub use tableau::Tableau;
 pub use taylor::{Batch, BatchObserver, BatchRun, Taylor};
 
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};

@@ -96,7 +96,7 @@ pub(super) fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
 impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     /// What the errors of the flow make of an orbit that meets these conditions, which it was corrected to. `None` where they do
     /// not determine it.
-    pub fn noise(
+    pub(crate) fn noise(
         &mut self,
         orbit: &Regular<N>,
         free: &[usize],
@@ -127,7 +127,7 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     }
 
     /// The same of a test function at an orbit in this plane.
-    pub fn noise_of(
+    pub(crate) fn noise_of(
         &mut self,
         test_function: TestFunction,
         orbit: &Regular<N>,

@@ -98,7 +98,7 @@ impl<const N: usize> ShootingNodes<N> {
     ///
     /// # Errors
     /// Those of the flow.
-    pub fn cut(
+    pub(super) fn cut(
         &self,
         tracer: &mut Tracer<N>,
         field: &dyn VectorField<N>,
@@ -152,6 +152,7 @@ impl<const N: usize> ShootingNodes<N> {
     ///
     /// # Errors
     /// Those of the closure.
+    #[doc(hidden)]
     pub fn refined(&self, end_and_loss: EndAndLoss<'_, N>) -> Result<Self> {
         let mut finer = ShootingNodes {
             nodes: Vec::new(),

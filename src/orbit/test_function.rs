@@ -40,7 +40,7 @@ pub struct Spectrum {
     /// ln of the multiplier across the symmetric subspace; not a number where there is none.
     pub across: f64,
     /// Over all multipliers, where there are more than two.
-    pub products: Option<Products>,
+    pub(super) products: Option<Products>,
 }
 
 impl Spectrum {

@@ -1,6 +1,6 @@
 //! The whole paper again: its figures, Table 1, a scorecard of what it says against what is computed, and a report to read.
 //!
-//! A [`Product`] is made of [`Pieces`], what the scene files compute; a piece that several products show is computed once. What
+//! A [`Product`] is made of pieces, what the scene files compute; a piece that several products show is computed once. What
 //! lies complete in the directory from an earlier run, made of the same scenes by the same program, is not made again.
 
 pub(crate) mod clock;
@@ -16,9 +16,13 @@ pub mod scorecard;
 mod sheet;
 
 pub use going::{Going, Reached};
-pub use piece::{Branches, Curves, Equilibria, LawCurve, Map, PeriodicOrbit, Run};
+pub(crate) use piece::{Branches, Curves, Map, Run};
+#[doc(hidden)]
 pub use pieces::Pieces;
-pub use product::{Made, Make, PRODUCTS, Product};
-pub use record::{ProductEntry, Record, Written, hash};
+#[doc(hidden)]
+pub use product::{Made, Make};
+pub use product::{PRODUCTS, Product};
+#[doc(hidden)]
+pub use record::hash;
 pub use run::{Done, RunEvent, Selection, reproduce};
-pub use sheet::{Sheet, SheetPart};
+pub(crate) use sheet::Sheet;

@@ -1,6 +1,6 @@
 //! What a flow settles on: return maps to a section, their periodic points and invariant curves, Lyapunov exponents.
 
-mod curve;
+pub(crate) mod curve;
 mod dense;
 mod lyapunov;
 mod periodicity;
@@ -9,7 +9,7 @@ mod rest;
 mod returns;
 mod surface;
 
-pub use curve::{InvariantCurve, invariant_curve, regularity, weighted_mean};
+pub use curve::{InvariantCurve, invariant_curve, regularity};
 pub(crate) use lyapunov::{ALIGNMENT, GrowthSegment, summary};
 pub use lyapunov::{
     Exponents, FEWEST_FOR_EXPONENTS, LyapunovSpectrum, at_equilibrium, record_finely, spectrum,

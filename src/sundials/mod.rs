@@ -202,6 +202,7 @@ pub fn version() -> &'static str {
 }
 
 /// A number of things as C counts them.
+#[doc(hidden)]
 pub fn counted(what: &str, count: usize) -> Result<c_int> {
     c_int::try_from(count).map_err(|_| Error::parameter(what, count, "at most 2147483647"))
 }
@@ -230,6 +231,7 @@ fn linked_version() -> Result<()> {
 }
 
 /// Whether a library of this version does what headers of that one say.
+#[doc(hidden)]
 pub fn compatible(linked: [i32; 3], headers: [i32; 3]) -> bool {
     linked[..2] == headers[..2]
 }

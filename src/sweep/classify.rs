@@ -281,23 +281,15 @@ fn symmetry(unlike: f64) -> Symmetry {
 /// A row of which the regime is known.
 pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
     let point = &run.point;
+    let note = (run.pushes > 0).then(|| {
+        "equal interfaces, held by rounding where that is unstable, were let go by 0.001 in ln psi2"
+            .into()
+    });
     Classified {
         row: SweepRow {
-            number: point.number,
-            driving: point.loading.driving,
-            stiffness: point.loading.stiffness,
-            start: point.start.into(),
-            regime,
-            symmetry: None,
-            returns_per_period: None,
-            period: None,
-            stress_range: None,
-            lyapunov_max: None,
             returns: run.recorder.passed,
-            note: (run.pushes > 0).then(|| {
-                "equal interfaces, held by rounding where that is unstable, were let go by 0.001 in ln psi2"
-                    .into()
-            }),
+            note,
+            ..SweepRow::new(point.number, point.loading, point.start.into(), regime)
         },
         attractor: run.recorder.returns.last().map(|at| at.state),
     }

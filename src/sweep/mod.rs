@@ -19,8 +19,12 @@ mod start;
 mod sweeper;
 mod watch;
 
-pub use range::{Range, fields};
-pub use run::{UnitShare, run, threads_checked};
+pub use range::Range;
+#[doc(hidden)]
+pub use range::fields;
+#[doc(hidden)]
+pub use run::threads_checked;
+pub use run::{UnitShare, run};
 pub use sweeper::Sweeper;
 
 use crate::equilibrium::Symmetry;
@@ -191,4 +195,24 @@ pub struct SweepRow {
     pub returns: usize,
     /// Why it is undecided, and other remarks.
     pub note: Option<String>,
+}
+
+impl SweepRow {
+    /// A row of which no more is known than where the run starts and what it settles on.
+    pub fn new(number: usize, loading: Loading, start: [f64; 3], regime: Regime) -> Self {
+        SweepRow {
+            number,
+            driving: loading.driving,
+            stiffness: loading.stiffness,
+            start,
+            regime,
+            symmetry: None,
+            returns_per_period: None,
+            period: None,
+            stress_range: None,
+            lyapunov_max: None,
+            returns: 0,
+            note: None,
+        }
+    }
 }

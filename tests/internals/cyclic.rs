@@ -1,7 +1,7 @@
 //! Cyclic systems of linear equations.
 
 use twinslip::field::{Jacobian, State};
-use twinslip::orbit::cyclic::solve;
+use twinslip::internals::solve_cyclic as solve;
 #[test]
 fn growth_and_decay_by_fifty_decades_are_kept_apart() {
     let turn = nalgebra::Rotation2::new(0.3);

@@ -2,38 +2,24 @@
 
 use twinslip::equilibrium::Symmetry;
 use twinslip::internals::{pack, unpack};
+use twinslip::model::Loading;
 use twinslip::number::Uncertain;
 use twinslip::section::Regime;
 use twinslip::sweep::SweepRow;
 
 #[test]
 fn rows_come_back_to_the_bit() {
-    let full = SweepRow {
-        number: 7,
-        driving: 0.1,
-        stiffness: 1.0 / 3.0,
-        start: [11.3, f64::MIN_POSITIVE.ln(), -0.0],
-        regime: Regime::Periodic,
-        symmetry: Some(Symmetry::Asymmetric),
-        returns_per_period: Some(3),
-        period: Some(1e300),
-        stress_range: Some((-1.5, 12.0)),
-        lyapunov_max: Some(Uncertain::new(-1e-3, f64::INFINITY)),
-        returns: 1234,
-        note: Some("a note, \"quoted\": ψ".into()),
-    };
-    let empty = SweepRow {
-        number: 8,
-        regime: Regime::Undecided,
-        symmetry: None,
-        returns_per_period: None,
-        period: None,
-        stress_range: None,
-        lyapunov_max: None,
-        returns: 0,
-        note: None,
-        ..full.clone()
-    };
+    let loading = Loading::new(0.1, 1.0 / 3.0).expect("positive");
+    let start = [11.3, f64::MIN_POSITIVE.ln(), -0.0];
+    let mut full = SweepRow::new(7, loading, start, Regime::Periodic);
+    full.symmetry = Some(Symmetry::Asymmetric);
+    full.returns_per_period = Some(3);
+    full.period = Some(1e300);
+    full.stress_range = Some((-1.5, 12.0));
+    full.lyapunov_max = Some(Uncertain::new(-1e-3, f64::INFINITY));
+    full.returns = 1234;
+    full.note = Some("a note, \"quoted\": ψ".into());
+    let empty = SweepRow::new(8, loading, start, Regime::Undecided);
     let rows = vec![full, empty];
     let bytes = pack(&rows);
     assert_eq!(unpack(&bytes), Some(rows));

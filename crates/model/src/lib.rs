@@ -12,4 +12,12 @@ pub mod field;
 
 pub mod model;
 
+/// What the tests of this repository reach for. Nothing here is kept as it is.
+#[doc(hidden)]
+pub mod internals {
+    pub use crate::series::element::Element;
+    #[cfg(target_arch = "x86_64")]
+    pub use crate::series::lanes::{Eight, Four, Pair};
+}
+
 pub(crate) use twinslip_error as error;

@@ -52,6 +52,7 @@ impl RosenbrockMethod {
     ];
 
     /// The coefficients.
+    #[doc(hidden)]
     pub const fn tableau(self) -> &'static Tableau {
         match self {
             RosenbrockMethod::Rodas5P => &RODAS5P,

@@ -14,6 +14,7 @@ const MAX_ITERATIONS: usize = 300;
 ///
 /// # Errors
 /// [`Error::NotConverged`] if the signs at the ends agree or g is not finite in between.
+#[doc(hidden)]
 pub fn bracketed_root(
     what: &'static str,
     a: f64,
@@ -91,6 +92,7 @@ fn middle(a: f64, b: f64) -> f64 {
 }
 
 /// The smallest radius (by powers of two) within which g certainly changes sign around v > 0; infinite if there is none.
+#[doc(hidden)]
 pub fn enclosing_radius(v: f64, g: impl Fn(Interval) -> Interval) -> f64 {
     let mut radius = v * f64::EPSILON;
     while radius < 0.5 * v {

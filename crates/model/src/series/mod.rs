@@ -1,11 +1,11 @@
 //! Solutions as power series in time: what a Taylor method steps with.
 //!
-//! A differential equation is a [`Formula`], written for any [`crate::number::Real`]. Evaluated once per order on
-//! [`Series`] it yields one coefficient after the other of its solution (`tape` says how); [`Stepper`] makes steps of them.
+//! A differential equation is a `Formula`, written for any [`crate::number::Real`]. Evaluated once per order on
+//! `Series` it yields one coefficient after the other of its solution (`tape` says how); `Stepper` makes steps of them.
 //! No recurrence is written for a law: the laws' own formulas, the same that give values and exact derivatives, run on
 //! series. That costs 10 to 15 per cent over recurrences written by hand for one law.
 //!
-//! The coefficients are [`Element`]s: ordinary numbers, both interfaces in one vector register, or several trajectories at
+//! The coefficients are `Element`s: ordinary numbers, both interfaces in one vector register, or several trajectories at
 //! once. What the processor can do is asked when the program runs, so that a binary for any x86-64 uses AVX2 and AVX-512.
 //!
 //! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
@@ -14,7 +14,7 @@
 mod columns;
 mod cubic;
 mod dual;
-mod element;
+pub(crate) mod element;
 mod equations;
 mod event;
 mod formula;
@@ -23,7 +23,7 @@ mod functions;
 mod handle;
 mod interpreted;
 #[cfg(target_arch = "x86_64")]
-mod lanes;
+pub(crate) mod lanes;
 mod linearised;
 mod plain;
 mod program;
@@ -39,26 +39,25 @@ mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
-pub use columns::{JacobianSeries, Spread, VariationalEquations};
+pub(crate) use columns::{JacobianSeries, Spread, VariationalEquations};
 pub use cubic::Jet3;
-pub use element::Element;
-pub(crate) use equations::{COMPILED, is_small};
-pub use equations::{Equations, Plain};
+pub(crate) use element::Element;
+pub use equations::Equations;
+pub(crate) use equations::{COMPILED, Plain, is_small};
 pub use event::{Passage, Section, Zeros};
-pub use formula::{Formula, Rates, WATCHED};
-pub use handle::{Series, value};
+pub(crate) use formula::{Formula, Rates, WATCHED};
+pub(crate) use handle::{Series, value};
 #[cfg(target_arch = "x86_64")]
-pub use lanes::{Eight, Four, Pair};
-pub use plain::Both;
-pub use recorded::Recorded;
-pub use stepper::Stepper;
-pub use tape::Order;
+pub(crate) use lanes::{Eight, Four, Pair};
+pub(crate) use plain::Both;
+pub(crate) use recorded::Recorded;
+pub(crate) use stepper::Stepper;
+pub(crate) use tape::Order;
 pub use transport::TaylorMap;
-pub use variational::{FREE, Variational};
+pub(crate) use variational::{FREE, Variational};
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
-#[doc(hidden)]
-pub use vectors::{avx2, avx512};
+pub(crate) use vectors::{avx2, avx512};
 
 /// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
 pub const MAX_ORDER: usize = 18;

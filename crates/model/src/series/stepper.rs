@@ -82,6 +82,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// The formula, whose constants may change between solutions.
+    #[cfg(target_arch = "x86_64")]
     pub fn formula_mut(&mut self) -> &mut F {
         &mut self.formula
     }
@@ -123,6 +124,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// A bound on how far the i-th variable strays from where the series begins, within this time.
+    #[cfg(target_arch = "x86_64")]
     #[inline(always)]
     pub fn reach(&self, i: usize, order: usize, time: E) -> E {
         let h = (time / self.unit).abs();

@@ -9,9 +9,11 @@ use pulp::x86::{V3, V4};
 use std::sync::OnceLock;
 
 /// The environment variable that says so: `avx512`, which is all there is and the default, `avx2` or `none`.
+#[doc(hidden)]
 pub const VARIABLE: &str = "TWINSLIP_VECTORS";
 
 /// Up to which instructions.
+#[doc(hidden)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Vectors {
     /// One number at a time.
@@ -26,6 +28,7 @@ pub enum Vectors {
 ///
 /// # Errors
 /// [`Error::Parameter`] for what is none of these; all is allowed then.
+#[doc(hidden)]
 pub fn allowed() -> Result<Vectors> {
     static ALLOWED: OnceLock<Result<Vectors>> = OnceLock::new();
     let asked = || match std::env::var(VARIABLE).as_deref() {
@@ -49,6 +52,7 @@ impl Vectors {
 }
 
 /// What this process computes with: the widest that the processor has and the user allows.
+#[doc(hidden)]
 pub fn used() -> Vectors {
     #[cfg(target_arch = "x86_64")]
     {
