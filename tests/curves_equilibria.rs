@@ -5,8 +5,9 @@ use crate::common::heard;
 use common::{assert_close, data, number, relative};
 use heard::{Heard, assert_same, assert_sharp, slab, spinodal};
 use std::ops::ControlFlow;
+use twinslip::Error;
 use twinslip::bifurcation::equilibria::locus;
-use twinslip::bifurcation::{Criticality, Label, LocusKind, LocusRequest};
+use twinslip::bifurcation::{Criticality, Event, Label, LocusKind, LocusRequest};
 use twinslip::equilibrium::{Solver, Symmetry, stability, steady_states};
 use twinslip::friction::{AnyLaw, Parameters};
 
@@ -23,6 +24,24 @@ fn curves(request: &LocusRequest) -> Heard {
 fn no_hopf_points_where_there_are_none() {
     let heard = curves(&hopf_curves(2, (0.4, 10.0)));
     assert!(heard.points.is_empty() && heard.special.is_empty());
+}
+
+/// As many points as are allowed are handed on, then comes an error.
+#[test]
+fn a_curve_has_no_more_points_than_allowed() {
+    let request = LocusRequest {
+        kind: LocusKind::Pitchfork,
+        step: 1e-3,
+        max_points: 7,
+        ..hopf_curves(2, (1e-3, 1.0))
+    };
+    let mut points = 0;
+    let ended = locus(&request, &mut |event| {
+        points += usize::from(matches!(event, Event::Locus(_)));
+        ControlFlow::Continue(())
+    });
+    assert_eq!(ended, Err(Error::TooManyPoints { limit: 7 }));
+    assert_eq!(points, 7);
 }
 
 #[test]

@@ -173,13 +173,15 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
     }
 }
 
-/// What there is once for all laws, from their list: the type of each, [`AnyLaw`], and the dispatch.
+/// What there is once for all laws, from their list: the type of each, [`AnyLaw`], and the dispatch. It is handed a `$`, for the macro
+/// that it makes.
 macro_rules! laws {
     ($d:tt $($(#[$equation:meta])* $file:ident::$law:ident,)+) => {
         $(pub use $file::$law;)+
 
         /// Any of the laws, chosen at run time.
         #[derive(Debug, Clone, Copy, PartialEq)]
+        #[non_exhaustive]
         pub enum AnyLaw {
             $($(#[$equation])* $law($law),)+
         }
