@@ -21,7 +21,6 @@ const FINE: f64 = 1e-16;
 
 /// A map from plane to plane at a node, to third order in orthonormal coordinates of the planes.
 #[derive(Debug, Clone)]
-#[non_exhaustive]
 pub struct PoincareJet {
     components: [Jet3; 2],
 }

@@ -176,7 +176,6 @@ fn by_volume(multipliers: &mut [Multiplier], volume: Uncertain) {
 
 /// Products over all multipliers that vanish at bifurcations, each factor over its largest size.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct Products {
     /// Of 1 - mu: a multiplier is 1.
     pub fold: f64,

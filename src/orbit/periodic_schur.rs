@@ -16,7 +16,6 @@ type C = Complex<f64>;
 
 /// An eigenvalue by its logarithm, which is in range where it is not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-#[non_exhaustive]
 pub struct LogEigenvalue {
     /// ln |mu|; minus infinity for zero.
     pub ln_abs: f64,

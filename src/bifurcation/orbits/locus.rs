@@ -46,7 +46,7 @@ pub fn loci(
         let (mut count, mut stopped) = (0, false);
         let mut hand_on = |event| {
             let onward = seen(i, event);
-            stopped = onward.is_break();
+            stopped |= onward.is_break();
             onward
         };
         within(request.max_points, &mut hand_on, |seen| {

@@ -57,7 +57,6 @@ impl SpecialOrbit {
 
 /// A special orbit.
 #[derive(Debug, Clone)]
-#[non_exhaustive]
 pub struct RefinedPoint<const N: usize> {
     /// The best solution.
     pub orbit: Regular<N>,
