@@ -28,12 +28,12 @@ pub struct Arc<const N: usize> {
 
 impl<const N: usize> Arc<N> {
     /// Its error where the steps' errors are rounding, which adds up like a random walk.
-    pub fn noise(&self) -> f64 {
+    pub(crate) fn noise(&self) -> f64 {
         self.error / (self.steps.max(1) as f64).sqrt()
     }
 
     /// The same where the tolerance leaves little but rounding: half a unit in the last place of the sum with which a step ends.
-    pub fn rounding(&self) -> f64 {
+    pub(crate) fn rounding(&self) -> f64 {
         /// In units of 1 + |y|; and the nominal errors of steps of which truncation is the lesser part.
         const UNIT: f64 = 0.5 * f64::EPSILON;
         const NOMINAL: f64 = 20.0 * f64::EPSILON;
@@ -51,12 +51,13 @@ impl<const N: usize> Arc<N> {
     }
 
     /// The logarithm of the digits that the tangent's determinant loses to its rounding: of |M|^N / |det M|.
+    #[doc(hidden)]
     pub fn loss(&self) -> f64 {
         (N as f64 * self.tangent.norm().ln() - self.volume()).max(0.0)
     }
 
     /// ln |det| of the tangent, by the tangent.
-    pub fn tangent_volume(&self) -> f64 {
+    pub(crate) fn tangent_volume(&self) -> f64 {
         log_determinant(self.tangent)
     }
 }
@@ -82,7 +83,7 @@ fn log_determinant<const N: usize>(mut m: Jacobian<N>) -> f64 {
 pub struct Tracer<const N: usize> {
     method: ArcIntegrator<N>,
     name: &'static str,
-    /// What a step may err by, relative.
+    /// What a step may err by, in units of 1 + |y|.
     step_error: f64,
     work: Work,
     /// How many steps it may take in all.
@@ -129,18 +130,13 @@ impl<const N: usize> Tracer<N> {
     }
 
     /// Whether arcs come with derivatives in the parameters.
-    pub fn differentiates(&self) -> bool {
+    pub(crate) fn differentiates(&self) -> bool {
         matches!(self.method, ArcIntegrator::Taylor(_))
     }
 
     /// All work so far.
     pub fn work(&self) -> Work {
         self.work
-    }
-
-    /// What a step may err by, in units of 1 + |y|.
-    pub fn step_error(&self) -> f64 {
-        self.step_error
     }
 
     /// By Taylor's method with this tolerance.
@@ -155,7 +151,7 @@ impl<const N: usize> Tracer<N> {
     ///
     /// # Errors
     /// As of [`Self::taylor`].
-    pub fn limited(tolerance: f64, arc: usize, all: usize) -> Result<Self> {
+    pub(crate) fn limited(tolerance: f64, arc: usize, all: usize) -> Result<Self> {
         Ok(Tracer {
             limit: Some(all),
             ..Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, arc.min(all))?
@@ -163,7 +159,7 @@ impl<const N: usize> Tracer<N> {
     }
 
     /// The bound on all steps, where it is used up.
-    pub fn used_up(&self) -> Option<usize> {
+    pub(crate) fn used_up(&self) -> Option<usize> {
         self.limit.filter(|&limit| self.work.steps >= limit)
     }
 

@@ -42,7 +42,7 @@ impl<const N: usize> TangentVector<N> {
     }
 
     /// Plus x times another.
-    pub fn plus(mut self, x: f64, other: &Self) -> Self {
+    pub(crate) fn plus(mut self, x: f64, other: &Self) -> Self {
         let nodes = self.nodes.iter_mut().zip(&other.nodes);
         nodes.for_each(|(a, b)| *a += b * x);
         let durations = self.durations.iter_mut().zip(&other.durations);
@@ -60,7 +60,7 @@ impl<const N: usize> TangentVector<N> {
     }
 
     /// Of length 1; `None` where it has none.
-    pub fn normalised(self) -> Option<Self> {
+    pub(crate) fn normalised(self) -> Option<Self> {
         let length = self.dot(&self).sqrt();
         (length.is_finite() && length > 0.0).then(|| self.scaled(1.0 / length))
     }

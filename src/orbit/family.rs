@@ -203,7 +203,7 @@ impl ParametrisedField<3> for OverDifferenceChart {
 
 impl OverDifferenceChart {
     /// An orbit in these variables; `None` where the interfaces do not differ everywhere, or not always in the same sense.
-    pub fn to_chart(site: &ContinuationPoint<3>) -> Option<ContinuationPoint<3>> {
+    pub(crate) fn to_chart(site: &ContinuationPoint<3>) -> Option<ContinuationPoint<3>> {
         let exchange = |x: &State<3>| State::<3>::new(x[0], x[2], x[1]);
         let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
             site.shooting
@@ -224,7 +224,7 @@ impl OverDifferenceChart {
     }
 
     /// The orbit in (tau, ln psi_1, ln psi_2).
-    pub fn from_chart(site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
+    pub(crate) fn from_chart(site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
         ContinuationPoint {
             shooting: ShootingNodes {
                 nodes: site

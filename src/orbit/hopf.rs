@@ -160,7 +160,7 @@ impl HopfPoint {
     /// The ellipse of this size around the equilibrium on which the linearised system turns.
     ///
     /// With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and there J^2 = -omega^2.
-    pub fn ellipse<const N: usize>(
+    pub(crate) fn ellipse<const N: usize>(
         &self,
         field: &dyn VectorField<N>,
         size: f64,

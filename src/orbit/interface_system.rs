@@ -23,7 +23,7 @@ impl InterfaceSystem {
     }
 
     /// The same in (tau, ln psi_2, ln(psi_1 - psi_2)), for psi_1 > psi_2: there small differences keep all their digits.
-    pub fn in_difference_chart(&self) -> Box<dyn Driven<3>> {
+    pub(crate) fn in_difference_chart(&self) -> Box<dyn Driven<3>> {
         interfaces_in_difference_chart(self.law, self.loading)
     }
 
@@ -37,7 +37,7 @@ impl InterfaceSystem {
     }
 
     /// The same slab at another V_H > 0.
-    pub fn driven_at(&self, driving: f64) -> InterfaceSystem {
+    pub(crate) fn driven_at(&self, driving: f64) -> InterfaceSystem {
         InterfaceSystem {
             loading: Loading {
                 driving,
@@ -48,7 +48,7 @@ impl InterfaceSystem {
     }
 
     /// The same slab with another K > 0.
-    pub fn of_stiffness(&self, stiffness: f64) -> InterfaceSystem {
+    pub(crate) fn of_stiffness(&self, stiffness: f64) -> InterfaceSystem {
         InterfaceSystem {
             loading: Loading {
                 stiffness,
@@ -59,7 +59,7 @@ impl InterfaceSystem {
     }
 
     /// The slip rate of each interface where all slide steadily alike.
-    pub fn steady_rate(&self) -> f64 {
+    pub(crate) fn steady_rate(&self) -> f64 {
         self.loading.driving / self.interfaces as f64
     }
 

@@ -196,7 +196,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     }
 
     /// From an orbit, in the direction that looks so from afar: after a change of variables.
-    pub fn resumed(
+    pub(crate) fn resumed(
         corrector: &'c mut Corrector<'f, F, N>,
         settings: PalcSettings,
         site: ContinuationPoint<N>,
@@ -234,17 +234,17 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     }
 
     /// The length of the way so far.
-    pub fn travelled(&self) -> f64 {
+    pub(crate) fn travelled(&self) -> f64 {
         self.travelled
     }
 
     /// How often the nodes have been cut anew.
-    pub fn cuts(&self) -> usize {
+    pub(crate) fn cuts(&self) -> usize {
         self.cuts
     }
 
     /// What of the continuation's direction does not depend on the variables: the change of the parameters and of ln T.
-    pub fn afar(&self) -> [f64; 3] {
+    pub(crate) fn afar(&self) -> [f64; 3] {
         let DirectedPoint { here, direction } = &self.now;
         direction.seen_from_afar(&here.site.shooting)
     }
@@ -256,13 +256,13 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     }
 
     /// The orbit at this distance along the direction.
-    pub fn correct_at(&mut self, length: f64) -> Option<DirectedPoint<N>> {
+    pub(crate) fn correct_at(&mut self, length: f64) -> Option<DirectedPoint<N>> {
         let now = self.now.clone();
         self.correct_from(&now, length)
     }
 
     /// The orbit at this distance from where the continuation once stood, along the direction there.
-    pub fn correct_from(
+    pub(crate) fn correct_from(
         &mut self,
         now: &DirectedPoint<N>,
         length: f64,
@@ -346,7 +346,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     ///
     /// # Errors
     /// [`PalcEnd::NoNodes`].
-    pub fn mesh(&mut self) -> Result<(), PalcEnd> {
+    pub(crate) fn mesh(&mut self) -> Result<(), PalcEnd> {
         if uneven(&self.now.here) {
             self.cut().ok_or(PalcEnd::NoNodes)
         } else {

@@ -24,7 +24,7 @@ pub struct Closed<const N: usize> {
 
 impl<const N: usize> Closed<N> {
     /// The arcs from every node to the next.
-    pub fn arcs(&self) -> &[Arc<N>] {
+    pub(crate) fn arcs(&self) -> &[Arc<N>] {
         &self.linear.arcs
     }
 

@@ -61,7 +61,7 @@ pub fn of_digits(digits: i32, x: f64) -> f64 {
 impl<const N: usize> ShootingNodes<N> {
     /// Nodes, of at least N coordinates, and durations, with only so many significant digits left: what a second method begins
     /// with.
-    pub fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
+    pub(crate) fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
         let node = |x: &Vec<f64>| State::from_fn(|i, _| of_digits(digits, x[i]));
         ShootingNodes {
             nodes: nodes.iter().map(node).collect(),

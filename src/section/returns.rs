@@ -324,7 +324,7 @@ impl<const N: usize> Recorder<N> {
     }
 
     /// That it has not returned until now.
-    pub fn no_return(&self, surface: &Surface<N>, t: f64) -> Error {
+    pub(crate) fn no_return(&self, surface: &Surface<N>, t: f64) -> Error {
         let offset = surface.offset;
         Error::NoReturn {
             since: self.since,

@@ -93,7 +93,7 @@ impl<const N: usize> Surface<N> {
     }
 
     /// Its derivative in the state.
-    pub fn gradient(&self, y: &State<N>) -> State<N> {
+    pub(crate) fn gradient(&self, y: &State<N>) -> State<N> {
         State::from(self.normal).component_mul(&self.chart.slopes(y))
     }
 
@@ -106,7 +106,7 @@ impl<const N: usize> Surface<N> {
     }
 
     /// The sign of the height just after a crossing.
-    pub fn sign_behind(&self) -> f64 {
+    pub(crate) fn sign_behind(&self) -> f64 {
         match self.direction {
             Crossing::Downwards => -1.0,
             Crossing::Upwards | Crossing::Touching => 1.0,
@@ -114,7 +114,7 @@ impl<const N: usize> Surface<N> {
     }
 
     /// N - 1 orthonormal directions within the surface at a state, as columns.
-    pub fn directions(&self, y: &State<N>) -> DMatrix<f64> {
+    pub(crate) fn directions(&self, y: &State<N>) -> DMatrix<f64> {
         let normal = self.gradient(y).normalize();
         // The axes without the one closest to the normal, made orthogonal to it and to each other.
         let closest = normal.iamax();
