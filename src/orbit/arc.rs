@@ -33,7 +33,8 @@ impl<const N: usize> Arc<N> {
     }
 
     /// The same where the tolerance leaves little but rounding: half a unit in the last place of the sum with which a step ends.
-    pub(crate) fn rounding(&self) -> f64 {
+    #[doc(hidden)]
+    pub fn rounding(&self) -> f64 {
         /// In units of 1 + |y|; and the nominal errors of steps of which truncation is the lesser part.
         const UNIT: f64 = 0.5 * f64::EPSILON;
         const NOMINAL: f64 = 20.0 * f64::EPSILON;
