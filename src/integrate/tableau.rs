@@ -19,8 +19,9 @@ pub const MAX_STAGES: usize = 8;
 /// The coefficients of one Rosenbrock method with its embedded estimate and continuous solution.
 ///
 /// ```
-/// use twinslip::integrate::RODAS4;
-/// assert_eq!((RODAS4.stages, RODAS4.order), (6, 4));
+/// use twinslip::integrate::RosenbrockMethod;
+/// let rodas4 = RosenbrockMethod::Rodas4.tableau();
+/// assert_eq!((rodas4.stages, rodas4.order), (6, 4));
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tableau {
