@@ -77,23 +77,20 @@ fn errors<const N: usize>(
 fn the_ends_of_arcs_err_by_what_they_say() {
     let mut all: Vec<(String, (f64, f64, f64))> = Vec::new();
     for tolerance in [1e-15, 1e-14, 1e-13] {
-        for law in AnyLaw::NAMES {
-            let any = AnyLaw::named(law, Parameters::heslot_1994()).unwrap();
-            let loading = Loading::new(10.0, 0.14).unwrap();
-            let y = State::<3>::new(9.0, 0.01_f64.ln(), 0.0101_f64.ln());
-            let pair = two_interfaces(any, loading);
-            all.push((
-                format!("{law} {tolerance:e}"),
-                errors(&*pair, y, (1.0, tolerance)),
-            ));
-            let one = symmetric(any, loading);
-            let y = State::<2>::new(9.0, 0.01_f64.ln());
-            all.push((
-                format!("{law} symmetric {tolerance:e}"),
-                errors(&*one, y, (1.0, tolerance)),
-            ));
-        }
         let any = AnyLaw::named("spinodal", Parameters::heslot_1994()).unwrap();
+        let loading = Loading::new(10.0, 0.14).unwrap();
+        let y = State::<3>::new(9.0, 0.01_f64.ln(), 0.0101_f64.ln());
+        let pair = two_interfaces(any, loading);
+        all.push((
+            format!("pair {tolerance:e}"),
+            errors(&*pair, y, (1.0, tolerance)),
+        ));
+        let one = symmetric(any, loading);
+        let y = State::<2>::new(9.0, 0.01_f64.ln());
+        all.push((
+            format!("symmetric {tolerance:e}"),
+            errors(&*one, y, (1.0, tolerance)),
+        ));
         let apart = interfaces_in_difference_chart(any, Loading::new(10.0, 0.14).unwrap());
         let y = State::<3>::new(9.0, 0.01_f64.ln(), 0.001_f64.ln());
         all.push((

@@ -192,7 +192,8 @@ fn the_library_speaks_of_fields() {
 
 #[test]
 fn what_is_kept_in_files_speaks_of_flags_too() {
-    let run = twinslip(&format!("{} --max-steps 5 --format json", command::RUN));
+    let run =
+        twinslip("integrate --driving 10 --stiffness 0.14 --until 100 --max-steps 5 --format json");
     assert_eq!(run.code, 1, "{}", run.err);
     let object: Value = serde_json::from_str(&run.out).expect("JSON");
     let error = object["error"].as_str().expect("a sentence");
