@@ -76,7 +76,9 @@ fn errors<const N: usize>(
 #[test]
 fn the_ends_of_arcs_err_by_what_they_say() {
     let mut all: Vec<(String, (f64, f64, f64))> = Vec::new();
-    for tolerance in [1e-15, 1e-14, 1e-13] {
+    // The tolerance with which orbits are solved: what is left is rounding.
+    let tolerance = 1e-15;
+    {
         let any = AnyLaw::named("spinodal", Parameters::heslot_1994()).unwrap();
         let loading = Loading::new(10.0, 0.14).unwrap();
         let y = State::<3>::new(9.0, 0.01_f64.ln(), 0.0101_f64.ln());
@@ -192,6 +194,6 @@ fn the_ends_of_arcs_err_by_what_they_say() {
         println!("{name:30} rms {rms:8.3} largest {largest:8.3} steps {steps:6.1}");
     }
     for (name, (rms, ..)) in all {
-        assert!(rms < 1.0, "{name}: {rms}");
+        assert!(rms < 1.0 && rms > 0.02, "{name}: {rms}");
     }
 }

@@ -159,38 +159,20 @@ fn parameter_derivatives_are_those_of_the_system() {
     let w = 0.01_f64.ln();
     let pair = State::<2>::new(9.9, w);
     check::<3>(
-        |v, k| Box::new(Boxed(two_interfaces(law, loading(v, k)))),
+        |v, k| two_interfaces(law, loading(v, k)),
         State::<3>::new(9.9, w, w + 0.1),
         0.3,
     );
     check::<2>(
-        |v, k| Box::new(Boxed(symmetric(law, loading(v, k)))),
+        |v, k| symmetric(law, loading(v, k)),
         pair,
         0.3,
     );
     check::<2>(
-        |v, k| Box::new(Boxed(single_interface(law, loading(v, k)))),
+        |v, k| single_interface(law, loading(v, k)),
         pair,
         0.3,
     );
-}
-
-/// A driven system as a plain field.
-struct Boxed<const N: usize>(Box<dyn twinslip::model::Driven<N>>);
-
-impl<const N: usize> VectorField<N> for Boxed<N> {
-    fn f(&self, y: &State<N>) -> State<N> {
-        self.0.f(y)
-    }
-    fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
-        self.0.jacobian(y)
-    }
-    fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
-        self.0.second_derivative(y, u, v)
-    }
-    fn analytic(&self) -> Option<&dyn twinslip::field::Analytic<N>> {
-        self.0.analytic()
-    }
 }
 
 #[test]
