@@ -236,3 +236,23 @@ fn pieces_of_the_paper_may_be_such_scenes() {
     assert_eq!((law.points.len(), law.landmarks.extrema.len()), (400, 2));
     assert!(pieces.orbit("law").is_err() && pieces.law_of("sweep").is_err());
 }
+
+/// Of a law whose state is a time.
+#[test]
+fn uncertainties_of_logarithms_know_no_unit() {
+    let given = "equilibria --law dieterich-ruina --si --driving 1e-5 --interfaces 1";
+    let object = twinslip(&format!("{given} --format json"));
+    let object: Value = serde_json::from_str(&object.out).expect("JSON");
+    let state = &object["result"]["equilibria"][0];
+    let told = state["log_state_uncertainty"][0]
+        .as_f64()
+        .expect("a number");
+    assert!((0.0..1e-12).contains(&told), "{told}");
+    let table = twinslip(&format!("{given} --format csv"));
+    let mut lines = table.out.lines().filter(|line| !line.starts_with('#'));
+    let mut names = lines.next().expect("names").split(',');
+    let row: Vec<&str> = lines.next().expect("a row").split(',').collect();
+    let place = names.position(|name| name == "log_state_uncertainty_1");
+    let written: f64 = row[place.expect("the column")].parse().expect("a number");
+    assert_eq!(written, told);
+}

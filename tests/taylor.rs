@@ -163,16 +163,8 @@ fn parameter_derivatives_are_those_of_the_system() {
         State::<3>::new(9.9, w, w + 0.1),
         0.3,
     );
-    check::<2>(
-        |v, k| symmetric(law, loading(v, k)),
-        pair,
-        0.3,
-    );
-    check::<2>(
-        |v, k| single_interface(law, loading(v, k)),
-        pair,
-        0.3,
-    );
+    check::<2>(|v, k| symmetric(law, loading(v, k)), pair, 0.3);
+    check::<2>(|v, k| single_interface(law, loading(v, k)), pair, 0.3);
 }
 
 #[test]

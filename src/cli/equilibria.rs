@@ -81,7 +81,7 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
         "state": out(Quantity::State, &equilibrium.state()),
         "state_uncertainty": out(Quantity::State, &equilibrium.state_uncertainty()),
         "log_state": out(Quantity::LogState, &equilibrium.log_state),
-        "log_state_uncertainty": out(Quantity::LogState, &equilibrium.log_state_uncertainty()),
+        "log_state_uncertainty": equilibrium.log_state_uncertainty(),
         "slip_rate": out(Quantity::SlipRate, &equilibrium.slip_rate),
         "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
         "eigenvalues": eigenvalues,

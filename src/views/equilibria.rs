@@ -34,7 +34,8 @@ pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium
     })));
     columns.extend(aside(each(
         "log_state_uncertainty",
-        LogState,
+        // Of a logarithm: whatever the unit.
+        Number,
         Equilibrium::log_state_uncertainty,
     )));
     columns.extend(each("slip_rate", SlipRate, |one| one.slip_rate.clone()));
