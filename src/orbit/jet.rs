@@ -1,16 +1,25 @@
-//! Jets of the Poincare maps from plane to plane around an orbit: their derivatives up to the third.
+//! The Poincare maps from plane to plane around an orbit, with their derivatives up to the third.
+//!
+//! These are symmetric multilinear forms, which a normal form needs for a few vectors only: those of two vectors are mixed partial
+//! derivatives along them, which a flow of third-order polynomials in two variations has. Planes of two dimensions are known whole
+//! by one such flow.
 
 use super::arc::Tracer;
 use super::continuation_point::ContinuationPoint;
 use super::family::ParametrisedField;
 use super::linear::{Linear, frame};
-use crate::field::{Jacobian, State};
+use super::shooting_nodes::ShootingNodes;
+use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
 use crate::series::Jet3;
-use nalgebra::{Complex, Matrix2, Vector2};
+use nalgebra::{Complex, SVector, Vector2};
 use std::f64::consts::FRAC_1_SQRT_2;
 
-type C2 = Vector2<Complex<f64>>;
+type C = Complex<f64>;
+/// Coordinates along two directions.
+type C2 = Vector2<C>;
+/// A displacement in a plane.
+pub(crate) type CState<const N: usize> = SVector<C, N>;
 
 /// ln of what an arc may grow by: its cube is a third derivative.
 const GROWTH: f64 = 3.0;
@@ -18,12 +27,6 @@ const GROWTH: f64 = 3.0;
 const SPLITS: usize = 6;
 /// Tolerance of new nodes.
 const FINE: f64 = 1e-16;
-
-/// A map from plane to plane at a node, to third order in orthonormal coordinates of the planes.
-#[derive(Debug, Clone)]
-pub struct PoincareJet {
-    components: [Jet3; 2],
-}
 
 /// The coordinates in the planes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -34,49 +37,155 @@ pub enum Axes {
     Symmetry,
 }
 
-/// The maps from node to node of an orbit, by arcs of this tolerance. `None` where one can't be had.
-pub fn jets<F: ParametrisedField<3>>(
-    family: &F,
-    site: &ContinuationPoint<3>,
-    axes: Axes,
-    tolerance: f64,
-) -> Option<Vec<PoincareJet>> {
-    let field = family.field(site.at);
-    let mut taylor = Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?;
-    let nodes = &site.shooting.nodes;
-    let frames: Vec<Jacobian<3>> = nodes
-        .iter()
-        .map(|x| plane(family, &field.f(x), axes))
-        .collect();
-    let mut jet = |k: usize| {
+/// The maps from plane to plane around an orbit. Displacements are in the coordinates of the nodes' frames, of which the first,
+/// across the plane, is zero.
+pub struct PoincareMaps<'a, const N: usize> {
+    field: Box<dyn VectorField<N> + 'a>,
+    taylor: Taylor,
+    shooting: ShootingNodes<N>,
+    frames: Vec<Jacobian<N>>,
+    linear: Vec<Jacobian<N>>,
+    /// Along both axes of planes of two dimensions.
+    jets: Option<Vec<PoincareJet<N>>>,
+}
+
+impl<'a, const N: usize> PoincareMaps<'a, N> {
+    /// By arcs of this tolerance. `None` where one can't be had.
+    pub fn new<F: ParametrisedField<N>>(
+        family: &'a F,
+        site: &ContinuationPoint<N>,
+        axes: Axes,
+        tolerance: f64,
+    ) -> Option<Self> {
+        let field = family.field(site.at);
+        let frame = |x: &State<N>| plane(family, &field.f(x), axes);
+        let frames: Vec<_> = site.shooting.nodes.iter().map(frame).collect();
+        let mut maps = PoincareMaps {
+            field,
+            taylor: Taylor::new(Tolerances::equal(tolerance).ok()?, MAX_STEPS).ok()?,
+            shooting: site.shooting.clone(),
+            frames,
+            linear: Vec::new(),
+            jets: None,
+        };
+        if N == 3 {
+            let axes = |k: usize| [1, 2].map(|j| maps.frames[k].column(j).into_owned());
+            let axes: Vec<_> = (0..maps.frames.len()).map(axes).collect();
+            let jets = axes.into_iter().enumerate();
+            let jets: Option<Vec<_>> = jets.map(|(k, axes)| maps.jet(k, axes)).collect();
+            maps.linear = jets.iter().flatten().map(PoincareJet::linear).collect();
+            maps.jets = Some(jets?);
+        } else {
+            let mut tracer = Tracer::taylor(tolerance).ok()?;
+            maps.linear = Linear::of(&mut tracer, family, &*maps.field, &site.shooting)
+                .ok()?
+                .maps;
+        }
+        Some(maps)
+    }
+
+    /// The same with the k-th node as the first.
+    pub fn beginning_at(mut self, k: usize) -> Self {
+        self.shooting.nodes.rotate_left(k);
+        self.shooting.durations.rotate_left(k);
+        self.frames.rotate_left(k);
+        self.linear.rotate_left(k);
+        if let Some(jets) = &mut self.jets {
+            jets.rotate_left(k);
+        }
+        self
+    }
+
+    /// The first derivatives.
+    pub fn linear(&self) -> &[Jacobian<N>] {
+        &self.linear
+    }
+
+    /// B(u, v), the second derivative of the k-th map.
+    pub fn second(&mut self, k: usize, u: &CState<N>, v: &CState<N>) -> Option<CState<N>> {
+        if let Some(jets) = &self.jets {
+            return Some(jets[k].second(&in_plane(u), &in_plane(v)));
+        }
+        // Of the real and imaginary parts.
+        const UNITS: [C; 2] = [C::ONE, C::I];
+        let mut sum = CState::zeros();
+        for (one, (a, of_a)) in UNITS.iter().zip(parts(u)) {
+            for (other, (b, of_b)) in UNITS.iter().zip(parts(v)) {
+                if of_a > 0.0 && of_b > 0.0 {
+                    let frame = &self.frames[k];
+                    let jet = self.jet(k, [frame * a, frame * b])?;
+                    sum += jet.second(&C2::x(), &C2::y()) * (one * other * of_a * of_b);
+                }
+            }
+        }
+        Some(sum)
+    }
+
+    /// C(u, u, u*), the third derivative of the k-th map.
+    pub fn third(&mut self, k: usize, u: &CState<N>) -> Option<CState<N>> {
+        if let Some(jets) = &self.jets {
+            let u = in_plane(u);
+            return Some(jets[k].third(&u, &u, &u.conjugate()));
+        }
+        let [(a, of_a), (b, of_b)] = parts(u);
+        let frame = &self.frames[k];
+        let jet = self.jet(k, [frame * a, frame * b])?;
+        let u = C2::new(C::from(of_a), C::I * of_b);
+        Some(jet.third(&u, &u, &u.conjugate()))
+    }
+
+    /// The k-th map along these directions of the states.
+    fn jet(&mut self, k: usize, [a, b]: [State<N>; 2]) -> Option<PoincareJet<N>> {
+        let ShootingNodes { nodes, durations } = &self.shooting;
         let next = (k + 1) % nodes.len();
-        let (from, onto) = (&frames[k], &frames[next]);
-        let start =
-            std::array::from_fn(|i| Jet3::linear(nodes[k][i], [from[(i, 1)], from[(i, 2)]]));
-        let span = (0.0, site.shooting.durations[k]);
+        let onto = &self.frames[next];
+        let start = std::array::from_fn(|i| Jet3::linear(nodes[k][i], [a[i], b[i]]));
+        let span = (0.0, durations[k]);
         let target = (&onto.column(0).into_owned(), &nodes[next]);
-        let (_, end) = taylor.transport_onto(&*field, span, start, target).ok()?;
+        let landed = self
+            .taylor
+            .transport_onto(&*self.field, span, start, target);
+        let (_, end) = landed.ok()?;
         let component = |j: usize| {
             let mut sum = Jet3::default();
-            for i in 0..3 {
+            for i in 0..N {
                 sum = sum + (end[i] - Jet3::constant(nodes[next][i])).scaled(onto[(i, j)]);
             }
             sum
         };
+        let components = |j: usize| {
+            if j == 0 {
+                Jet3::default()
+            } else {
+                component(j)
+            }
+        };
         Some(PoincareJet {
-            components: [component(1), component(2)],
+            components: std::array::from_fn(components),
         })
-    };
-    (0..nodes.len()).map(&mut jet).collect()
+    }
+}
+
+/// The coordinates in a plane of two dimensions.
+fn in_plane<const N: usize>(u: &CState<N>) -> C2 {
+    C2::new(u[1], u[2])
+}
+
+/// The real and the imaginary part, each of order one and its size.
+fn parts<const N: usize>(u: &CState<N>) -> [(State<N>, f64); 2] {
+    [u.map(|x| x.re), u.map(|x| x.im)].map(|part| {
+        let size = part.amax();
+        (if size > 0.0 { part / size } else { part }, size)
+    })
 }
 
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
 /// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane.
-pub fn squares<F: ParametrisedField<3>>(
+pub fn squares<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    site: &ContinuationPoint<3>,
+    site: &ContinuationPoint<N>,
     axes: Axes,
-) -> Option<Vec<Matrix2<f64>>> {
+) -> Option<Vec<Jacobian<N>>> {
     /// Points and weights of Gauss on (0, 1).
     const POINTS: [(f64, f64); 6] = [
         (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
@@ -94,12 +203,11 @@ pub fn squares<F: ParametrisedField<3>>(
         .flat_map(|i| POINTS.map(|(at, weight)| (i as f64 + at, weight)))
         .map(|(at, weight)| (at / PARTS as f64, weight / PARTS as f64))
         .collect();
-    let mut arc = |(node, &duration): (&State<3>, &f64)| {
-        let mut moved = plane(family, &field.f(node), axes)
-            .fixed_columns::<2>(1)
-            .into_owned();
+    let mut arc = |(node, &duration): (&State<N>, &f64)| {
+        let mut moved = plane(family, &field.f(node), axes);
+        moved.column_mut(0).fill(0.0);
         let (mut x, mut at) = (*node, 0.0);
-        let mut sum = Matrix2::zeros();
+        let mut sum = Jacobian::<N>::zeros();
         for &(point, weight) in &points {
             let part = tracer.arc(&*field, &x, (point - at) * duration, &[]).ok()?;
             (x, at) = (part.end, point);
@@ -119,7 +227,11 @@ pub fn squares<F: ParametrisedField<3>>(
 }
 
 /// The plane's coordinates: its normal, and the two directions in it.
-fn plane<F: ParametrisedField<3>>(family: &F, flow: &State<3>, axes: Axes) -> Jacobian<3> {
+fn plane<F: ParametrisedField<N>, const N: usize>(
+    family: &F,
+    flow: &State<N>,
+    axes: Axes,
+) -> Jacobian<N> {
     let normal = family.normal(*flow);
     match axes {
         Axes::Any => frame(&normal),
@@ -127,18 +239,20 @@ fn plane<F: ParametrisedField<3>>(family: &F, flow: &State<3>, axes: Axes) -> Ja
     }
 }
 
-/// Orthonormal columns: a normal with equal components 1 and 2, the antisymmetric direction, and the one that is left.
-fn symmetric_frame(normal: &State<3>) -> Jacobian<3> {
-    let normal = normal.normalize();
+/// Orthonormal columns in three dimensions: a normal with equal components 1 and 2, the antisymmetric direction, and the one that
+/// is left.
+fn symmetric_frame<const N: usize>(normal: &State<N>) -> Jacobian<N> {
+    let normal = State::<3>::from_fn(|i, _| normal[i]).normalize();
     let across = State::<3>::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2);
-    Jacobian::<3>::from_columns(&[normal, across, normal.cross(&across)])
+    let columns = [normal, across, normal.cross(&across)];
+    Jacobian::from_fn(|i, j| columns[j][i])
 }
 
 /// The same orbit with so many nodes that along no arc anything grows by much.
-pub fn finely_cut<F: ParametrisedField<3>>(
+pub fn finely_cut<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    site: &ContinuationPoint<3>,
-) -> Option<ContinuationPoint<3>> {
+    site: &ContinuationPoint<N>,
+) -> Option<ContinuationPoint<N>> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let mut shooting = site.shooting.clone();
@@ -157,11 +271,11 @@ pub fn finely_cut<F: ParametrisedField<3>>(
 }
 
 /// The same orbit with every arc cut into so many parts of equal duration.
-pub fn cut_into<F: ParametrisedField<3>>(
+pub fn cut_into<F: ParametrisedField<N>, const N: usize>(
     parts: usize,
     family: &F,
-    site: &ContinuationPoint<3>,
-) -> Option<ContinuationPoint<3>> {
+    site: &ContinuationPoint<N>,
+) -> Option<ContinuationPoint<N>> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let counts = vec![parts; site.shooting.nodes.len()];
@@ -171,16 +285,20 @@ pub fn cut_into<F: ParametrisedField<3>>(
     })
 }
 
-impl PoincareJet {
-    /// The first derivative.
-    pub fn linear(&self) -> Matrix2<f64> {
-        let [p, q] = self.components.map(|c| c.0);
-        Matrix2::new(p[1], p[2], q[1], q[2])
+/// A map from plane to plane, to third order along two directions in the first plane.
+#[derive(Debug, Clone)]
+struct PoincareJet<const N: usize> {
+    components: [Jet3; N],
+}
+
+impl<const N: usize> PoincareJet<N> {
+    /// The first derivative of a map of two dimensions along its axes.
+    fn linear(&self) -> Jacobian<N> {
+        Jacobian::from_fn(|i, j| if j == 0 { 0.0 } else { self.components[i].0[j] })
     }
 
-    /// B(u, v), the second derivative.
-    pub fn second(&self, u: &C2, v: &C2) -> C2 {
-        C2::from_fn(|i, _| {
+    fn second(&self, u: &C2, v: &C2) -> CState<N> {
+        CState::from_fn(|i, _| {
             let c = self.components[i].0;
             u[0] * v[0] * (2.0 * c[3])
                 + (u[0] * v[1] + u[1] * v[0]) * c[4]
@@ -188,9 +306,8 @@ impl PoincareJet {
         })
     }
 
-    /// C(u, v, w), the third derivative.
-    pub fn third(&self, u: &C2, v: &C2, w: &C2) -> C2 {
-        C2::from_fn(|i, _| {
+    fn third(&self, u: &C2, v: &C2, w: &C2) -> CState<N> {
+        CState::from_fn(|i, _| {
             let c = self.components[i].0;
             let [one, two, three, four] = [6.0 * c[6], 2.0 * c[7], 2.0 * c[8], 6.0 * c[9]];
             u[0] * v[0] * w[0] * one

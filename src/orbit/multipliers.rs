@@ -9,7 +9,7 @@ use super::periodic_schur::{LogEigenvalue, eigenvalues};
 use crate::field::Jacobian;
 use crate::number::Uncertain;
 use nalgebra::{Complex, DMatrix};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// Angles below this, from 0 and from pi, are those of real numbers: rounding parts two equal ones by as much.
 const REAL: f64 = 1e-9;
@@ -30,7 +30,7 @@ pub fn multipliers<const N: usize>(
     errors: &[f64],
     volume: Uncertain,
 ) -> Vec<Multiplier> {
-    let found = eigenvalues(&planes(maps));
+    let found = eigenvalues_of(maps);
     let spreads = found.as_ref().and_then(|all| spreads(maps, errors, all));
     let (Some(mut all), Some(spreads)) = (found, spreads) else {
         let unknown = Multiplier {
@@ -45,6 +45,11 @@ pub fn multipliers<const N: usize>(
     let mut multipliers: Vec<_> = pairs.map(|(one, spread)| spread.multiplier(one)).collect();
     by_volume(&mut multipliers, volume);
     multipliers
+}
+
+/// The eigenvalues of the maps' product, the largest first; `None` where they are not found.
+pub(crate) fn eigenvalues_of<const N: usize>(maps: &[Jacobian<N>]) -> Option<Vec<LogEigenvalue>> {
+    eigenvalues(&planes(maps))
 }
 
 /// What the errors make of an eigenvalue.
@@ -102,7 +107,7 @@ fn spreads<const N: usize>(
             map + sizes.map(|size| size * signs.next())
         });
         let noisy: Vec<_> = noisy.collect();
-        let mut others = eigenvalues(&planes(&noisy))?;
+        let mut others = eigenvalues_of(&noisy)?;
         for (one, spread) in all.iter().zip(&mut spreads) {
             let off = |other: &LogEigenvalue| {
                 let ln_abs = (other.ln_abs - one.ln_abs).abs();
@@ -174,6 +179,33 @@ fn by_volume(multipliers: &mut [Multiplier], volume: Uncertain) {
     };
 }
 
+/// Two eigenvalues, conjugate or both real.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct UnitPair {
+    /// Their sum.
+    pub sum: f64,
+    /// |ln| of their product.
+    pub off: f64,
+}
+
+/// The two whose product is nearest to 1: of a pair that is near the unit circle this one. Where the two are equal each is off by
+/// the root of what their sum and product are.
+pub(crate) fn unit_pair(all: &[LogEigenvalue]) -> Option<UnitPair> {
+    let off = |a: &LogEigenvalue, b: &LogEigenvalue| {
+        let arg = (a.arg + b.arg + PI).rem_euclid(TAU) - PI;
+        (a.ln_abs + b.ln_abs).hypot(arg)
+    };
+    let pairs = all.iter().enumerate();
+    let pairs = pairs.flat_map(|(i, a)| all[..i].iter().map(move |b| (a, b)));
+    let of = |(a, b)| (off(a, b), a, b);
+    let (off, a, b) = pairs.map(of).min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let real = |one: &LogEigenvalue| one.ln_abs.exp() * one.arg.cos();
+    Some(UnitPair {
+        sum: real(a) + real(b),
+        off,
+    })
+}
+
 /// Products over all multipliers that vanish at bifurcations, each factor over its largest size.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Products {
@@ -183,12 +215,14 @@ pub struct Products {
     pub doubling: f64,
     /// Of 1 - mu_i mu_j over all pairs: a conjugate pair on the unit circle, or two real numbers whose product is 1.
     pub torus: f64,
+    /// The sum, no product, of the two whose product is nearest to 1: 2 cos of the angle of a pair on the unit circle.
+    pub pair: f64,
 }
 
 impl Products {
     /// Of the maps' product; `None` where its eigenvalues are not found.
     pub(super) fn new<const N: usize>(maps: &[Jacobian<N>]) -> Option<Self> {
-        let all = eigenvalues(&planes(maps))?;
+        let all = eigenvalues_of(maps)?;
         let pairs = all.iter().enumerate().flat_map(|(i, a)| {
             all[..i].iter().map(|b| LogEigenvalue {
                 ln_abs: a.ln_abs + b.ln_abs,
@@ -203,17 +237,17 @@ impl Products {
             fold: product(all.iter().copied()),
             doubling: product(negative),
             torus: product(pairs),
+            pair: unit_pair(&all)?.sum,
         })
     }
-}
 
-impl Products {
     /// Less others.
     pub(super) fn less(&self, other: &Self) -> Self {
         Products {
             fold: self.fold - other.fold,
             doubling: self.doubling - other.doubling,
             torus: self.torus - other.torus,
+            pair: self.pair - other.pair,
         }
     }
 
@@ -223,6 +257,7 @@ impl Products {
             fold: x * self.fold,
             doubling: x * self.doubling,
             torus: x * self.torus,
+            pair: x * self.pair,
         }
     }
 }

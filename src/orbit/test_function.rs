@@ -5,7 +5,8 @@
 //! stiffness, what the maps' product loses.
 //!
 //! With a return map of more dimensions tr and det are not the sum and the product of two multipliers. There the test functions
-//! are products over all multipliers, from the maps' periodic Schur form, and their changes are differences.
+//! are products over all multipliers, from the maps' periodic Schur form, and their changes are differences. Of strong resonances it
+//! is the sum of the pair that is nearest to the unit circle.
 
 use super::linear::Linear;
 use super::multipliers::Products;
@@ -21,7 +22,8 @@ pub enum TestFunction {
     Doubling,
     /// The product of two is 1: ln det. A torus (Neimark-Sacker) bifurcation where they are conjugate, a neutral saddle elsewhere.
     Torus,
-    /// The trace of a map of two dimensions has this value: on a torus bifurcation 2 cos of the multipliers' angle.
+    /// The sum of two multipliers has this value: of both, where there are no more, else of the two whose product is nearest to 1. On a
+    /// torus bifurcation that is 2 cos of the critical pair's angle: 2, -2, -1 and 0 at the resonances 1:1 to 1:4.
     Trace(f64),
     /// The multiplier across the symmetric subspace is 1.
     Transverse,
@@ -139,7 +141,11 @@ impl TestFunction {
                 "3 or more",
                 N >= 3,
             ),
-            TestFunction::Trace(_) => ("the test function of strong resonances", "3", N == 3),
+            TestFunction::Trace(_) => (
+                "the test function of strong resonances",
+                "3 or more",
+                N >= 3,
+            ),
             TestFunction::Transverse => ("the test function of pitchforks of orbits", "2", N == 2),
         };
         if holds {
@@ -166,6 +172,7 @@ impl TestFunction {
             TestFunction::Fold if N > 3 => product(|all| all.fold),
             TestFunction::Doubling if N > 3 => product(|all| all.doubling),
             TestFunction::Torus if N > 3 => product(|all| all.torus),
+            TestFunction::Trace(value) if N > 3 => product(|all| all.pair) - value,
             TestFunction::Fold if N == 2 => volume.exp_m1(),
             TestFunction::Fold => 1.0 - trace + volume.exp(),
             TestFunction::Doubling => 1.0 + trace + volume.exp(),
@@ -177,14 +184,12 @@ impl TestFunction {
 
     /// Its change with that of the spectrum.
     pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
-        if N > 3
-            && matches!(
-                self,
-                TestFunction::Fold | TestFunction::Doubling | TestFunction::Torus
-            )
-        {
-            // Linear in them.
-            return self.of::<N>(by);
+        if N > 3 {
+            // All are linear in the products.
+            return match self {
+                TestFunction::Trace(_) => TestFunction::Trace(0.0).of::<N>(by),
+                _ => self.of::<N>(by),
+            };
         }
         let of_det = at.volume.exp() * by.volume;
         match self {

@@ -1,6 +1,6 @@
 //! Charts: the variables in which orbits of a slab are followed, and the way from one to the other.
 
-use super::normal_form::{Form, normal_form};
+use super::normal_form::{Form, classified};
 use crate::bifurcation::Criticality;
 use crate::field::State;
 use crate::number::Uncertain;
@@ -56,7 +56,7 @@ impl Chart<2> for OverLoadings {
         None
     }
     fn normal_form(&self, site: &ContinuationPoint<2>, form: Form) -> (Uncertain, Criticality) {
-        normal_form(self, &embedded(site), form)
+        classified(self, &embedded(site), form)
     }
 }
 
@@ -85,7 +85,7 @@ impl Chart<3> for OverLoadings {
         ))
     }
     fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
-        normal_form(self, site, form)
+        classified(self, site, form)
     }
 }
 
@@ -113,7 +113,7 @@ impl Chart<3> for OverDifferenceChart {
         None
     }
     fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
-        normal_form(self, site, form)
+        classified(self, site, form)
     }
 }
 

@@ -14,21 +14,23 @@
 //! bifurcations of limit cycles. SIAM J. Numer. Anal. 43, 1407-1435,
 //!
 //! it is measured all along the orbit, by the integral of |q|^2 over the period T, and not at a section or at nodes that were
-//! chosen: here, where a map is normalised and no flow, that integral is T. |q| is the length across the flow, in (tau, ln psi_1,
-//! ln psi_2). Every order is a cyclic linear system; the cubic coefficient is the
+//! chosen: here, where a map is normalised and no flow, that integral is T. |q| is the length across the flow, in the system's own
+//! variables: of two interfaces (tau, ln psi_1, ln psi_2). Every order is a cyclic linear system; the cubic coefficient is the
 //! condition that the last one can be solved. So no map around the whole orbit is needed, whose derivatives a canard makes
 //! huge. The same with twice as many nodes and another tolerance shows what a coefficient errs by.
 
 use crate::bifurcation::Criticality;
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, State};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Axes, ContinuationPoint, ParametrisedField, PoincareJet, cut_into, cyclic, finely_cut, jets,
-    squares,
+    Axes, CState, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps, cut_into,
+    cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
 };
-use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector2, Vector4};
+use nalgebra::{Complex, Matrix1, Vector1};
+use std::f64::consts::PI;
 
 type C = Complex<f64>;
-type C2 = Vector2<C>;
 
 /// What bifurcates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -46,12 +48,54 @@ const SOLUTIONS: [(f64, usize); 2] = [(1e-16, 1), (1e-15, 2)];
 /// The difference of both times this, and what is always left: the orbit itself is off by rounding.
 const SAFETY: f64 = 10.0;
 const LEAST: f64 = 1e-8;
+/// How far the logarithm of a multiplier that bifurcates may be off.
+const NEAR: f64 = 1e-4;
+
+impl Form {
+    /// Whether orbits of so many variables have it.
+    ///
+    /// # Errors
+    /// [`Error::Dimension`] where they do not.
+    pub fn checked<const N: usize>(self) -> Result<()> {
+        let (what, known, holds) = match self {
+            Form::Doubling => ("the normal form of period doublings", "3 or more", N >= 3),
+            Form::Torus => ("the normal form of torus bifurcations", "3 or more", N >= 3),
+            Form::Pitchfork => (
+                "the normal form of pitchforks of orbits of two interfaces",
+                "3",
+                N == 3,
+            ),
+        };
+        if holds {
+            return Ok(());
+        }
+        Err(Error::Dimension {
+            what,
+            known,
+            dimension: N,
+        })
+    }
+}
 
 /// The cubic coefficient of an orbit that bifurcates, and which way that is: b of (5.40) or Re d of (5.45) of the return map,
-/// for an eigenvector whose length across the flow, in (tau, ln psi_1, ln psi_2), has the mean square 1 over the period.
-pub fn normal_form<F: ParametrisedField<3>>(
+/// for an eigenvector whose length across the flow, in the system's own variables as [`ParametrisedField::across`] measures it, has
+/// the mean square 1 over the period. Of what does not bifurcate the coefficient is not known, and its uncertainty infinite.
+///
+/// # Errors
+/// [`Error::Dimension`] for forms that orbits of so many variables do not have.
+pub fn normal_form<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    site: &ContinuationPoint<3>,
+    site: &ContinuationPoint<N>,
+    form: Form,
+) -> Result<(Uncertain, Criticality)> {
+    form.checked::<N>()?;
+    Ok(classified(family, site, form))
+}
+
+/// The same of a form that such orbits have.
+pub(super) fn classified<F: ParametrisedField<N>, const N: usize>(
+    family: &F,
+    site: &ContinuationPoint<N>,
     form: Form,
 ) -> (Uncertain, Criticality) {
     let Some(coefficient) = coefficient(family, site, form) else {
@@ -71,9 +115,9 @@ pub fn normal_form<F: ParametrisedField<3>>(
     (coefficient, criticality)
 }
 
-fn coefficient<F: ParametrisedField<3>>(
+fn coefficient<F: ParametrisedField<N>, const N: usize>(
     family: &F,
-    site: &ContinuationPoint<3>,
+    site: &ContinuationPoint<N>,
     form: Form,
 ) -> Option<Uncertain> {
     let site = finely_cut(family, site)?;
@@ -83,8 +127,8 @@ fn coefficient<F: ParametrisedField<3>>(
     };
     let [first, second] = SOLUTIONS.map(|(tolerance, parts)| {
         let cut = cut_into(parts, family, &site)?;
-        let circle = Circle {
-            jets: jets(family, &cut, axes, tolerance)?,
+        let mut circle = Circle {
+            maps: PoincareMaps::new(family, &cut, axes, tolerance)?,
             squares: squares(family, &cut, axes)?,
             period: cut.shooting.period(),
         }
@@ -101,88 +145,91 @@ fn coefficient<F: ParametrisedField<3>>(
     Some(Uncertain::new(first, uncertainty))
 }
 
-/// The maps around an orbit.
-struct Circle {
-    jets: Vec<PoincareJet>,
+/// An orbit with the maps around it.
+struct Circle<'a, const N: usize> {
+    maps: PoincareMaps<'a, N>,
     /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
-    squares: Vec<Matrix2<f64>>,
+    squares: Vec<Jacobian<N>>,
     period: f64,
 }
 
-impl Circle {
+impl<const N: usize> Circle<'_, N> {
     /// The same from the node to which most has grown. All nodes are found from the first; from the small end of what grows by
     /// many decades nothing is found.
     fn begun_at_the_top(mut self, axes: Axes) -> Self {
         let mut top = (0, 0.0);
-        let (mut log, mut moved) = (0.0, Vector2::new(1.0, 1.0));
+        // Of symmetric orbits, what is symmetric is all that has to be solved for.
+        let kept = |mut x: State<N>| {
+            if axes == Axes::Symmetry {
+                x[1] = 0.0;
+            }
+            x
+        };
+        let (mut log, mut moved) = (0.0, kept(State::repeat(1.0)));
         // Once around for what is there at the beginning to die out.
         for turn in 0..2 {
-            for (k, jet) in self.jets.iter().enumerate() {
+            for (k, map) in self.maps.linear().iter().enumerate() {
                 if turn == 1 && (k == 0 || log > top.1) {
                     top = (k, log);
                 }
-                moved = match axes {
-                    Axes::Any => jet.linear() * moved,
-                    // What is symmetric is all that has to be solved for.
-                    Axes::Symmetry => Vector2::new(0.0, jet.linear()[(1, 1)] * moved[1]),
-                };
+                moved = kept(map * moved);
                 let length = moved.norm();
                 log += length.ln();
                 moved /= length;
             }
         }
-        self.jets.rotate_left(top.0);
         self.squares.rotate_left(top.0);
-        self
+        Circle {
+            maps: self.maps.beginning_at(top.0),
+            ..self
+        }
     }
 
     /// b = <p, C(q,q,q) + 3 B(q, h)> / 6  (5.40)
-    fn doubling(&self) -> Option<f64> {
+    fn doubling(&mut self) -> Option<f64> {
         let (mu, one) = (C::from(-1.0), C::from(1.0));
+        if N > 3 && !self.doubles() {
+            return None;
+        }
         let (q, p) = self.eigenvectors(mu)?;
-        let h = self.solve(one, &self.each(|k, jet| jet.second(&q[k], &q[k])))?;
-        let cube = self.each(|k, jet| {
-            jet.third(&q[k], &q[k], &q[k]) + jet.second(&q[k], &h[k]) * C::from(3.0)
-        });
+        let square = self.each(|maps, k| maps.second(k, &q[k], &q[k]))?;
+        let h = self.solve(one, &square)?;
+        let cube = self.each(|maps, k| {
+            Some(maps.third(k, &q[k])? + maps.second(k, &q[k], &h[k])? * C::from(3.0))
+        })?;
         Some((mu * self.solvability(mu, &p, &q, &cube)).re / 6.0 / self.mean_square(&q))
     }
 
     /// c = <p, C(q,q,q) + 3 B(q, h)> / 6, with q antisymmetric and h symmetric: each is one number in every plane. As products
     /// and quotients they keep their digits where small differences fall by fifty decades along the orbit.
-    fn pitchfork(&self) -> Option<f64> {
-        let (across, along) = (
-            C2::new(C::from(1.0), C::from(0.0)),
-            C2::new(C::from(0.0), C::from(1.0)),
-        );
+    fn pitchfork(&mut self) -> Option<f64> {
+        let axis = |i: usize| CState::<N>::from_fn(|j, _| C::from(f64::from(u8::from(i == j))));
+        let (across, along) = (axis(1), axis(2));
         let mut q = vec![1.0];
-        for jet in &self.jets {
-            q.push(q[q.len() - 1] * jet.linear()[(0, 0)]);
+        for map in self.maps.linear() {
+            q.push(q[q.len() - 1] * map[(1, 1)]);
         }
         let longest = q.iter().copied().fold(0.0, f64::max);
         q.iter_mut().for_each(|q| *q /= longest);
-        let in_plane: Vec<_> = self
-            .jets
-            .iter()
-            .map(|jet| Matrix1::new(jet.linear()[(1, 1)]))
-            .collect();
-        let square = |(jet, q): (&PoincareJet, &f64)| {
-            Vector1::new(jet.second(&across, &across)[1].re * q * q)
-        };
-        let squares: Vec<_> = self.jets.iter().zip(&q).map(square).collect();
+        let maps = self.maps.linear().iter();
+        let in_plane: Vec<_> = maps.map(|map| Matrix1::new(map[(2, 2)])).collect();
+        let bent = self.each(|maps, k| maps.second(k, &across, &across))?;
+        let square = |(bent, q): (&CState<N>, &f64)| Vector1::new(bent[2].re * q * q);
+        let squares: Vec<_> = bent.iter().zip(&q).map(square).collect();
         let h = cyclic::solve(&in_plane, &squares)?;
         let mut sum = 0.0;
-        for (k, jet) in self.jets.iter().enumerate() {
-            let third = jet.third(&across, &across, &across)[0].re * q[k] * q[k];
-            let mixed = jet.second(&across, &along)[0].re * h[k][0];
+        for k in 0..h.len() {
+            let third = self.maps.third(k, &across)?[1].re * q[k] * q[k];
+            let mixed = self.maps.second(k, &across, &along)?[1].re * h[k][0];
             sum += (third + 3.0 * mixed) * (q[k] / q[k + 1]);
         }
-        let q: Vec<C2> = q.iter().map(|&q| across * C::from(q)).collect();
+        let q: Vec<_> = q.iter().map(|&q| across * C::from(q)).collect();
         Some(sum / 6.0 / self.mean_square(&q))
     }
 
     /// The mean over the period of |q|^2.
-    fn mean_square(&self, q: &[C2]) -> f64 {
-        let of = |(q, square): (&C2, &Matrix2<f64>)| {
+    fn mean_square(&self, q: &[CState<N>]) -> f64 {
+        let of = |(q, square): (&CState<N>, &Jacobian<N>)| {
             let (re, im) = (q.map(|x| x.re), q.map(|x| x.im));
             re.dot(&(square * re)) + im.dot(&(square * im))
         };
@@ -191,64 +238,79 @@ impl Circle {
     }
 
     /// d = Re e^(-i theta) <p, C(q,q,q*) + 2 B(q, h11) + B(q*, h20)> / 2  (5.45)
-    fn torus(&self) -> Option<f64> {
+    fn torus(&mut self) -> Option<f64> {
         let one = C::from(1.0);
         let mu = self.multiplier()?;
         let (q, p) = self.eigenvectors(mu)?;
-        let conjugate: Vec<C2> = q.iter().map(|q| q.map(|x| x.conj())).collect();
-        let h11 = self.solve(one, &self.each(|k, jet| jet.second(&q[k], &conjugate[k])))?;
-        let h20 = self.solve(mu * mu, &self.each(|k, jet| jet.second(&q[k], &q[k])))?;
-        let cube = self.each(|k, jet| {
-            jet.third(&q[k], &q[k], &conjugate[k])
-                + jet.second(&q[k], &h11[k]) * C::from(2.0)
-                + jet.second(&conjugate[k], &h20[k])
-        });
+        let conjugate: Vec<_> = q.iter().map(CState::conjugate).collect();
+        let length = self.each(|maps, k| maps.second(k, &q[k], &conjugate[k]))?;
+        let h11 = self.solve(one, &length)?;
+        let square = self.each(|maps, k| maps.second(k, &q[k], &q[k]))?;
+        let h20 = self.solve(mu * mu, &square)?;
+        let cube = self.each(|maps, k| {
+            Some(
+                maps.third(k, &q[k])?
+                    + maps.second(k, &q[k], &h11[k])? * C::from(2.0)
+                    + maps.second(k, &conjugate[k], &h20[k])?,
+            )
+        })?;
         Some(self.solvability(mu, &p, &q, &cube).re / 2.0 / self.mean_square(&q))
     }
 
-    fn each(&self, of: impl Fn(usize, &PoincareJet) -> C2) -> Vec<C2> {
-        self.jets
-            .iter()
-            .enumerate()
-            .map(|(k, jet)| of(k, jet))
-            .collect()
+    fn each(
+        &mut self,
+        of: impl Fn(&mut PoincareMaps<'_, N>, usize) -> Option<CState<N>>,
+    ) -> Option<Vec<CState<N>>> {
+        let count = self.maps.linear().len();
+        (0..count).map(|k| of(&mut self.maps, k)).collect()
     }
 
-    /// e^(i theta), by the trace of the return map.
+    /// Whether a multiplier is -1.
+    fn doubles(&self) -> bool {
+        let off = |one: &LogEigenvalue| one.ln_abs.hypot(PI - one.arg.abs());
+        let all = eigenvalues_of(self.maps.linear());
+        all.is_some_and(|all| all.iter().any(|one| off(one) < NEAR))
+    }
+
+    /// e^(i theta): by the trace of a return map of two dimensions, else by the pair that is nearest to the unit circle.
     fn multiplier(&self) -> Option<C> {
-        let map = self
-            .jets
-            .iter()
-            .fold(Matrix2::identity(), |map, jet| jet.linear() * map);
-        let half = 0.5 * map.trace();
+        let maps = self.maps.linear();
+        let sum = if N == 3 {
+            let start = Jacobian::<N>::identity();
+            maps.iter().fold(start, |map, next| next * map).trace()
+        } else {
+            let pair = unit_pair(&eigenvalues_of(maps)?)?;
+            (pair.off < NEAR).then_some(pair.sum)?
+        };
+        let half = 0.5 * sum;
         (half.abs() < 1.0).then(|| C::new(half, (1.0 - half * half).sqrt()))
     }
 
     /// u_{k+1} = P_k u_k + r_k with u_m = mu u_0.
-    fn solve(&self, mu: C, right: &[C2]) -> Option<Vec<C2>> {
-        let maps: Vec<_> = self.jets.iter().map(PoincareJet::linear).collect();
+    fn solve(&self, mu: C, right: &[CState<N>]) -> Option<Vec<CState<N>>> {
         let mut right = right.to_vec();
         *right.last_mut()? /= mu;
-        around(&maps, mu.inv(), &right)
+        around(self.maps.linear(), mu.inv(), &right)
     }
 
     /// q_{k+1} = P_k q_k, q_m = mu q_0; and the same of the transposed maps, p_k for the k-th map. By
     /// inverse iteration a little beside the multiplier.
-    fn eigenvectors(&self, mu: C) -> Option<(Vec<C2>, Vec<C2>)> {
+    fn eigenvectors(&self, mu: C) -> Option<(Vec<CState<N>>, Vec<CState<N>>)> {
         const ITERATIONS: usize = 3;
-        let maps: Vec<_> = self.jets.iter().map(PoincareJet::linear).collect();
+        let maps = self.maps.linear();
         let last = maps.len() - 1;
         // From the last plane but one down to the first, and from the last plane at last, where the circle closes.
-        let mut transposed: Vec<_> = maps[..last].iter().rev().map(Matrix2::transpose).collect();
+        let mut transposed: Vec<_> = maps[..last].iter().rev().map(Jacobian::transpose).collect();
         transposed.push(maps[last].transpose());
         let factor = (mu * (1.0 + BESIDE)).inv();
-        let kernel = |maps: &[Matrix2<f64>]| {
+        let kernel = |maps: &[Jacobian<N>]| {
             // Real, so that what belongs to a real multiplier stays real; and only where the circle closes, so that it is the
             // return map's.
-            let mut v = vec![C2::zeros(); maps.len()];
-            v[0] = C2::new(C::from(1.0), C::from(0.7));
+            let mut v = vec![CState::zeros(); maps.len()];
+            v[0] = CState::from_fn(|i, _| C::from(0.7_f64.powi(i as i32 - 1)));
+            v[0][0] = C::ZERO;
             for _ in 0..ITERATIONS {
-                let mut right = vec![C2::zeros(); maps.len()];
+                let mut right = vec![CState::zeros(); maps.len()];
                 right[last] = v[0];
                 v = around(maps, factor, &right)?;
                 let longest = v.iter().map(|v| v.norm()).fold(0.0, f64::max);
@@ -256,14 +318,14 @@ impl Circle {
             }
             Some(v)
         };
-        let (q, mut p) = (kernel(&maps)?, kernel(&transposed)?);
+        let (q, mut p) = (kernel(maps)?, kernel(&transposed)?);
         p[..last].reverse();
         Some((q, p))
     }
 
     /// What keeps g_{k+1} = P_k g_k + r_k, g_m = mu g_0, from being solvable: x, where x mu q_0 has to be added to g_m; divided by
     /// mu.
-    fn solvability(&self, mu: C, p: &[C2], q: &[C2], right: &[C2]) -> C {
+    fn solvability(&self, mu: C, p: &[CState<N>], q: &[CState<N>], right: &[CState<N>]) -> C {
         let last = right.len() - 1;
         let mut sum = C::from(0.0);
         for (k, (p, r)) in p.iter().zip(right).enumerate() {
@@ -277,22 +339,12 @@ impl Circle {
 const BESIDE: f64 = 1e-7;
 
 /// u_{k+1} = P_k u_k + r_k, u_m = u_0, where the last of the maps is P times a complex factor.
-fn around(maps: &[Matrix2<f64>], factor: C, right: &[C2]) -> Option<Vec<C2>> {
-    let last = maps.len() - 1;
-    let real: Vec<Matrix4<f64>> = maps
-        .iter()
-        .enumerate()
-        .map(|(k, map)| {
-            let factor = if k == last { factor } else { C::from(1.0) };
-            let rotation = Matrix2::new(factor.re, -factor.im, factor.im, factor.re);
-            rotation.kronecker(map)
-        })
-        .collect();
-    let right: Vec<Vector4<f64>> = right
-        .iter()
-        .map(|r| Vector4::new(r[0].re, r[1].re, r[0].im, r[1].im))
-        .collect();
-    let solution = cyclic::solve(&real, &right)?;
-    let complex = |u: &Vector4<f64>| C2::new(C::new(u[0], u[2]), C::new(u[1], u[3]));
-    Some(solution.iter().map(complex).collect())
+fn around<const N: usize>(
+    maps: &[Jacobian<N>],
+    factor: C,
+    right: &[CState<N>],
+) -> Option<Vec<CState<N>>> {
+    let mut maps: Vec<_> = maps.iter().map(|map| map.map(C::from)).collect();
+    *maps.last_mut()? *= factor;
+    cyclic::solve(&maps, right)
 }
