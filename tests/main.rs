@@ -43,6 +43,7 @@ mod internals;
 mod lanes;
 mod lyapunov;
 mod many_dimensions;
+mod normal_forms_of_systems;
 mod numbers;
 mod orbits;
 mod orbits_of_systems;

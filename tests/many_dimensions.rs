@@ -1,21 +1,22 @@
 //! Periodic orbits, multipliers and bifurcations of systems of four, six and twelve equations.
 
-use crate::common::among::{Among, mixed};
+use crate::common::among::{Among, langford, roessler};
+use crate::common::branches::first;
 use crate::common::{data, number};
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
-use std::ops::ControlFlow::{Break, Continue};
+use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
-use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::bifurcation::orbits::{Met, follow};
 use twinslip::continuation::Settings;
 use twinslip::field::{State, VectorField};
 use twinslip::model::Smooth;
 use twinslip::model::classics::{Langford, Roessler};
 use twinslip::number::{Real, Uncertain};
 use twinslip::orbit::{
-    Closed, Condition, ContinuationPoint, Corrector, Floquet, Goal, Kind, Multiplier,
-    OverParameters, Palc, PalcSettings, ShootingNodes, TestFunction, Tracer, close, floquet,
+    Closed, Condition, ContinuationPoint, Corrector, Floquet, Kind, Multiplier, OverParameters,
+    Palc, PalcSettings, ShootingNodes, TestFunction, Tracer, close, floquet,
 };
 use twinslip::series::Equations;
 
@@ -149,52 +150,6 @@ fn locked_oscillators_have_the_multipliers_of_forty_digits() {
     }
 }
 
-/// Along a branch towards greater values of a parameter: the first zero of a test function below `end`.
-fn first<S: Equations<N, 2>, const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
-    site: ContinuationPoint<N>,
-    (free, end): (usize, f64),
-    test_function: TestFunction,
-) -> Option<ContinuationPoint<N>> {
-    let settings = PalcSettings::branch(free, 0.3);
-    let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
-    let mut direction = here.along[0].clone();
-    if direction.parameters[free] < 0.0 {
-        direction = direction.scaled(-1.0);
-    }
-    let mut palc = Palc::from(corrector, settings, here.site, direction).expect("a palc");
-    let mut found = None;
-    let watched = [WatchedFunction::TestFunction(test_function)];
-    follow(&mut palc, &watched, 400, &mut |_, _, met| match met {
-        Met::Zero(_, at) => {
-            found = Some(at.site.clone());
-            Break(())
-        }
-        Met::Orbit(pace) if pace.here.site.at[free] > end => Break(()),
-        Met::Orbit(_) => Continue(()),
-    })
-    .expect("a branch");
-    let meets = [Condition::TestFunction(test_function)];
-    let sharp = corrector.correct(found?, &[free], &meets, Goal::SHARP);
-    Some(sharp.expect("the bifurcation").site)
-}
-
-/// The circle at eps = 0.
-fn langford<const N: usize>(rho: f64) -> ContinuationPoint<N> {
-    let (radius, turn) = (Langford::radius(rho), TAU / 12.0);
-    let nodes = (0..12).map(|k| {
-        let (sin, cos) = (turn * f64::from(k)).sin_cos();
-        mixed(&State::<3>::new(radius * cos, radius * sin, 0.7))
-    });
-    ContinuationPoint {
-        shooting: ShootingNodes {
-            nodes: nodes.collect(),
-            durations: vec![turn / 3.5; 12],
-        },
-        at: [rho, 0.0],
-    }
-}
-
 fn torus_among_others<const N: usize>() {
     let family = OverParameters::both(Among(Langford { omega: 3.5 }));
     let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
@@ -225,22 +180,6 @@ fn a_torus_is_shed_where_it_is_in_three_dimensions() {
     torus_among_others::<4>();
     torus_among_others::<6>();
     torus_among_others::<12>();
-}
-
-/// The orbit at c = 2.5 that doubles first.
-fn roessler<const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<Among<Roessler>, N, 2>, N>,
-) -> ContinuationPoint<N> {
-    let at = [0.2, 2.5];
-    let field = corrector.family.at(at);
-    let mut tracer = Tracer::<N>::taylor(1e-10).expect("a tracer");
-    let start = mixed(&State::<3>::new(-3.0, 0.0, 0.1));
-    let start = tracer.flow(&field, &start, 300.0, None).expect("a run");
-    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.75).expect("nodes");
-    let held = [Condition::Parameter(1, at[1])];
-    let site = ContinuationPoint { shooting, at };
-    let orbit = corrector.correct(site, &[1], &held, Goal::SHARP);
-    orbit.expect("an orbit").site
 }
 
 fn doublings<const N: usize>(expected: &[(f64, f64)]) {

@@ -1,7 +1,12 @@
 //! Systems of three equations in more dimensions.
 
+use std::f64::consts::TAU;
 use twinslip::field::State;
+use twinslip::model::classics::{Langford, Roessler};
 use twinslip::number::Real;
+use twinslip::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, OverParameters, ShootingNodes, Tracer,
+};
 use twinslip::series::Equations;
 
 /// A system of three equations with others that know nothing of it, in coordinates that mix them all.
@@ -45,4 +50,36 @@ impl<S: Equations<3, 2>, const N: usize> Equations<N, 2> for Among<S> {
 pub fn mixed<const N: usize>(x: &State<3>) -> State<N> {
     let whole = std::array::from_fn(|i| if i < 3 { x[i] } else { 0.0 });
     State::from(reflected::<f64, N>(whole))
+}
+
+/// Langford's circle at omega = 3.5, eps = 0.
+pub fn langford<const N: usize>(rho: f64) -> ContinuationPoint<N> {
+    let (radius, turn) = (Langford::radius(rho), TAU / 12.0);
+    let nodes = (0..12).map(|k| {
+        let (sin, cos) = (turn * f64::from(k)).sin_cos();
+        mixed(&State::<3>::new(radius * cos, radius * sin, 0.7))
+    });
+    ContinuationPoint {
+        shooting: ShootingNodes {
+            nodes: nodes.collect(),
+            durations: vec![turn / 3.5; 12],
+        },
+        at: [rho, 0.0],
+    }
+}
+
+/// Roessler's orbit at c = 2.5 that doubles first.
+pub fn roessler<const N: usize>(
+    corrector: &mut Corrector<'_, OverParameters<Among<Roessler>, N, 2>, N>,
+) -> ContinuationPoint<N> {
+    let at = [0.2, 2.5];
+    let field = corrector.family.at(at);
+    let mut tracer = Tracer::<N>::taylor(1e-10).expect("a tracer");
+    let start = mixed(&State::<3>::new(-3.0, 0.0, 0.1));
+    let start = tracer.flow(&field, &start, 300.0, None).expect("a run");
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.75).expect("nodes");
+    let held = [Condition::Parameter(1, at[1])];
+    let site = ContinuationPoint { shooting, at };
+    let orbit = corrector.correct(site, &[1], &held, Goal::SHARP);
+    orbit.expect("an orbit").site
 }

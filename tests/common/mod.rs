@@ -1,6 +1,7 @@
 //! Reference data and small comparisons, shared by the tests.
 
 pub mod among;
+pub mod branches;
 pub mod heard;
 pub mod lorenz;
 pub mod pages;

@@ -1,0 +1,38 @@
+//! Branches of periodic orbits.
+
+use std::ops::ControlFlow::{Break, Continue};
+use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::orbit::{
+    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField,
+    TestFunction,
+};
+
+/// Along a branch towards greater values of a parameter: the first zero of a test function below `end`.
+pub fn first<F: ParametrisedField<N>, const N: usize>(
+    corrector: &mut Corrector<'_, F, N>,
+    site: ContinuationPoint<N>,
+    (free, end): (usize, f64),
+    test_function: TestFunction,
+) -> Option<ContinuationPoint<N>> {
+    let settings = PalcSettings::branch(free, 0.3);
+    let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
+    let mut direction = here.along[0].clone();
+    if direction.parameters[free] < 0.0 {
+        direction = direction.scaled(-1.0);
+    }
+    let mut palc = Palc::from(corrector, settings, here.site, direction).expect("a continuation");
+    let mut found = None;
+    let watched = [WatchedFunction::TestFunction(test_function)];
+    follow(&mut palc, &watched, 400, &mut |_, _, met| match met {
+        Met::Zero(_, at) => {
+            found = Some(at.site.clone());
+            Break(())
+        }
+        Met::Orbit(now) if now.here.site.at[free] > end => Break(()),
+        Met::Orbit(_) => Continue(()),
+    })
+    .expect("a branch");
+    let meets = [Condition::TestFunction(test_function)];
+    let sharp = corrector.correct(found?, &[free], &meets, Goal::SHARP);
+    Some(sharp.expect("the bifurcation").site)
+}
