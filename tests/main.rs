@@ -56,6 +56,7 @@ mod periodic_schur;
 mod pictures;
 mod polynomials;
 mod reproduce;
+mod resonances_of_systems;
 mod rooms;
 mod rosenbrock;
 mod rosenbrock_classics;

@@ -27,7 +27,7 @@ use crate::orbit::{
     Axes, CState, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps, cut_into,
     cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
 };
-use nalgebra::{Complex, Matrix1, Vector1};
+use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector4};
 use std::f64::consts::PI;
 
 type C = Complex<f64>;
@@ -79,7 +79,8 @@ impl Form {
 
 /// The cubic coefficient of an orbit that bifurcates, and which way that is: b of (5.40) or Re d of (5.45) of the return map,
 /// for an eigenvector whose length across the flow, in the system's own variables as [`ParametrisedField::across`] measures it, has
-/// the mean square 1 over the period. Of what does not bifurcate the coefficient is not known, and its uncertainty infinite.
+/// the mean square 1 over the period. Where it is not known its uncertainty is infinite: of more than three variables also where
+/// nothing bifurcates.
 ///
 /// # Errors
 /// [`Error::Dimension`] for forms that orbits of so many variables do not have.
@@ -265,7 +266,7 @@ impl<const N: usize> Circle<'_, N> {
         (0..count).map(|k| of(&mut self.maps, k)).collect()
     }
 
-    /// Whether a multiplier is -1.
+    /// Whether a multiplier is -1, by all of them.
     fn doubles(&self) -> bool {
         let off = |one: &LogEigenvalue| one.ln_abs.hypot(PI - one.arg.abs());
         let all = eigenvalues_of(self.maps.linear());
@@ -344,7 +345,37 @@ fn around<const N: usize>(
     factor: C,
     right: &[CState<N>],
 ) -> Option<Vec<CState<N>>> {
+    if N == 3 {
+        return around_plane(maps, factor, right);
+    }
     let mut maps: Vec<_> = maps.iter().map(|map| map.map(C::from)).collect();
     *maps.last_mut()? *= factor;
     cyclic::solve(&maps, right)
+}
+
+/// The same in planes of two dimensions, in real numbers: coefficients keep their last digits.
+fn around_plane<const N: usize>(
+    maps: &[Jacobian<N>],
+    factor: C,
+    right: &[CState<N>],
+) -> Option<Vec<CState<N>>> {
+    let last = maps.len() - 1;
+    let real = |(k, map): (usize, &Jacobian<N>)| -> Matrix4<f64> {
+        let factor = if k == last { factor } else { C::from(1.0) };
+        let rotation = Matrix2::new(factor.re, -factor.im, factor.im, factor.re);
+        rotation.kronecker(&map.fixed_view::<2, 2>(1, 1))
+    };
+    let real: Vec<_> = maps.iter().enumerate().map(real).collect();
+    let right = right.iter();
+    let right: Vec<_> = right
+        .map(|r| Vector4::new(r[1].re, r[2].re, r[1].im, r[2].im))
+        .collect();
+    let solution = cyclic::solve(&real, &right)?;
+    let complex = |u: &Vector4<f64>| {
+        CState::from_fn(|i, _| match i {
+            0 => C::ZERO,
+            _ => C::new(u[i - 1], u[i + 1]),
+        })
+    };
+    Some(solution.iter().map(complex).collect())
 }
