@@ -9,7 +9,7 @@
 
 use clap::Parser;
 use twinslip::Result;
-use twinslip::friction::{AnyLaw, Law, Parameters};
+use twinslip::friction::{AnyLaw, Formulas, Parameters};
 use twinslip::integrate::Control;
 use twinslip::scene::{SectionOptions, SectionPlan, Sink, run_section};
 use twinslip::section::half_driving_stress;

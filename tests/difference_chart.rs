@@ -4,7 +4,7 @@
 use crate::common::trajectories;
 use trajectories::Run;
 use twinslip::field::{Jacobian, Parametrised, State, VectorField};
-use twinslip::friction::{AnyLaw, Law, Parameters, Spinodal};
+use twinslip::friction::{AnyLaw, Formulas, Parameters, Spinodal};
 use twinslip::integrate::{
     Control, Integrator, MAX_STEPS, Rosenbrock, RosenbrockMethod, Step, Taylor, Tolerances,
 };

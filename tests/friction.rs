@@ -4,7 +4,7 @@ use crate::common;
 use common::{assert_close, data, number};
 use proptest::prelude::*;
 use twinslip::friction::{
-    AnyLaw, Extremum, ExtremumKind, Law, Parameters, critical_stiffness,
+    AnyLaw, Extremum, ExtremumKind, Formulas, Law, Parameters, critical_stiffness,
     critical_stiffness_maximum, steady_slope, steady_stress,
 };
 use twinslip::model::Loading;

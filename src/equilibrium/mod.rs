@@ -22,7 +22,7 @@ pub(crate) use refine::refined;
 
 use crate::error::Result;
 use crate::friction::{
-    AnyLaw, Law, positive, rounding, steady_log_activation, steady_slope, steady_stress,
+    AnyLaw, Formulas, Law, positive, rounding, steady_log_activation, steady_slope, steady_stress,
 };
 use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain};
 

@@ -1,6 +1,6 @@
 //! What slides: one or two interfaces with a law and a loading, and its vector fields.
 
-use crate::friction::{AnyLaw, Law, steady_stress};
+use crate::friction::{AnyLaw, Formulas, steady_stress};
 use crate::model::{
     Driven, Loading, interfaces_in_difference_chart, single_interface, symmetric, two_interfaces,
 };

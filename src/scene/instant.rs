@@ -3,7 +3,7 @@
 use super::column::Column;
 use super::units::Quantity;
 use crate::field::State;
-use crate::friction::{AnyLaw, Law};
+use crate::friction::{AnyLaw, Formulas};
 
 /// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -5,8 +5,8 @@ use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result};
 use crate::friction::{
-    Extremum, Law, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum, positive,
-    steady_stress,
+    Extremum, Formulas, Law, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
+    positive, steady_stress,
 };
 
 /// The slip rates from, to where none are given.

@@ -8,7 +8,7 @@ use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result};
-use crate::friction::{Law, beside, positive, steady_stress};
+use crate::friction::{Formulas, Law, beside, positive, steady_stress};
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 

@@ -2,7 +2,7 @@
 
 use super::{Grid, SweepSettings};
 use crate::field::State;
-use crate::friction::{Law, beside};
+use crate::friction::{Formulas, beside};
 use crate::model::Loading;
 use crate::section::half_driving_stress;
 use rand_chacha::ChaCha8Rng;

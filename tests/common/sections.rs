@@ -36,7 +36,7 @@ impl Case {
 
     /// psi_2 off the symmetric steady state by exp(asymmetry).
     pub fn near_symmetric(&self, asymmetry: f64) -> State<3> {
-        use twinslip::friction::Law;
+        use twinslip::friction::Formulas;
         let w = self.law.steady_state(0.5 * self.v).ln();
         State::<3>::new(self.surface.offset, w, w + asymmetry)
     }

@@ -7,7 +7,7 @@
 use crate::continuation::{CurvePoint, ZeroProblem};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, steady_log_activation};
+use crate::friction::{AnyLaw, Formulas, Law, steady_log_activation};
 use crate::number::{Difference, Jet, Real};
 use nalgebra::{DMatrix, DVector};
 

@@ -9,7 +9,7 @@ use super::hopf::{Hopf, HopfPoints, certain_zero, straddling};
 use super::lyapunov::{FirstLyapunov, first_lyapunov};
 use crate::bifurcation::{Criticality, Label, Parameter, Special, Symmetry};
 use crate::field::State;
-use crate::friction::{AnyLaw, Law, steady_stress};
+use crate::friction::{AnyLaw, Formulas, steady_stress};
 use crate::model::{Loading, single_interface, two_interfaces};
 use crate::number::{DoubleDouble, Real, Uncertain, bracketed_root};
 use nalgebra::DMatrix;

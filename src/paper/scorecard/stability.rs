@@ -4,7 +4,7 @@
 use super::{Answer, Entry, extrema, holds, missing, range, whether};
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, Verdict, stability, steady_states};
 use crate::error::Result;
-use crate::friction::{AnyLaw, Law, Parameters, critical_stiffness};
+use crate::friction::{AnyLaw, Formulas, Parameters, critical_stiffness};
 use crate::number::Jet;
 use crate::orbit::hopf_points;
 use crate::paper::Pieces;

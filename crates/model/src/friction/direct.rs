@@ -1,7 +1,7 @@
 //! The regularised direct effect tau = asinh(v h / gamma0) of (5), (6) and (35), h being the factor by which the state
 //! strengthens: in logarithms where h or the whole has no double, as for a large b/a.
 
-use crate::number::Real;
+use crate::number::{Constant, With};
 use std::ops::Range;
 
 /// Factors and arguments with which the formula as printed, and its derivatives, stay clear of overflow and underflow.
@@ -10,14 +10,19 @@ const ORDINARY: Range<f64> = 1e-100..1e100;
 const LARGE: f64 = 350.0;
 
 /// asinh(v h / gamma0)  (5), (6), (35)
-pub(super) fn stress<T: Real>(v: T, h: T, log_h: impl FnOnce() -> T, gamma0: f64) -> T {
-    let x = v * h / gamma0;
+pub(super) fn stress<C: Constant, T: With<C>>(
+    v: T,
+    h: T,
+    log_h: impl FnOnce() -> T,
+    gamma0: C,
+) -> T {
+    let x = (v * h).over(gamma0);
     let ordinary = |x: f64| ORDINARY.contains(&x);
     let positive = v.leading() > 0.0;
     if !positive || ordinary(x.leading()) && ordinary(h.leading()) {
         return x.asinh();
     }
-    let y = v.ln() + log_h() - T::constant(gamma0).ln();
+    let y = v.ln() + log_h() - T::of(gamma0).ln();
     if y.leading() > LARGE {
         y + T::constant(2.0).ln()
     } else {
@@ -31,8 +36,8 @@ pub(super) fn log_activation(tau: f64, gamma0: f64) -> f64 {
 }
 
 /// dv/dtau = sqrt[v^2 + (gamma0/h)^2].
-pub(super) fn compliance<T: Real>(v: T, log_h: T, gamma0: f64) -> T {
-    let least = (T::constant(gamma0).ln() - log_h).exp();
+pub(super) fn compliance<C: Constant, T: With<C>>(v: T, log_h: T, gamma0: C) -> T {
+    let least = (T::of(gamma0).ln() - log_h).exp();
     let root = |large: T, small: T| {
         if large.leading() == 0.0 {
             return large;

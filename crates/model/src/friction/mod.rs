@@ -23,17 +23,44 @@ pub use steady::{
 };
 
 use crate::error::{Error, Result};
-use crate::number::Real;
+use crate::number::{Constant, Free, Real, With};
 use std::fmt::Debug;
 
-/// A rate-and-state friction law (1), for a state psi > 0.
+/// The formulas of a rate-and-state friction law (1), for a state psi > 0, whose constants are of the kind C.
 ///
 /// The stress acts through one function of its own, as in any thermally activated process: v = s(tau) / strength(psi).
 /// Interfaces under the same stress share s(tau), which is why it is a formula apart.
-pub trait Law: Copy + Debug + Send + Sync {
+pub trait Formulas<C = f64> {
+    /// s(tau), the activation by the stress. Same sign as the slip rate.
+    fn activation<T: With<C>>(&self, tau: T) -> T;
+
+    /// v, from s(tau) and psi: the direct effect, solved for the slip rate.
+    fn slip_rate<T: With<C>>(&self, activation: T, psi: T) -> T;
+
+    /// ln h(psi), h being strength(psi): it has a double where h overflows.
+    fn log_strength<T: With<C>>(&self, psi: T) -> T;
+
+    /// dv/dtau = 1/F_V at the slip rate v and this ln h.
+    fn compliance<T: With<C>>(&self, v: T, log_strength: T) -> T;
+
+    /// tau = F(v, psi): the direct effect as printed.
+    fn stress<T: With<C>>(&self, v: T, psi: T) -> T;
+
+    /// dpsi/dt = -G(v, psi) as printed.
+    fn evolution<T: With<C>>(&self, v: T, psi: T) -> T;
+
+    /// psi_ss(V) for V > 0: the zero of the evolution (3).
+    fn steady_state<T: With<C>>(&self, v: T) -> T;
+}
+
+/// A friction law: its formulas, and what is known of it.
+pub trait Law: Formulas + Copy + Debug + Send + Sync {
     /// The law whose formulas this one's are: itself, or that of which it is a special case. Machine code is made for each of
     /// these only.
     type Core: Law;
+
+    /// The law with constants that are numbers, in which its formulas then have derivatives.
+    type Freed<T: Real>: Formulas<Free<T>>;
 
     /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
     const UNROLLED: bool = false;
@@ -44,35 +71,23 @@ pub trait Law: Copy + Debug + Send + Sync {
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 
+    /// A law of this kind with these constants, as far as it has them.
+    fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Self::Freed<T>;
+
     /// The name by which the command line knows the law.
     fn name(&self) -> &'static str;
 
-    /// Its constants with their names, to see what changes with them.
-    fn constants(&mut self) -> Vec<(&'static str, &mut f64)>;
+    /// Its constants: the first ones of [`Parameters::NAMES`].
+    fn constants(&mut self) -> Vec<&mut f64>;
 
-    /// s(tau), the activation by the stress. Same sign as the slip rate.
-    fn activation<T: Real>(&self, tau: T) -> T;
-
-    /// v, from s(tau) and psi: the direct effect, solved for the slip rate.
-    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T;
-
-    /// ln h(psi), h being strength(psi): it has a double where h overflows.
-    fn log_strength<T: Real>(&self, psi: T) -> T;
+    /// Their names.
+    fn constant_names(&self) -> &'static [&'static str] {
+        let count = { *self }.constants().len();
+        &Parameters::NAMES[..count]
+    }
 
     /// ln s(tau) for tau > 0.
     fn log_activation(&self, tau: f64) -> f64;
-
-    /// dv/dtau = 1/F_V at the slip rate v and this ln h.
-    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T;
-
-    /// tau = F(v, psi): the direct effect as printed.
-    fn stress<T: Real>(&self, v: T, psi: T) -> T;
-
-    /// dpsi/dt = -G(v, psi) as printed.
-    fn evolution<T: Real>(&self, v: T, psi: T) -> T;
-
-    /// psi_ss(V) for V > 0: the zero of the evolution (3).
-    fn steady_state<T: Real>(&self, v: T) -> T;
 
     /// The extrema of tau_ss(V), by slip rate ascending: a maximum V_M, then a minimum V_m, where the law has them.
     fn steady_extrema(&self) -> Vec<f64>;
@@ -96,18 +111,34 @@ pub trait Law: Copy + Debug + Send + Sync {
 
 /// The dimensionless parameters that the laws share.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Parameters {
+pub struct Parameters<C = f64> {
     /// beta = b/a.
-    pub beta: f64,
+    pub beta: C,
     /// gamma0 = 2 exp(-a_v/a).
-    pub gamma0: f64,
+    pub gamma0: C,
     /// R = t** V*/L.
-    pub healing_time: f64,
+    pub healing_time: C,
     /// c.
-    pub residual_strength: f64,
+    pub residual_strength: C,
+}
+
+impl<T> From<[T; 4]> for Parameters<Free<T>> {
+    /// In the order of [`Parameters::NAMES`].
+    fn from(constants: [T; 4]) -> Self {
+        let [beta, gamma0, healing_time, residual_strength] = constants.map(Free);
+        Parameters {
+            beta,
+            gamma0,
+            healing_time,
+            residual_strength,
+        }
+    }
 }
 
 impl Parameters {
+    /// Their names. Every law has the first two, those whose state is bounded the third, the spinodal one all.
+    pub const NAMES: [&'static str; 4] = ["beta", "gamma0", "healing_time", "residual_strength"];
+
     /// From the coefficients a, b, a_v and from R and c.
     ///
     /// # Errors
@@ -182,8 +213,8 @@ macro_rules! laws {
         /// Any of the laws, chosen at run time.
         #[derive(Debug, Clone, Copy, PartialEq)]
         #[non_exhaustive]
-        pub enum AnyLaw {
-            $($(#[$equation])* $law($law),)+
+        pub enum AnyLaw<C = f64> {
+            $($(#[$equation])* $law($law<C>),)+
         }
 
         impl AnyLaw {
@@ -198,6 +229,13 @@ macro_rules! laws {
                 match name {
                     $($law::NAME => Ok(AnyLaw::$law(parameters.$file())),)+
                     _ => Err(Error::unknown("law", name, &AnyLaw::NAMES)),
+                }
+            }
+
+            /// [`Law::freed`].
+            fn of_kind<T: Real>(&self, constants: Parameters<Free<T>>) -> AnyLaw<Free<T>> {
+                match self {
+                    $(AnyLaw::$law(_) => AnyLaw::$law(constants.$file()),)+
                 }
             }
         }
@@ -235,40 +273,47 @@ impl AnyLaw {
     }
 }
 
+impl<C: Constant> Formulas<C> for AnyLaw<C> {
+    fn activation<T: With<C>>(&self, tau: T) -> T {
+        with_law!(self, law => law.activation(tau))
+    }
+    fn slip_rate<T: With<C>>(&self, activation: T, psi: T) -> T {
+        with_law!(self, law => law.slip_rate(activation, psi))
+    }
+    fn log_strength<T: With<C>>(&self, psi: T) -> T {
+        with_law!(self, law => law.log_strength(psi))
+    }
+    fn compliance<T: With<C>>(&self, v: T, log_strength: T) -> T {
+        with_law!(self, law => law.compliance(v, log_strength))
+    }
+    fn stress<T: With<C>>(&self, v: T, psi: T) -> T {
+        with_law!(self, law => law.stress(v, psi))
+    }
+    fn evolution<T: With<C>>(&self, v: T, psi: T) -> T {
+        with_law!(self, law => law.evolution(v, psi))
+    }
+    fn steady_state<T: With<C>>(&self, v: T) -> T {
+        with_law!(self, law => law.steady_state(v))
+    }
+}
+
 impl Law for AnyLaw {
     type Core = AnyLaw;
+    type Freed<T: Real> = AnyLaw<Free<T>>;
     fn core(&self) -> AnyLaw {
         *self
+    }
+    fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> AnyLaw<Free<T>> {
+        self.of_kind(constants)
     }
     fn name(&self) -> &'static str {
         with_law!(self, law => law.name())
     }
-    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
+    fn constants(&mut self) -> Vec<&mut f64> {
         with_law!(self, law => law.constants())
-    }
-    fn activation<T: Real>(&self, tau: T) -> T {
-        with_law!(self, law => law.activation(tau))
-    }
-    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        with_law!(self, law => law.slip_rate(activation, psi))
-    }
-    fn log_strength<T: Real>(&self, psi: T) -> T {
-        with_law!(self, law => law.log_strength(psi))
     }
     fn log_activation(&self, tau: f64) -> f64 {
         with_law!(self, law => law.log_activation(tau))
-    }
-    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
-        with_law!(self, law => law.compliance(v, log_strength))
-    }
-    fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        with_law!(self, law => law.stress(v, psi))
-    }
-    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        with_law!(self, law => law.evolution(v, psi))
-    }
-    fn steady_state<T: Real>(&self, v: T) -> T {
-        with_law!(self, law => law.steady_state(v))
     }
     fn steady_extrema(&self) -> Vec<f64> {
         with_law!(self, law => law.steady_extrema())

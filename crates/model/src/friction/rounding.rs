@@ -17,15 +17,18 @@ fn rounding_of(name: &str, value: f64) -> f64 {
 
 /// The law with each of its constants changed, and how much of the change rounding makes.
 fn changed(law: &AnyLaw) -> Vec<(AnyLaw, f64)> {
-    let count = { *law }.constants().len();
-    let change = |i: usize| {
+    let change = |(i, name): (usize, &&str)| {
         let mut other = *law;
-        let (name, constant) = other.constants().swap_remove(i);
+        let constant = other.constants().swap_remove(i);
         let rounding = rounding_of(name, *constant);
         *constant *= 1.0 + CHANGE;
         (other, rounding / CHANGE)
     };
-    (0..count).map(change).collect()
+    law.constant_names()
+        .iter()
+        .enumerate()
+        .map(change)
+        .collect()
 }
 
 /// What a number that depends on the law is off by the rounding of the parameters; infinite where it does not exist.

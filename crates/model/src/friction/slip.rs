@@ -2,21 +2,21 @@
 //!
 //! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
 
-use super::{DieterichRuina, Law, Parameters};
-use crate::number::Real;
+use super::{DieterichRuina, Formulas, Law, Parameters};
+use crate::number::{Constant, Free, Real, With};
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Slip {
+pub struct Slip<C = f64> {
     /// b/a
-    pub beta: f64,
+    pub beta: C,
     /// 2 exp(-a_v/a)
-    pub gamma0: f64,
+    pub gamma0: C,
 }
 
-impl Parameters {
+impl<C> Parameters<C> {
     /// The slip law of Ruina (1983).
-    pub fn slip(self) -> Slip {
+    pub fn slip(self) -> Slip<C> {
         Slip {
             beta: self.beta,
             gamma0: self.gamma0,
@@ -27,8 +27,11 @@ impl Parameters {
 impl Slip {
     /// The name by which the command line knows the law.
     pub const NAME: &str = "slip";
+}
 
-    fn direct_effect(&self) -> DieterichRuina {
+impl<C: Constant> Slip<C> {
+    #[inline(always)]
+    fn direct_effect(&self) -> DieterichRuina<C> {
         DieterichRuina {
             beta: self.beta,
             gamma0: self.gamma0,
@@ -36,56 +39,63 @@ impl Slip {
     }
 }
 
+impl<C: Constant> Formulas<C> for Slip<C> {
+    #[inline(always)]
+    fn activation<T: With<C>>(&self, tau: T) -> T {
+        self.direct_effect().activation(tau)
+    }
+
+    #[inline(always)]
+    fn slip_rate<T: With<C>>(&self, activation: T, psi: T) -> T {
+        self.direct_effect().slip_rate(activation, psi)
+    }
+
+    fn log_strength<T: With<C>>(&self, psi: T) -> T {
+        self.direct_effect().log_strength(psi)
+    }
+
+    fn compliance<T: With<C>>(&self, v: T, log_strength: T) -> T {
+        self.direct_effect().compliance(v, log_strength)
+    }
+
+    fn stress<T: With<C>>(&self, v: T, psi: T) -> T {
+        self.direct_effect().stress(v, psi)
+    }
+
+    // dpsi/dt = -v psi ln(v psi)
+    #[inline(always)]
+    fn evolution<T: With<C>>(&self, v: T, psi: T) -> T {
+        let x = v * psi;
+        -(x * x.ln())
+    }
+
+    fn steady_state<T: With<C>>(&self, v: T) -> T {
+        T::constant(1.0) / v
+    }
+}
+
 impl Law for Slip {
     type Core = Slip;
+    type Freed<T: Real> = Slip<Free<T>>;
 
     fn core(&self) -> Slip {
         *self
+    }
+
+    fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Slip<Free<T>> {
+        constants.slip()
     }
 
     fn name(&self) -> &'static str {
         Self::NAME
     }
 
-    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
-        vec![("beta", &mut self.beta), ("gamma0", &mut self.gamma0)]
-    }
-
-    #[inline(always)]
-    fn activation<T: Real>(&self, tau: T) -> T {
-        self.direct_effect().activation(tau)
-    }
-
-    #[inline(always)]
-    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        self.direct_effect().slip_rate(activation, psi)
-    }
-
-    fn log_strength<T: Real>(&self, psi: T) -> T {
-        self.direct_effect().log_strength(psi)
+    fn constants(&mut self) -> Vec<&mut f64> {
+        vec![&mut self.beta, &mut self.gamma0]
     }
 
     fn log_activation(&self, tau: f64) -> f64 {
         self.direct_effect().log_activation(tau)
-    }
-
-    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
-        self.direct_effect().compliance(v, log_strength)
-    }
-
-    fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        self.direct_effect().stress(v, psi)
-    }
-
-    // dpsi/dt = -v psi ln(v psi)
-    #[inline(always)]
-    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        let x = v * psi;
-        -(x * x.ln())
-    }
-
-    fn steady_state<T: Real>(&self, v: T) -> T {
-        T::constant(1.0) / v
     }
 
     fn steady_extrema(&self) -> Vec<f64> {

@@ -1,25 +1,25 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::{Law, Parameters, direct};
-use crate::number::Real;
+use super::{Formulas, Law, Parameters, direct};
+use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Spinodal {
+pub struct Spinodal<C = f64> {
     /// b/a
-    pub beta: f64,
+    pub beta: C,
     /// 2 exp(-a_v/a)
-    pub gamma0: f64,
+    pub gamma0: C,
     /// R = t** V*/L
-    pub r: f64,
+    pub r: C,
     /// residual strength
-    pub c: f64,
+    pub c: C,
 }
 
-impl Parameters {
+impl<C> Parameters<C> {
     /// Law (35): spinodal.
-    pub fn spinodal(self) -> Spinodal {
+    pub fn spinodal(self) -> Spinodal<C> {
         Spinodal {
             beta: self.beta,
             gamma0: self.gamma0,
@@ -32,16 +32,57 @@ impl Parameters {
 impl Spinodal {
     /// The name by which the command line knows the law.
     pub const NAME: &str = "spinodal";
+}
 
+impl<C: Constant> Spinodal<C> {
     // c + (1+R) psi
     #[inline(always)]
-    fn strength<T: Real>(&self, psi: T) -> T {
-        (T::constant(1.0) + self.r) * psi + self.c
+    fn strength<T: With<C>>(&self, psi: T) -> T {
+        (T::constant(1.0).plus(self.r) * psi).plus(self.c)
+    }
+}
+
+impl<C: Constant> Formulas<C> for Spinodal<C> {
+    #[inline(always)]
+    fn activation<T: With<C>>(&self, tau: T) -> T {
+        tau.sinh().times(self.gamma0)
+    }
+
+    // v = gamma0 sinh(tau) / [c + (1+R) psi]^beta, from (35)
+    #[inline(always)]
+    fn slip_rate<T: With<C>>(&self, activation: T, psi: T) -> T {
+        activation / self.strength(psi).power(self.beta)
+    }
+
+    fn log_strength<T: With<C>>(&self, psi: T) -> T {
+        self.strength(psi).ln().times(self.beta)
+    }
+
+    fn compliance<T: With<C>>(&self, v: T, log_strength: T) -> T {
+        direct::compliance(v, log_strength, self.gamma0)
+    }
+
+    // tau = asinh{v [c + (1+R) psi]^beta / gamma0}  (35)
+    fn stress<T: With<C>>(&self, v: T, psi: T) -> T {
+        let log_h = || self.log_strength(psi);
+        direct::stress(v, self.strength(psi).power(self.beta), log_h, self.gamma0)
+    }
+
+    // dpsi/dt = (1 - psi)/R - |v| psi  (35)
+    #[inline(always)]
+    fn evolution<T: With<C>>(&self, v: T, psi: T) -> T {
+        (T::constant(1.0) - psi).over(self.r) - v.abs() * psi
+    }
+
+    // psi_ss = 1 / (1 + R V)
+    fn steady_state<T: With<C>>(&self, v: T) -> T {
+        T::constant(1.0) / (v.times(self.r) + 1.0)
     }
 }
 
 impl Law for Spinodal {
     type Core = Spinodal;
+    type Freed<T: Real> = Spinodal<Free<T>>;
     const UNROLLED: bool = true;
     const UNROLLED_IN_LANES: bool = true;
 
@@ -49,57 +90,20 @@ impl Law for Spinodal {
         *self
     }
 
+    fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Spinodal<Free<T>> {
+        constants.spinodal()
+    }
+
     fn name(&self) -> &'static str {
         Self::NAME
     }
 
-    fn constants(&mut self) -> Vec<(&'static str, &mut f64)> {
-        vec![
-            ("beta", &mut self.beta),
-            ("gamma0", &mut self.gamma0),
-            ("r", &mut self.r),
-            ("c", &mut self.c),
-        ]
-    }
-
-    #[inline(always)]
-    fn activation<T: Real>(&self, tau: T) -> T {
-        tau.sinh() * self.gamma0
-    }
-
-    // v = gamma0 sinh(tau) / [c + (1+R) psi]^beta, from (35)
-    #[inline(always)]
-    fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        activation / self.strength(psi).powf(self.beta)
-    }
-
-    fn log_strength<T: Real>(&self, psi: T) -> T {
-        self.strength(psi).ln() * self.beta
+    fn constants(&mut self) -> Vec<&mut f64> {
+        vec![&mut self.beta, &mut self.gamma0, &mut self.r, &mut self.c]
     }
 
     fn log_activation(&self, tau: f64) -> f64 {
         direct::log_activation(tau, self.gamma0)
-    }
-
-    fn compliance<T: Real>(&self, v: T, log_strength: T) -> T {
-        direct::compliance(v, log_strength, self.gamma0)
-    }
-
-    // tau = asinh{v [c + (1+R) psi]^beta / gamma0}  (35)
-    fn stress<T: Real>(&self, v: T, psi: T) -> T {
-        let log_h = || self.log_strength(psi);
-        direct::stress(v, self.strength(psi).powf(self.beta), log_h, self.gamma0)
-    }
-
-    // dpsi/dt = (1 - psi)/R - |v| psi  (35)
-    #[inline(always)]
-    fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        (T::constant(1.0) - psi) / self.r - v.abs() * psi
-    }
-
-    // psi_ss = 1 / (1 + R V)
-    fn steady_state<T: Real>(&self, v: T) -> T {
-        T::constant(1.0) / (v * self.r + 1.0)
     }
 
     // With X = 1 + R V the extrema of (36) solve c X^2 - (1+R)(beta-1) X + beta (1+R) = 0. Written in y = R V no digit is lost,

@@ -1,11 +1,11 @@
 //! Steady sliding: the stress tau_ss(V), its extrema, and the critical stiffness k_c(V) of one interface.
 
-use super::Law;
+use super::{Formulas, Law};
 use crate::error::Result;
-use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
+use crate::number::{Interval, Jet, Real, Uncertain, With, bracketed_root, enclosing_radius};
 
 /// tau_ss(V) = F(V, psi_ss(V))  (2), for V > 0.
-pub fn steady_stress<T: Real>(law: &impl Law, v: T) -> T {
+pub fn steady_stress<C, T: With<C>>(law: &impl Formulas<C>, v: T) -> T {
     law.stress(v, law.steady_state(v))
 }
 

@@ -35,7 +35,7 @@ impl<L: Law> DifferenceChart<L> {
 }
 
 impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
-    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
+    const PARAMETERS: [&'static str; 2] = Parameter::LOADING;
 
     #[inline(always)]
     fn rates<T: Real>(

@@ -1,81 +1,93 @@
 //! Equations (11) and (19) in ln psi, for every number: what references, third-order maps and recorded formulas are made of.
 
 use super::response::Response;
-use super::{Loading, Parameter, Smooth, stress_rate};
-use crate::friction::Law;
-use crate::number::Real;
-use crate::series::{Equations, Recorded};
+use super::{Loading, Parameter, stress_rate};
+use crate::friction::{Formulas, Law};
+use crate::number::{Real, With};
+use crate::series::Equations;
 
 /// One interface (11), two (19), or two that move alike, in (tau, w_1, ...), w = ln psi.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Logarithmic<L> {
+pub struct Logarithmic<L> {
     pub law: L,
     /// How many interfaces move alike.
     pub alike: f64,
 }
 
+/// V_H and K.
+pub(super) const LOADING: usize = Parameter::PLANE.len();
+/// These, and the constants of the law.
+pub(super) const ALL: usize = Parameter::NAMES.len();
+
+impl<L> Logarithmic<L> {
+    #[inline(always)]
+    fn rates_with<C, T: With<C>, const N: usize>(
+        &self,
+        law: &impl Formulas<C>,
+        x: [T; N],
+        loading: (T, T),
+    ) -> [T; N] {
+        const { assert!(N == 2 || N == 3) }
+        let activation = law.activation(x[0]);
+        let first = Response::new(law, activation, x[1]);
+        let mut rates = [first.g; N];
+        let slip_rate = if N == 2 {
+            first.v * self.alike
+        } else {
+            let second = Response::new(law, activation, x[2]);
+            rates[2] = second.g;
+            first.v + second.v
+        };
+        rates[0] = stress_rate(loading, slip_rate);
+        rates
+    }
+}
+
+fn slip_rates<C, T: With<C>, const N: usize>(law: &impl Formulas<C>, x: [T; N]) -> [Option<T>; 2] {
+    let activation = law.activation(x[0]);
+    [x.get(1), x.get(2)].map(|w| w.map(|&w| Response::new(law, activation, w).v))
+}
+
+/// The law's constants as they are.
+impl<L: Law, const N: usize> Equations<N, LOADING> for Logarithmic<L> {
+    const PARAMETERS: [&'static str; LOADING] = Parameter::LOADING;
+
+    #[inline(always)]
+    fn rates<T: Real>(&self, x: [T; N], [driving, stiffness]: [T; LOADING]) -> [T; N] {
+        self.rates_with(&self.law, x, (driving, stiffness))
+    }
+
+    fn slip_rates<T: Real>(&self, x: [T; N], _: [T; LOADING]) -> [Option<T>; 2] {
+        slip_rates(&self.law, x)
+    }
+}
+
+/// The law's constants as parameters, as far as it has them.
+impl<L: Law, const N: usize> Equations<N, ALL> for Logarithmic<L> {
+    const PARAMETERS: [&'static str; ALL] = Parameter::NAMES;
+
+    #[inline(always)]
+    fn rates<T: Real>(&self, x: [T; N], parameters: [T; ALL]) -> [T; N] {
+        let [driving, stiffness, constants @ ..] = parameters;
+        let law = self.law.freed(constants.into());
+        self.rates_with(&law, x, (driving, stiffness))
+    }
+
+    fn slip_rates<T: Real>(&self, x: [T; N], parameters: [T; ALL]) -> [Option<T>; 2] {
+        let [_, _, constants @ ..] = parameters;
+        slip_rates(&self.law.freed(constants.into()), x)
+    }
+}
+
 impl<L: Law> Logarithmic<L> {
-    #[inline(always)]
-    fn response<T: Real>(&self, activation: T, w: T) -> Response<T> {
-        Response::new(&self.law, activation, w)
-    }
-}
-
-impl<L: Law> Equations<2, 2> for Logarithmic<L> {
-    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
-
-    #[inline(always)]
-    fn rates<T: Real>(&self, [tau, w]: [T; 2], [driving, stiffness]: [T; 2]) -> [T; 2] {
-        let one = self.response(self.law.activation(tau), w);
-        let slip_rate = one.v * self.alike;
-        [stress_rate((driving, stiffness), slip_rate), one.g]
-    }
-
-    fn slip_rates<T: Real>(&self, [tau, w]: [T; 2], _: [T; 2]) -> [Option<T>; 2] {
-        [Some(self.response(self.law.activation(tau), w).v), None]
-    }
-}
-
-impl<L: Law> Equations<3, 2> for Logarithmic<L> {
-    const PARAMETERS: [&'static str; 2] = Parameter::NAMES;
-
-    #[inline(always)]
-    fn rates<T: Real>(&self, [tau, w1, w2]: [T; 3], [driving, stiffness]: [T; 2]) -> [T; 3] {
-        let activation = self.law.activation(tau);
-        let first = self.response(activation, w1);
-        let second = self.response(activation, w2);
-        let slip_rate = first.v + second.v;
-        [
-            stress_rate((driving, stiffness), slip_rate),
-            first.g,
-            second.g,
-        ]
-    }
-
-    fn slip_rates<T: Real>(&self, [tau, w1, w2]: [T; 3], _: [T; 2]) -> [Option<T>; 2] {
-        let activation = self.law.activation(tau);
-        [w1, w2].map(|w| Some(self.response(activation, w).v))
-    }
-}
-
-impl<L: Law> Logarithmic<L> {
-    /// The formula, to be recorded.
-    pub fn recorded<const N: usize>(self, loading: Loading) -> Recorded<Self, N, 2>
-    where
-        Self: Equations<N, 2>,
-    {
-        Recorded {
-            equations: self,
-            parameters: loading.into(),
-            symmetric: N == 2,
+    /// The values of all parameters. Those that the law does not have are no numbers, and enter nowhere.
+    pub(super) fn parameters(&self, loading: Loading) -> [f64; ALL] {
+        let mut law = self.law;
+        let mut all = [f64::NAN; ALL];
+        all[..LOADING].copy_from_slice(&<[f64; LOADING]>::from(loading));
+        for (value, constant) in all[LOADING..].iter_mut().zip(law.constants()) {
+            *value = *constant;
         }
-    }
-
-    /// The field.
-    pub fn at<const N: usize>(self, loading: Loading) -> Smooth<Self, N, 2> {
-        Smooth {
-            equations: self,
-            parameters: loading.into(),
-        }
+        all
     }
 }

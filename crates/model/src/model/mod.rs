@@ -14,6 +14,7 @@ mod response;
 pub mod scales;
 mod series;
 mod single_interface;
+mod slab;
 mod smooth;
 mod symmetric;
 mod tangent;
@@ -29,7 +30,7 @@ pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;
 use crate::field::{Parametrised, State, VectorField};
-use crate::friction::{AnyLaw, Law, positive, with_law};
+use crate::friction::{AnyLaw, Law, Parameters, positive, with_law};
 use std::ops::{Mul, Sub};
 
 /// The two control parameters of the paper: those of all systems of interfaces, in this order.
@@ -48,7 +49,22 @@ pub const STIFFNESS: usize = Parameter::Stiffness.place();
 
 impl Parameter {
     /// Their names.
-    pub const NAMES: [&'static str; 2] = ["driving", "stiffness"];
+    pub const LOADING: [&'static str; 2] = ["driving", "stiffness"];
+
+    /// The names of all parameters of systems of interfaces: these two, and the constants of laws. A system has the first ones of
+    /// them, those that its law has ([`Law::constants`]).
+    pub const NAMES: [&'static str; 6] = {
+        let [driving, stiffness] = Parameter::LOADING;
+        let [beta, gamma0, healing_time, residual_strength] = Parameters::NAMES;
+        [
+            driving,
+            stiffness,
+            beta,
+            gamma0,
+            healing_time,
+            residual_strength,
+        ]
+    };
 
     /// The places of V_H and K.
     pub const PLANE: [usize; 2] = [DRIVING, STIFFNESS];
@@ -86,7 +102,7 @@ impl Loading {
 }
 
 impl From<Loading> for [f64; 2] {
-    /// In the order of [`Parameter::NAMES`].
+    /// In the order of [`Parameter::LOADING`].
     fn from(Loading { driving, stiffness }: Loading) -> Self {
         [driving, stiffness]
     }

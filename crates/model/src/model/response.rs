@@ -1,7 +1,7 @@
 //! What one interface does at (tau, w): slip rate and evolution, with their derivatives, from the law's formulas.
 
-use crate::friction::Law;
-use crate::number::{Jet, Real};
+use crate::friction::Formulas;
+use crate::number::{Jet, Real, With};
 
 /// First derivatives in (tau, w).
 pub(super) type Slope = Jet<f64, 2>;
@@ -20,7 +20,10 @@ pub(super) struct Response<T> {
 impl<T: Real> Response<T> {
     /// At an activation s(tau) computed once for all interfaces, and w.
     #[inline]
-    pub fn new(law: &impl Law, activation: T, w: T) -> Self {
+    pub fn new<C>(law: &impl Formulas<C>, activation: T, w: T) -> Self
+    where
+        T: With<C>,
+    {
         let psi = w.exp();
         let v = law.slip_rate(activation, psi);
         let g = law.evolution(v, psi) / psi;

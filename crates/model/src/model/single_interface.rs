@@ -2,12 +2,11 @@
 
 use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::series::SeriesSolution;
-use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, Smooth};
+use super::slab::Slab;
+use super::{Driven, Loading};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
-use crate::series::{Equations, Recorded, Solution, Tangent};
+use crate::series::Equations;
 
 /// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,30 +18,6 @@ pub struct SingleInterface<L> {
 }
 
 impl<L: Law> SingleInterface<L> {
-    /// (11), for every number.
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.law,
-            alike: 1.0,
-        }
-    }
-
-    fn whole(&self) -> Smooth<Logarithmic<L>, 2, 2> {
-        self.equations().at(self.loading)
-    }
-
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 2, 2> {
-        self.equations().recorded(self.loading)
-    }
-
-    /// The loading under which two equal interfaces move as this one: K (V_H - v) = K/2 (2 V_H - 2 v).
-    pub(super) fn as_pair(&self) -> Loading {
-        Loading {
-            driving: 2.0 * self.loading.driving,
-            stiffness: 0.5 * self.loading.stiffness,
-        }
-    }
-
     #[inline]
     fn slopes(&self, y: &State<2>) -> Response<super::response::Slope> {
         let [tau, w] = slope_variables(y[0], y[1]);
@@ -90,36 +65,23 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
     }
 }
 
-impl<L: Law> Analytic<2> for SingleInterface<L> {
-    fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(SeriesSolution::new(self.law.core(), &self.as_pair()))
+impl<L: Law> Slab<2> for SingleInterface<L> {
+    type Law = L;
+
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        }
     }
 
-    fn reference(&self) -> Box<dyn Solution<2> + '_> {
-        self.recorded().reference()
+    fn loading(&self) -> Loading {
+        self.loading
     }
 
-    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
-        let compiled = tangent(self.law.core(), self.as_pair(), [2.0, 0.5], free);
-        compiled.unwrap_or_else(|| self.recorded().tangent(free))
-    }
-
-    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
-        self.recorded().reference_tangent(free)
-    }
-}
-
-impl<L: Law> Parametrised<2> for SingleInterface<L> {
-    fn names(&self) -> &[&'static str] {
-        &Parameter::NAMES
-    }
-
-    fn parameter_derivative(&self, y: &State<2>, place: usize) -> State<2> {
-        self.whole().parameter_derivative(y, place)
-    }
-
-    fn parameter_jacobian(&self, y: &State<2>, place: usize) -> Jacobian<2> {
-        self.whole().parameter_jacobian(y, place)
+    /// K (V_H - v) = K/2 (2 V_H - 2 v)
+    fn weights(&self) -> [f64; 2] {
+        [2.0, 0.5]
     }
 }
 

@@ -5,12 +5,10 @@
 //! formulas of [`SingleInterface`] serve.
 
 use super::logarithmic::Logarithmic;
-use super::series::SeriesSolution;
-use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, SingleInterface, Smooth};
+use super::slab::Slab;
+use super::{Driven, Loading, SingleInterface};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
-use crate::series::{Recorded, Solution, Tangent};
 
 /// dtau/dt = K (V_H - 2 v), dw/dt = g(v, w): (19) with w_1 = w_2, in the state (tau, w).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -19,22 +17,6 @@ pub struct Symmetric<L> {
 }
 
 impl<L: Law> Symmetric<L> {
-    /// (19) with w_1 = w_2, for every number.
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.equivalent.law,
-            alike: 2.0,
-        }
-    }
-
-    fn whole(&self) -> Smooth<Logarithmic<L>, 2, 2> {
-        self.equations().at(self.equivalent.as_pair())
-    }
-
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 2, 2> {
-        self.equations().recorded(self.equivalent.as_pair())
-    }
-
     /// Of two interfaces with this law and loading.
     pub fn new(law: L, loading: Loading) -> Self {
         let halved = Loading {
@@ -76,44 +58,22 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
     }
 }
 
-impl<L: Law> Analytic<2> for Symmetric<L> {
-    fn solution(&self) -> Box<dyn Solution<2> + '_> {
-        Box::new(SeriesSolution::new(
-            self.equivalent.law.core(),
-            &self.equivalent.as_pair(),
-        ))
+impl<L: Law> Slab<2> for Symmetric<L> {
+    type Law = L;
+
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
+            law: self.equivalent.law,
+            alike: 2.0,
+        }
     }
 
-    fn reference(&self) -> Box<dyn Solution<2> + '_> {
-        self.recorded().reference()
-    }
-
-    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
-        let compiled = tangent(
-            self.equivalent.law.core(),
-            self.equivalent.as_pair(),
-            [1.0, 1.0],
-            free,
-        );
-        compiled.unwrap_or_else(|| self.recorded().tangent(free))
-    }
-
-    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<2> + '_> {
-        self.recorded().reference_tangent(free)
-    }
-}
-
-impl<L: Law> Parametrised<2> for Symmetric<L> {
-    fn names(&self) -> &[&'static str] {
-        &Parameter::NAMES
-    }
-
-    fn parameter_derivative(&self, y: &State<2>, place: usize) -> State<2> {
-        self.whole().parameter_derivative(y, place)
-    }
-
-    fn parameter_jacobian(&self, y: &State<2>, place: usize) -> Jacobian<2> {
-        self.whole().parameter_jacobian(y, place)
+    fn loading(&self) -> Loading {
+        let Loading { driving, stiffness } = self.equivalent.loading;
+        Loading {
+            driving: 2.0 * driving,
+            stiffness: 0.5 * stiffness,
+        }
     }
 }
 

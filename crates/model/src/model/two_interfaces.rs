@@ -2,12 +2,11 @@
 
 use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
-use super::series::SeriesSolution;
-use super::tangent::tangent;
-use super::{Driven, Loading, Parameter, Smooth};
+use super::slab::Slab;
+use super::{Driven, Loading};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::friction::Law;
-use crate::series::{Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
+use crate::series::Equations;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -65,22 +64,6 @@ impl<L: Law> VectorField<3> for TwoInterfaces<L> {
 }
 
 impl<L: Law> TwoInterfaces<L> {
-    /// (19), for every number.
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.law,
-            alike: 1.0,
-        }
-    }
-
-    fn whole(&self) -> Smooth<Logarithmic<L>, 3, 2> {
-        self.equations().at(self.loading)
-    }
-
-    fn recorded(&self) -> Recorded<Logarithmic<L>, 3, 2> {
-        self.equations().recorded(self.loading)
-    }
-
     #[inline]
     fn slopes(&self, y: &State<3>) -> [Response<super::response::Slope>; 2] {
         let [tau, first] = slope_variables(y[0], y[1]);
@@ -93,40 +76,18 @@ impl<L: Law> TwoInterfaces<L> {
     }
 }
 
-impl<L: Law> Analytic<3> for TwoInterfaces<L> {
-    fn solution(&self) -> Box<dyn Solution<3> + '_> {
-        Box::new(SeriesSolution::new(self.law.core(), &self.loading))
+impl<L: Law> Slab<3> for TwoInterfaces<L> {
+    type Law = L;
+
+    fn equations(&self) -> Logarithmic<L> {
+        Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        }
     }
 
-    fn reference(&self) -> Box<dyn Solution<3> + '_> {
-        self.recorded().reference()
-    }
-
-    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
-        let compiled = tangent(self.law.core(), self.loading, [1.0, 1.0], free);
-        compiled.unwrap_or_else(|| self.recorded().tangent(free))
-    }
-
-    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
-        self.recorded().reference_tangent(free)
-    }
-
-    fn transport(&self, start: [Jet3; 3]) -> Option<Box<dyn TaylorMap<3> + '_>> {
-        Some(self.recorded().transport(start))
-    }
-}
-
-impl<L: Law> Parametrised<3> for TwoInterfaces<L> {
-    fn names(&self) -> &[&'static str] {
-        &Parameter::NAMES
-    }
-
-    fn parameter_derivative(&self, y: &State<3>, place: usize) -> State<3> {
-        self.whole().parameter_derivative(y, place)
-    }
-
-    fn parameter_jacobian(&self, y: &State<3>, place: usize) -> Jacobian<3> {
-        self.whole().parameter_jacobian(y, place)
+    fn loading(&self) -> Loading {
+        self.loading
     }
 }
 

@@ -200,6 +200,13 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         let power = self.value.powf(p);
         self.chain(power, power / self.value * p)
     }
+    // d x^p = x^p (p dx / x + ln x dp)
+    #[inline(always)]
+    fn pow(self, p: Self) -> Self {
+        let power = self.value.pow(p.value);
+        let (slope, of_p) = (power / self.value * p.value, power * self.value.ln());
+        zip!(self, p, power, |d, e| slope * d + of_p * e)
+    }
     #[inline(always)]
     fn sqrt(self) -> Self {
         let root = self.value.sqrt();

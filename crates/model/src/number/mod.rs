@@ -2,8 +2,9 @@
 //!
 //! The friction laws are written once, generic over [`Real`]. In `f64` they give values; in [`Jet`] exact derivatives; in
 //! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding;
-//! in [`DoubleDouble`] values of 31 digits. [`polynomial`] has the real roots of Taylor polynomials.
+//! in [`DoubleDouble`] values of 31 digits. Their constants are fixed doubles or [`Free`] numbers. [`polynomial`] has the real roots of Taylor polynomials.
 
+mod constant;
 mod difference;
 mod double_double;
 mod interval;
@@ -12,6 +13,7 @@ pub mod polynomial;
 mod root;
 mod uncertain;
 
+pub use constant::{Constant, Free, With};
 pub use difference::Difference;
 pub use double_double::DoubleDouble;
 pub use interval::Interval;
@@ -52,6 +54,11 @@ pub trait Real:
     fn ln_1p(self) -> Self;
     /// x^p for x > 0
     fn powf(self, p: f64) -> Self;
+    /// x^p for x > 0, of a power that is a number too
+    #[inline(always)]
+    fn pow(self, p: Self) -> Self {
+        (p * self.ln()).exp()
+    }
     /// square root
     fn sqrt(self) -> Self;
     /// hyperbolic sine
@@ -125,6 +132,10 @@ impl Real for f64 {
     }
     #[inline]
     fn powf(self, p: f64) -> f64 {
+        self.powf(p)
+    }
+    #[inline]
+    fn pow(self, p: f64) -> f64 {
         self.powf(p)
     }
     #[inline]

@@ -148,6 +148,7 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::Cosh(a, b)
             | Node::Cos(a, b)
             | Node::Arctangent(a, b)
+            | Node::VariablePower(a, b)
             | Node::Signed(a, b) => {
                 needed[a] = true;
                 needed[b] = true;
@@ -169,7 +170,8 @@ impl Assembly<'_> {
         self.program.rows - 1
     }
 
-    fn put(&mut self, operation: Operation, spare: bool) -> Source {
+    /// The row that an operation makes.
+    fn made(&mut self, operation: Operation, spare: bool) -> usize {
         let result = self.row();
         let spare = if spare { self.row() } else { result };
         self.program.instructions.push(Instruction {
@@ -177,7 +179,7 @@ impl Assembly<'_> {
             result,
             spare,
         });
-        Source::Row(result)
+        result
     }
 
     fn source(&mut self, node: Node) -> Source {
@@ -276,6 +278,23 @@ impl Assembly<'_> {
                 Row(a) => (Op::Power(a, f64::from_bits(p)), true),
                 Number(x) => return Number(Real::powf(x, f64::from_bits(p))),
             },
+            Node::VariablePower(a, p) => match (at(a), at(p)) {
+                (Row(a), Number(p)) if p.lo() == 0.0 => (Op::Power(a, p.hi()), true),
+                (Number(x), Number(p)) => return Number(Real::pow(x, p)),
+                // Else e^(p ln a).
+                (Number(x), Row(p)) => {
+                    let exponent = self.made(Op::Scaled(p, Real::ln(x)), false);
+                    (Op::Exponential(exponent), true)
+                }
+                (Row(a), p) => {
+                    let log = self.made(Op::Logarithm(a), true);
+                    let exponent = match p {
+                        Row(p) => Op::Product(p, log),
+                        Number(p) => Op::Scaled(log, p),
+                    };
+                    (Op::Exponential(self.made(exponent, false)), true)
+                }
+            },
             Node::Sign(a) => match at(a) {
                 Row(a) => {
                     self.program.kinks.push(a);
@@ -291,16 +310,12 @@ impl Assembly<'_> {
                 (Row(a), Number(x)) => (Op::Scaled(a, Real::sign(x)), false),
                 (Number(x), Row(b)) => {
                     self.program.kinks.push(b);
-                    let sign = self.put(Op::Sign(b), false);
-                    let Row(sign) = sign else {
-                        unreachable!("a row was put")
-                    };
-                    (Op::Scaled(sign, x), false)
+                    (Op::Scaled(self.made(Op::Sign(b), false), x), false)
                 }
                 (Number(x), Number(y)) => return Number(x * Real::sign(y)),
             },
         };
-        self.put(operation, spare)
+        Row(self.made(operation, spare))
     }
 }
 

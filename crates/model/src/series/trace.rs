@@ -44,6 +44,8 @@ pub(super) enum Node {
     HyperbolicTangent(NodeIndex),
     /// a to the power of a constant, by its bits.
     Power(NodeIndex, u64),
+    /// a to the power of b.
+    VariablePower(NodeIndex, NodeIndex),
     /// 1 with the sign of a.
     Sign(NodeIndex),
     /// a with the sign of b.
@@ -144,6 +146,9 @@ impl Graph {
                 Node::Arctangent(a, u) => slope(a) / at(u),
                 Node::HyperbolicTangent(a) => slope(a) * (-(this * this) + 1.0),
                 Node::Power(a, p) => slope(a) * (this / at(a) * f64::from_bits(p)),
+                Node::VariablePower(a, p) => {
+                    slope(a) * (this / at(a) * at(p)) + slope(p) * (this * at(a).ln())
+                }
                 Node::Signed(a, b) => slope(a) * at(b).sign(),
             });
         }
@@ -355,6 +360,14 @@ impl Real for Traced<'_> {
                 let value = graph.value(a).powf(p);
                 Traced::Node(graph, graph.place(Node::Power(a, p.to_bits()), value))
             }
+        }
+    }
+
+    #[inline(never)]
+    fn pow(self, p: Self) -> Self {
+        match (self, p) {
+            (Constant(x), Constant(p)) => Constant(Real::pow(x, p)),
+            _ => self.binary(p, f64::powf, Node::VariablePower),
         }
     }
 
