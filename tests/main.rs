@@ -41,6 +41,8 @@ mod guide;
 mod internals;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
+mod law_bifurcations;
+mod law_parameters;
 mod lyapunov;
 mod many_dimensions;
 mod normal_forms_of_systems;

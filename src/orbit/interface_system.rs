@@ -1,8 +1,11 @@
 //! What slides: one or two interfaces with a law and a loading, and its vector fields.
 
-use crate::friction::{AnyLaw, Formulas, steady_stress};
+use crate::error::Result;
+use crate::field::place;
+use crate::friction::{AnyLaw, Formulas, Law, positive, steady_stress};
 use crate::model::{
-    Driven, Loading, interfaces_in_difference_chart, single_interface, symmetric, two_interfaces,
+    DRIVING, Driven, Loading, Parameter, STIFFNESS, interfaces_in_difference_chart,
+    single_interface, symmetric, two_interfaces,
 };
 
 /// One or two interfaces between elastic slabs.
@@ -33,6 +36,54 @@ impl InterfaceSystem {
             single_interface(self.law, self.loading)
         } else {
             symmetric(self.law, self.loading)
+        }
+    }
+
+    /// The names of its parameters: V_H, K and the constants that its law has.
+    pub fn parameter_names(&self) -> &'static [&'static str] {
+        Parameter::names(&self.law)
+    }
+
+    /// The value of the parameter of this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) for a name that is not among [`InterfaceSystem::parameter_names`].
+    pub fn parameter(&self, name: &str) -> Result<f64> {
+        let place = place(self.parameter_names(), name)?;
+        let mut slab = *self;
+        Ok(*slab.at_place(place))
+    }
+
+    /// The same slab with another value of the parameter of this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) for a name that is not among [`InterfaceSystem::parameter_names`], and for a
+    /// value that is not positive and finite; a residual strength may be zero.
+    pub fn with(&self, name: &str, value: f64) -> Result<InterfaceSystem> {
+        let names = self.parameter_names();
+        let place = place(names, name)?;
+        if !(value == 0.0 && name == "residual_strength") {
+            positive(names[place], value)?;
+        }
+        Ok(self.with_parameter(place, value))
+    }
+
+    /// The same by the place of a parameter that it has.
+    pub(super) fn with_parameter(mut self, place: usize, value: f64) -> InterfaceSystem {
+        *self.at_place(place) = value;
+        self
+    }
+
+    fn at_place(&mut self, place: usize) -> &mut f64 {
+        match place {
+            DRIVING => &mut self.loading.driving,
+            STIFFNESS => &mut self.loading.stiffness,
+            _ => {
+                let mut constants = self.law.constants().into_iter().flatten();
+                constants
+                    .nth(place - Parameter::PLANE.len())
+                    .expect("one that the law has")
+            }
         }
     }
 

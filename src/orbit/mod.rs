@@ -31,7 +31,9 @@ pub use arc::{Arc, Tracer};
 pub use continuation_point::{ContinuationPoint, TangentVector};
 pub use correct::{Condition, Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck};
-pub use family::{OverDifferenceChart, OverLoadings, OverParameters, ParametrisedField};
+pub use family::{
+    OverDifferenceChart, OverLoadings, OverLogarithms, OverParameters, ParametrisedField,
+};
 pub use find::{FoundOrbit, InitialGuess, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet};
 pub use hopf::{HopfPoint, hopf_points};

@@ -96,8 +96,13 @@ impl Law for Bounded {
         Self::NAME
     }
 
-    fn constants(&mut self) -> Vec<&mut f64> {
-        vec![&mut self.beta, &mut self.gamma0, &mut self.r]
+    fn constants(&mut self) -> [Option<&mut f64>; 4] {
+        [
+            Some(&mut self.beta),
+            Some(&mut self.gamma0),
+            Some(&mut self.r),
+            None,
+        ]
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

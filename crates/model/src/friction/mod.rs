@@ -4,7 +4,8 @@
 //! tau = F(v, psi) with its inverse v(tau, psi), and the evolution of the state; steady state, extrema and the critical
 //! stiffness follow from them.
 //!
-//! A new law is one file and its entry in the list of laws: the tests then run over it too.
+//! A law's formulas take constants of any kind: doubles in what is compiled for speed, numbers where derivatives in them are asked
+//! for. A new law is one file and its entry in the list of laws: the tests then run over it too.
 
 mod bounded;
 mod dieterich_ruina;
@@ -77,12 +78,12 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
     /// The name by which the command line knows the law.
     fn name(&self) -> &'static str;
 
-    /// Its constants: the first ones of [`Parameters::NAMES`].
-    fn constants(&mut self) -> Vec<&mut f64>;
+    /// Its constants, in the order of [`Parameters::NAMES`]: the first ones of these, as many as it has.
+    fn constants(&mut self) -> [Option<&mut f64>; 4];
 
     /// Their names.
     fn constant_names(&self) -> &'static [&'static str] {
-        let count = { *self }.constants().len();
+        let count = { *self }.constants().iter().flatten().count();
         &Parameters::NAMES[..count]
     }
 
@@ -309,7 +310,7 @@ impl Law for AnyLaw {
     fn name(&self) -> &'static str {
         with_law!(self, law => law.name())
     }
-    fn constants(&mut self) -> Vec<&mut f64> {
+    fn constants(&mut self) -> [Option<&mut f64>; 4] {
         with_law!(self, law => law.constants())
     }
     fn log_activation(&self, tau: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! What the rounding of the law's own parameters does: 0.0489/0.0349 is no double, and the truth is that of the decimals.
 
-use super::{AnyLaw, Law};
+use super::{AnyLaw, Law, Parameters};
 
 /// How much a parameter is changed to see its effect, relative.
 const CHANGE: f64 = 1e-6;
@@ -19,16 +19,13 @@ fn rounding_of(name: &str, value: f64) -> f64 {
 fn changed(law: &AnyLaw) -> Vec<(AnyLaw, f64)> {
     let change = |(i, name): (usize, &&str)| {
         let mut other = *law;
-        let constant = other.constants().swap_remove(i);
+        let constant = other.constants().into_iter().nth(i).flatten()?;
         let rounding = rounding_of(name, *constant);
         *constant *= 1.0 + CHANGE;
-        (other, rounding / CHANGE)
+        Some((other, rounding / CHANGE))
     };
-    law.constant_names()
-        .iter()
-        .enumerate()
-        .map(change)
-        .collect()
+    let names = Parameters::NAMES.iter().enumerate();
+    names.filter_map(change).collect()
 }
 
 /// What a number that depends on the law is off by the rounding of the parameters; infinite where it does not exist.

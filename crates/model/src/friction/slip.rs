@@ -90,8 +90,8 @@ impl Law for Slip {
         Self::NAME
     }
 
-    fn constants(&mut self) -> Vec<&mut f64> {
-        vec![&mut self.beta, &mut self.gamma0]
+    fn constants(&mut self) -> [Option<&mut f64>; 4] {
+        [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

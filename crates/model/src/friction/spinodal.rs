@@ -98,8 +98,8 @@ impl Law for Spinodal {
         Self::NAME
     }
 
-    fn constants(&mut self) -> Vec<&mut f64> {
-        vec![&mut self.beta, &mut self.gamma0, &mut self.r, &mut self.c]
+    fn constants(&mut self) -> [Option<&mut f64>; 4] {
+        [&mut self.beta, &mut self.gamma0, &mut self.r, &mut self.c].map(Some)
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

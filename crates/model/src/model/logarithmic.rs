@@ -86,7 +86,9 @@ impl<L: Law> Logarithmic<L> {
         let mut all = [f64::NAN; ALL];
         all[..LOADING].copy_from_slice(&<[f64; LOADING]>::from(loading));
         for (value, constant) in all[LOADING..].iter_mut().zip(law.constants()) {
-            *value = *constant;
+            if let Some(constant) = constant {
+                *value = *constant;
+            }
         }
         all
     }

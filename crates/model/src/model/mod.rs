@@ -66,6 +66,11 @@ impl Parameter {
         ]
     };
 
+    /// The names of the parameters of a system whose interfaces have this law.
+    pub fn names(law: &impl Law) -> &'static [&'static str] {
+        &Parameter::NAMES[..Parameter::LOADING.len() + law.constant_names().len()]
+    }
+
     /// The places of V_H and K.
     pub const PLANE: [usize; 2] = [DRIVING, STIFFNESS];
 

@@ -74,8 +74,7 @@ fn is_loading(place: usize) -> bool {
 
 impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
     fn names(&self) -> &[&'static str] {
-        let constants = self.equations().law.constant_names().len();
-        &Parameter::NAMES[..LOADING + constants]
+        Parameter::names(&self.equations().law)
     }
 
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
