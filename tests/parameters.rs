@@ -128,6 +128,57 @@ fn flows_are_differentiated_in_any_parameters_in_any_order() {
     }
 }
 
+/// Powers of variables and of parameters, by themselves or by logarithms.
+#[derive(Debug, Clone, Copy)]
+struct Powers {
+    by_logarithms: bool,
+}
+
+impl Equations<2, 2> for Powers {
+    const PARAMETERS: [&'static str; 2] = ["p", "q"];
+
+    #[inline(always)]
+    fn rates<T: Real>(&self, [x, y]: [T; 2], [p, q]: [T; 2]) -> [T; 2] {
+        let pow = |a: T, b: T| {
+            if self.by_logarithms {
+                (b * a.ln()).exp()
+            } else {
+                a.pow(b)
+            }
+        };
+        [
+            pow(y, p) - pow(x, q * 0.1) * 0.5,
+            pow(q, x) * 0.3 - pow(y, x),
+        ]
+    }
+}
+
+#[test]
+fn powers_of_numbers_are_differentiated_in_base_and_exponent() {
+    let [field, other] = [false, true].map(|by_logarithms| Smooth {
+        equations: Powers { by_logarithms },
+        parameters: [0.7, 1.3],
+    });
+    let y = State::<2>::new(1.0, 0.8);
+    check(&field, y, &[0, 1]);
+    check(&field, y, &[1]);
+    for place in [0, 1] {
+        let made = field.parameter_jacobian(&y, place);
+        let error = (made - other.parameter_jacobian(&y, place)).amax();
+        assert!(error < 1e-15, "{place}: {error:e}");
+    }
+    let mut reference = Taylor::reference(MAX_STEPS).unwrap();
+    let mut at = |field| {
+        reference
+            .derivatives(field, (0.0, 7.0), &y, &[0, 1])
+            .unwrap()
+    };
+    let ((_, made), (_, known)) = (at(&field), at(&other));
+    for (made, known) in made.parameters.iter().zip(&known.parameters) {
+        assert!(apart(made, known) < 1e-15, "{made:?}, {known:?}");
+    }
+}
+
 #[test]
 fn a_parameter_that_is_not_there_is_an_error_of_input() {
     let field = roessler(0.2, 0.2, 2.5);

@@ -258,6 +258,14 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
     }
 
     #[inline(always)]
+    fn pow(self, p: Self) -> Self {
+        match p.kind() {
+            Literal(p) => self.powf(p),
+            _ => (p * self.ln()).exp(),
+        }
+    }
+
+    #[inline(always)]
     fn sign(self) -> Self {
         match self.kind() {
             Row(a) => value(a.stored().get(0).sign()),

@@ -367,6 +367,7 @@ impl Real for Traced<'_> {
     fn pow(self, p: Self) -> Self {
         match (self, p) {
             (Constant(x), Constant(p)) => Constant(Real::pow(x, p)),
+            (_, Constant(p)) if p.lo() == 0.0 => self.powf(p.hi()),
             _ => self.binary(p, f64::powf, Node::VariablePower),
         }
     }

@@ -237,6 +237,15 @@ impl Real for DoubleDouble {
         times_power_of_two(s + 1.0, twos as i32 + more_twos)
     }
 
+    // Exact in a power that is a double.
+    fn pow(self, p: Self) -> Self {
+        if p.lo == 0.0 {
+            self.powf(p.hi)
+        } else {
+            (p * self.ln()).exp()
+        }
+    }
+
     // The double's root and one Newton correction, at a scale where the remainder neither overflows nor underflows.
     fn sqrt(self) -> Self {
         if !(self.hi > 0.0 && self.hi.is_finite()) {
