@@ -125,19 +125,19 @@ fn steady_stresses_are_differentiated_in_the_constants() {
     const KNOWN: [[f64; 8]; 3] = [
         [
             0.1,
-            11.377289975511815,
+            11.377289975511813,
             -2.7363049842767118,
             0.15258345572079876,
             0.0011349182656918916,
             63.53392975421068,
             -391.9734975583412,
-            28.65329512142332,
+            28.653295121423323,
         ],
         [
             5.0,
             9.945521544352522,
             -0.07828946028950265,
-            6.9159339193699285,
+            6.915933919936928,
             -0.00011021364727530055,
             -45.74605854142618,
             -238.85626336104082,
@@ -194,8 +194,8 @@ fn check<const N: usize>(
     y: State<N>,
     free: &[usize],
 ) {
-    /// Part of a parameter.
-    const STEP: f64 = 3e-4;
+    /// By about so much the states differ that derivatives are compared with.
+    const CHANGE: f64 = 2e-4;
     let what = format!("{}, {N}, {free:?}", slab.law.name());
     let (field, span) = (make(slab), (0.0, 4.0));
     let field: &dyn VectorField<N> = &*field;
@@ -205,12 +205,13 @@ fn check<const N: usize>(
     for (&place, exact) in free.iter().zip(&exact.parameters) {
         let name = slab.parameter_names()[place];
         let value = slab.parameter(name).unwrap();
+        let step = (CHANGE / State::from(*exact).amax()).min(0.2 * value);
         let mut at = |steps: f64| {
-            let moved = make(&slab.with(name, value * (1.0 + steps * STEP)).unwrap());
+            let moved = make(&slab.with(name, value + steps * step).unwrap());
             reference.flow(&*moved, span, &y, None).unwrap()
         };
         let (near, far) = (at(1.0) - at(-1.0), at(2.0) - at(-2.0));
-        let slope = (near * 8.0 - far) / (12.0 * STEP * value);
+        let slope = (near * 8.0 - far) / (12.0 * step);
         let error = apart(&slope, exact);
         assert!(error < 1e-8, "{what}, {name}: {error:e}");
     }
