@@ -4,8 +4,15 @@ use nalgebra::Complex;
 use std::ops::ControlFlow;
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
+use twinslip::bifurcation::equilibria::generic_curve::{
+    EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint,
+};
 use twinslip::continuation::{Settings, Stop};
 use twinslip::field::{Jacobian, State, VectorField};
+use twinslip::model::classics;
+use twinslip::number::Real;
+use twinslip::orbit::{OverParameters, ParametrisedField};
+use twinslip::series::Equations;
 
 /// Lorenz (1963), sigma = 10, beta = 8/3.
 struct Lorenz {
@@ -258,4 +265,68 @@ fn a_conservative_system_has_no_hopf_points() {
         let special: Vec<_> = points.iter().filter_map(|point| point.label).collect();
         assert_eq!(special, [Label::Ep, Label::Ep], "longest {longest}");
     }
+}
+
+/// y' = p + q y - y^3: folds where 27 p^2 = 4 q^3, and a cusp where they meet.
+#[derive(Debug, Clone, Copy)]
+struct Cusp;
+
+impl Equations<1, 2> for Cusp {
+    const PARAMETERS: [&'static str; 2] = ["p", "q"];
+
+    fn rates<T: Real>(&self, [y]: [T; 1], [p, q]: [T; 2]) -> [T; 1] {
+        [p + q * y - y * y * y]
+    }
+}
+
+fn curve<F: ParametrisedField<N>, const N: usize>(
+    family: &F,
+    kind: EquilibriumBifurcation,
+    from: (State<N>, [f64; 2]),
+    growing: bool,
+    range: (f64, f64),
+) -> Vec<EquilibriumCurvePoint<N>> {
+    let settings = Settings::new(range, 0.1).unwrap();
+    let mut found = Vec::new();
+    let curve = EquilibriumCurve { family, kind };
+    let branch = curve
+        .follow(from, growing, &settings, &mut |point| {
+            found.push(point.clone());
+            ControlFlow::Continue(())
+        })
+        .unwrap();
+    assert_eq!(branch.stopped, Stop::RangeEnd);
+    found
+}
+
+#[test]
+fn folds_are_followed_past_their_cusp_in_two_parameters() {
+    let family = OverParameters::both(Cusp);
+    let start = (State::<1>::new(1.01), [-1.99, 3.0]);
+    let kind = EquilibriumBifurcation::Fold;
+    let found = curve(&family, kind, start, false, (-1.0, 4.0));
+    for point in &found {
+        let ([p, q], y) = (point.at, point.state[0]);
+        assert!((27.0 * p * p - 4.0 * q * q * q).abs() < 1e-10, "{point:?}");
+        assert!((q - 3.0 * y * y).abs() < 1e-11, "{point:?}");
+        assert!(point.frequency.is_none());
+    }
+    let last = found.last().unwrap();
+    assert_eq!(last.at[1], 4.0);
+    assert!((last.state[0] + (4.0_f64 / 3.0).sqrt()).abs() < 1e-12);
+}
+
+#[test]
+fn hopf_points_are_followed_in_two_parameters() {
+    let family = OverParameters::both(classics::Brusselator);
+    let start = (State::<2>::new(1.0, 2.0), [1.01, 2.0]);
+    let kind = EquilibriumBifurcation::Hopf;
+    let found = curve(&family, kind, start, true, (2.0, 5.0));
+    for point in &found {
+        // B = 1 + A^2, omega = A
+        let [a, b] = point.at;
+        assert!((b - 1.0 - a * a).abs() < 1e-11, "{point:?}");
+        assert!((point.frequency.unwrap() - a).abs() < 1e-11, "{point:?}");
+    }
+    assert!((found.last().unwrap().at[0] - 2.0).abs() < 1e-12);
 }

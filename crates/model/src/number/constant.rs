@@ -49,7 +49,7 @@ impl<T: Real> Mul<f64> for Free<T> {
 /// An `f64` is taken as exact, in the mixed operations of [`Real`]. A [`Free`] constant is a variable like others.
 ///
 /// ```
-/// use twinslip::number::{Constant, Free, Jet, Real, With};
+/// use twinslip::number::{Constant, Free, Jet, With};
 /// fn area<C: Constant, T: With<C>>(pi: C, radius: T) -> T {
 ///     (radius * radius).times(pi)
 /// }
