@@ -286,14 +286,15 @@ fn every_end_has_its_reason() {
         ..settings.clone()
     };
     let branch = follow(&Scalar(circle), &begin, &few, &mut look(|_| vec![])).unwrap();
-    assert_eq!(branch.stopped, Stop::MaxPoints);
+    assert_eq!(branch.stopped, Stop::MaxPoints(4));
 
     // u = sqrt(1 - lambda) is not differentiable at its end
     let root = Scalar(|u: f64, l: f64| [u - (1.0 - l).sqrt(), 1.0, 0.5 / (1.0 - l).sqrt()]);
     let branch = follow(&root, &begin, &settings, &mut look(|_| vec![])).unwrap();
-    let Stop::StepTooSmall { lambda, .. } = branch.stopped else {
+    let Stop::StepTooSmall { .. } = branch.stopped else {
         panic!("{:?}", branch.stopped)
     };
+    let lambda = branch.points.last().unwrap().0.lambda;
     assert!((lambda - 1.0).abs() < 1e-6, "{lambda}");
 }
 

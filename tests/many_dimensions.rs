@@ -8,8 +8,7 @@ use std::f64::consts::{PI, TAU};
 use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
-use twinslip::bifurcation::orbits::{Met, follow};
-use twinslip::continuation::Settings;
+use twinslip::continuation::{Met, Settings};
 use twinslip::field::{State, VectorField};
 use twinslip::model::Smooth;
 use twinslip::model::classics::{Langford, Roessler};
@@ -223,8 +222,8 @@ fn curve<S: Equations<N, 2>, const N: usize>(
     let begun = Palc::from(corrector, settings, here.site, direction.scaled(sign));
     let mut palc = begun.expect("a continuation");
     let mut passed = Vec::new();
-    follow(&mut palc, &[], most, &mut |_, _, met| {
-        if let Met::Orbit(point) = met {
+    palc.follow(&[], most, &mut |_, _, met| {
+        if let Met::Point(point) = met {
             passed.push(point.here.site.at);
         }
         Continue(())

@@ -4,7 +4,7 @@ use crate::common::branches::first;
 use crate::common::{data, number};
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;
-use twinslip::bifurcation::orbits::{End, Met, WatchedFunction, follow};
+use twinslip::continuation::{Met, Stop, WatchedFunction};
 use twinslip::field::{Jacobian, State, VectorField};
 use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
 use twinslip::model::classics::{Brusselator, Langford, Roessler, VanDerPol};
@@ -103,16 +103,15 @@ fn roesslers_orbit_doubles_its_period_and_again() {
     )
     .expect("a walk onto the doubled branch");
     let mut cascade = None;
-    follow(
-        &mut palc,
+    palc.follow(
         &[WatchedFunction::TestFunction(TestFunction::Doubling)],
         400,
         &mut |_, _, met| match met {
             Met::Zero(_, at) => {
-                cascade = Some(at.site.clone());
+                cascade = Some(at.here.site.clone());
                 Break(())
             }
-            Met::Orbit(_) => Continue(()),
+            Met::Point(_) => Continue(()),
         },
     )
     .expect("a branch");
@@ -284,7 +283,7 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
     )
     .expect("a continuation");
     let watches = [WatchedFunction::TestFunction(test_function)];
-    refused(follow(&mut palc, &watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
+    refused(palc.follow(&watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
     // In the plane there are neither period doublings nor tori.
     for test_function in [TestFunction::Doubling, TestFunction::Torus] {
         assert!(test_function.checked::<2>().is_err() && test_function.checked::<3>().is_ok());
@@ -301,7 +300,7 @@ fn along<F: ParametrisedField<N>, const N: usize>(
     (free, sign): (usize, f64),
     range: (f64, f64),
     most: usize,
-) -> (End, Vec<(f64, f64)>) {
+) -> (Stop, Vec<(f64, f64)>) {
     let mut corrector = Corrector::new(family, 1e-11).expect("a corrector");
     let settings = PalcSettings::branch(free, 0.1);
     let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
@@ -312,8 +311,8 @@ fn along<F: ParametrisedField<N>, const N: usize>(
     let mut palc =
         Palc::from(&mut corrector, settings, here.site, direction).expect("a continuation");
     let mut orbits = Vec::new();
-    let end = follow(&mut palc, &[], most, &mut |_, _, met| {
-        if let Met::Orbit(now) = met {
+    let end = palc.follow(&[], most, &mut |_, _, met| {
+        if let Met::Point(now) = met {
             let site = &now.here.site;
             orbits.push((site.at[free], site.shooting.extent()));
             if !(range.0..range.1).contains(&site.at[free]) || site.shooting.extent() < SMALL {
@@ -368,7 +367,11 @@ fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
     // As many orbits as are asked for, and always further.
     const MOST: usize = 100;
     let (end, orbits) = along(&family, site, (0, -1.0), (0.1, 0.4), MOST);
-    assert!(end == End::Count(MOST), "{end:?} after {}", orbits.len());
+    assert!(
+        end == Stop::MaxPoints(MOST),
+        "{end:?} after {}",
+        orbits.len()
+    );
     assert!(
         orbits.windows(2).all(|pair| pair[1].0 < pair[0].0),
         "{orbits:?}"
@@ -381,10 +384,7 @@ fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
     let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
     let (end, orbits) = along(&family, site, (0, -1.0), (0.0, 0.6), 2000);
     let &(current, extent) = orbits.last().expect("orbits");
-    assert!(
-        end == End::Interrupted && extent < SMALL,
-        "{end:?}, {extent}"
-    );
+    assert!(end == Stop::Observer && extent < SMALL, "{end:?}, {extent}");
     let v = -(1.0_f64 - 0.8 * eps).sqrt();
     let hopf = (v + 0.7) / 0.8 - v + v * v * v / 3.0;
     assert!((current - hopf).abs() < 0.02, "{current}, {hopf}");

@@ -3,7 +3,7 @@
 use crate::common::{data, number};
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;
-use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::continuation::{Met, WatchedFunction};
 use twinslip::field::{Parametrised, State, place};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::Smooth;
@@ -237,12 +237,12 @@ fn doubling(family: &Over, at: [f64; 2], free: usize) -> ContinuationPoint<3> {
     let mut palc = Palc::from(&mut corrector, settings, orbit.site, direction).unwrap();
     let mut found = None;
     let watched = [WatchedFunction::TestFunction(TestFunction::Doubling)];
-    follow(&mut palc, &watched, 400, &mut |_, _, met| match met {
+    palc.follow(&watched, 400, &mut |_, _, met| match met {
         Met::Zero(_, at) => {
-            found = Some(at.site.clone());
+            found = Some(at.here.site.clone());
             Break(())
         }
-        Met::Orbit(_) => Continue(()),
+        Met::Point(_) => Continue(()),
     })
     .unwrap();
     let meets = [Condition::TestFunction(TestFunction::Doubling)];
@@ -266,8 +266,8 @@ fn along_curve(
     let begun = here.site.at[to];
     let mut palc = Palc::from(&mut corrector, settings, here.site, direction).unwrap();
     let mut near = None;
-    follow(&mut palc, &[], 200, &mut |_, _, met| match met {
-        Met::Orbit(point) if (point.here.site.at[to] - value) * (begun - value) <= 0.0 => {
+    palc.follow(&[], 200, &mut |_, _, met| match met {
+        Met::Point(point) if (point.here.site.at[to] - value) * (begun - value) <= 0.0 => {
             near = Some(point.here.site.clone());
             Break(())
         }

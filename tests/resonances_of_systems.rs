@@ -3,7 +3,7 @@
 use crate::common::among::{Among, langford};
 use crate::common::branches::first;
 use std::ops::ControlFlow::{Break, Continue};
-use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::continuation::{Met, WatchedFunction};
 use twinslip::model::classics::Langford;
 use twinslip::number::Real;
 use twinslip::orbit::{
@@ -60,12 +60,12 @@ fn resonances<const N: usize>(eps: f64, sums: &[f64], end: f64) -> Vec<(f64, [f6
         .collect();
     let mut met = Vec::new();
     let mut palc = begun.expect("a continuation");
-    follow(&mut palc, &watched, 400, &mut |_, _, now| match now {
+    palc.follow(&watched, 400, &mut |_, _, now| match now {
         Met::Zero(WatchedFunction::TestFunction(sum), at) => {
-            met.push((sum, at.site.clone()));
+            met.push((sum, at.here.site.clone()));
             Continue(())
         }
-        Met::Orbit(now) if (now.here.site.at[1] - end) * (end - 3.5) > 0.0 => Break(()),
+        Met::Point(now) if (now.here.site.at[1] - end) * (end - 3.5) > 0.0 => Break(()),
         _ => Continue(()),
     })
     .expect("a curve");

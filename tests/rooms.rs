@@ -30,6 +30,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "orbit",
         &[
             "equilibrium",
+            "continuation",
             "integrate",
             "model",
             "field",

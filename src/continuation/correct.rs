@@ -56,7 +56,7 @@ fn bordered(
     Ok(matrix)
 }
 
-fn failed(iterations: usize, residual: f64, tolerance: f64) -> Error {
+pub(super) fn failed(iterations: usize, residual: f64, tolerance: f64) -> Error {
     Error::NotConverged {
         what: "a point of the curve",
         iterations,
@@ -77,13 +77,13 @@ fn satisfied(matrix: &DMatrix<f64>, x: &DVector<f64>, left: &DVector<f64>) -> bo
     both.all(|(g, size)| g.abs() <= f64::EPSILON * size)
 }
 
-/// The point of the curve in the plane, near `guess`, with the number of Newton steps.
+/// The point of the curve in the plane, near `guess`.
 pub(super) fn onto(
     problem: &dyn ZeroProblem,
     guess: &DVector<f64>,
     plane: &Hyperplane,
     tolerance: f64,
-) -> Result<(DVector<f64>, usize)> {
+) -> Result<DVector<f64>> {
     let n = problem.dimension();
     let mut x = guess.clone();
     let mut last = f64::INFINITY;
@@ -93,7 +93,7 @@ pub(super) fn onto(
         let matrix = bordered(problem, &x, &plane.normal)?;
         // Next to a branch point the matrix is singular, and a correction of rounding would lead anywhere.
         if satisfied(&matrix, &x, &right) {
-            return Ok((x, iteration));
+            return Ok(x);
         }
         let Some(change) = matrix.lu().solve(&right) else {
             return Err(failed(iteration, last, tolerance));
@@ -104,11 +104,11 @@ pub(super) fn onto(
         }
         x += change;
         if size <= tolerance {
-            return Ok((x, iteration));
+            return Ok(x);
         }
         if size > 0.5 * last {
             return if size <= ROUNDING * tolerance {
-                Ok((x, iteration))
+                Ok(x)
             } else {
                 Err(failed(iteration, size, tolerance))
             };
@@ -116,7 +116,7 @@ pub(super) fn onto(
         last = size;
     }
     if last <= ROUNDING * tolerance {
-        return Ok((x, MOST));
+        return Ok(x);
     }
     Err(failed(MOST, last, tolerance))
 }
@@ -165,7 +165,7 @@ pub(super) fn from_afar(
             }
         };
         if part == 1.0
-            && let Ok((x, _)) = onto(problem, &x, plane, tolerance)
+            && let Ok(x) = onto(problem, &x, plane, tolerance)
         {
             return Ok(x);
         }

@@ -1,152 +1,30 @@
-//! Curves of zeros: the solutions (u, lambda) of N equations G(u, lambda) = 0, followed by pseudo-arclength (Keller 1977).
+//! Pseudo-arclength continuation (Keller 1977) of anything that is a curve of solutions: one step control, one detection of
+//! zeros, one landing on them.
 //!
-//! The step is measured along the tangent of the point that it starts from, so that folds are passed like any other point, and
-//! the direction is kept. Along the curve the signs of test functions are watched; where one changes, the zero is located on
-//! the arclength. The curve ends where its range does, where a test function ends it, or with a reason: an early end is a
-//! result and no error. Knows neither equilibria nor orbits; all matrices are dense, so N should be small.
+//! [`Continuation`] follows what implements [`SolutionCurve`]; it knows neither equilibria nor orbits. The step is measured along
+//! the tangent of the point that it starts from, so that folds are passed like any other point, and the direction is kept.
+//! Along the curve [`WatchedFunction`]s are watched; their zeros are located on the way. An early end is a [`Stop`] and no error.
 //!
-//! Limits: what branches off is not followed, and two sign changes within one step are found only if a parabola through values
-//! at its ends and middle shows them.
+//! Here too are the curves of zeros (u, lambda) of N equations G(u, lambda) = 0, [`follow()`]. All their matrices are dense, so N
+//! should be small.
+//!
+//! Limits: what branches off is not followed, and two sign changes within one step are found only if a cubic through the values
+//! and slopes at both ends shows them.
 
 mod correct;
-mod follow;
-mod locate;
+mod curve;
+mod detect;
+mod driver;
+mod land;
 mod settings;
-mod signs;
+mod stop;
+mod zero_curve;
+mod zero_problem;
 
-pub use follow::follow;
+use curve::Watched;
+pub use curve::{CurveStep, SolutionCurve, WatchedFunction};
+pub use driver::{Continuation, Met, MetObserver, StepControl};
 pub use settings::Settings;
-
-use crate::error::{Error, Result};
-use nalgebra::{DMatrix, DVector};
-use std::ops::ControlFlow;
-
-/// N equations for N unknowns u and a parameter lambda.
-pub trait ZeroProblem {
-    /// N.
-    fn dimension(&self) -> usize;
-
-    /// G(u, lambda), of length N. Where it is not finite, or an error, the step is shortened.
-    ///
-    /// # Errors
-    /// The problem's own.
-    fn residual(&self, u: &DVector<f64>, lambda: f64) -> Result<DVector<f64>>;
-
-    /// dG/d(u, lambda): N rows, N + 1 columns, the last one the derivative in lambda.
-    ///
-    /// # Errors
-    /// The problem's own.
-    fn jacobian(&self, u: &DVector<f64>, lambda: f64) -> Result<DMatrix<f64>>;
-}
-
-/// A point of the curve.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct CurvePoint {
-    /// The unknowns.
-    pub u: DVector<f64>,
-    /// The parameter.
-    pub lambda: f64,
-    /// The unit tangent, N + 1 long, its last component d lambda/ds, in the direction in which the curve is followed.
-    pub tangent: DVector<f64>,
-    /// The sum of the steps so far.
-    pub arclength: f64,
-}
-
-impl CurvePoint {
-    /// d lambda / ds: it changes its sign at a fold.
-    pub fn lambda_slope(&self) -> f64 {
-        self.tangent[self.u.len()]
-    }
-}
-
-/// Where a curve begins.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Start {
-    /// A guess of the unknowns.
-    pub u: DVector<f64>,
-    /// The parameter.
-    pub lambda: f64,
-    /// The tangent's scalar product with this, N + 1 long, is positive at first.
-    pub direction: DVector<f64>,
-    /// Whether the guess is corrected across the direction, as beside a branch point, and not at its lambda.
-    pub across: bool,
-}
-
-/// Why a point is shown.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-#[non_exhaustive]
-pub enum PointKind {
-    /// The first one, and the last one too where the curve is closed.
-    Begin,
-    /// A step's end.
-    Step,
-    /// The zero of the test function of this number.
-    Zero(usize),
-    /// The wanted value of lambda of this number; lambda is exactly that value.
-    Wanted(usize),
-    /// The lower end of the range; lambda is exactly that value.
-    Lowest,
-    /// The upper end.
-    Highest,
-}
-
-/// Why the curve was followed no further.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub enum Stop {
-    /// lambda reached an end of its range.
-    RangeEnd,
-    /// The test function of this number, which ends the curve, is zero.
-    Ended(usize),
-    /// The curve is closed: it came back to its first point.
-    Closed,
-    /// As many points as allowed.
-    MaxPoints,
-    /// The observer had seen enough.
-    Observer,
-    /// The shortest step allowed fails, beyond the point with this lambda; with the problem's error if that is why.
-    StepTooSmall {
-        /// lambda of the last good point.
-        lambda: f64,
-        /// What the problem said, if it said anything.
-        because: Option<Error>,
-    },
-}
-
-/// What looks on while a curve is followed.
-pub trait CurveObserver {
-    /// The test functions at a point, always as many. NaN where one is undefined: no sign change then is seen.
-    ///
-    /// # Errors
-    /// Like the problem's own: the step is shortened.
-    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
-        let _ = point;
-        Ok(Vec::new())
-    }
-
-    /// Whether the curve ends where this test function is zero.
-    fn ends(&self, test: usize) -> bool {
-        let _ = test;
-        false
-    }
-
-    /// Whether two points are too far apart for the eye: the step is then shortened, but not below a hundredth of the longest.
-    fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
-        let _ = (from, to);
-        false
-    }
-
-    /// Every point in the order of the curve.
-    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()>;
-}
-
-/// A curve as far as it was followed.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct Branch {
-    /// All points with what they are.
-    pub points: Vec<(CurvePoint, PointKind)>,
-    /// Why there are no more.
-    pub stopped: Stop,
-}
+pub use stop::Stop;
+pub use zero_curve::follow;
+pub use zero_problem::{Branch, CurveObserver, CurvePoint, PointKind, Start, ZeroProblem};

@@ -7,7 +7,7 @@ use super::family::{OverLoadings, ParametrisedField};
 use super::find::SEARCH;
 use super::hopf::{HopfPoint, hopf_points};
 use super::interface_system::InterfaceSystem;
-use super::palc::{Palc, PalcSettings};
+use super::orbit_curve::{Palc, PalcSettings};
 use super::shooting::close;
 use super::shooting_nodes::ShootingNodes;
 use super::space::{Plane, Space, Whole};
@@ -15,6 +15,7 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::State;
 use crate::model::{DRIVING, Parameter};
+use std::ops::ControlFlow::{Break, Continue};
 
 /// Size of the first orbit.
 const FIRST: f64 = 0.02;
@@ -54,7 +55,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     /// to an equilibrium.
     fn vanishes(&self, before: &ContinuationPoint<N>) -> Option<f64> {
         let here = &self.now.here.site;
-        let free = *self.settings.free.first()?;
+        let free = *self.curve.settings.free.first()?;
         let (old, new) = (before.shooting.extent(), here.shooting.extent());
         let (old, new) = (old * old, new * new);
         let shrinks = new < SMALL * SMALL && new < old;
@@ -68,7 +69,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
         const PART: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let end = self.vanishes(before)?;
-        let free = *self.settings.free.first()?;
+        let free = *self.curve.settings.free.first()?;
         let here = self.now.here.site.at[free];
         hopfs.iter().position(|hopf| {
             let hopf = hopf.at()[free];
@@ -122,10 +123,7 @@ where
     else {
         return Ok(());
     };
-    for _ in 0..STEPS {
-        let Ok((before, _)) = palc.step() else {
-            break;
-        };
+    palc.follow(&[], STEPS, &mut |palc, before, _| {
         let (old, new) = (&before.here.site, &palc.now.here.site);
         if (new.at[DRIVING] - wanted) * (old.at[DRIVING] - wanted) <= 0.0 {
             // The nearer of both is the guess.
@@ -136,10 +134,12 @@ where
             }
         }
         let far = (new.at[DRIVING] - begin).abs() > reach;
-        if far || palc.ends_at(old, hopfs).is_some() || palc.mesh().is_err() {
-            break;
+        if far || palc.ends_at(old, hopfs).is_some() {
+            Break(())
+        } else {
+            Continue(())
         }
-    }
+    })?;
     Ok(())
 }
 

@@ -2,6 +2,7 @@
 
 mod arc;
 pub(crate) mod branch;
+mod certain;
 mod continuation_point;
 mod correct;
 mod crosscheck;
@@ -16,7 +17,7 @@ mod jet;
 mod linear;
 pub(crate) mod multipliers;
 mod noise;
-mod palc;
+mod orbit_curve;
 pub(crate) mod periodic_schur;
 mod profile;
 mod settle;
@@ -41,7 +42,7 @@ pub use interface_system::InterfaceSystem;
 pub(crate) use jet::{Axes, CState, PoincareMaps, cut_into, finely_cut, squares};
 pub(crate) use multipliers::{eigenvalues_of, unit_pair};
 pub(crate) use noise::Noise;
-pub use palc::{DirectedPoint, Palc, PalcEnd, PalcSettings};
+pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunction};
 pub(crate) use periodic_schur::LogEigenvalue;
 pub use profile::{Profile, profile};
 pub use shooting::{Closed, close};

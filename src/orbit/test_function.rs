@@ -182,6 +182,16 @@ impl TestFunction {
         }
     }
 
+    /// What its value is to be divided by to be of order one.
+    pub(super) fn size<const N: usize>(self, at: &Spectrum) -> f64 {
+        match self {
+            TestFunction::Fold | TestFunction::Doubling if N == 3 => {
+                1.0 + at.trace.abs() + at.volume.exp()
+            }
+            _ => 1.0,
+        }
+    }
+
     /// Its change with that of the spectrum.
     pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
         if N > 3 {

@@ -1,7 +1,7 @@
 //! Branches of periodic orbits.
 
 use std::ops::ControlFlow::{Break, Continue};
-use twinslip::bifurcation::orbits::{Met, WatchedFunction, follow};
+use twinslip::continuation::{Met, WatchedFunction};
 use twinslip::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField,
     TestFunction,
@@ -23,13 +23,13 @@ pub fn first<F: ParametrisedField<N>, const N: usize>(
     let mut palc = Palc::from(corrector, settings, here.site, direction).expect("a continuation");
     let mut found = None;
     let watched = [WatchedFunction::TestFunction(test_function)];
-    follow(&mut palc, &watched, 400, &mut |_, _, met| match met {
+    palc.follow(&watched, 400, &mut |_, _, met| match met {
         Met::Zero(_, at) => {
-            found = Some(at.site.clone());
+            found = Some(at.here.site.clone());
             Break(())
         }
-        Met::Orbit(now) if now.here.site.at[free] > end => Break(()),
-        Met::Orbit(_) => Continue(()),
+        Met::Point(now) if now.here.site.at[free] > end => Break(()),
+        Met::Point(_) => Continue(()),
     })
     .expect("a branch");
     let meets = [Condition::TestFunction(test_function)];

@@ -129,7 +129,7 @@ impl BranchRun<'_> {
         if let Some(error) = observer.failure {
             return Err(error);
         }
-        if branch.stopped == Stop::MaxPoints {
+        if matches!(branch.stopped, Stop::MaxPoints(_)) {
             let limit = self.request.max_points;
             return Err(Error::TooManyPoints { limit });
         }

@@ -234,7 +234,7 @@ impl BranchObserver<'_, '_> {
                 because: Some(error),
                 ..
             } => format!("no step is short enough: {error}"),
-            _ => "no step is short enough".into(),
+            stop => stop.to_string(),
         });
         self.teller.on(self.number, self.curve.symmetry());
         self.teller.special(special)

@@ -49,7 +49,7 @@ pub(super) fn locus(request: &LocusRequest, teller: &mut Teller<'_>) -> Result<C
             &mut trace,
         )?;
         let observer = branch.stopped == Stop::Observer;
-        if branch.stopped == Stop::MaxPoints {
+        if matches!(branch.stopped, Stop::MaxPoints(_)) {
             let limit = request.max_points;
             return Err(Error::TooManyPoints { limit });
         }

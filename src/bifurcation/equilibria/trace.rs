@@ -235,7 +235,7 @@ impl Trace<'_, '_> {
         let k = self.points.closed_form(place.rates);
         self.here();
         self.teller.special(Special {
-            note: Some(format!("no further: {:?}", branch.stopped)),
+            note: Some(format!("no further: {}", branch.stopped)),
             ..Special::new(Label::Mx, unknown(place.driving), unknown(k))
         })
     }

@@ -5,7 +5,7 @@ use crate::bifurcation::Criticality;
 use crate::field::State;
 use crate::number::Uncertain;
 use crate::orbit::{
-    ContinuationPoint, OverDifferenceChart, OverLoadings, ParametrisedField, ShootingNodes,
+    ContinuationPoint, OverDifferenceChart, OverLoadings, ParametrisedField, Regular, ShootingNodes,
 };
 
 /// Orbits of a slab in some variables.
@@ -27,6 +27,14 @@ pub trait Chart<const N: usize>: ParametrisedField<N> + Copy {
         &self,
         site: &ContinuationPoint<N>,
     ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)>;
+    /// The same orbit as a symmetric one, from which asymmetric ones part at a pitchfork, where orbits have so many variables.
+    fn symmetric<'o>(&self, _: &'o Regular<N>) -> Option<&'o Regular<2>> {
+        None
+    }
+    /// The same orbit as one in all variables, where periods double, where orbits have so many.
+    fn whole<'o>(&self, _: &'o Regular<N>) -> Option<&'o Regular<3>> {
+        None
+    }
     /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is.
     fn normal_form(&self, site: &ContinuationPoint<N>, form: Form) -> (Uncertain, Criticality);
 }
@@ -54,6 +62,9 @@ impl Chart<2> for OverLoadings {
         _: &ContinuationPoint<2>,
     ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)> {
         None
+    }
+    fn symmetric<'o>(&self, orbit: &'o Regular<2>) -> Option<&'o Regular<2>> {
+        Some(orbit)
     }
     fn normal_form(&self, site: &ContinuationPoint<2>, form: Form) -> (Uncertain, Criticality) {
         classified(self, &embedded(site), form)
@@ -84,6 +95,9 @@ impl Chart<3> for OverLoadings {
             OverDifferenceChart::to_chart(site)?,
         ))
     }
+    fn whole<'o>(&self, orbit: &'o Regular<3>) -> Option<&'o Regular<3>> {
+        Some(orbit)
+    }
     fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
         classified(self, site, form)
     }
@@ -111,6 +125,9 @@ impl Chart<3> for OverDifferenceChart {
         _: &ContinuationPoint<3>,
     ) -> Option<(OverDifferenceChart, ContinuationPoint<3>)> {
         None
+    }
+    fn whole<'o>(&self, orbit: &'o Regular<3>) -> Option<&'o Regular<3>> {
+        Some(orbit)
     }
     fn normal_form(&self, site: &ContinuationPoint<3>, form: Form) -> (Uncertain, Criticality) {
         classified(self, site, form)

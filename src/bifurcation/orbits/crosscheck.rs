@@ -3,7 +3,7 @@
 //! Pitchforks of orbits are found in another formulation too. Tops and zeros of cubic coefficients have no condition of their
 //! own, and no second method here.
 
-use super::refine::{DefiningCondition, SpecialOrbit};
+use super::refine::SpecialOrbit;
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::field::State;
@@ -11,7 +11,7 @@ use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, OverDifferenceChart,
     OverLoadings, ParametrisedField, Regular, ShootingNodes, TangentVector, TestFunction, Tracer,
-    of_digits,
+    WatchedFunction, of_digits,
 };
 
 /// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
@@ -39,7 +39,7 @@ pub fn crosscheck(
     let family = OverLoadings(*slab);
     let across = orbit
         .meets
-        .contains(&DefiningCondition::TestFunction(TestFunction::Transverse));
+        .contains(&WatchedFunction::TestFunction(TestFunction::Transverse));
     let second = if across {
         second_pitchfork(family, orbit, method)?
     } else if planar {
@@ -88,7 +88,7 @@ fn second_pitchfork(
     let others = orbit
         .meets
         .iter()
-        .filter(|meets| **meets != DefiningCondition::TestFunction(TestFunction::Transverse));
+        .filter(|meets| **meets != WatchedFunction::TestFunction(TestFunction::Transverse));
     let others: Vec<Condition<'_, 3>> = others.map(|exactly| exactly.condition()).collect();
     let mut found = |digits: i32| {
         let ContinuationPoint { shooting, at } = cut::<2>(orbit, digits);

@@ -3,18 +3,19 @@
 use super::branch::{ROUGH, new_corrector};
 use super::chart::{Chart, middle};
 use super::cubic_coefficient::{CubicCoefficient, Decided, degenerate_pitchfork};
-use super::detect::WatchedFunction;
-use super::follow::{End, Met, follow};
 use super::locus::Locus;
-use super::refine::{DefiningCondition, refined, rough, special};
+use super::refine::{rough, special};
 use super::rows::{GivenParameters, asked, symmetry};
 use super::top::top;
 use crate::bifurcation::{Event, EventObserver, Label, LocusRequest, LocusRow, Special};
+use crate::continuation::{Met, Stop};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
-use crate::orbit::{ContinuationPoint, DirectedPoint, OverLoadings, Palc, Regular, TestFunction};
+use crate::orbit::{
+    ContinuationPoint, DirectedPoint, OverLoadings, Palc, Regular, TestFunction, WatchedFunction,
+};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
@@ -173,14 +174,16 @@ impl<'r, 's> HalfCurve<'r, 's> {
         let mut decided: Option<Decided<N>> = None;
         let mut lost = false;
         let watches = self.watches::<N>();
-        let end = follow(palc, &watches, STEPS, &mut |palc, before, met| match met {
-            Met::Zero(WatchedFunction::Value(..), at) if Pass::of(&at.site).is(&self.begin) => {
+        let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(WatchedFunction::Value(..), at)
+                if Pass::of(&at.here.site).is(&self.begin) =>
+            {
                 Continue(())
             }
-            Met::Zero(watch, at) => self.zero(palc, watch, at),
-            Met::Orbit(now) => {
+            Met::Zero(watch, at) => self.zero(palc, watch, &at.here),
+            Met::Point(now) => {
                 let here = &now.here;
-                let family = palc.corrector.family;
+                let family = palc.curve.corrector.family;
                 if family.merges(&here.site, &before.here.site) {
                     return self.merged(&family.slab(), &family.usual(&here.site));
                 }
@@ -195,21 +198,18 @@ impl<'r, 's> HalfCurve<'r, 's> {
                 if lost { Break(()) } else { Continue(()) }
             }
         })?;
-        if end == End::Interrupted && !lost || self.told {
+        if end == Stop::Observer && !lost || self.told {
             return Ok(());
         }
-        let site = &palc.now.here.site;
-        let (family, settings) = (*palc.corrector.family, palc.settings.clone());
-        let length = (palc.length, palc.travelled());
+        let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
         if let Some((chart, there)) = family.keeping(site) {
-            let afar = palc.afar();
             let mut corrector = new_corrector::<_, 3>(&chart)?;
-            if let Some(mut palc) = Palc::resumed(&mut corrector, settings, there, afar, length) {
+            if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
                 return self.go(&mut palc);
             }
         }
         let mut special = rough(Label::Mx, &family.usual(site));
-        special.note = Some(end.words());
+        special.note = Some(end.to_string());
         let _ = self.tell(Event::Special(special));
         Ok(())
     }
@@ -277,7 +277,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         {
             self.passes.push(Pass::of(&at.site));
         }
-        let (label, condition, ends) = match watch {
+        let (label, ends) = match watch {
             // Nobody asked for it.
             WatchedFunction::Value(i, value) if self.given(i, value)[i].is_none() => {
                 return Continue(());
@@ -286,45 +286,33 @@ impl<'r, 's> HalfCurve<'r, 's> {
                 let range = [self.request.driving, self.request.stiffness][i];
                 let end = value == range.0.ln() || value == range.1.ln();
                 let label = if end { Label::Ep } else { Label::Uz };
-                (label, DefiningCondition::Parameter(i, value), end)
+                (label, end)
             }
             WatchedFunction::Turn(_) => return self.turn(palc, at),
-            WatchedFunction::TestFunction(other @ TestFunction::Trace(value)) => {
+            WatchedFunction::TestFunction(TestFunction::Trace(value)) => {
                 let Some((label, _)) = RESONANCES.iter().find(|r| r.1 == value) else {
                     return Continue(());
                 };
-                (
-                    *label,
-                    DefiningCondition::TestFunction(other),
-                    value.abs() == 2.0,
-                )
+                (*label, value.abs() == 2.0)
             }
             // Both multipliers are -1, or 1.
-            WatchedFunction::TestFunction(other)
+            WatchedFunction::TestFunction(_)
                 if test_function == TestFunction::Doubling && trace < 0.0 =>
             {
-                (Label::R2, DefiningCondition::TestFunction(other), false)
+                (Label::R2, false)
             }
-            WatchedFunction::TestFunction(other)
+            WatchedFunction::TestFunction(_)
                 if test_function == TestFunction::Fold && trace > 0.0 =>
             {
-                (Label::R1, DefiningCondition::TestFunction(other), false)
+                (Label::R1, false)
             }
             WatchedFunction::TestFunction(_) => return Continue(()),
         };
-        let meets = [DefiningCondition::TestFunction(test_function), condition];
-        let family = palc.corrector.family;
-        let refined_point = refined(family, &at.site, &palc.settings.free, &meets);
-        let orbit = refined_point
-            .as_ref()
-            .map_or(at, |refined_point| &refined_point.orbit);
-        let mut special = special(
-            family,
-            label,
-            refined_point.as_ref(),
-            &at.site,
-            (&palc.settings.free, &meets),
-        );
+        let meets = [WatchedFunction::TestFunction(test_function), watch];
+        let family = palc.curve.corrector.family;
+        let meets = (&palc.curve.settings.free[..], &meets[..]);
+        let (mut special, orbit) = special(family, label, &at.site, meets);
+        let orbit = orbit.as_ref().unwrap_or(at);
         if let WatchedFunction::Value(i, value) = watch {
             special.given(self.given(i, value));
         }
@@ -351,7 +339,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         palc: &mut Palc<'_, '_, F, N>,
         at: &Regular<N>,
     ) -> ControlFlow<()> {
-        let family = palc.corrector.family;
+        let family = palc.curve.corrector.family;
         if let Some(top) = top(family, &at.site, self.test_function)
             && top.largest
         {

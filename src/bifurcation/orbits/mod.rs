@@ -1,13 +1,10 @@
 //! Branches of periodic orbits and the curves of their bifurcations.
 
 mod branch;
-mod certain;
 mod chart;
 mod crosscheck;
 mod cubic_coefficient;
 mod curve;
-mod detect;
-mod follow;
 mod half_curve;
 mod locus;
 pub mod normal_form;
@@ -20,7 +17,5 @@ mod vertical;
 
 pub use branch::branch;
 pub use crosscheck::crosscheck;
-pub use detect::WatchedFunction;
-pub use follow::{End, Met, follow};
 pub use locus::{loci, locus};
 pub use refine::SpecialOrbit;

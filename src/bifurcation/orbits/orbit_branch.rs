@@ -3,17 +3,17 @@
 use super::branch::{BranchSet, Doubling, new_corrector};
 use super::chart::{Chart, embedded, middle};
 use super::cubic_coefficient::CubicCoefficient;
-use super::detect::WatchedFunction;
-use super::follow::{End, Met, follow};
 use super::normal_form::Form;
-use super::refine::{DefiningCondition, RefinedPoint, refined, rough, special};
+use super::refine::{refined, rough, special};
 use super::rows::{GivenParameters, asked, row};
 use super::vertical::Vertical;
 use crate::bifurcation::{Event, EventObserver, Label, Special};
+use crate::continuation::{Met, Stop};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::orbit::{ContinuationPoint, DirectedPoint, Palc, Regular, TestFunction};
-use std::any::Any;
+use crate::orbit::{
+    ContinuationPoint, DirectedPoint, Palc, Regular, TestFunction, WatchedFunction,
+};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a branch.
@@ -74,7 +74,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         palc: Walker<'_, '_, '_, F, N>,
     ) -> Result<ControlFlow<()>> {
         let end = self.along(palc)?;
-        if end == Some(End::Interrupted) {
+        if end == Some(Stop::Observer) {
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
         if let Some(vertical) = self.vertical.filter(Vertical::is_shown) {
@@ -82,13 +82,10 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             let _ = self.tell(Event::Special(special));
             return Ok(if self.told { Break(()) } else { Continue(()) });
         }
-        let site = &palc.now.here.site;
-        let (family, settings) = (*palc.corrector.family, palc.settings.clone());
-        let length = (palc.length, palc.travelled());
+        let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
         if let Some((chart, there)) = family.keeping(site) {
-            let afar = palc.afar();
             let mut corrector = new_corrector::<_, 3>(&chart)?;
-            if let Some(mut palc) = Palc::resumed(&mut corrector, settings, there, afar, length) {
+            if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
                 return self.go(&mut palc);
             }
         }
@@ -96,7 +93,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             let mut special = rough(Label::Mx, &family.usual(site));
             special.note = Some(end.map_or_else(
                 || "the interfaces come so near each other that their difference is lost".into(),
-                End::words,
+                |end| end.to_string(),
             ));
             let _ = self.tell(Event::Special(special));
         }
@@ -107,41 +104,36 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     fn along<F: Chart<N>, const N: usize>(
         &mut self,
         palc: Walker<'_, '_, '_, F, N>,
-    ) -> Result<Option<End>> {
+    ) -> Result<Option<Stop>> {
         let (mut failed, mut lost, mut vertical) = (None, false, false);
-        let end = follow(
-            palc,
-            &self.watches::<N>(),
-            STEPS,
-            &mut |palc, before, met| {
-                let last = &before.here.site;
-                let met = match met {
-                    Met::Zero(watch, at) => {
-                        let back = self.comes_back(palc, before);
-                        self.zero(palc, watch, at, last, back)
-                    }
-                    Met::Orbit(now) => {
-                        let back = self.comes_back(palc, before);
-                        match self.orbit(palc, now, last, back) {
-                            // A branch that has ended does not go on in other variables.
-                            Ok(Continue(())) if palc.corrector.family.loses(&now.here.site) => {
-                                lost = true;
-                                Ok(Break(()))
-                            }
-                            Ok(Continue(())) if self.is_vertical(palc, now) => {
-                                vertical = true;
-                                Ok(Break(()))
-                            }
-                            met => met,
+        let end = palc.follow(&self.watches::<N>(), STEPS, &mut |palc, before, met| {
+            let last = &before.here.site;
+            let met = match met {
+                Met::Zero(watch, at) => {
+                    let back = self.comes_back(palc, before);
+                    self.zero(palc, watch, &at.here, last, back)
+                }
+                Met::Point(now) => {
+                    let back = self.comes_back(palc, before);
+                    match self.orbit(palc, now, last, back) {
+                        // A branch that has ended does not go on in other variables.
+                        Ok(Continue(())) if palc.curve.corrector.family.loses(&now.here.site) => {
+                            lost = true;
+                            Ok(Break(()))
                         }
+                        Ok(Continue(())) if self.is_vertical(palc, now) => {
+                            vertical = true;
+                            Ok(Break(()))
+                        }
+                        met => met,
                     }
-                };
-                met.unwrap_or_else(|error| {
-                    failed = Some(error);
-                    Break(())
-                })
-            },
-        )?;
+                }
+            };
+            met.unwrap_or_else(|error| {
+                failed = Some(error);
+                Break(())
+            })
+        })?;
         match failed {
             Some(error) => Err(error),
             None if lost || vertical => Ok(None),
@@ -207,7 +199,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             self.shrunk(i);
             return Ok(Break(()));
         }
-        let family = palc.corrector.family;
+        let family = palc.curve.corrector.family;
         if family.merges(site, last) {
             self.merged(&family.usual(last));
             return Ok(Break(()));
@@ -256,7 +248,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     /// An asymmetric branch has met the symmetric one.
     fn merged<const N: usize>(&mut self, last: &ContinuationPoint<N>) {
         let site = middle(last);
-        let across = [DefiningCondition::TestFunction(TestFunction::Transverse)];
+        let across = [WatchedFunction::TestFunction(TestFunction::Transverse)];
         let free = self.branches.free;
         let family = self.branches.family;
         let Some(refined_point) = refined::<_, 2>(&family, &site, &[free], &across) else {
@@ -290,9 +282,9 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             return Some(Back::Through);
         }
         let ContinuationPoint { shooting, at } = &here.site;
-        let field = palc.corrector.family.field(*at);
+        let field = palc.curve.corrector.family.field(*at);
         let half = 0.5 * shooting.period();
-        let tracer = &mut palc.corrector.tracer;
+        let tracer = &mut palc.curve.corrector.tracer;
         let after = tracer.flow(&*field, &shooting.nodes[0], half, None).ok()?;
         ((after - shooting.nodes[0]).amax() < SAME).then_some(Back::Jumped)
     }
@@ -335,30 +327,19 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         // Where the branch leaves the range it ends, where it enters it begins.
         let ends = label == Label::Ep && self.inside;
         self.inside |= label == Label::Ep;
-        let meets = match watch {
-            WatchedFunction::Value(i, value) => DefiningCondition::Parameter(i, value),
-            WatchedFunction::Turn(_) => DefiningCondition::TestFunction(TestFunction::Fold),
-            WatchedFunction::TestFunction(test_function) => {
-                DefiningCondition::TestFunction(test_function)
-            }
-        };
-        let family = palc.corrector.family;
-        let refined_point = refined(family, &at.site, &palc.settings.free, &[meets]);
-        let orbit = refined_point
-            .as_ref()
-            .map_or(at, |refined_point| &refined_point.orbit);
-        let mut row = row(family, self.number, orbit, Some(label))?;
-        let mut special = special(
+        let family = palc.curve.corrector.family;
+        let meets = (&palc.curve.settings.free[..], &[watch][..]);
+        let (mut special, orbit) = special(family, label, &at.site, meets);
+        let mut row = row(
             family,
-            label,
-            refined_point.as_ref(),
-            &at.site,
-            (&palc.settings.free, &[meets]),
-        );
+            self.number,
+            orbit.as_ref().unwrap_or(at),
+            Some(label),
+        )?;
         row.given(self.given(Some(watch)));
         special.given(self.given(Some(watch)));
-        if let Some(refined_point) = &refined_point {
-            self.remember(family, label, refined_point, &mut special);
+        if let Some(orbit) = &orbit {
+            self.remember(family, label, orbit, &mut special);
         }
         if self.tell(Event::Special(special)).is_break() || self.tell(Event::Branch(row)).is_break()
         {
@@ -389,7 +370,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     ) -> Option<Label> {
         let BranchSet { range, .. } = *self.branches;
         let merges = || {
-            let family = palc.corrector.family;
+            let family = palc.curve.corrector.family;
             family.merges(&palc.now.here.site, last)
         };
         let label = match watch {
@@ -417,15 +398,14 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         &mut self,
         family: &F,
         label: Label,
-        refined_point: &RefinedPoint<N>,
+        orbit: &Regular<N>,
         special: &mut Special,
     ) {
-        let orbit: &dyn Any = &refined_point.orbit;
         let form = match label {
             Label::Pd => Form::Doubling,
             Label::Tr => Form::Torus,
             Label::Pf => {
-                if let Some(orbit) = orbit.downcast_ref::<Regular<2>>() {
+                if let Some(orbit) = family.symmetric(orbit) {
                     self.pitchfork(special, orbit);
                     self.branches.pitchforks.push(orbit.clone());
                 }
@@ -433,17 +413,13 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             }
             _ => return,
         };
-        let Some(orbit) = orbit.downcast_ref::<Regular<3>>() else {
+        let Some(whole) = family.whole(orbit) else {
             return;
         };
-        special.goes(Some(CubicCoefficient::at(
-            family,
-            &refined_point.orbit.site,
-            form,
-        )));
-        if label == Label::Pd && !family.loses(&refined_point.orbit.site) {
+        special.goes(Some(CubicCoefficient::at(family, &orbit.site, form)));
+        if label == Label::Pd && !family.loses(&orbit.site) {
             self.branches.doublings.push(Doubling {
-                orbit: orbit.clone(),
+                orbit: whole.clone(),
                 before: self.times,
             });
             self.branches.visited.push(false);

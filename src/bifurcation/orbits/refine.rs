@@ -9,28 +9,8 @@ use crate::bifurcation::{Label, Special};
 use crate::model::{DRIVING, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, Noise, ParametrisedField, Regular, TestFunction,
+    ContinuationPoint, Corrector, Goal, Noise, ParametrisedField, Regular, WatchedFunction,
 };
-
-/// What a special orbit meets, by itself: no plane of a continuation.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum DefiningCondition {
-    /// A bifurcation.
-    TestFunction(TestFunction),
-    /// The coordinate of this parameter has this value.
-    Parameter(usize, f64),
-}
-
-impl DefiningCondition {
-    pub(super) fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
-        match self {
-            DefiningCondition::TestFunction(test_function) => {
-                Condition::TestFunction(test_function)
-            }
-            DefiningCondition::Parameter(i, value) => Condition::Parameter(i, value),
-        }
-    }
-}
 
 /// The orbit of a special point.
 #[derive(Debug, Clone, PartialEq)]
@@ -42,8 +22,8 @@ pub struct SpecialOrbit {
     pub(super) nodes: Vec<Vec<f64>>,
     pub(super) durations: Vec<f64>,
     pub(super) at: [f64; 2],
-    /// What makes it special, and the parameters that are free for it.
-    pub(super) meets: Vec<DefiningCondition>,
+    /// What is zero there, and the parameters that are free for it.
+    pub(super) meets: Vec<WatchedFunction>,
     pub(super) free: Vec<usize>,
 }
 
@@ -64,7 +44,7 @@ pub struct RefinedPoint<const N: usize> {
     pub at: [Uncertain; 2],
     /// The period.
     pub period: Uncertain,
-    meets: Vec<DefiningCondition>,
+    meets: Vec<WatchedFunction>,
     free: Vec<usize>,
 }
 
@@ -78,12 +58,12 @@ const ENOUGH: f64 = 1e-11;
 /// Rounding, in units of the value: of the sum of durations, and of a parameter beside that of its logarithm.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The orbit near a site that meets the conditions, in the last digits.
+/// The orbit near a site where all these are zero, in the last digits.
 pub fn refined<F: ParametrisedField<N>, const N: usize>(
     family: &F,
     near: &ContinuationPoint<N>,
     free: &[usize],
-    meets: &[DefiningCondition],
+    meets: &[WatchedFunction],
 ) -> Option<RefinedPoint<N>> {
     let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
     let mut solutions: Vec<Regular<N>> = Vec::new();
@@ -123,7 +103,7 @@ pub fn refined<F: ParametrisedField<N>, const N: usize>(
     let fixed = |i: usize| {
         let by_value = meets
             .iter()
-            .any(|m| matches!(m, DefiningCondition::Parameter(j, _) if *j == i));
+            .any(|m| matches!(m, WatchedFunction::Value(j, _) if *j == i));
         by_value || !free.contains(&i)
     };
     let parameter = |i: usize| {
@@ -145,31 +125,30 @@ pub fn refined<F: ParametrisedField<N>, const N: usize>(
     })
 }
 
-/// A special point of a slab: the best that could be done, or a place on the continuation.
+/// A special point of a slab: the best that could be done, or a place on the continuation; and its orbit, where it is refined.
 pub(super) fn special<F: Chart<N>, const N: usize>(
     family: &F,
     label: Label,
-    refined_point: Option<&RefinedPoint<N>>,
     near: &ContinuationPoint<N>,
-    (free, meets): (&[usize], &[DefiningCondition]),
-) -> Special {
-    let Some(refined_point) = refined_point else {
+    (free, meets): (&[usize], &[WatchedFunction]),
+) -> (Special, Option<Regular<N>>) {
+    let Some(refined_point) = refined(family, near, free, meets) else {
         let kept = kept(family, label, near, free, meets);
-        return kept.unwrap_or_else(|| rough(label, &family.usual(near)));
+        let special = kept.unwrap_or_else(|| rough(label, &family.usual(near)));
+        return (special, None);
     };
     let mut special = refined_point.special(label);
+    let orbit = Some(refined_point.orbit);
     if special.driving.uncertainty > ENOUGH * special.driving.value.abs()
         && let Some(better) = kept(family, label, near, free, meets)
         && better.driving.uncertainty < special.driving.uncertainty
     {
-        return better;
+        return (better, orbit);
     }
-    if family.keeps_difference()
-        && let Some(orbit) = &mut special.orbit
-    {
-        orbit.in_difference_chart = true;
+    if let Some(orbit) = &mut special.orbit {
+        orbit.in_difference_chart = family.keeps_difference();
     }
-    special
+    (special, orbit)
 }
 
 /// The same in the difference chart, if there is one.
@@ -178,7 +157,7 @@ fn kept<F: Chart<N>, const N: usize>(
     label: Label,
     near: &ContinuationPoint<N>,
     free: &[usize],
-    meets: &[DefiningCondition],
+    meets: &[WatchedFunction],
 ) -> Option<Special> {
     let (chart, there) = family.keeping(near)?;
     let mut special = refined(&chart, &there, free, meets)?.special(label);

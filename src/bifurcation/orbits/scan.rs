@@ -2,14 +2,13 @@
 //! that are wanted.
 
 use super::chart::Chart;
-use super::detect::WatchedFunction;
-use super::follow::{Met, follow};
+use crate::continuation::Met;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::{DRIVING, Parameter};
 use crate::orbit::{
-    ContinuationPoint, Corrector, HopfPoint, InterfaceSystem, OverLoadings, Palc, PalcSettings,
-    TestFunction, Tracer, hopf_points,
+    ContinuationPoint, Corrector, DirectedPoint, HopfPoint, InterfaceSystem, OverLoadings, Palc,
+    PalcSettings, TestFunction, Tracer, WatchedFunction, hopf_points,
 };
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -103,40 +102,35 @@ where
             return Ok(());
         };
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
-        let watches: Vec<WatchedFunction> = self.test_functions.iter().map(|&i| watch(i)).collect();
-        follow(
-            &mut palc,
-            &watches,
-            STEPS,
-            &mut |palc, before, met| match met {
-                Met::Zero(met, at) => {
-                    let pitchfork = family.merges(&palc.now.here.site, &before.here.site);
-                    let test_function = test_function(met);
-                    let is_one = match test_function {
-                        TestFunction::Torus => at.spectrum.trace.abs() < 2.0,
-                        TestFunction::Fold => !pitchfork,
-                        _ => true,
-                    };
-                    if is_one && inside(&at.site) {
-                        found.push((test_function, at.site.clone()));
-                    }
+        let watches: Vec<_> = self.test_functions.iter().map(|&i| watch(i)).collect();
+        palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(met, DirectedPoint { here: at, .. }) => {
+                let pitchfork = family.merges(&palc.now.here.site, &before.here.site);
+                let test_function = test_function(met);
+                let is_one = match test_function {
+                    TestFunction::Torus => at.spectrum.trace.abs() < 2.0,
+                    TestFunction::Fold => !pitchfork,
+                    _ => true,
+                };
+                if is_one && inside(&at.site) {
+                    found.push((test_function, at.site.clone()));
+                }
+                Continue(())
+            }
+            Met::Point(now) => {
+                let here = &now.here.site;
+                let left = been && !inside(here);
+                been |= inside(here);
+                let end = palc.ends_at(&before.here.site, hopfs);
+                reached.extend(end);
+                let merged = family.merges(here, &before.here.site);
+                if left && last_one || end.is_some() || merged {
+                    Break(())
+                } else {
                     Continue(())
                 }
-                Met::Orbit(now) => {
-                    let here = &now.here.site;
-                    let left = been && !inside(here);
-                    been |= inside(here);
-                    let end = palc.ends_at(&before.here.site, hopfs);
-                    reached.extend(end);
-                    let merged = family.merges(here, &before.here.site);
-                    if left && last_one || end.is_some() || merged {
-                        Break(())
-                    } else {
-                        Continue(())
-                    }
-                }
-            },
-        )?;
+            }
+        })?;
         Ok(())
     }
 }

@@ -50,7 +50,10 @@ impl Vertical {
     ) -> Option<Self> {
         let (site, first) = (&here.site, self.orbits == 0);
         let plane = [Condition::Plane(direction, site)];
-        let noise = palc.corrector.noise(here, &palc.settings.free, &plane)?;
+        let noise = palc
+            .curve
+            .corrector
+            .noise(here, &palc.curve.settings.free, &plane)?;
         let next = Vertical {
             orbits: self.orbits + 1,
             coordinates: widened(self.coordinates, site.at[free], first),
@@ -84,7 +87,10 @@ impl Vertical {
         mut given: GivenParameters,
     ) -> Special {
         let name = ["V_H", "K"][free];
-        let mut special = rough(Label::Ep, &palc.corrector.family.usual(&palc.now.here.site));
+        let mut special = rough(
+            Label::Ep,
+            &palc.curve.corrector.family.usual(&palc.now.here.site),
+        );
         given[free] = None;
         special.given(given);
         let place = [&mut special.driving, &mut special.stiffness];

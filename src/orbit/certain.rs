@@ -3,10 +3,14 @@
 //! At a fold the parameter turns: on both sides of it, it is less, or it is greater, than at the fold. Where a branch is
 //! vertical, as at a degenerate Hopf point, the parameter's slope is noise and changes its sign again and again.
 
-use super::detect::{WatchedFunction, size};
-use crate::orbit::{
-    Condition, Corrector, DirectedPoint, Goal, Palc, PalcSettings, ParametrisedField, Regular,
-};
+use super::continuation_point::TangentVector;
+use super::correct::{Condition, Corrector, Goal, Regular};
+use super::family::ParametrisedField;
+use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunction};
+use crate::continuation::CurveStep;
+
+/// Values beyond this are no noise. Of turns nothing can be said by their values.
+const CLEAR: f64 = 1e-5;
 
 /// The distances to both sides that are tried, the nearest first, in units of the step.
 const PARTS: [f64; 3] = [0.125, 0.5, 1.0];
@@ -15,27 +19,37 @@ const DEVIATIONS: f64 = 5.0;
 /// Tolerance with which the sides are looked at, as what steps may err by.
 const FINE: f64 = 2e-15;
 
-/// Whether the zero of what is watched, which was landed on at `orbit` on a step of the continuation from `before` over `length`, is one.
+/// Whether the zero of what is watched, which was landed on at `orbit` on a step, is one.
 pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
-    palc: &mut Palc<'_, '_, F, N>,
-    watch: WatchedFunction,
+    OrbitCurve {
+        corrector,
+        settings,
+    }: &mut OrbitCurve<'_, '_, F, N>,
+    (watch, values): (WatchedFunction, [f64; 2]),
     orbit: &Regular<N>,
-    (before, length): (&DirectedPoint<N>, f64),
+    step: &CurveStep<DirectedPoint<N>>,
 ) -> bool {
-    let settings = palc.settings.clone();
-    let found = if palc.corrector.tracer.differentiates() {
-        let fine = Corrector::new(palc.corrector.family, FINE);
+    let clear = match watch {
+        WatchedFunction::Turn(_) => false,
+        WatchedFunction::TestFunction(_) => values.iter().all(|value| value.abs() > CLEAR),
+        WatchedFunction::Value(..) => true,
+    };
+    if clear {
+        return true;
+    }
+    let found = if corrector.tracer.differentiates() {
+        let fine = Corrector::new(corrector.family, FINE);
         fine.ok()
-            .and_then(|mut fine| beside(&mut fine, &settings, watch, orbit, length))
+            .and_then(|mut fine| beside(&mut fine, settings, watch, orbit, step.length))
     } else {
-        beside(palc.corrector, &settings, watch, orbit, length)
+        beside(corrector, settings, watch, orbit, step.length)
     };
     found.unwrap_or_else(|| {
         // By the ends of the step, then, as accurately as these are known.
-        let ends = [before.here.clone(), palc.now.here.clone()];
-        let plane = before.direction.clone();
-        let mut at = |orbit: &Regular<N>| measured(palc.corrector, &settings, watch, orbit, &plane);
-        let [Some(a), Some(b), Some(middle)] = [at(&ends[0]), at(&ends[1]), at(orbit)] else {
+        let plane = &step.from.direction;
+        let mut at = |orbit: &Regular<N>| measured(corrector, settings, watch, orbit, plane);
+        let [Some(a), Some(b), Some(middle)] = [at(&step.from.here), at(&step.to.here), at(orbit)]
+        else {
             return false;
         };
         changes(watch, a, middle, b) == Some(true)
@@ -78,7 +92,7 @@ fn measured<F: ParametrisedField<N>, const N: usize>(
     settings: &PalcSettings,
     watch: WatchedFunction,
     orbit: &Regular<N>,
-    across: &crate::orbit::TangentVector<N>,
+    across: &TangentVector<N>,
 ) -> Option<Measured> {
     let plane = [Condition::Plane(across, &orbit.site)];
     match watch {
@@ -86,11 +100,12 @@ fn measured<F: ParametrisedField<N>, const N: usize>(
             let noise = corrector.noise(orbit, &settings.free, &plane)?;
             Some((orbit.site.at[i], noise.parameters[i]))
         }
-        WatchedFunction::TestFunction(test_function) => Some((
-            test_function.of::<N>(&orbit.spectrum) / size::<N>(test_function, &orbit.spectrum),
-            corrector.noise_of(test_function, orbit, &settings.free, plane[0])?
-                / size::<N>(test_function, &orbit.spectrum),
-        )),
+        WatchedFunction::TestFunction(test_function) => {
+            let size = test_function.size::<N>(&orbit.spectrum);
+            let noise = corrector.noise_of(test_function, orbit, &settings.free, plane[0])?;
+            let value = test_function.of::<N>(&orbit.spectrum);
+            Some((value / size, noise / size))
+        }
         WatchedFunction::Value(i, value) => Some((orbit.site.at[i] - value, 0.0)),
     }
 }

@@ -1,0 +1,139 @@
+//! Landing on a zero between two points of a curve.
+
+use super::detect::{Bracket, Sample};
+use super::{CurveStep, SolutionCurve};
+use crate::error::{Error, Result};
+
+/// How often a zero is tried to be landed on by Newton's method.
+const ATTEMPTS: usize = 12;
+/// Evaluations for one zero in a bracket, which at least halves with every third.
+const EVALUATIONS: usize = 100;
+
+/// The point at a zero with its distance: by Newton's method where the curve knows the condition, else in the bracket.
+pub(super) fn landed<C: SolutionCurve>(
+    curve: &mut C,
+    step: &CurveStep<C::Point>,
+    zero: &Bracket<C>,
+) -> Result<(f64, C::Point)> {
+    if !curve.solves(zero.watch) {
+        return bracketed(curve, step, zero);
+    }
+    let [a, b] = &zero.ends;
+    let part = first_fraction(a.value, b.value);
+    let near = if part < 0.5 { &a.point } else { &b.point };
+    let length = step.length;
+    let before = curve.value(&step.from, zero.watch);
+    let (mut low, mut high) = ((0.0, step.from.clone()), (length, step.to.clone()));
+    let mut at = a.at + part * (b.at - a.at);
+    for _ in 0..ATTEMPTS {
+        let guess = curve.correct(&step.from, at).ok().map(|found| found.0);
+        let starts = match &guess {
+            Some(guess) => vec![guess],
+            None => vec![near, &low.1, &high.1],
+        };
+        for start in starts {
+            if let Some(found) = curve.solve(&step.from, start, zero.watch)
+                && found.0 > -0.1 * length
+                && found.0 < 1.1 * length
+            {
+                return Ok(found);
+            }
+        }
+        // By halves, then, until Newton's method stays; and from elsewhere where it does not even find a point.
+        let Some(guess) = guess else {
+            at = 0.5
+                * (at
+                    + if at - low.0 > high.0 - at {
+                        low.0
+                    } else {
+                        high.0
+                    });
+            continue;
+        };
+        if curve.value(&guess, zero.watch) * before > 0.0 {
+            low = (at, guess);
+        } else {
+            high = (at, guess);
+        }
+        at = 0.5 * (low.0 + high.0);
+    }
+    Err(Error::NotConverged {
+        what: "a zero on the curve",
+        iterations: ATTEMPTS,
+        residual: f64::INFINITY,
+        tolerance: 0.0,
+    })
+}
+
+/// In the bracket, by inverse quadratic interpolation on the distance (Chandrupatla 1997).
+pub(super) fn bracketed<C: SolutionCurve>(
+    curve: &mut C,
+    step: &CurveStep<C::Point>,
+    zero: &Bracket<C>,
+) -> Result<(f64, C::Point)> {
+    let [mut a, mut b] = zero.ends.clone();
+    let nearer = |a: &Sample<C::Point, f64>, b: &Sample<C::Point, f64>| {
+        if a.value.abs() < b.value.abs() { a } else { b }.clone()
+    };
+    let mut best = nearer(&a, &b);
+    let mut t = first_fraction(a.value, b.value).clamp(0.01, 0.99);
+    let flat = curve.flat();
+    for _ in 0..EVALUATIONS {
+        let width = (b.at - a.at).abs();
+        let limit = 2.0 * f64::EPSILON * (best.at.abs() + 0.01 * step.length);
+        if best.value.abs() <= flat || width <= 2.0 * limit {
+            break;
+        }
+        let margin = (limit / width).min(0.5);
+        let x = beside(curve, step, zero, [&a, &b], t.clamp(margin, 1.0 - margin))?;
+        let c = if x.value.signum() == a.value.signum() {
+            std::mem::replace(&mut a, x)
+        } else {
+            std::mem::replace(&mut b, std::mem::replace(&mut a, x))
+        };
+        best = nearer(&a, &b);
+        t = next_fraction([a.at, b.at, c.at], [a.value, b.value, c.value]);
+    }
+    Ok((best.at, best.point))
+}
+
+/// At this part of the bracket, or beside it: next to a branch point, which may be just where a zero is supposed, no point can be
+/// corrected.
+fn beside<C: SolutionCurve>(
+    curve: &mut C,
+    step: &CurveStep<C::Point>,
+    zero: &Bracket<C>,
+    [a, b]: [&Sample<C::Point, f64>; 2],
+    t: f64,
+) -> Result<Sample<C::Point, f64>> {
+    /// Parts of the bracket.
+    const ASIDE: [f64; 6] = [1e-3, -1e-3, 0.03, -0.03, 0.3, -0.3];
+    let mut sample = |t: f64| {
+        let at = a.at + t * (b.at - a.at);
+        let known = [(a.at, &a.point), (b.at, &b.point)];
+        let point = curve.between(&step.from, known, at)?;
+        let value = curve.value(&point, zero.watch);
+        Ok(Sample { at, point, value })
+    };
+    sample(t).or_else(|error| {
+        let inside = ASIDE.map(|aside| t + aside).into_iter();
+        let mut inside = inside.filter(|t| *t > 0.0 && *t < 1.0);
+        inside.find_map(|t| sample(t).ok()).ok_or(error)
+    })
+}
+
+/// The zero of the straight line between two values, as a part of the way from the first.
+fn first_fraction(a: f64, b: f64) -> f64 {
+    a / (a - b)
+}
+
+/// Where in the bracket to look next, as a part of it from its first end.
+fn next_fraction([a, b, c]: [f64; 3], [fa, fb, fc]: [f64; 3]) -> f64 {
+    let xi = (a - b) / (c - b);
+    let phi = (fa - fb) / (fc - fb);
+    if phi * phi < xi && (1.0 - phi) * (1.0 - phi) < 1.0 - xi {
+        fa / (fb - fa) * fc / (fb - fc) + (c - a) / (b - a) * fa / (fc - fa) * fb / (fc - fb)
+    } else {
+        0.5
+    }
+}

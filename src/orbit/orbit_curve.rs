@@ -1,0 +1,434 @@
+//! Periodic orbits as a curve that can be followed: along a branch, one parameter free, or a curve of bifurcations, with both.
+
+use super::certain::certain;
+use super::continuation_point::{ContinuationPoint, TangentVector};
+use super::correct::{Condition, Corrector, Goal, Regular};
+use super::family::ParametrisedField;
+use super::linear::Linear;
+use super::shooting_nodes::ShootingMesh;
+use super::test_function::TestFunction;
+use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
+use crate::error::{Error, Result};
+use crate::model::STIFFNESS;
+
+/// Where a continuation stands.
+#[derive(Debug, Clone)]
+#[non_exhaustive]
+pub struct DirectedPoint<const N: usize> {
+    /// The orbit and its surroundings.
+    pub here: Regular<N>,
+    /// The direction of the continuation.
+    pub direction: TangentVector<N>,
+}
+
+/// What is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PalcSettings {
+    /// The free parameters: one for a branch, both for a bifurcation.
+    pub free: Vec<usize>,
+    /// The bifurcation.
+    pub test_function: Option<TestFunction>,
+    /// The longest step.
+    pub longest: f64,
+}
+
+/// What is watched along a continuation of orbits, and the condition that it is zero.
+pub type WatchedFunction = continuation::WatchedFunction<TestFunction>;
+
+impl WatchedFunction {
+    /// Along a branch a turn is a fold.
+    pub(crate) fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
+        match self {
+            WatchedFunction::TestFunction(test_function) => Condition::TestFunction(test_function),
+            WatchedFunction::Value(i, value) => Condition::Parameter(i, value),
+            WatchedFunction::Turn(_) => Condition::TestFunction(TestFunction::Fold),
+        }
+    }
+}
+
+/// Orbits that meet the conditions of a branch or of a bifurcation.
+pub struct OrbitCurve<'c, 'f, F, const N: usize> {
+    /// What makes its orbits.
+    pub corrector: &'c mut Corrector<'f, F, N>,
+    /// What it is along.
+    pub settings: PalcSettings,
+}
+
+/// The pseudo-arclength continuation of periodic orbits.
+pub type Palc<'c, 'f, F, const N: usize> = Continuation<OrbitCurve<'c, 'f, F, N>>;
+
+/// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
+const FIRST: f64 = 0.02;
+const SHORTEST: f64 = 1e-7;
+/// What a first correction may be.
+const OFF: f64 = 0.03;
+/// The least cosine between the directions before and after a step.
+const TURN: f64 = 0.8;
+/// Progress of the last steps, as a part of the way.
+const PROGRESS: f64 = 1e-3;
+/// A slope along a parameter that is small enough where it has no condition of its own.
+const FLAT: f64 = 1e-3;
+
+impl PalcSettings {
+    /// A branch along this parameter.
+    pub fn branch(parameter: usize, longest: f64) -> Self {
+        PalcSettings {
+            free: vec![parameter],
+            test_function: None,
+            longest,
+        }
+    }
+
+    /// A curve of bifurcations.
+    pub fn locus(test_function: TestFunction, longest: f64) -> Self {
+        PalcSettings {
+            free: vec![0, 1],
+            test_function: Some(test_function),
+            longest,
+        }
+    }
+
+    fn own<'a, const N: usize>(&self) -> Option<Condition<'a, N>> {
+        self.test_function.map(Condition::TestFunction)
+    }
+
+    /// The curve's own conditions and one more.
+    pub fn and<'a, const N: usize>(&self, last: Condition<'a, N>) -> Vec<Condition<'a, N>> {
+        self.own().into_iter().chain([last]).collect()
+    }
+
+    /// The direction of the curve at an orbit, with the sign that makes the product with `before` positive.
+    pub fn direction<const N: usize>(
+        &self,
+        at: &Regular<N>,
+        before: &TangentVector<N>,
+    ) -> Option<TangentVector<N>> {
+        let direction = match (&at.along[..], at.gradients.first()) {
+            ([only], _) => only.clone(),
+            // Where the test function does not change.
+            ([first, second], Some(gradient)) => {
+                let (a, b) = (gradient.dot(first), gradient.dot(second));
+                first.clone().scaled(b).plus(-a, second).normalised()?
+            }
+            _ => return None,
+        };
+        let sign = if direction.dot(before) < 0.0 {
+            -1.0
+        } else {
+            1.0
+        };
+        Some(direction.scaled(sign))
+    }
+}
+
+impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
+    /// From an orbit nearby into a direction: the first correction is across it.
+    ///
+    /// # Errors
+    /// Those of [`Corrector::correct`].
+    pub fn from(
+        corrector: &'c mut Corrector<'f, F, N>,
+        settings: PalcSettings,
+        site: ContinuationPoint<N>,
+        direction: TangentVector<N>,
+    ) -> Result<Self> {
+        let conditions = settings.and(Condition::Plane(&direction, &site));
+        let here = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP)?;
+        let direction = settings
+            .direction(&here, &direction)
+            .ok_or_else(no_direction)?;
+        let curve = OrbitCurve {
+            corrector,
+            settings,
+        };
+        let first = DirectedPoint { here, direction };
+        Ok(Continuation::new(curve, first))
+    }
+
+    /// Going on where another continuation stands, after a change of variables to those of this orbit.
+    pub(crate) fn resumed<G: ParametrisedField<M>, const M: usize>(
+        corrector: &'c mut Corrector<'f, F, N>,
+        other: &Palc<'_, '_, G, M>,
+        site: ContinuationPoint<N>,
+    ) -> Option<Self> {
+        let settings = other.curve.settings.clone();
+        let DirectedPoint { here, direction } = &other.now;
+        let afar = direction.seen_from_afar(&here.site.shooting);
+        // Closed in the new variables, with the parameter in which it moves most held.
+        let fixed = if afar[1].abs() > afar[0].abs() && settings.free.contains(&1) {
+            1
+        } else {
+            settings.free[0]
+        };
+        let held = Condition::Parameter(fixed, site.at[fixed]);
+        let here = corrector
+            .correct(site, &settings.free, &settings.and(held), Goal::STEP)
+            .ok()?;
+        let mut curve = OrbitCurve {
+            corrector,
+            settings,
+        };
+        let now = curve.arrived(here.site, here.linear, afar)?;
+        let now = curve.cut(&now)?;
+        Some(Continuation::new(curve, now).resuming(other))
+    }
+}
+
+impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '_, F, N> {
+    type Point = DirectedPoint<N>;
+    type TestFunction = TestFunction;
+
+    fn control(&self) -> StepControl {
+        let longest = self.settings.longest;
+        StepControl {
+            first: FIRST.min(longest),
+            longest,
+            shortest: SHORTEST,
+            error: OFF,
+            cosine: TURN,
+            progress: PROGRESS,
+        }
+    }
+
+    fn correct(
+        &mut self,
+        DirectedPoint { here, direction }: &DirectedPoint<N>,
+        distance: f64,
+    ) -> Result<(DirectedPoint<N>, f64)> {
+        let predicted = here.site.moved(direction, distance);
+        let conditions = self.settings.and(Condition::Plane(direction, &predicted));
+        // The gradients there, and not those of the orbit here: the direction depends on them.
+        let free = &self.settings.free;
+        let next = self
+            .corrector
+            .correct(predicted.clone(), free, &conditions, Goal::STEP)?;
+        let direction = self
+            .settings
+            .direction(&next, direction)
+            .ok_or_else(no_direction)?;
+        let first = next.first;
+        let here = next;
+        Ok((DirectedPoint { here, direction }, first))
+    }
+
+    fn cosine(&self, a: &DirectedPoint<N>, b: &DirectedPoint<N>) -> f64 {
+        b.direction.dot(&a.direction)
+    }
+
+    fn scale(&self, at: &DirectedPoint<N>) -> f64 {
+        at.here.site.shooting.extent().min(1.0)
+    }
+
+    /// Often a node's plane lies badly: nodes elsewhere may do.
+    fn failed(
+        &mut self,
+        here: &DirectedPoint<N>,
+        again: bool,
+        _: bool,
+    ) -> Result<Option<DirectedPoint<N>>, Stop> {
+        if let Some(steps) = self.corrector.tracer.used_up() {
+            return Err(Stop::Failed(format!(
+                "the bound of {steps} steps of the integrator is used up"
+            )));
+        }
+        if again {
+            return Ok(None);
+        }
+        self.cut(here).map(Some).ok_or_else(no_nodes)
+    }
+
+    /// With the orbit's arcs cut anew where they have become uneven.
+    fn taken(
+        &mut self,
+        _: &DirectedPoint<N>,
+        to: &DirectedPoint<N>,
+    ) -> Result<Option<DirectedPoint<N>>, Stop> {
+        if !uneven(&to.here) {
+            return Ok(None);
+        }
+        self.cut(to).map(Some).ok_or_else(no_nodes)
+    }
+
+    fn checked(&self, watch: WatchedFunction) -> Result<()> {
+        match watch {
+            WatchedFunction::TestFunction(test_function) => test_function.checked::<N>(),
+            _ => Ok(()),
+        }
+    }
+
+    fn value(&self, at: &DirectedPoint<N>, watch: WatchedFunction) -> f64 {
+        match watch {
+            WatchedFunction::Turn(i) => at.direction.parameters[i],
+            WatchedFunction::Value(i, value) => at.here.site.at[i] - value,
+            WatchedFunction::TestFunction(test_function) => {
+                let at = &at.here.spectrum;
+                test_function.of::<N>(at) / test_function.size::<N>(at)
+            }
+        }
+    }
+
+    fn slopes(
+        &mut self,
+        at: &DirectedPoint<N>,
+        watches: &[WatchedFunction],
+        _: f64,
+    ) -> Vec<Option<f64>> {
+        let mut watched = watches.iter();
+        let by = watched
+            .any(|w| matches!(w, WatchedFunction::TestFunction(_)))
+            .then(|| self.corrector.slope(&at.here, &at.direction))
+            .flatten();
+        let spectrum = &at.here.spectrum;
+        let slope = |watch: &WatchedFunction| match *watch {
+            WatchedFunction::Turn(_) => None,
+            WatchedFunction::Value(i, _) => Some(at.direction.parameters[i]),
+            WatchedFunction::TestFunction(test_function) => {
+                let change = test_function.change_along::<N>(spectrum, by.as_ref()?);
+                Some(change / test_function.size::<N>(spectrum))
+            }
+        };
+        watches.iter().map(slope).collect()
+    }
+
+    /// Along a curve of bifurcations a turn has no condition of its own.
+    fn solves(&self, watch: WatchedFunction) -> bool {
+        watch != WatchedFunction::Turn(STIFFNESS) || self.settings.test_function.is_none()
+    }
+
+    fn solve(
+        &mut self,
+        from: &DirectedPoint<N>,
+        near: &DirectedPoint<N>,
+        watch: WatchedFunction,
+    ) -> Option<(f64, DirectedPoint<N>)> {
+        let conditions = self.settings.and(watch.condition());
+        let (site, free) = (near.here.site.clone(), &self.settings.free);
+        let found = self.corrector.correct(site, free, &conditions, Goal::STEP);
+        let here = found.ok()?;
+        let direction = self.settings.direction(&here, &near.direction);
+        let direction = direction.unwrap_or_else(|| near.direction.clone());
+        let distance = from.direction.dot(&here.site.from(&from.here.site));
+        Some((distance, DirectedPoint { here, direction }))
+    }
+
+    fn flat(&self) -> f64 {
+        FLAT
+    }
+
+    /// Of a curve of bifurcations K alone is watched for turns, and each is looked at by who is told.
+    fn certain(
+        &mut self,
+        change: (WatchedFunction, [f64; 2]),
+        at: &DirectedPoint<N>,
+        step: &CurveStep<DirectedPoint<N>>,
+    ) -> bool {
+        self.settings.test_function.is_some() || certain(self, change, &at.here, step)
+    }
+}
+
+impl<F: ParametrisedField<N>, const N: usize> OrbitCurve<'_, '_, F, N> {
+    /// The orbit with its arcs cut anew.
+    fn cut(
+        &mut self,
+        DirectedPoint { here, direction }: &DirectedPoint<N>,
+    ) -> Option<DirectedPoint<N>> {
+        let site = &here.site;
+        let field = self.corrector.family.field(site.at);
+        let shooting = site
+            .shooting
+            .cut(&mut self.corrector.tracer, &*field, &ShootingMesh::FINE)
+            .ok()?;
+        drop(field);
+        let old = direction.seen_from_afar(&site.shooting);
+        let mut site = ContinuationPoint {
+            shooting,
+            at: site.at,
+        };
+        let mut linear = self.corrector.linear(&site)?;
+        for _ in 0..SPLITS {
+            if linear.growth().all(|growth| growth < GROWTH) {
+                break;
+            }
+            let parts = linear.parts(GROWTH);
+            let field = self.corrector.family.field(site.at);
+            let tracer = &mut self.corrector.tracer;
+            site.shooting = site.shooting.split(tracer, &*field, &parts).ok()?;
+            drop(field);
+            linear = self.corrector.linear(&site)?;
+        }
+        let scale = self.corrector.family.scale(site.at);
+        let (_, along) = linear.solutions(&self.settings.free, scale)?;
+        let first = most_moved(&along);
+        site.shooting = site.shooting.beginning_at(first);
+        self.arrived(site, linear.beginning_at(first), old)
+    }
+
+    /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
+    fn arrived(
+        &mut self,
+        site: ContinuationPoint<N>,
+        linear: Linear<N>,
+        old: [f64; 3],
+    ) -> Option<DirectedPoint<N>> {
+        let own: Vec<Condition<'_, N>> = self.settings.own().into_iter().collect();
+        let here = self
+            .corrector
+            .look_with(site, linear, &self.settings.free, &own)?;
+        let any = here.along.first()?.clone();
+        let mut direction = self.settings.direction(&here, &any)?;
+        let new = direction.seen_from_afar(&here.site.shooting);
+        let along: f64 = old.iter().zip(&new).map(|(a, b)| a * b).sum();
+        if along < 0.0 {
+            direction = direction.scaled(-1.0);
+        }
+        Some(DirectedPoint { here, direction })
+    }
+}
+
+fn no_nodes() -> Stop {
+    Stop::Failed("the orbit can't be cut into arcs anew: the integration along it fails".into())
+}
+
+/// Where the continuation begins the curve has no direction.
+fn no_direction() -> Error {
+    Error::NotConverged {
+        what: "the direction of the curve",
+        iterations: 0,
+        residual: f64::INFINITY,
+        tolerance: Goal::STEP.done,
+    }
+}
+
+/// ln of what an arc of a new mesh may grow by, and one of an old mesh.
+const GROWTH: f64 = 5.0;
+const GROWN: f64 = 8.0;
+/// How often arcs are split for it.
+const SPLITS: usize = 6;
+
+/// The node that the tangent vectors left to the orbit move most. All others are found from the first one: from the small end of a
+/// tangent vector that grows by many decades nothing is found.
+fn most_moved<const N: usize>(along: &[TangentVector<N>]) -> usize {
+    let moved = |k: usize| -> f64 {
+        let each = along.iter().map(|tangent| tangent.nodes[k].norm_squared());
+        each.sum()
+    };
+    let count = along.first().map_or(0, |tangent| tangent.nodes.len());
+    (0..count)
+        .max_by(|&a, &b| moved(a).total_cmp(&moved(b)))
+        .unwrap_or(0)
+}
+
+/// Whether arcs take far more work than the others or than they should, or grow by too much.
+fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
+    /// Steps of an arc over the mean, and of the mean over what it should be.
+    const WORST: f64 = 2.5;
+    const MEAN: f64 = 1.6;
+    let arcs = &orbit.linear.arcs;
+    let count = arcs.len() as f64;
+    let mean = arcs.iter().map(|arc| arc.steps).sum::<usize>() as f64 / count;
+    let worst = arcs.iter().map(|arc| arc.steps).max().unwrap_or(0) as f64;
+    let most = mean.max(ShootingMesh::FINE.steps);
+    worst > WORST * most
+        || mean > MEAN * ShootingMesh::FINE.steps
+        || orbit.linear.growth().any(|g| g > GROWN)
+}
