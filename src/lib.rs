@@ -15,7 +15,7 @@
 //! | [`integrate::Integrator`] | a method that makes flows and tangent flows of a field |
 //! | [`equilibrium::steady_states`] | all steady states at a driving velocity, with error budgets and stability |
 //! | [`orbit::find()`] | periodic orbits with their Floquet multipliers, each with an error budget |
-//! | [`continuation::follow()`] | curves of zeros, by pseudo-arclength |
+//! | [`continuation::Continuation`] | any curve of solutions followed by pseudo-arclength; [`continuation::follow()`] curves of zeros |
 //! | [`bifurcation::Event`] | what is found along branches and along the curves of their bifurcations |
 //! | [`bifurcation::equilibria`] | branches of equilibria, and curves of their bifurcations in the (V_H, K) plane |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |

@@ -73,6 +73,7 @@ mod section_exponents;
 mod section_landings;
 mod section_regimes;
 mod sections_of_systems;
+mod solution_curves;
 mod stress;
 mod strong_resonance;
 #[cfg(feature = "sundials")]

@@ -67,16 +67,11 @@ pub trait SolutionCurve {
     }
 
     /// After a step from here has failed: the same point otherwise described, to be tried once more. `again` if it has been
-    /// renewed already, `shortest` if the step can't be shortened.
+    /// described anew already.
     ///
     /// # Errors
     /// Why it makes no sense to go on.
-    fn failed(
-        &mut self,
-        _here: &Self::Point,
-        _again: bool,
-        _shortest: bool,
-    ) -> Result<Option<Self::Point>, Stop> {
+    fn failed(&mut self, _here: &Self::Point, _again: bool) -> Result<Option<Self::Point>, Stop> {
         Ok(None)
     }
 
@@ -84,11 +79,7 @@ pub trait SolutionCurve {
     ///
     /// # Errors
     /// Why it makes no sense to go on.
-    fn taken(
-        &mut self,
-        _from: &Self::Point,
-        _to: &Self::Point,
-    ) -> Result<Option<Self::Point>, Stop> {
+    fn taken(&mut self, _to: &Self::Point) -> Result<Option<Self::Point>, Stop> {
         Ok(None)
     }
 

@@ -24,13 +24,13 @@ pub(super) struct Bracket<C: SolutionCurve> {
 
 /// Halvings of a step, and looks at a dip that is left.
 const DEPTH: usize = 6;
-const LOOKS: usize = 4;
+const LOOKS: usize = 3;
 /// An extremum of the cubic below this part of the values at both ends is looked at.
 const DIP: f64 = 0.25;
 /// So is a step whose cubic turns by more than this part of them.
 const BENT: f64 = 0.6;
-/// Values below this may be noise, and what dips between them too.
-const NOISE: f64 = 1e-9;
+/// Between smaller values it may be noise that dips.
+const NOISE: f64 = 1e-14;
 
 /// All changes of sign on a step, at the beginning of which the values may be known; and the values at its end.
 pub(super) fn sign_changes<C: SolutionCurve>(
@@ -86,7 +86,8 @@ impl<C: SolutionCurve> Look<'_, C> {
             let halve = pairs.any(|(a, b)| suspicious(*a, *b, length));
             halve.then_some(0.5 * (a.at + b.at))
         } else if depth < DEPTH + LOOKS {
-            let part = pairs.find_map(|(a, b)| dip(*a, *b, length));
+            let noise = self.curve.flat().max(NOISE);
+            let part = pairs.find_map(|(a, b)| dip(*a, *b, length, noise));
             part.map(|part| a.at + part * length)
         } else {
             None
@@ -177,9 +178,9 @@ fn suspicious(a: Value, b: Value, length: f64) -> bool {
     bent || cubic.aside().is_some()
 }
 
-/// Where the cubic dips between two values of one sign that are no noise.
-fn dip(a: Value, b: Value, length: f64) -> Option<f64> {
+/// Where the cubic dips between two values of one sign that are greater than this.
+fn dip(a: Value, b: Value, length: f64, noise: f64) -> Option<f64> {
     let cubic = Cubic::new(a, b, length)?;
-    let clear = a.0 * b.0 > 0.0 && cubic.least() > NOISE;
+    let clear = a.0 * b.0 > 0.0 && cubic.least() > noise;
     cubic.aside().filter(|_| clear)
 }

@@ -40,7 +40,7 @@ pub struct Continuation<C: SolutionCurve> {
     /// Where it stands.
     pub now: C::Point,
     /// The next step.
-    pub length: f64,
+    length: f64,
     control: StepControl,
     /// Whether the point has been described anew where it stands.
     renewed: bool,
@@ -58,13 +58,6 @@ pub enum Met<'a, C: SolutionCurve> {
     /// A point where something that is watched is zero, to the accuracy of the continuation.
     Zero(Watched<C>, &'a C::Point),
 }
-
-/// Who is told of what is met: with the continuation, where its step began, and what that is.
-pub type MetObserver<'t, C> = &'t mut dyn FnMut(
-    &mut Continuation<C>,
-    &<C as SolutionCurve>::Point,
-    Met<'_, C>,
-) -> ControlFlow<()>;
 
 type Zeros<C> = Vec<(f64, Watched<C>, <C as SolutionCurve>::Point)>;
 
@@ -94,8 +87,8 @@ impl<C: SolutionCurve> Continuation<C> {
         }
     }
 
-    /// Follows the curve for so many points, past all that is watched. Whoever is told of what is met is given where the step
-    /// began too, described alike.
+    /// Follows the curve for so many points, past all that is watched. Whoever is told of what is met is given the continuation
+    /// too, and where the step began, described alike.
     ///
     /// # Errors
     /// That something can't be watched on this curve.
@@ -103,11 +96,12 @@ impl<C: SolutionCurve> Continuation<C> {
         &mut self,
         watches: &[Watched<C>],
         most: usize,
-        met: MetObserver<'_, C>,
+        met: &mut dyn FnMut(&mut Self, &C::Point, Met<'_, C>) -> ControlFlow<()>,
     ) -> Result<Stop> {
         for &watch in watches {
             self.curve.checked(watch)?;
         }
+        self.known = None;
         for _ in 0..most {
             let step = match self.step() {
                 Ok(step) => step,
@@ -125,7 +119,7 @@ impl<C: SolutionCurve> Continuation<C> {
             if met(self, &step.from, Met::Point(&step.to)).is_break() {
                 return Ok(Stop::Observer);
             }
-            match self.curve.taken(&step.from, &self.now) {
+            match self.curve.taken(&self.now) {
                 Ok(None) => {}
                 Ok(Some(now)) => self.renew(now),
                 Err(stop) => return Ok(stop),
@@ -150,13 +144,9 @@ impl<C: SolutionCurve> Continuation<C> {
                 Err(error) => Some(error),
             };
             let least = self.control.shortest * self.curve.scale(&self.now);
-            let shortest = length * SHORTER < least;
-            if let Some(now) = self.curve.failed(&self.now, self.renewed, shortest)? {
+            if let Some(now) = self.curve.failed(&self.now, self.renewed)? {
                 self.renew(now);
-                if let Some(&last) = self.lengths.back().filter(|_| shortest) {
-                    self.length = last;
-                }
-            } else if shortest {
+            } else if length * SHORTER < least {
                 return Err(Stop::StepTooSmall {
                     length,
                     because: failed,
@@ -221,12 +211,11 @@ impl<C: SolutionCurve> Continuation<C> {
         for zero in brackets {
             let change = (zero.watch, zero.ends.each_ref().map(|end| end.value));
             match landed(&mut self.curve, step, &zero) {
-                Ok((distance, at)) if self.curve.certain(change, &at, step) => {
+                Ok(Some((distance, at))) if self.curve.certain(change, &at, step) => {
                     zeros.push((distance, zero.watch, at));
                 }
                 // What can't be landed on is none: a sign that changes by noise, or through a pole.
                 Ok(_) => {}
-                Err(_) if self.curve.solves(zero.watch) => {}
                 Err(_) if step.length > FINE * self.control.longest => return None,
                 Err(_) => {}
             }

@@ -2,71 +2,66 @@
 
 use super::detect::{Bracket, Sample};
 use super::{CurveStep, SolutionCurve};
-use crate::error::{Error, Result};
+use crate::error::Result;
 
 /// How often a zero is tried to be landed on by Newton's method.
 const ATTEMPTS: usize = 12;
+/// Part of the step by which the zero may lie outside its bracket: what corrections err by, but within the step another zero may be
+/// next to it.
+const BEYOND: f64 = 0.1;
+const WITHIN: f64 = 1e-6;
 /// Evaluations for one zero in a bracket, which at least halves with every third.
 const EVALUATIONS: usize = 100;
 
-/// The point at a zero with its distance: by Newton's method where the curve knows the condition, else in the bracket.
+/// The point at a zero with its distance: by Newton's method, which may find none, where the curve knows the condition; else in the
+/// bracket.
 pub(super) fn landed<C: SolutionCurve>(
     curve: &mut C,
     step: &CurveStep<C::Point>,
     zero: &Bracket<C>,
-) -> Result<(f64, C::Point)> {
+) -> Result<Option<(f64, C::Point)>> {
     if !curve.solves(zero.watch) {
-        return bracketed(curve, step, zero);
+        return bracketed(curve, step, zero).map(Some);
     }
-    let [a, b] = &zero.ends;
-    let part = first_fraction(a.value, b.value);
-    let near = if part < 0.5 { &a.point } else { &b.point };
-    let length = step.length;
-    let before = curve.value(&step.from, zero.watch);
-    let (mut low, mut high) = ((0.0, step.from.clone()), (length, step.to.clone()));
-    let mut at = a.at + part * (b.at - a.at);
+    let [mut low, mut high] = zero.ends.clone();
+    let part = first_fraction(low.value, high.value);
+    let near = if part < 0.5 { &low } else { &high }.point.clone();
+    let width = high.at - low.at;
+    let margin = step.length * if width < step.length { WITHIN } else { BEYOND };
+    let inside = low.at - margin..high.at + margin;
+    let mut at = low.at + part * width;
     for _ in 0..ATTEMPTS {
         let guess = curve.correct(&step.from, at).ok().map(|found| found.0);
         let starts = match &guess {
             Some(guess) => vec![guess],
-            None => vec![near, &low.1, &high.1],
+            None => vec![&near, &low.point, &high.point],
         };
         for start in starts {
-            if let Some(found) = curve.solve(&step.from, start, zero.watch)
-                && found.0 > -0.1 * length
-                && found.0 < 1.1 * length
-            {
-                return Ok(found);
+            let found = curve.solve(&step.from, start, zero.watch);
+            if let Some(found) = found.filter(|found| inside.contains(&found.0)) {
+                return Ok(Some(found));
             }
         }
         // By halves, then, until Newton's method stays; and from elsewhere where it does not even find a point.
-        let Some(guess) = guess else {
-            at = 0.5
-                * (at
-                    + if at - low.0 > high.0 - at {
-                        low.0
-                    } else {
-                        high.0
-                    });
+        let Some(point) = guess else {
+            let lower = at - low.at > high.at - at;
+            at = 0.5 * (at + if lower { low.at } else { high.at });
             continue;
         };
-        if curve.value(&guess, zero.watch) * before > 0.0 {
-            low = (at, guess);
+        let value = curve.value(&point, zero.watch);
+        let end = if value * zero.ends[0].value > 0.0 {
+            &mut low
         } else {
-            high = (at, guess);
-        }
-        at = 0.5 * (low.0 + high.0);
+            &mut high
+        };
+        *end = Sample { at, point, value };
+        at = 0.5 * (low.at + high.at);
     }
-    Err(Error::NotConverged {
-        what: "a zero on the curve",
-        iterations: ATTEMPTS,
-        residual: f64::INFINITY,
-        tolerance: 0.0,
-    })
+    Ok(None)
 }
 
 /// In the bracket, by inverse quadratic interpolation on the distance (Chandrupatla 1997).
-pub(super) fn bracketed<C: SolutionCurve>(
+fn bracketed<C: SolutionCurve>(
     curve: &mut C,
     step: &CurveStep<C::Point>,
     zero: &Bracket<C>,

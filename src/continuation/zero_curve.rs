@@ -13,7 +13,7 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// this part of the longest step is as good.
 const NARROW: f64 = 1e-4;
 /// Slopes of test functions are differences over this part of the step.
-const BESIDE: f64 = 1e-3;
+const BESIDE: f64 = 1e-7;
 /// For the eye no step is made shorter than this part of the longest.
 const FINE: f64 = 0.01;
 /// Two points are one if they differ by no more than this many tolerances.
@@ -42,8 +42,6 @@ pub fn follow(
         problem,
         settings: &settings,
         first: first.clone(),
-        bend: DVector::zeros(problem.dimension() + 1),
-        before: None,
         watch,
     };
     let now = curve.tested(first.clone())?;
@@ -141,10 +139,6 @@ struct ZeroCurve<'a> {
     settings: &'a Settings,
     watch: &'a mut dyn CurveObserver,
     first: CurvePoint,
-    /// The point before.
-    before: Option<DVector<f64>>,
-    /// The change of the tangent per length in the last step: the predictor's second order.
-    bend: DVector<f64>,
 }
 
 impl ZeroCurve<'_> {
@@ -206,11 +200,11 @@ impl SolutionCurve for ZeroCurve<'_> {
             ..
         } = &from.point;
         let straight = from.place() + along * distance;
-        let guess = &straight + &self.bend * (0.5 * distance * distance);
         let plane = Hyperplane::ahead(&from.point, distance);
-        let x = onto(self.problem, &guess, &plane, self.settings.tolerance)?;
+        let x = onto(self.problem, &straight, &plane, self.settings.tolerance)?;
         let missed = (&x - &straight).norm() / distance;
         let next = point(&x, tangent(self.problem, &x, along)?, arclength + distance);
+        // Farther aside there is another part of the curve, or another curve.
         let fine = distance < FINE * self.settings.longest_step;
         if missed > self.settings.largest_turn || !fine && self.watch.too_far(&from.point, &next) {
             return Err(failed(0, missed, self.settings.largest_turn));
@@ -248,35 +242,6 @@ impl SolutionCurve for ZeroCurve<'_> {
 
     fn cosine(&self, a: &TestedPoint, b: &TestedPoint) -> f64 {
         a.point.tangent.dot(&b.point.tangent)
-    }
-
-    /// With the direction from the point before: next to a branch point, by an accident of the steps, a tangent is lost to rounding
-    /// or to the errors of the derivatives.
-    fn failed(
-        &mut self,
-        here: &TestedPoint,
-        _: bool,
-        shortest: bool,
-    ) -> Result<Option<TestedPoint>, Stop> {
-        let before = self.before.take_if(|_| shortest);
-        let Some(across) = before.map(|before| here.place() - before) else {
-            return Ok(None);
-        };
-        self.bend.fill(0.0);
-        let tangent = across.normalize();
-        let onward = tangent.dot(&here.point.tangent) > 0.0;
-        let point = CurvePoint {
-            tangent,
-            ..here.point.clone()
-        };
-        Ok(self.tested(point).ok().filter(|_| onward))
-    }
-
-    fn taken(&mut self, from: &TestedPoint, to: &TestedPoint) -> Result<Option<TestedPoint>, Stop> {
-        let length = to.point.arclength - from.point.arclength;
-        self.bend = (&to.point.tangent - &from.point.tangent) / length;
-        self.before = Some(from.place());
-        Ok(None)
     }
 
     fn value(&self, at: &TestedPoint, watch: WatchedFunction<ZeroTest>) -> f64 {

@@ -29,13 +29,12 @@ pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
     orbit: &Regular<N>,
     step: &CurveStep<DirectedPoint<N>>,
 ) -> bool {
-    let clear = match watch {
-        WatchedFunction::Turn(_) => false,
-        WatchedFunction::TestFunction(_) => values.iter().all(|value| value.abs() > CLEAR),
-        WatchedFunction::Value(..) => true,
-    };
-    if clear {
-        return true;
+    match watch {
+        WatchedFunction::TestFunction(_) if values.iter().all(|value| value.abs() > CLEAR) => {
+            return true;
+        }
+        WatchedFunction::Value(..) => return true,
+        _ => {}
     }
     let found = if corrector.tracer.differentiates() {
         let fine = Corrector::new(corrector.family, FINE);

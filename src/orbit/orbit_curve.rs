@@ -88,8 +88,10 @@ impl PalcSettings {
         }
     }
 
-    fn own<'a, const N: usize>(&self) -> Option<Condition<'a, N>> {
-        self.test_function.map(Condition::TestFunction)
+    /// The curve's own conditions: none on a branch.
+    pub(crate) fn own<'a, const N: usize>(&self) -> Vec<Condition<'a, N>> {
+        let own = self.test_function.map(Condition::TestFunction);
+        own.into_iter().collect()
     }
 
     /// The curve's own conditions and one more.
@@ -224,7 +226,6 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
         &mut self,
         here: &DirectedPoint<N>,
         again: bool,
-        _: bool,
     ) -> Result<Option<DirectedPoint<N>>, Stop> {
         if let Some(steps) = self.corrector.tracer.used_up() {
             return Err(Stop::Failed(format!(
@@ -238,11 +239,7 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
     }
 
     /// With the orbit's arcs cut anew where they have become uneven.
-    fn taken(
-        &mut self,
-        _: &DirectedPoint<N>,
-        to: &DirectedPoint<N>,
-    ) -> Result<Option<DirectedPoint<N>>, Stop> {
+    fn taken(&mut self, to: &DirectedPoint<N>) -> Result<Option<DirectedPoint<N>>, Stop> {
         if !uneven(&to.here) {
             return Ok(None);
         }
@@ -370,7 +367,7 @@ impl<F: ParametrisedField<N>, const N: usize> OrbitCurve<'_, '_, F, N> {
         linear: Linear<N>,
         old: [f64; 3],
     ) -> Option<DirectedPoint<N>> {
-        let own: Vec<Condition<'_, N>> = self.settings.own().into_iter().collect();
+        let own = self.settings.own();
         let here = self
             .corrector
             .look_with(site, linear, &self.settings.free, &own)?;

@@ -63,15 +63,11 @@ where
     let mut forth = HalfCurve::new(locus, number, begin, Some(seen));
     if let Ok(mut palc) = Palc::from(&mut corrector, settings, here, direction.scaled(-1.0)) {
         forth.begins(&mut palc);
-        if !forth.told && !forth.leaves(&palc.now) {
+        if forth.told.is_continue() && !forth.leaves(&palc.now) {
             forth.go(&mut palc)?;
         }
     }
-    let told = if forth.told {
-        ControlFlow::Break(())
-    } else {
-        ControlFlow::Continue(())
-    };
+    let told = forth.told;
     passes.extend(forth.kept().0);
     Ok(Some(Curve { passes, told }))
 }
@@ -89,12 +85,8 @@ where
     let closed: Regular<N> = corrector
         .correct(seed, &settings.free, &fixed, Goal::STEP)
         .ok()?;
-    let own: Vec<_> = settings
-        .test_function
-        .map(Condition::TestFunction)
-        .into_iter()
-        .collect();
-    let here = corrector.look(closed.site, &settings.free, &own).ok()?;
+    let here = corrector.look(closed.site, &settings.free, &settings.own());
+    let here = here.ok()?;
     let direction = settings.direction(&here, &here.along[0])?;
     Some((here.site, direction))
 }

@@ -72,7 +72,7 @@ pub(super) struct HalfCurve<'r, 's> {
     /// The values of ln K at which the curve is to be known again, and where it passes these.
     scan: &'r [f64],
     passes: Vec<Pass>,
-    pub told: bool,
+    pub told: ControlFlow<()>,
 }
 
 impl<'r, 's> HalfCurve<'r, 's> {
@@ -92,7 +92,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
             events: Vec::new(),
             scan: locus.scan,
             passes: Vec::new(),
-            told: false,
+            told: Continue(()),
         }
     }
 
@@ -109,7 +109,9 @@ impl<'r, 's> HalfCurve<'r, 's> {
             return Continue(());
         };
         let told = seen(event);
-        self.told |= told.is_break();
+        if told.is_break() {
+            self.told = told;
+        }
         told
     }
 
@@ -151,7 +153,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         for watch in self.watches::<N>() {
             if let WatchedFunction::Value(i, value) = watch
                 && (self.begin.at[i] - value).abs() < SAME
-                && !self.told
+                && self.told.is_continue()
             {
                 // That it may be the range's end is seen to by who asks whether the way leaves it.
                 let _ = self.zero(palc, watch, &here);
@@ -198,7 +200,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
                 if lost { Break(()) } else { Continue(()) }
             }
         })?;
-        if end == Stop::Observer && !lost || self.told {
+        if end == Stop::Observer && !lost || self.told.is_break() {
             return Ok(());
         }
         let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
@@ -296,17 +298,11 @@ impl<'r, 's> HalfCurve<'r, 's> {
                 (*label, value.abs() == 2.0)
             }
             // Both multipliers are -1, or 1.
-            WatchedFunction::TestFunction(_)
-                if test_function == TestFunction::Doubling && trace < 0.0 =>
-            {
-                (Label::R2, false)
-            }
-            WatchedFunction::TestFunction(_)
-                if test_function == TestFunction::Fold && trace > 0.0 =>
-            {
-                (Label::R1, false)
-            }
-            WatchedFunction::TestFunction(_) => return Continue(()),
+            WatchedFunction::TestFunction(_) => match test_function {
+                TestFunction::Doubling if trace < 0.0 => (Label::R2, false),
+                TestFunction::Fold if trace > 0.0 => (Label::R1, false),
+                _ => return Continue(()),
+            },
         };
         let meets = [WatchedFunction::TestFunction(test_function), watch];
         let family = palc.curve.corrector.family;

@@ -31,7 +31,7 @@ pub(super) struct OrbitBranch<'b, 'r, 's> {
     /// How often the period has doubled.
     pub times: usize,
     seen: EventObserver<'s>,
-    told: bool,
+    told: ControlFlow<()>,
     /// As long as the parameter has not varied.
     vertical: Option<Vertical>,
 }
@@ -63,7 +63,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             begin,
             times: 0,
             seen,
-            told: false,
+            told: Continue(()),
             vertical: Some(Vertical::default()),
         }
     }
@@ -75,12 +75,12 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     ) -> Result<ControlFlow<()>> {
         let end = self.along(palc)?;
         if end == Some(Stop::Observer) {
-            return Ok(if self.told { Break(()) } else { Continue(()) });
+            return Ok(self.told);
         }
         if let Some(vertical) = self.vertical.filter(Vertical::is_shown) {
             let special = vertical.end(palc, self.branches.free, self.given(None));
             let _ = self.tell(Event::Special(special));
-            return Ok(if self.told { Break(()) } else { Continue(()) });
+            return Ok(self.told);
         }
         let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
         if let Some((chart, there)) = family.keeping(site) {
@@ -97,7 +97,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             ));
             let _ = self.tell(Event::Special(special));
         }
-        Ok(if self.told { Break(()) } else { Continue(()) })
+        Ok(self.told)
     }
 
     /// In the same variables throughout; `None` where these lose digits, or where the branch is vertical.
@@ -105,7 +105,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         &mut self,
         palc: Walker<'_, '_, '_, F, N>,
     ) -> Result<Option<Stop>> {
-        let (mut failed, mut lost, mut vertical) = (None, false, false);
+        let (mut failed, mut left) = (None, false);
         let end = palc.follow(&self.watches::<N>(), STEPS, &mut |palc, before, met| {
             let last = &before.here.site;
             let met = match met {
@@ -115,14 +115,11 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
                 }
                 Met::Point(now) => {
                     let back = self.comes_back(palc, before);
+                    let loses = palc.curve.corrector.family.loses(&now.here.site);
                     match self.orbit(palc, now, last, back) {
                         // A branch that has ended does not go on in other variables.
-                        Ok(Continue(())) if palc.curve.corrector.family.loses(&now.here.site) => {
-                            lost = true;
-                            Ok(Break(()))
-                        }
-                        Ok(Continue(())) if self.is_vertical(palc, now) => {
-                            vertical = true;
+                        Ok(Continue(())) if loses || self.is_vertical(palc, now) => {
+                            left = true;
                             Ok(Break(()))
                         }
                         met => met,
@@ -136,8 +133,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         })?;
         match failed {
             Some(error) => Err(error),
-            None if lost || vertical => Ok(None),
-            None => Ok(Some(end)),
+            None => Ok((!left).then_some(end)),
         }
     }
 
@@ -180,7 +176,9 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         }
         let event = event.on(self.number, self.symmetry);
         let told = (self.seen)(event.against(self.branches.request.tolerance));
-        self.told |= told.is_break();
+        if told.is_break() {
+            self.told = told;
+        }
         told
     }
 

@@ -27,9 +27,9 @@ pub(super) struct Scan<const N: usize> {
     driving: (f64, f64),
     symmetry: Symmetry,
     /// What is looked for.
-    test_functions: Vec<TestFunction>,
+    watches: Vec<WatchedFunction>,
     /// What has been found, at these K.
-    found: Vec<(f64, Vec<(TestFunction, ContinuationPoint<N>)>)>,
+    found: Vec<(f64, Vec<(WatchedFunction, ContinuationPoint<N>)>)>,
 }
 
 impl<const N: usize> Scan<N>
@@ -41,15 +41,16 @@ where
             slab,
             driving,
             symmetry,
-            test_functions: Vec::new(),
+            watches: Vec::new(),
             found: Vec::new(),
         }
     }
 
     /// Looks for this too.
     pub fn also(&mut self, test_function: TestFunction) {
-        if !self.test_functions.contains(&test_function) {
-            self.test_functions.push(test_function);
+        let watch = watch(test_function);
+        if !self.watches.contains(&watch) {
+            self.watches.push(watch);
         }
     }
 
@@ -66,11 +67,11 @@ where
         let here = self.found.iter().filter(|found| found.0 == stiffness);
         let of_kind = here
             .flat_map(|found| &found.1)
-            .filter(|one| one.0 == test_function);
+            .filter(|one| one.0 == watch(test_function));
         Ok(of_kind.map(|one| one.1.clone()).collect())
     }
 
-    fn all_at(&self, stiffness: f64) -> Result<Vec<(TestFunction, ContinuationPoint<N>)>> {
+    fn all_at(&self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint<N>)>> {
         let slab = self.slab.of_stiffness(stiffness);
         let (mut found, mut reached) = (Vec::new(), Vec::new());
         let hopfs = hopf_points(&slab, self.symmetry, Parameter::Driving)?;
@@ -88,7 +89,7 @@ where
         slab: &InterfaceSystem,
         (i, hopfs): (usize, &[HopfPoint]),
         reached: &mut Vec<usize>,
-        found: &mut Vec<(TestFunction, ContinuationPoint<N>)>,
+        found: &mut Vec<(WatchedFunction, ContinuationPoint<N>)>,
     ) -> Result<()> {
         let family = OverLoadings(*slab);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
@@ -102,18 +103,18 @@ where
             return Ok(());
         };
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
-        let watches: Vec<_> = self.test_functions.iter().map(|&i| watch(i)).collect();
-        palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
-            Met::Zero(met, DirectedPoint { here: at, .. }) => {
+        palc.follow(&self.watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(watch, DirectedPoint { here: at, .. }) => {
                 let pitchfork = family.merges(&palc.now.here.site, &before.here.site);
-                let test_function = test_function(met);
-                let is_one = match test_function {
-                    TestFunction::Torus => at.spectrum.trace.abs() < 2.0,
-                    TestFunction::Fold => !pitchfork,
+                let is_one = match watch {
+                    WatchedFunction::TestFunction(TestFunction::Torus) => {
+                        at.spectrum.trace.abs() < 2.0
+                    }
+                    WatchedFunction::Turn(_) => !pitchfork,
                     _ => true,
                 };
                 if is_one && inside(&at.site) {
-                    found.push((test_function, at.site.clone()));
+                    found.push((watch, at.site.clone()));
                 }
                 Continue(())
             }
@@ -140,12 +141,5 @@ fn watch(test_function: TestFunction) -> WatchedFunction {
     match test_function {
         TestFunction::Fold => WatchedFunction::Turn(DRIVING),
         other => WatchedFunction::TestFunction(other),
-    }
-}
-
-fn test_function(watch: WatchedFunction) -> TestFunction {
-    match watch {
-        WatchedFunction::TestFunction(test_function) => test_function,
-        _ => TestFunction::Fold,
     }
 }

@@ -50,10 +50,8 @@ impl Vertical {
     ) -> Option<Self> {
         let (site, first) = (&here.site, self.orbits == 0);
         let plane = [Condition::Plane(direction, site)];
-        let noise = palc
-            .curve
-            .corrector
-            .noise(here, &palc.curve.settings.free, &plane)?;
+        let all_free = &palc.curve.settings.free;
+        let noise = palc.curve.corrector.noise(here, all_free, &plane)?;
         let next = Vertical {
             orbits: self.orbits + 1,
             coordinates: widened(self.coordinates, site.at[free], first),
