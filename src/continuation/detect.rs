@@ -45,16 +45,8 @@ pub(super) fn sign_changes<C: SolutionCurve>(
         watches,
         found: Vec::new(),
     };
-    let from = step.from.clone();
-    let start = match known {
-        Some(value) => Sample {
-            at: 0.0,
-            point: from,
-            value,
-        },
-        None => look.sample(0.0, from),
-    };
-    let end = look.sample(step.length, step.to.clone());
+    let start = look.sample(0.0, step.from.clone(), known);
+    let end = look.sample(step.length, step.to.clone(), None);
     look.between(&start, &end, 0);
     (look.found, end.value)
 }
@@ -67,10 +59,17 @@ struct Look<'a, C: SolutionCurve> {
 }
 
 impl<C: SolutionCurve> Look<'_, C> {
-    fn sample(&mut self, at: f64, point: C::Point) -> Sample<C::Point, Vec<Value>> {
-        let slopes = self.curve.slopes(&point, self.watches, self.step.length);
-        let values = self.watches.iter().map(|&w| self.curve.value(&point, w));
-        let value = values.zip(slopes).collect();
+    fn sample(
+        &mut self,
+        at: f64,
+        point: C::Point,
+        known: Option<Vec<Value>>,
+    ) -> Sample<C::Point, Vec<Value>> {
+        let value = known.unwrap_or_else(|| {
+            let slopes = self.curve.slopes(&point, self.watches, self.step.length);
+            let values = self.watches.iter().map(|&w| self.curve.value(&point, w));
+            values.zip(slopes).collect()
+        });
         Sample { at, point, value }
     }
 
@@ -96,7 +95,7 @@ impl<C: SolutionCurve> Look<'_, C> {
         if let Some(at) = at
             && let Ok(point) = self.curve.between(&self.step.from, known, at)
         {
-            let middle = self.sample(at, point);
+            let middle = self.sample(at, point, None);
             self.between(a, &middle, depth + 1);
             self.between(&middle, b, depth + 1);
             return;

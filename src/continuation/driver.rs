@@ -59,6 +59,13 @@ pub enum Met<'a, C: SolutionCurve> {
     Zero(Watched<C>, &'a C::Point),
 }
 
+/// Who is told of what is met: with the continuation, where its step began, described alike, and what that is.
+pub type MetObserver<'t, C> = &'t mut dyn FnMut(
+    &mut Continuation<C>,
+    &<C as SolutionCurve>::Point,
+    Met<'_, C>,
+) -> ControlFlow<()>;
+
 type Zeros<C> = Vec<(f64, Watched<C>, <C as SolutionCurve>::Point)>;
 
 impl<C: SolutionCurve> Continuation<C> {
@@ -87,8 +94,7 @@ impl<C: SolutionCurve> Continuation<C> {
         }
     }
 
-    /// Follows the curve for so many points, past all that is watched. Whoever is told of what is met is given the continuation
-    /// too, and where the step began, described alike.
+    /// Follows the curve for so many points, past all that is watched.
     ///
     /// # Errors
     /// That something can't be watched on this curve.
@@ -96,7 +102,7 @@ impl<C: SolutionCurve> Continuation<C> {
         &mut self,
         watches: &[Watched<C>],
         most: usize,
-        met: &mut dyn FnMut(&mut Self, &C::Point, Met<'_, C>) -> ControlFlow<()>,
+        met: MetObserver<'_, C>,
     ) -> Result<Stop> {
         for &watch in watches {
             self.curve.checked(watch)?;

@@ -75,14 +75,13 @@ pub fn follow(
 fn begin(problem: &dyn ZeroProblem, start: &Start, settings: &Settings) -> Result<CurvePoint> {
     let n = problem.dimension();
     let guess = joined(&start.u, start.lambda);
-    let fixed = Hyperplane::lambda(n, start.lambda);
-    let across = Hyperplane {
-        offset: start.direction.dot(&guess),
-        normal: start.direction.clone(),
-    };
-    let plane = if start.across { &across } else { &fixed };
-    let near = onto(problem, &guess, plane, settings.tolerance);
-    let mut x = near.or_else(|_| from_afar(problem, &guess, plane, settings.tolerance))?;
+    let mut plane = Hyperplane::lambda(n, start.lambda);
+    if start.across {
+        plane.offset = start.direction.dot(&guess);
+        plane.normal = start.direction.clone();
+    }
+    let near = onto(problem, &guess, &plane, settings.tolerance);
+    let mut x = near.or_else(|_| from_afar(problem, &guess, &plane, settings.tolerance))?;
     x[n] = x[n].clamp(settings.range.0, settings.range.1);
     Ok(point(&x, tangent(problem, &x, &start.direction)?, 0.0))
 }
@@ -147,8 +146,8 @@ impl ZeroCurve<'_> {
         Ok(TestedPoint { point, tests })
     }
 
-    /// From the first point.
-    fn from_first(&self, at: &TestedPoint) -> DVector<f64> {
+    /// What leads here from the first point.
+    fn past_first(&self, at: &TestedPoint) -> DVector<f64> {
         at.place() - joined(&self.first.u, self.first.lambda)
     }
 
@@ -156,7 +155,7 @@ impl ZeroCurve<'_> {
     fn closes(&self, at: &TestedPoint) -> bool {
         let size = 1.0 + at.place().amax();
         self.first.tangent.dot(&at.point.tangent) > 0.0
-            && self.from_first(at).amax() <= SAME * self.settings.tolerance * size
+            && self.past_first(at).amax() <= SAME * self.settings.tolerance * size
     }
 
     /// The point in a plane, with the tangent that goes on along this one: at a branch point there is more than one.
@@ -248,7 +247,7 @@ impl SolutionCurve for ZeroCurve<'_> {
         match watch {
             WatchedFunction::TestFunction(ZeroTest::Observed(i)) => at.tests[i],
             WatchedFunction::TestFunction(ZeroTest::Closing) => {
-                self.first.tangent.dot(&self.from_first(at))
+                self.first.tangent.dot(&self.past_first(at))
             }
             WatchedFunction::Turn(_) => at.point.lambda_slope(),
             WatchedFunction::Value(_, value) => at.point.lambda - value,

@@ -45,8 +45,6 @@ enum Back {
     Jumped,
 }
 
-type Walker<'w, 'c, 'f, F, const N: usize> = &'w mut Palc<'c, 'f, F, N>;
-
 impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     pub fn new(
         branches: &'b mut BranchSet<'r>,
@@ -71,7 +69,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     /// To the end, in other variables where these lose digits; breaks where whoever is told had enough.
     pub fn go<F: Chart<N>, const N: usize>(
         mut self,
-        palc: Walker<'_, '_, '_, F, N>,
+        palc: &mut Palc<'_, '_, F, N>,
     ) -> Result<ControlFlow<()>> {
         let end = self.along(palc)?;
         if end == Some(Stop::Observer) {
@@ -103,7 +101,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     /// In the same variables throughout; `None` where these lose digits, or where the branch is vertical.
     fn along<F: Chart<N>, const N: usize>(
         &mut self,
-        palc: Walker<'_, '_, '_, F, N>,
+        palc: &mut Palc<'_, '_, F, N>,
     ) -> Result<Option<Stop>> {
         let (mut failed, mut left) = (None, false);
         let end = palc.follow(&self.watches::<N>(), STEPS, &mut |palc, before, met| {
@@ -308,7 +306,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     /// Something that is watched is zero here.
     fn zero<F: Chart<N>, const N: usize>(
         &mut self,
-        palc: Walker<'_, '_, '_, F, N>,
+        palc: &mut Palc<'_, '_, F, N>,
         watch: WatchedFunction,
         at: &Regular<N>,
         last: &ContinuationPoint<N>,
