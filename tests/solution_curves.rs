@@ -126,9 +126,9 @@ fn zeros(curve: Circle, watches: &[WatchedFunction<Cosine>], end: f64) -> (Vec<f
 /// By Newton's method or in a bracket, and twice in one step too: once around the circle in eight steps.
 #[test]
 fn zeros_are_the_same_however_they_are_landed_on() {
-    for gap in [0.3, 1e-2, 1e-4, 1e-6] {
+    for gap in [0.3_f64, 1e-2, 1e-4, 1e-6] {
         // Two zeros next to each other, at both sides of the turn at pi.
-        let near = Cosine(-(0.5 * gap as f64).cos());
+        let near = Cosine(-(0.5 * gap).cos());
         let watches = [
             WatchedFunction::TestFunction(near),
             WatchedFunction::Turn(0),
