@@ -7,7 +7,7 @@ use std::ops::ControlFlow::{Break, Continue};
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use twinslip::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
-use twinslip::bifurcation::orbits::{Met, follow};
+use twinslip::continuation::Met;
 use twinslip::continuation::{Settings, Stop};
 use twinslip::equilibrium::Symmetry;
 use twinslip::field::{State, VectorField};
@@ -284,8 +284,8 @@ fn doublings_are_followed_in_the_plane_of_stiffness_and_residual_strength() {
     let mut palc = Palc::from(&mut corrector, settings, here.site, direction).unwrap();
     let mut steps = 0;
     let mut last = None;
-    follow(&mut palc, &[], 100, &mut |_, _, met| match met {
-        Met::Orbit(point) => {
+    palc.follow(&[], 100, &mut |_, _, met| match met {
+        Met::Point(point) => {
             steps += 1;
             last = Some(point.here.site.clone());
             if steps == 5 { Break(()) } else { Continue(()) }

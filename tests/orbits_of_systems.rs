@@ -283,7 +283,10 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
     )
     .expect("a continuation");
     let watches = [WatchedFunction::TestFunction(test_function)];
-    refused(palc.follow(&watches, 5, &mut |_, _, _| Continue(())).unwrap_err());
+    refused(
+        palc.follow(&watches, 5, &mut |_, _, _| Continue(()))
+            .unwrap_err(),
+    );
     // In the plane there are neither period doublings nor tori.
     for test_function in [TestFunction::Doubling, TestFunction::Torus] {
         assert!(test_function.checked::<2>().is_err() && test_function.checked::<3>().is_ok());
