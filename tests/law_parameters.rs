@@ -48,6 +48,15 @@ fn a_law_has_its_own_constants_and_no_others() {
 }
 
 #[test]
+#[should_panic(expected = "no place 5")]
+fn a_field_has_no_derivative_in_a_constant_that_its_law_lacks() {
+    let slip = slab("slip", 2);
+    let field = slip.whole();
+    let field = field.parametrised().expect("named parameters");
+    field.parameter_derivative(&State::<3>::new(9.0, -1.0, -2.0), 5);
+}
+
+#[test]
 fn a_constant_that_a_law_does_not_have_is_an_error_of_input() {
     let slip = slab("slip", 2);
     let error = place(slip.whole().names(), "residual_strength").unwrap_err();

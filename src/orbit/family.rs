@@ -139,7 +139,8 @@ impl OverLoadings {
 
 /// A slab over the logarithms of any two of its parameters, constants of its law among them; the others are held.
 ///
-/// Of V_H and K [`OverLoadings`] makes the same, several times as fast.
+/// Derivatives in V_H and K are compiled, as those of [`OverLoadings`]; those in constants of the law run in loops, several times as
+/// long.
 #[derive(Debug, Clone, Copy)]
 pub struct OverLogarithms {
     slab: InterfaceSystem,

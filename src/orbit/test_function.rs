@@ -102,13 +102,8 @@ impl Spectrum {
             volume,
             ..
         } = *self;
-        if dimension != 3 {
-            return Err(Error::Dimension {
-                what: "the pair of multipliers by trace and determinant",
-                known: "3",
-                dimension,
-            });
-        }
+        let what = "the pair of multipliers by trace and determinant";
+        Error::dimension_unless(dimension == 3, what, "3", dimension)?;
         let det = volume.exp();
         let half = 0.5 * trace;
         let discriminant = half * half - det;
@@ -148,14 +143,7 @@ impl TestFunction {
             ),
             TestFunction::Transverse => ("the test function of pitchforks of orbits", "2", N == 2),
         };
-        if holds {
-            return Ok(());
-        }
-        Err(Error::Dimension {
-            what,
-            known,
-            dimension: N,
-        })
+        Error::dimension_unless(holds, what, known, N)
     }
 
     /// Its value, where it is a test function.

@@ -237,6 +237,26 @@ impl Error {
         Error::parameter(what, given, list + &hint)
     }
 
+    /// That a formula holds for so many variables.
+    ///
+    /// # Errors
+    /// [`Error::Dimension`] where it does not.
+    pub fn dimension_unless(
+        holds: bool,
+        what: &'static str,
+        known: &'static str,
+        dimension: usize,
+    ) -> std::result::Result<(), Self> {
+        if holds {
+            return Ok(());
+        }
+        Err(Error::Dimension {
+            what,
+            known,
+            dimension,
+        })
+    }
+
     /// The same error, with its times, stresses, slip rates and stiffnesses told in these units.
     pub fn in_units(self, units: &MessageUnits) -> Self {
         let words = match &self {

@@ -58,6 +58,9 @@ pub trait Parametrised<const N: usize> {
     fn names(&self) -> &[&'static str];
 
     /// df/dp of the parameter at this place.
+    ///
+    /// # Panics
+    /// Where there is none at this place, as the next.
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N>;
 
     /// dJ/dp of the parameter at this place.

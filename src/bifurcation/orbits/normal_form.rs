@@ -66,14 +66,7 @@ impl Form {
                 N == 3,
             ),
         };
-        if holds {
-            return Ok(());
-        }
-        Err(Error::Dimension {
-            what,
-            known,
-            dimension: N,
-        })
+        Error::dimension_unless(holds, what, known, N)
     }
 }
 

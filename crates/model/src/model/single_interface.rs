@@ -1,6 +1,5 @@
 //! One interface, equation (11).
 
-use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::slab::Slab;
 use super::{Driven, Loading};
@@ -68,11 +67,8 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
 impl<L: Law> Slab<2> for SingleInterface<L> {
     type Law = L;
 
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.law,
-            alike: 1.0,
-        }
+    fn law(&self) -> L {
+        self.law
     }
 
     fn loading(&self) -> Loading {

@@ -13,8 +13,21 @@ pub trait Slab<const N: usize> {
     /// The law of all of them.
     type Law: Law;
 
+    /// That law.
+    fn law(&self) -> Self::Law;
+
+    /// How many interfaces move alike.
+    fn alike(&self) -> f64 {
+        1.0
+    }
+
     /// (11) or (19).
-    fn equations(&self) -> Logarithmic<Self::Law>;
+    fn equations(&self) -> Logarithmic<Self::Law> {
+        Logarithmic {
+            law: self.law(),
+            alike: self.alike(),
+        }
+    }
 
     /// V_H and K.
     fn loading(&self) -> Loading;
@@ -38,6 +51,16 @@ fn pair<const N: usize>(slab: &impl Slab<N>) -> Loading {
 /// The formula in V_H and K alone, which serves where no constant of the law is free.
 fn in_loading<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<S::Law>, N, LOADING> {
     recorded(slab.equations(), slab.loading().into())
+}
+
+/// The formula in all parameters, to be differentiated in one at a place where the system has one.
+fn in_constant<S: Slab<N>, const N: usize>(
+    slab: &S,
+    place: usize,
+) -> Recorded<Logarithmic<S::Law>, N, ALL> {
+    let names = Parameter::names(&slab.law());
+    assert!(place < names.len(), "{names:?} have no place {place}");
+    in_all(slab)
 }
 
 /// The formula in all parameters.
@@ -74,14 +97,14 @@ fn is_loading(place: usize) -> bool {
 
 impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
     fn names(&self) -> &[&'static str] {
-        Parameter::names(&self.equations().law)
+        Parameter::names(&self.law())
     }
 
     fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
         if is_loading(place) {
             field(in_loading(self)).parameter_derivative(y, place)
         } else {
-            field(in_all(self)).parameter_derivative(y, place)
+            field(in_constant(self, place)).parameter_derivative(y, place)
         }
     }
 
@@ -89,17 +112,14 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
         if is_loading(place) {
             field(in_loading(self)).parameter_jacobian(y, place)
         } else {
-            field(in_all(self)).parameter_jacobian(y, place)
+            field(in_constant(self, place)).parameter_jacobian(y, place)
         }
     }
 }
 
 impl<S: Slab<N>, const N: usize> Analytic<N> for S {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        Box::new(SeriesSolution::new(
-            self.equations().law.core(),
-            &pair(self),
-        ))
+        Box::new(SeriesSolution::new(self.law().core(), &pair(self)))
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {
@@ -111,7 +131,7 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
         if !free.iter().copied().all(is_loading) {
             return in_all(self).tangent(free);
         }
-        let law = self.equations().law.core();
+        let law = self.law().core();
         let compiled = tangent(law, pair(self), self.weights(), free);
         compiled.unwrap_or_else(|| in_loading(self).tangent(free))
     }

@@ -4,7 +4,6 @@
 //! interfaces behave as one that is driven half as fast by a spring twice as stiff, 2 K (V_H/2 - v) = K (V_H - 2 v), so the
 //! formulas of [`SingleInterface`] serve.
 
-use super::logarithmic::Logarithmic;
 use super::slab::Slab;
 use super::{Driven, Loading, SingleInterface};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
@@ -61,11 +60,12 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
 impl<L: Law> Slab<2> for Symmetric<L> {
     type Law = L;
 
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.equivalent.law,
-            alike: 2.0,
-        }
+    fn law(&self) -> L {
+        self.equivalent.law
+    }
+
+    fn alike(&self) -> f64 {
+        2.0
     }
 
     fn loading(&self) -> Loading {

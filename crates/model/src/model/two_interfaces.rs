@@ -1,6 +1,5 @@
 //! Two interfaces under one stress, equation (19).
 
-use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::slab::Slab;
 use super::{Driven, Loading};
@@ -79,11 +78,8 @@ impl<L: Law> TwoInterfaces<L> {
 impl<L: Law> Slab<3> for TwoInterfaces<L> {
     type Law = L;
 
-    fn equations(&self) -> Logarithmic<L> {
-        Logarithmic {
-            law: self.law,
-            alike: 1.0,
-        }
+    fn law(&self) -> L {
+        self.law
     }
 
     fn loading(&self) -> Loading {
