@@ -9,9 +9,9 @@ use criterion::{BenchmarkId, Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use std::time::Duration;
 use twinslip::equilibrium::Symmetry;
-use twinslip::field::State;
+use twinslip::field::Vector;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
+use twinslip::integrate::{AnyField, Choice, MAX_STEPS, Tolerances};
 use twinslip::internals::newton_step;
 use twinslip::model::Loading;
 use twinslip::orbit::{
@@ -28,7 +28,7 @@ fn slab(driving: f64, stiffness: f64) -> InterfaceSystem {
 }
 
 /// The asymmetric orbit, closed to rounding.
-fn shooting(slab: &InterfaceSystem) -> ShootingNodes<3> {
+fn shooting(slab: &InterfaceSystem) -> ShootingNodes {
     let query = Query {
         symmetry: Symmetry::Asymmetric,
         begin: InitialGuess::Anywhere,
@@ -36,14 +36,14 @@ fn shooting(slab: &InterfaceSystem) -> ShootingNodes<3> {
     let orbit = find(slab, &query, &OrbitAccuracy::of(Choice::Taylor))
         .expect("an orbit")
         .orbit;
-    let nodes = orbit.nodes.iter().map(|x| State::<3>::from_fn(|i, _| x[i]));
+    let nodes = orbit.nodes.into_iter().map(Vector::from_vec);
     ShootingNodes {
         nodes: nodes.collect(),
         durations: orbit.durations,
     }
 }
 
-fn tracer(name: &str, tolerance: f64) -> Tracer<3> {
+fn tracer(name: &str, tolerance: f64) -> Tracer {
     let choice = Choice::named(name).expect("a method of this build");
     let tolerances = Tolerances::equal(tolerance).expect("valid");
     Tracer::new(choice, tolerances, MAX_STEPS).expect("valid")
@@ -57,7 +57,7 @@ fn newton_steps(criterion: &mut Criterion) {
     for (name, driving, stiffness) in [("relaxation-1", 1.0, 0.14), ("small-stiffness", 0.2, 0.05)]
     {
         let slab = slab(driving, stiffness);
-        let field = slab.whole();
+        let field = AnyField::new::<3>(slab.whole());
         let mut group = criterion.benchmark_group(format!("newton-step/{name}"));
         group
             .sample_size(10)
@@ -67,7 +67,7 @@ fn newton_steps(criterion: &mut Criterion) {
             let closed = shooting(&slab);
             group.bench_function(BenchmarkId::from_parameter(method), |bencher| {
                 bencher.iter(|| {
-                    newton_step(&mut tracer, &*field, black_box(&closed)).expect("an orbit")
+                    newton_step(&mut tracer, &field, black_box(&closed)).expect("an orbit")
                 });
             });
         }
@@ -91,19 +91,19 @@ fn hundred_orbits(criterion: &mut Criterion) {
             let mut unstable = 0;
             for &driving in black_box(&velocities) {
                 let slab = slab(driving, 0.14);
-                let field = slab.whole();
+                let field = AnyField::new::<3>(slab.whole());
                 // K V_H T hardly changes.
                 shooting
                     .durations
                     .iter_mut()
                     .for_each(|t| *t *= last / driving);
                 last = driving;
-                let closed = close(&mut tracer, &*field, shooting).expect("an orbit");
-                let multipliers = floquet(&closed, &|x| field.f(x));
+                let closed = close(&mut tracer, &field, shooting).expect("an orbit");
+                let multipliers = floquet(&closed, &field);
                 unstable += usize::from(multipliers.multipliers[0].ln_abs.value > 0.0);
                 shooting = closed
                     .shooting
-                    .meshed(&mut tracer, &*field)
+                    .meshed(&mut tracer, &field)
                     .expect("the same orbit");
             }
             unstable

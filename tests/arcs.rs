@@ -1,8 +1,8 @@
 //! What arcs of multiple shooting err by, against 31 digits, beside what they say of it.
 
-use twinslip::field::{State, VectorField};
+use twinslip::field::{State, Vector, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::integrate::{Integrator, MAX_STEPS, Taylor};
+use twinslip::integrate::{AnyField, Integrator, MAX_STEPS, Taylor};
 use twinslip::model::classics::{Brusselator, Langford, Lorenz, Roessler, VanDerPol};
 use twinslip::model::{Loading, Smooth, interfaces_in_difference_chart, symmetric, two_interfaces};
 use twinslip::number::Real;
@@ -50,12 +50,15 @@ fn errors<const N: usize>(
 ) -> (f64, f64, f64) {
     const ARCS: usize = 200;
     let mut reference = Taylor::reference(MAX_STEPS).unwrap();
-    let mut tracer = Tracer::<N>::taylor(tolerance).unwrap();
-    let mut x = tracer.flow(field, &start, 20.0 * duration, None).unwrap();
+    let mut tracer = Tracer::taylor(tolerance).unwrap();
+    let any = AnyField::of(field);
+    let start = Vector::from_column_slice(start.as_slice());
+    let mut x = tracer.flow(&any, &start, 20.0 * duration, None).unwrap();
     let (mut sum, mut largest, mut steps) = (0.0, 0.0_f64, 0);
     for _ in 0..ARCS {
-        let arc = tracer.arc(field, &x, duration, &[]).unwrap();
-        let exact = reference.flow(field, (0.0, duration), &x, None).unwrap();
+        let arc = tracer.arc(&any, &x, duration, &[]).unwrap();
+        let x_0 = State::<N>::from_column_slice(x.as_slice());
+        let exact = reference.flow(field, (0.0, duration), &x_0, None).unwrap();
         let growth = arc.tangent.amax().max(1.0);
         let worst = (0..N)
             .map(|i| (arc.end[i] - exact[i]).abs() / (1.0 + exact[i].abs()))

@@ -2,13 +2,15 @@
 
 use nalgebra::Complex;
 use std::ops::ControlFlow;
+use twinslip::Error;
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use twinslip::bifurcation::equilibria::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint,
 };
 use twinslip::continuation::{Settings, Stop};
-use twinslip::field::{Jacobian, State, VectorField};
+use twinslip::field::{Jacobian, State, Vector, VectorField};
+use twinslip::integrate::AnyField;
 use twinslip::model::classics;
 use twinslip::number::Real;
 use twinslip::orbit::{OverParameters, ParametrisedField};
@@ -82,11 +84,11 @@ impl VectorField<1> for Folded {
     }
 }
 
-fn all<const N: usize>(
-    family: &FieldEquilibria<'_, N>,
-    onward: &Onward<N>,
+fn all(
+    family: &FieldEquilibria<'_>,
+    onward: &Onward,
     settings: &Settings,
-) -> Vec<FoundEquilibrium<N>> {
+) -> Vec<FoundEquilibrium> {
     let mut found = Vec::new();
     let branch = family
         .follow(onward, settings, &mut |point| {
@@ -98,7 +100,7 @@ fn all<const N: usize>(
     found
 }
 
-fn only<const N: usize>(points: &[FoundEquilibrium<N>], label: Label) -> Vec<FoundEquilibrium<N>> {
+fn only(points: &[FoundEquilibrium], label: Label) -> Vec<FoundEquilibrium> {
     points
         .iter()
         .filter(|p| p.label == Some(label))
@@ -108,7 +110,7 @@ fn only<const N: usize>(points: &[FoundEquilibrium<N>], label: Label) -> Vec<Fou
 
 #[test]
 fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
-    let fields = |rho| Box::new(Lorenz { rho }) as Box<dyn VectorField<3>>;
+    let fields = |rho| AnyField::new::<3>(Box::new(Lorenz { rho }));
     let family = FieldEquilibria {
         fields: &fields,
         along: "rho",
@@ -117,7 +119,7 @@ fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
         let settings = Settings::new((0.0, 30.0), longest).unwrap();
         let origin = all(
             &family,
-            &Onward::along(State::zeros(), 0.0, true),
+            &Onward::along(Vector::zeros(3), 0.0, true),
             &settings,
         );
         assert!(only(&origin, Label::Hb).is_empty() && only(&origin, Label::Lp).is_empty());
@@ -155,13 +157,13 @@ fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
 #[test]
 fn the_brusselator_oscillates_beyond_its_hopf_point() {
     for a in [0.7, 1.0, 2.0] {
-        let fields = |b| Box::new(Brusselator { a, b }) as Box<dyn VectorField<2>>;
+        let fields = |b| AnyField::new::<2>(Box::new(Brusselator { a, b }));
         let family = FieldEquilibria {
             fields: &fields,
             along: "b",
         };
         let settings = Settings::new((0.5, 8.0), 0.3).unwrap();
-        let start = State::<2>::new(a, 0.5 / a);
+        let start = Vector::from_vec(vec![a, 0.5 / a]);
         let points = all(&family, &Onward::along(start, 0.5, true), &settings);
         let hopf = only(&points, Label::Hb);
         assert_eq!(hopf.len(), 1);
@@ -176,14 +178,14 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
 
 #[test]
 fn both_folds_of_a_cubic() {
-    let fields = |p| Box::new(Folded { p }) as Box<dyn VectorField<1>>;
+    let fields = |p| AnyField::new::<1>(Box::new(Folded { p }));
     let family = FieldEquilibria {
         fields: &fields,
         along: "p",
     };
     let mut settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
     settings.wanted = vec![-0.5];
-    let start = State::<1>::new(-1.2);
+    let start = Vector::from_vec(vec![-1.2]);
     let points = all(&family, &Onward::along(start, -2.0, true), &settings);
     let folds: Vec<_> = only(&points, Label::Lp)
         .iter()
@@ -200,6 +202,27 @@ fn both_folds_of_a_cubic() {
     let wanted = only(&points, Label::Uz);
     assert_eq!(wanted.len(), 3);
     assert!(wanted.iter().all(|point| point.parameter == -0.5));
+}
+
+#[test]
+fn a_start_of_another_dimension_is_an_error() {
+    let settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
+    let fields = |p| AnyField::new::<1>(Box::new(Folded { p }));
+    let family = FieldEquilibria {
+        fields: &fields,
+        along: "p",
+    };
+    let onward = Onward::along(Vector::zeros(2), -2.0, true);
+    let refused = family.follow(&onward, &settings, &mut |_| ControlFlow::Continue(()));
+    assert!(matches!(refused, Err(Error::Parameter { .. })));
+
+    let curve = EquilibriumCurve {
+        family: &OverParameters::both(Cusp),
+        kind: EquilibriumBifurcation::Fold,
+    };
+    let start = (&Vector::zeros(2), [-1.99, 3.0]);
+    let refused = curve.follow(start, true, &settings, &mut |_| ControlFlow::Continue(()));
+    assert!(matches!(refused, Err(Error::Parameter { .. })));
 }
 
 /// (x', y') = S (y, -x - p y^3) S^-1, conservative at every p, in coordinates in which rounding shows: the two eigenvalues sum to
@@ -253,13 +276,14 @@ impl VectorField<2> for Conservative {
 #[test]
 fn a_conservative_system_has_no_hopf_points() {
     let family = FieldEquilibria {
-        fields: &|p| Box::new(Conservative { p }),
+        fields: &|p| AnyField::new::<2>(Box::new(Conservative { p })),
         along: "p",
     };
     for longest in [0.3, 0.05, 0.01] {
         let settings = Settings::new((-2.0, 2.0), longest).unwrap();
         let asinh = (-2.0_f64 / 5.0).asinh();
         let begin = Conservative::forth(&State::<2>::new(asinh, 0.0));
+        let begin = Vector::from_column_slice(begin.as_slice());
         let points = all(&family, &Onward::along(begin, -2.0, true), &settings);
         // along the branch u = asinh(p / (1 + p^2)) has an extremum at p = 1, which is no fold in p
         let special: Vec<_> = points.iter().filter_map(|point| point.label).collect();
@@ -279,18 +303,19 @@ impl Equations<1, 2> for Cusp {
     }
 }
 
-fn curve<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
+fn curve(
+    family: &dyn ParametrisedField,
     kind: EquilibriumBifurcation,
-    from: (State<N>, [f64; 2]),
+    (state, at): (&[f64], [f64; 2]),
     growing: bool,
     range: (f64, f64),
-) -> Vec<EquilibriumCurvePoint<N>> {
+) -> Vec<EquilibriumCurvePoint> {
     let settings = Settings::new(range, 0.1).unwrap();
     let mut found = Vec::new();
     let curve = EquilibriumCurve { family, kind };
+    let state = Vector::from_column_slice(state);
     let branch = curve
-        .follow(from, growing, &settings, &mut |point| {
+        .follow((&state, at), growing, &settings, &mut |point| {
             found.push(point.clone());
             ControlFlow::Continue(())
         })
@@ -302,7 +327,7 @@ fn curve<F: ParametrisedField<N>, const N: usize>(
 #[test]
 fn folds_are_followed_past_their_cusp_in_two_parameters() {
     let family = OverParameters::both(Cusp);
-    let start = (State::<1>::new(1.01), [-1.99, 3.0]);
+    let start: (&[f64], _) = (&[1.01], [-1.99, 3.0]);
     let kind = EquilibriumBifurcation::Fold;
     let found = curve(&family, kind, start, false, (-1.0, 4.0));
     for point in &found {
@@ -319,7 +344,7 @@ fn folds_are_followed_past_their_cusp_in_two_parameters() {
 #[test]
 fn hopf_points_are_followed_in_two_parameters() {
     let family = OverParameters::both(classics::Brusselator);
-    let start = (State::<2>::new(1.0, 2.0), [1.01, 2.0]);
+    let start: (&[f64], _) = (&[1.0, 2.0], [1.01, 2.0]);
     let kind = EquilibriumBifurcation::Hopf;
     let found = curve(&family, kind, start, true, (2.0, 5.0));
     for point in &found {

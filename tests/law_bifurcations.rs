@@ -10,8 +10,9 @@ use twinslip::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, E
 use twinslip::continuation::Met;
 use twinslip::continuation::{Settings, Stop};
 use twinslip::equilibrium::Symmetry;
-use twinslip::field::{State, VectorField};
+use twinslip::field::Vector;
 use twinslip::friction::{AnyLaw, Law, Parameters};
+use twinslip::integrate::AnyField;
 use twinslip::model::{Loading, Parameter};
 use twinslip::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, OverLoadings, OverLogarithms,
@@ -27,16 +28,18 @@ fn slab(driving: f64, stiffness: f64) -> InterfaceSystem {
 }
 
 /// The symmetric equilibria at V_H = 10, K = 0.14 along a constant.
-fn along(name: &str, from: f64, settings: &Settings) -> Vec<FoundEquilibrium<3>> {
+fn along(name: &str, from: f64, settings: &Settings) -> Vec<FoundEquilibrium> {
     let slab = slab(10.0, 0.14).with(name, from).unwrap();
-    let fields =
-        |value| -> Box<dyn VectorField<3>> { slab.with(name, value).expect("positive").whole() };
+    let fields = |value| -> AnyField<'_> {
+        let slab = slab.with(name, value).expect("positive");
+        AnyField::new::<3>(slab.whole())
+    };
     let family = FieldEquilibria {
         fields: &fields,
         along: name,
     };
     let w = slab.steady_log_state();
-    let start = State::<3>::new(slab.steady_stress(), w, w);
+    let start = Vector::from_column_slice(&[slab.steady_stress(), w, w]);
     let growing = from == settings.range.0;
     let mut found = Vec::new();
     let branch = family
@@ -53,7 +56,7 @@ fn along(name: &str, from: f64, settings: &Settings) -> Vec<FoundEquilibrium<3>>
     found
 }
 
-fn only(points: &[FoundEquilibrium<3>], label: Label) -> &FoundEquilibrium<3> {
+fn only(points: &[FoundEquilibrium], label: Label) -> &FoundEquilibrium {
     let mut all = points.iter().filter(|point| point.label == Some(label));
     let first = all.next().expect("one");
     assert!(all.next().is_none(), "{label:?}");
@@ -145,7 +148,8 @@ const HOPF: [(Symmetry, [[f64; 2]; 2]); 4] = [
 #[test]
 fn hopf_points_are_followed_in_the_plane_of_driving_and_residual_strength() {
     let slab = slab(10.0, 0.14);
-    let family = OverLogarithms::new(slab, ["driving", "residual_strength"]).unwrap();
+    let names = ["driving", "residual_strength"];
+    let family = OverLogarithms::new(slab, Symmetry::Asymmetric, names).unwrap();
     let curve = EquilibriumCurve {
         family: &family,
         kind: EquilibriumBifurcation::Hopf,
@@ -160,11 +164,11 @@ fn hopf_points_are_followed_in_the_plane_of_driving_and_residual_strength() {
         assert_eq!(begun.len(), known.len());
         for (hopf, (_, known)) in begun.iter().zip(known) {
             let w = &hopf.equilibrium.log_state;
-            let start = State::<3>::new(hopf.equilibrium.stress.value, w[0], w[1]);
+            let start = Vector::from_column_slice(&[hopf.equilibrium.stress.value, w[0], w[1]]);
             let at = [hopf.driving.ln(), settings.range.1];
             let mut found = Vec::new();
             let branch = curve
-                .follow((start, at), false, &settings, &mut |point| {
+                .follow((&start, at), false, &settings, &mut |point| {
                     if ends.contains(&point.at[1]) {
                         found.push([point.at[0].exp(), point.frequency.expect("a pair")]);
                     }
@@ -181,8 +185,9 @@ fn hopf_points_are_followed_in_the_plane_of_driving_and_residual_strength() {
     }
 }
 
-/// What is known of a bifurcation of orbits: V_H, K, c, its start, its period.
-struct Known<const N: usize> {
+/// What is known of a bifurcation of orbits: their symmetry, V_H, K, c, its start, its period.
+struct Known {
+    symmetry: Symmetry,
     driving: f64,
     stiffness: f64,
     residual_strength: f64,
@@ -192,7 +197,8 @@ struct Known<const N: usize> {
     kind: TestFunction,
 }
 
-const TORUS: Known<3> = Known {
+const TORUS: Known = Known {
+    symmetry: Symmetry::Asymmetric,
     driving: 0.07675565393585058,
     stiffness: 0.14,
     residual_strength: 0.0011,
@@ -202,7 +208,8 @@ const TORUS: Known<3> = Known {
     kind: TestFunction::Torus,
 };
 
-const DOUBLING: Known<3> = Known {
+const DOUBLING: Known = Known {
+    symmetry: Symmetry::Asymmetric,
     driving: 0.0884,
     stiffness: 0.14,
     residual_strength: 0.0009747144081494844,
@@ -212,7 +219,8 @@ const DOUBLING: Known<3> = Known {
     kind: TestFunction::Doubling,
 };
 
-const PITCHFORK: Known<2> = Known {
+const PITCHFORK: Known = Known {
+    symmetry: Symmetry::Symmetric,
     driving: 4.710203064028729,
     stiffness: 0.13,
     residual_strength: 0.0011,
@@ -223,18 +231,21 @@ const PITCHFORK: Known<2> = Known {
 };
 
 /// The orbit with the bifurcation, along the parameter of this place from a little beside it.
-fn found<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    known: &Known<N>,
+fn found(
+    family: &dyn ParametrisedField,
+    known: &Known,
     mut at: [f64; 2],
     free: usize,
-) -> ContinuationPoint<N> {
+) -> ContinuationPoint {
     let w = known.psi.map(f64::ln);
-    let start = State::<N>::from_fn(|i, _| if i == 0 { known.tau } else { w[i - 1] });
+    let start = Vector::from_fn(family.dimension(), |i, _| match i {
+        0 => known.tau,
+        i => w[i - 1],
+    });
     at[free] += 1e-4;
     let field = family.field(at);
     let mut tracer = Tracer::taylor(1e-12).unwrap();
-    let shooting = ShootingNodes::along(&mut tracer, &*field, &start, known.period).unwrap();
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, known.period).unwrap();
     let mut corrector = Corrector::new(family, 1e-15).unwrap();
     let meets = [Condition::TestFunction(known.kind)];
     let site = ContinuationPoint { shooting, at };
@@ -242,15 +253,13 @@ fn found<F: ParametrisedField<N>, const N: usize>(
     sharp.unwrap().site
 }
 
-fn is_found_along_both<const N: usize>(known: &Known<N>)
-where
-    OverLogarithms: ParametrisedField<N>,
-{
+fn is_found_along_both(known: &Known) {
     let slab = slab(known.driving, known.stiffness)
         .with("residual_strength", known.residual_strength)
         .unwrap();
     for (first, value) in [("driving", known.driving), ("stiffness", known.stiffness)] {
-        let family = OverLogarithms::new(slab, [first, "residual_strength"]).unwrap();
+        let names = [first, "residual_strength"];
+        let family = OverLogarithms::new(slab, known.symmetry, names).unwrap();
         let exact = [value, known.residual_strength];
         for free in [0, 1] {
             let site = found(&family, known, exact.map(f64::ln), free);
@@ -273,10 +282,11 @@ fn orbits_bifurcate_where_they_do_in_128_bits() {
 #[test]
 fn doublings_are_followed_in_the_plane_of_stiffness_and_residual_strength() {
     let slab = slab(DOUBLING.driving, DOUBLING.stiffness);
-    let family = OverLogarithms::new(slab, ["stiffness", "residual_strength"]).unwrap();
+    let names = ["stiffness", "residual_strength"];
+    let family = OverLogarithms::new(slab, Symmetry::Asymmetric, names).unwrap();
     let exact = [DOUBLING.stiffness, DOUBLING.residual_strength].map(f64::ln);
     let first = found(&family, &DOUBLING, exact, 1);
-    let mut corrector = Corrector::<_, 3>::new(&family, 1e-15).unwrap();
+    let mut corrector = Corrector::new(&family, 1e-15).unwrap();
     let settings = PalcSettings::locus(TestFunction::Doubling, 0.01);
     let meets = [Condition::TestFunction(TestFunction::Doubling)];
     let here = corrector.look(first.clone(), &[0, 1], &meets).unwrap();
@@ -297,8 +307,8 @@ fn doublings_are_followed_in_the_plane_of_stiffness_and_residual_strength() {
     let site = sharp.unwrap().site;
     let moved = (site.at[1] - first.at[1]).abs();
     assert!(moved > 1e-3, "{moved}");
-    let family = OverLoadings(family.slab(site.at));
-    let mut corrector = Corrector::<_, 3>::new(&family, 1e-15).unwrap();
+    let family = OverLoadings::new(family.slab(site.at), Symmetry::Asymmetric);
+    let mut corrector = Corrector::new(&family, 1e-15).unwrap();
     let at = [DOUBLING.driving.ln() + 1e-5, site.at[0]];
     let beside = ContinuationPoint { at, ..site };
     let sharp = corrector.correct(beside, &[0], &meets, Goal::SHARP);

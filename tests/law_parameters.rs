@@ -1,6 +1,7 @@
 //! Every constant of a law is a parameter of its interfaces, of a name: fields, steady stresses and flows have derivatives in it.
 
 use crate::common::relative;
+use twinslip::equilibrium::Symmetry;
 use twinslip::field::{State, VectorField, place};
 use twinslip::friction::{AnyLaw, Law, Parameters, steady_stress};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
@@ -70,7 +71,8 @@ fn a_constant_that_a_law_does_not_have_is_an_error_of_input() {
         assert!(slip.with("beta", value).unwrap_err().is_input(), "{value}");
     }
     for names in [["driving", "residual_strength"], ["beta", "beta"]] {
-        assert!(OverLogarithms::new(slip, names).unwrap_err().is_input());
+        let over = OverLogarithms::new(slip, Symmetry::Asymmetric, names);
+        assert!(over.unwrap_err().is_input());
     }
     let y = State::<3>::new(9.0, -0.3, -0.1);
     let mut taylor = Taylor::new(Tolerances::equal(1e-10).unwrap(), MAX_STEPS).unwrap();

@@ -9,13 +9,14 @@ use std::ops::ControlFlow::Continue;
 use twinslip::bifurcation::Label;
 use twinslip::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use twinslip::continuation::{Met, Settings};
-use twinslip::field::{State, VectorField};
+use twinslip::field::Vector;
+use twinslip::integrate::AnyField;
 use twinslip::model::Smooth;
 use twinslip::model::classics::{Langford, Roessler};
 use twinslip::number::{Real, Uncertain};
 use twinslip::orbit::{
     Closed, Condition, ContinuationPoint, Corrector, Floquet, Kind, Multiplier, OverParameters,
-    Palc, PalcSettings, ShootingNodes, TestFunction, Tracer, close, floquet,
+    Palc, PalcSettings, ParametrisedField, ShootingNodes, TestFunction, Tracer, close, floquet,
 };
 use twinslip::series::Equations;
 
@@ -49,46 +50,43 @@ fn numbers(list: &Value) -> Vec<f64> {
 
 /// The orbit through a point, closed, its period and its multipliers: the budgets as they are made of a slab's orbit, of the noise
 /// and of a second solution on other nodes.
-fn solved<S: Equations<N, 2>, const N: usize>(
-    field: &Smooth<S, N, 2>,
-    point: &[f64],
-    period: f64,
-) -> (Closed<N>, Uncertain, Floquet) {
-    let start = State::<N>::from_column_slice(point);
-    let (closed, mut multipliers) = once(field, start, period, 1e-15);
+fn solved(field: &AnyField<'_>, point: &[f64], period: f64) -> (Closed, Uncertain, Floquet) {
+    let start = Vector::from_column_slice(point);
+    let (closed, mut multipliers) = once(field, &start, period, 1e-15);
     let elsewhere = Tracer::taylor(1e-15)
         .expect("a tracer")
         .flow(field, &start, 0.037 * period, None)
         .expect("a run");
-    let (other, its) = once(field, elsewhere, period, 8e-15);
+    let (other, its) = once(field, &elsewhere, period, 8e-15);
     multipliers.widened_by(&its);
     let (mut period, _) = closed.budget(false);
     period.uncertainty += 2.0 * (period.value - other.shooting.period()).abs();
     (closed, period, multipliers)
 }
 
-fn once<S: Equations<N, 2>, const N: usize>(
-    field: &Smooth<S, N, 2>,
-    start: State<N>,
-    period: f64,
-    tolerance: f64,
-) -> (Closed<N>, Floquet) {
+fn once(field: &AnyField<'_>, start: &Vector, period: f64, tolerance: f64) -> (Closed, Floquet) {
     let mut tracer = Tracer::taylor(tolerance).expect("a tracer");
-    let shooting = ShootingNodes::along(&mut tracer, field, &start, period).expect("a shooting");
-    let mut loss = |x: &State<N>, duration: f64| {
-        let mut tracer = Tracer::<N>::taylor(tolerance)?;
+    let shooting = ShootingNodes::along(&mut tracer, field, start, period).expect("a shooting");
+    let mut loss = |x: &Vector, duration: f64| {
+        let mut tracer = Tracer::taylor(tolerance)?;
         let arc = tracer.arc(field, x, duration, &[])?;
-        Ok((arc.end, arc.loss()))
+        let loss = arc.loss();
+        Ok((arc.end, loss))
     };
     let shooting = shooting.refined(&mut loss).expect("finer nodes");
     let closed = close(&mut tracer, field, shooting).expect("an orbit");
-    let multipliers = floquet(&closed, &|x| field.f(x));
+    let multipliers = floquet(&closed, field);
     (closed, multipliers)
 }
 
 /// The multipliers, each with those of a record that it is: ln |mu| and the angle, which it has within a bar.
-fn matched<const N: usize>(record: &Value, floquet: &Floquet, bar: f64) -> Vec<(Multiplier, f64)> {
-    assert_eq!(floquet.multipliers.len(), N - 1);
+fn matched(
+    record: &Value,
+    dimension: usize,
+    floquet: &Floquet,
+    bar: f64,
+) -> Vec<(Multiplier, f64)> {
+    assert_eq!(floquet.multipliers.len(), dimension - 1);
     assert!(floquet.trivial_defect < 1e-10, "{floquet:?}");
     let defect = floquet.liouville_defect.expect("the trace");
     assert!(defect.abs() < 1e-10, "{floquet:?}");
@@ -111,14 +109,11 @@ fn matched<const N: usize>(record: &Value, floquet: &Floquet, bar: f64) -> Vec<(
 }
 
 /// Of a record: the period and all multipliers, within their budgets, and the budgets within a bar.
-fn assert_as_known<const N: usize>(
-    record: &Value,
-    (_, period, floquet): (Closed<N>, Uncertain, Floquet),
-) {
+fn assert_as_known(record: &Value, (closed, period, floquet): (Closed, Uncertain, Floquet)) {
     let error = (period.value - number(&record["values"]["period"])).abs();
     assert!(error <= period.uncertainty, "{period:?}, {error:e}");
     assert!(error < 1e-12 * period.value, "{period:?}, {error:e}");
-    for (found, ln_abs) in matched::<N>(record, &floquet, 1e-9) {
+    for (found, ln_abs) in matched(record, closed.shooting.dimension(), &floquet, 1e-9) {
         let error = (found.ln_abs.value - ln_abs).abs();
         assert!(error <= found.ln_abs.uncertainty, "{found:?}, {ln_abs}");
         assert!(found.ln_abs.uncertainty < 1e-10, "{found:?}");
@@ -145,21 +140,21 @@ fn locked_oscillators_have_the_multipliers_of_forty_digits() {
         // From a point and a period of four digits.
         let rough = |x: f64| (x * 1e4).round() / 1e4;
         let point: Vec<_> = point.into_iter().map(rough).collect();
+        let field = AnyField::of::<4>(&field);
         assert_as_known(record, solved(&field, &point, rough(period)));
     }
 }
 
 fn torus_among_others<const N: usize>() {
-    let family = OverParameters::both(Among(Langford { omega: 3.5 }));
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
-    let site = langford(0.3);
+    let family = OverParameters::<_, N, 2>::both(Among(Langford { omega: 3.5 }));
+    let mut corrector = Corrector::new(&family, 1e-13).expect("a corrector");
+    let site = langford::<N>(0.3);
     let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus).expect("a torus");
     let error = (torus.at[0] / Langford::torus() - 1.0).abs();
     assert!(error < 1e-10, "{N}: {error:e}");
     // The pair that leaves: e^(+-i k r T), k = sqrt(2 (1 + 0.7 rho)).
     let here = corrector.look(torus.clone(), &[0], &[]).expect("an orbit");
-    let field = family.at(torus.at);
-    let floquet = here.floquet(&|x| VectorField::<N>::f(&field, x));
+    let floquet = here.floquet(&family.field(torus.at));
     let rho = Langford::torus();
     let frequency = (2.0 * (1.0 + 0.7 * rho)).sqrt() * Langford::radius(rho);
     let angle = (frequency * torus.shooting.period()).rem_euclid(TAU);
@@ -182,8 +177,8 @@ fn a_torus_is_shed_where_it_is_in_three_dimensions() {
 }
 
 fn doublings<const N: usize>(expected: &[(f64, f64)]) {
-    let family = OverParameters::both(Among(Roessler { b: 0.2 }));
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-13).expect("a corrector");
+    let family = OverParameters::<_, N, 2>::both(Among(Roessler { b: 0.2 }));
+    let mut corrector = Corrector::new(&family, 1e-13).expect("a corrector");
     let mut site = roessler(&mut corrector);
     for (i, &(c, period)) in expected.iter().enumerate() {
         let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
@@ -207,9 +202,9 @@ fn doublings<const N: usize>(expected: &[(f64, f64)]) {
 }
 
 /// Along a curve of bifurcations from one of them: the parameters of so many orbits.
-fn curve<S: Equations<N, 2>, const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
-    site: ContinuationPoint<N>,
+fn curve(
+    corrector: &mut Corrector<'_>,
+    site: ContinuationPoint,
     test_function: TestFunction,
     (most, growing): (usize, usize),
 ) -> Vec<[f64; 2]> {
@@ -236,16 +231,16 @@ fn curve<S: Equations<N, 2>, const N: usize>(
 #[test]
 fn curves_of_tori_and_doublings_are_those_of_three_dimensions() {
     fn tori<const N: usize>() -> Vec<[f64; 2]> {
-        let family = OverParameters::both(Among(Langford { omega: 3.5 }));
-        let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
-        let site = langford(0.3);
+        let family = OverParameters::<_, N, 2>::both(Among(Langford { omega: 3.5 }));
+        let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
+        let site = langford::<N>(0.3);
         let torus = first(&mut corrector, site, (0, 1.5), TestFunction::Torus);
         let torus = torus.expect("a torus");
         curve(&mut corrector, torus, TestFunction::Torus, (12, 1))
     }
     fn doublings<const N: usize>() -> Vec<[f64; 2]> {
-        let family = OverParameters::both(Among(Roessler { b: 0.2 }));
-        let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
+        let family = OverParameters::<_, N, 2>::both(Among(Roessler { b: 0.2 }));
+        let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
         let site = roessler(&mut corrector);
         let doubling = first(&mut corrector, site, (1, 5.0), TestFunction::Doubling);
         let doubling = doubling.expect("a doubling");
@@ -307,14 +302,14 @@ impl<const N: usize> Equations<N, 2> for Ring {
     }
 }
 
-fn wave(record: &Value, force: f64) -> (Closed<6>, Uncertain, Floquet) {
+fn wave(record: &Value, force: f64) -> (Closed, Uncertain, Floquet) {
     let values = &record["values"];
     let field = Smooth {
         equations: Ring,
         parameters: [force, 0.0],
     };
     solved(
-        &field,
+        &AnyField::of::<6>(&field),
         &numbers(&values["point"]),
         number(&values["period"]),
     )
@@ -328,8 +323,8 @@ fn waves_around_a_ring_of_six_have_five_multipliers_and_shed_a_torus() {
         assert_as_known(record, wave(record, force));
     }
     let (closed, ..) = wave(&all["records"]["4b_lorenz96_N6_F4"], 4.0);
-    let family = OverParameters::both(Ring);
-    let mut corrector = Corrector::<_, 6>::new(&family, 1e-14).expect("a corrector");
+    let family = OverParameters::<_, 6, 2>::both(Ring);
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let site = ContinuationPoint {
         shooting: closed.shooting,
         at: [4.0, 0.0],
@@ -347,7 +342,7 @@ fn waves_around_a_ring_of_six_have_five_multipliers_and_shed_a_torus() {
         equations: Ring,
         parameters: [force, 0.0],
     };
-    let floquet = here.floquet(&|x| VectorField::<6>::f(&field, x));
+    let floquet = here.floquet(&AnyField::of::<6>(&field));
     let pair = floquet.multipliers[0];
     let angle = number(&record["values"]["multipliers"][0]["arg"]).abs() / PI;
     assert!(
@@ -391,12 +386,12 @@ fn a_wave_around_six_oscillators_has_eleven_multipliers() {
         parameters: [1.0, 0.3],
     };
     let values = &record["values"];
-    let start = State::<12>::from_vec(numbers(&values["point"]));
+    let start = Vector::from_vec(numbers(&values["point"]));
     let exact = number(&values["period"]);
-    let (closed, floquet) = once(&field, start, exact, 1e-15);
+    let (closed, floquet) = once(&AnyField::of::<12>(&field), &start, exact, 1e-15);
     let error = (closed.shooting.period() / exact - 1.0).abs();
     assert!(error < 1e-12, "{error:e}");
-    matched::<12>(record, &floquet, 1e-10);
+    matched(record, 12, &floquet, 1e-10);
 }
 
 /// Of the equilibria along the first parameter of some equations: the labelled ones.
@@ -404,13 +399,13 @@ fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
     equations: S,
     (from, to): (f64, f64),
     held: f64,
-    start: State<N>,
-) -> Vec<FoundEquilibrium<N>> {
+    start: Vector,
+) -> Vec<FoundEquilibrium> {
     let fields = |first: f64| {
-        Box::new(Smooth {
+        AnyField::new::<N>(Box::new(Smooth {
             equations,
             parameters: [first, held],
-        }) as Box<dyn VectorField<N>>
+        }))
     };
     let family = FieldEquilibria {
         fields: &fields,
@@ -428,7 +423,7 @@ fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
     found
 }
 
-fn only<const N: usize>(all: &[FoundEquilibrium<N>], label: Label) -> Vec<&FoundEquilibrium<N>> {
+fn only(all: &[FoundEquilibrium], label: Label) -> Vec<&FoundEquilibrium> {
     all.iter().filter(|one| one.label == Some(label)).collect()
 }
 
@@ -436,7 +431,7 @@ fn only<const N: usize>(all: &[FoundEquilibrium<N>], label: Label) -> Vec<&Found
 fn equilibria_of_rings_oscillate_where_their_eigenvalues_say() {
     // x = F: F (e^(i a) - e^(-2 i a)) - 1, a = 2 pi j / N, is imaginary at F = 1 for N = 4 and 6.
     fn hopf<const N: usize>(frequency: f64) {
-        let all = labelled(Ring, (0.2, 2.0), 0.0, State::<N>::repeat(0.2));
+        let all = labelled::<_, N>(Ring, (0.2, 2.0), 0.0, Vector::repeat(N, 0.2));
         let hopf = only(&all, Label::Hb);
         assert_eq!(hopf.len(), 1, "{N}");
         assert!((hopf[0].parameter - 1.0).abs() < 1e-10, "{N}: {hopf:?}");
@@ -477,8 +472,8 @@ fn lorenzs_atmosphere_folds_oscillates_and_doubles() {
         let record = &all["records"][name];
         let held = number(&record["parameters"]["G"]);
         // At F = 0 near (0, G, 0).
-        let start = State::<3>::new(-held * held * 4.0 / 1.5, 0.7 * held, -0.3 * held);
-        let found = labelled(Atmosphere, (0.0, 2.0), held, start);
+        let start = vec![-held * held * 4.0 / 1.5, 0.7 * held, -0.3 * held];
+        let found = labelled(Atmosphere, (0.0, 2.0), held, start.into());
         for (label, list) in [(Label::Lp, "folds"), (Label::Hb, "hopfs")] {
             let mut known: Vec<_> = record["values"][list]
                 .as_array()
@@ -514,7 +509,7 @@ fn lorenzs_atmosphere_folds_oscillates_and_doubles() {
         parameters: [2.0, 0.5],
     };
     let found = solved(
-        &field,
+        &AnyField::of::<3>(&field),
         &numbers(&values["point"]),
         number(&values["period"]),
     );
@@ -523,7 +518,7 @@ fn lorenzs_atmosphere_folds_oscillates_and_doubles() {
         at: [2.0, 0.5],
     };
     assert_as_known(record, found);
-    let mut corrector = Corrector::<_, 3>::new(&family, 1e-14).expect("a corrector");
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let doubling = first(&mut corrector, site, (0, 8.0), TestFunction::Doubling);
     let doubling = doubling.expect("a doubling");
     let record = &all["records"]["3c_lorenz84_PD_G0.5"];

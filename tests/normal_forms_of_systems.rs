@@ -7,7 +7,8 @@ use std::f64::consts::TAU;
 use twinslip::Error;
 use twinslip::bifurcation::Criticality;
 use twinslip::bifurcation::orbits::normal_form::{Form, normal_form};
-use twinslip::field::{Jacobian, State, VectorField};
+use twinslip::field::{Matrix, Vector};
+use twinslip::integrate::AnyField;
 use twinslip::model::classics::{Langford, Roessler, VanDerPol};
 use twinslip::number::{Real, Uncertain};
 use twinslip::orbit::{
@@ -28,8 +29,8 @@ fn assert_is(coefficient: Uncertain, exact: f64, what: &str) {
 
 /// Roessler's first doubling among others, with the coefficient.
 fn doubling<const N: usize>() -> (Uncertain, Criticality) {
-    let family = OverParameters::both(Among(Roessler { b: 0.2 }));
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
+    let family = OverParameters::<_, N, 2>::both(Among(Roessler { b: 0.2 }));
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let site = roessler(&mut corrector);
     let site = first(&mut corrector, site, (1, 4.0), TestFunction::Doubling);
     normal_form(&family, &site.expect("a doubling"), Form::Doubling).expect("a form")
@@ -62,9 +63,10 @@ fn of_langford(period: f64) -> f64 {
 }
 
 fn torus_among_others<const N: usize>() {
-    let family = OverParameters::both(Among(Langford { omega: 3.5 }));
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
-    let torus = first(&mut corrector, langford(0.3), (0, 1.5), TestFunction::Torus);
+    let family = OverParameters::<_, N, 2>::both(Among(Langford { omega: 3.5 }));
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
+    let circle = langford::<N>(0.3);
+    let torus = first(&mut corrector, circle, (0, 1.5), TestFunction::Torus);
     let form = normal_form(&family, &torus.expect("a torus"), Form::Torus);
     let (coefficient, criticality) = form.expect("a form");
     assert_is(coefficient, of_langford(TAU / 3.5), &N.to_string());
@@ -98,12 +100,16 @@ impl<S: Equations<3, 2>> Equations<4, 2> for Driving<S> {
 /// Its orbits, with lengths measured in the three.
 struct InThree<S>(OverParameters<Driving<S>, 4, 2>);
 
-impl<S: Equations<3, 2>> ParametrisedField<4> for InThree<S> {
+impl<S: Equations<3, 2>> ParametrisedField for InThree<S> {
+    fn dimension(&self) -> usize {
+        4
+    }
+
     fn plane(&self) -> [usize; 2] {
         self.0.plane()
     }
 
-    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<4> + '_> {
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
         self.0.field(at)
     }
 
@@ -115,11 +121,11 @@ impl<S: Equations<3, 2>> ParametrisedField<4> for InThree<S> {
         self.0.scale(at)
     }
 
-    fn across(&self, _: &State<4>, flow: &State<4>) -> Jacobian<4> {
-        let (mut three, mut along) = (Jacobian::<4>::identity(), *flow);
+    fn across(&self, _: &Vector, flow: &Vector) -> Matrix {
+        let (mut three, mut along) = (Matrix::identity(4, 4), flow.clone());
         three[(3, 3)] = 0.0;
         along[3] = 0.0;
-        three - along * along.transpose() / along.norm_squared()
+        three - &along * along.transpose() / along.norm_squared()
     }
 }
 
@@ -130,13 +136,8 @@ fn what_is_driven_changes_no_coefficient() {
     for decay in [0.05, 1.0, 43.0] {
         let system = Roessler { b: 0.2 };
         let family = InThree(OverParameters::both(Driving { system, decay }));
-        let mut corrector = Corrector::<_, 4>::new(&family, 1e-14).expect("a corrector");
-        let site = settled(
-            &family,
-            [0.2, 2.5],
-            State::<4>::new(-3.0, 0.0, 0.1, 0.0),
-            5.73,
-        );
+        let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
+        let site = settled(&family, [0.2, 2.5], &[-3.0, 0.0, 0.1, 0.0], 5.73);
         let held = [Condition::Parameter(1, 2.5)];
         let orbit = corrector.correct(site, &[1], &held, Goal::SHARP);
         let site = orbit.expect("an orbit").site;
@@ -150,14 +151,14 @@ fn what_is_driven_changes_no_coefficient() {
 
         let system = Langford { omega: 3.5 };
         let family = InThree(OverParameters::both(Driving { system, decay }));
-        let mut corrector = Corrector::<_, 4>::new(&family, 1e-14).expect("a corrector");
+        let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
         let mut circle = langford::<4>(0.3);
         for (k, node) in circle.shooting.nodes.iter_mut().enumerate() {
             // w = Re r e^(i omega t) / (decay + i omega)
             let (radius, angle) = (Langford::radius(0.3), TAU / 12.0 * k as f64);
             let lag = 3.5_f64.atan2(decay);
             let w = radius / decay.hypot(3.5) * (angle - lag).cos();
-            *node = State::<4>::new(radius * angle.cos(), radius * angle.sin(), 0.7, w);
+            *node = Vector::from_vec(vec![radius * angle.cos(), radius * angle.sin(), 0.7, w]);
         }
         let torus = first(&mut corrector, circle, (0, 1.5), TestFunction::Torus);
         let form = normal_form(&family, &torus.expect("a torus"), Form::Torus);
@@ -167,16 +168,17 @@ fn what_is_driven_changes_no_coefficient() {
 }
 
 /// The orbit that a run of 400 settles on, of about this period.
-fn settled<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
+fn settled(
+    family: &dyn ParametrisedField,
     at: [f64; 2],
-    start: State<N>,
+    start: &[f64],
     period: f64,
-) -> ContinuationPoint<N> {
+) -> ContinuationPoint {
     let field = family.field(at);
     let mut tracer = Tracer::taylor(1e-10).expect("a tracer");
-    let start = tracer.flow(&*field, &start, 400.0, None).expect("a run");
-    let shooting = ShootingNodes::along(&mut tracer, &*field, &start, period).expect("nodes");
+    let start = Vector::from_column_slice(start);
+    let start = tracer.flow(&field, &start, 400.0, None).expect("a run");
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, period).expect("nodes");
     ContinuationPoint { shooting, at }
 }
 
@@ -198,17 +200,17 @@ impl Equations<4, 2> for Coupled {
 }
 
 /// By how much ln |mu| of what bifurcates grows with a parameter: the multiplier nearest to the unit circle, by orbits at both sides.
-fn growth<S: Equations<N, 2>, const N: usize>(
-    corrector: &mut Corrector<'_, OverParameters<S, N, 2>, N>,
-    site: &ContinuationPoint<N>,
+fn growth(
+    corrector: &mut Corrector<'_>,
+    site: &ContinuationPoint,
     (free, apart): (usize, f64),
 ) -> f64 {
     let mut ln = |value: f64| {
         let held = [Condition::Parameter(free, value)];
         let orbit = corrector.correct(site.clone(), &[free], &held, Goal::SHARP);
         let orbit = orbit.expect("an orbit");
-        let field = corrector.family.at(orbit.site.at);
-        let multipliers = orbit.floquet(&|x| field.f(x)).multipliers;
+        let field = corrector.family.field(orbit.site.at);
+        let multipliers = orbit.floquet(&field).multipliers;
         let logs = multipliers.iter().map(|one| one.ln_abs.value);
         logs.min_by(|a, b| a.abs().total_cmp(&b.abs()))
             .expect("one")
@@ -227,13 +229,8 @@ fn limit([(near, at_near), (far, at_far)]: [(f64, f64); 2]) -> f64 {
 #[test]
 fn doubled_orbits_part_as_the_coefficient_says() {
     let family = OverParameters::both(Coupled);
-    let mut corrector = Corrector::<_, 4>::new(&family, 1e-14).expect("a corrector");
-    let site = settled(
-        &family,
-        [0.2, 2.5],
-        State::<4>::new(-3.0, 0.0, 0.1, 0.0),
-        5.72,
-    );
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
+    let site = settled(&family, [0.2, 2.5], &[-3.0, 0.0, 0.1, 0.0], 5.72);
     let site = first(&mut corrector, site, (1, 4.0), TestFunction::Doubling);
     let site = site.expect("a doubling");
     let (b, criticality) = normal_form(&family, &site, Form::Doubling).expect("a form");
@@ -262,23 +259,21 @@ fn doubled_orbits_part_as_the_coefficient_says() {
 }
 
 /// The mean square, across the flow, of half the distance between both rounds of an orbit.
-fn apart<const N: usize>(
-    family: &impl ParametrisedField<N>,
-    doubled: &ContinuationPoint<N>,
-) -> f64 {
+fn apart(family: &dyn ParametrisedField, doubled: &ContinuationPoint) -> f64 {
     const POINTS: usize = 400;
     let field = family.field(doubled.at);
     let mut tracer = Tracer::taylor(1e-13).expect("a tracer");
     let part = doubled.shooting.period() / (2 * POINTS) as f64;
-    let mut x = doubled.shooting.nodes[0];
+    let mut x = doubled.shooting.nodes[0].clone();
     let mut rounds = Vec::new();
     for _ in 0..2 * POINTS {
-        rounds.push(x);
-        x = tracer.flow(&*field, &x, part, None).expect("a flow");
+        let next = tracer.flow(&field, &x, part, None).expect("a flow");
+        rounds.push(std::mem::replace(&mut x, next));
     }
     let squares = (0..POINTS).map(|k| {
-        let half = (rounds[k] - rounds[k + POINTS]) / 2.0;
-        let flow = field.f(&((rounds[k] + rounds[k + POINTS]) / 2.0));
+        let (one, other) = (&rounds[k], &rounds[k + POINTS]);
+        let half = (one - other) / 2.0;
+        let flow = field.f(&((one + other) / 2.0));
         half.norm_squared() - flow.dot(&half).powi(2) / flow.norm_squared()
     });
     squares.sum::<f64>() / POINTS as f64
@@ -302,14 +297,14 @@ impl Equations<6, 2> for Ring {
 fn a_torus_is_as_thick_as_the_coefficient_says() {
     let record = &data("foreign_orbits.json")["records"]["4c_lorenz96_N6_neimark_sacker"]["values"];
     let point = record["point"].as_array().expect("a point");
-    let start = State::<6>::from_iterator(point.iter().map(number));
+    let start = Vector::from_iterator(6, point.iter().map(number));
     let family = OverParameters::both(Ring);
-    let mut corrector = Corrector::<_, 6>::new(&family, 1e-14).expect("a corrector");
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let at = [5.456_660_705_337_415, 1.0];
     let mut tracer = Tracer::taylor(1e-12).expect("a tracer");
     let shooting = ShootingNodes::along(
         &mut tracer,
-        &family.at(at),
+        &family.field(at),
         &start,
         number(&record["period"]),
     );
@@ -330,7 +325,7 @@ fn a_torus_is_as_thick_as_the_coefficient_says() {
         let orbit = orbit.expect("an orbit").site;
         let beta = growth * distance;
         let thickness = thickness(
-            &family.at(orbit.at),
+            &family.field(orbit.at),
             &orbit,
             8.0 / beta,
             2.0 * beta / -d.value,
@@ -343,24 +338,17 @@ fn a_torus_is_as_thick_as_the_coefficient_says() {
 
 /// The mean square distance from an orbit on the attractor around it, after so many rounds that begin with this square of a
 /// distance.
-fn thickness<const N: usize>(
-    field: &dyn VectorField<N>,
-    orbit: &ContinuationPoint<N>,
-    rounds: f64,
-    square: f64,
-) -> f64 {
+fn thickness(field: &AnyField<'_>, orbit: &ContinuationPoint, rounds: f64, square: f64) -> f64 {
     /// Points of the orbit, and of the run.
     const POINTS: usize = 200;
     const SAMPLES: usize = 4000;
     let mut fine = Tracer::taylor(1e-12).expect("a tracer");
     let period = orbit.shooting.period();
-    let mut x = orbit.shooting.nodes[0];
+    let mut x = orbit.shooting.nodes[0].clone();
     let mut circle = Vec::new();
     for _ in 0..POINTS {
-        circle.push(x);
-        x = fine
-            .flow(field, &x, period / POINTS as f64, None)
-            .expect("a flow");
+        let next = fine.flow(field, &x, period / POINTS as f64, None);
+        circle.push(std::mem::replace(&mut x, next.expect("a flow")));
     }
     x[0] += square.sqrt();
     let mut tracer = Tracer::taylor(1e-10).expect("a tracer");
@@ -369,14 +357,14 @@ fn thickness<const N: usize>(
         .expect("a run");
     let mut sum = 0.0;
     for _ in 0..SAMPLES {
-        let distance = |p: &State<N>| (x - p).norm_squared();
+        let distance = |p: &Vector| (&x - p).norm_squared();
         let nearest = circle
             .iter()
             .min_by(|a, b| distance(a).total_cmp(&distance(b)));
-        let mut foot = *nearest.expect("points");
+        let mut foot = nearest.expect("points").clone();
         for _ in 0..2 {
             let flow = field.f(&foot);
-            let time = flow.dot(&(x - foot)) / flow.norm_squared();
+            let time = flow.dot(&(&x - &foot)) / flow.norm_squared();
             foot = fine.flow(field, &foot, time, None).expect("a flow");
         }
         sum += distance(&foot);
@@ -388,16 +376,17 @@ fn thickness<const N: usize>(
 #[test]
 fn forms_are_refused_where_there_are_none() {
     let family = OverParameters::both(VanDerPol);
-    let site = settled(&family, [1.0, 0.0], State::<2>::new(2.0, 0.0), 6.66);
+    let flat = settled(&family, [1.0, 0.0], &[2.0, 0.0], 6.66);
     for form in [Form::Doubling, Form::Torus, Form::Pitchfork] {
-        let refused = normal_form(&family, &site, form).unwrap_err();
+        let refused = normal_form(&family, &flat, form).unwrap_err();
         assert!(
             matches!(refused, Error::Dimension { dimension: 2, .. }),
             "{refused}"
         );
     }
-    let family = OverParameters::both(Among(Roessler { b: 0.2 }));
-    let mut corrector = Corrector::<_, 4>::new(&family, 1e-13).expect("a corrector");
+    let family = OverParameters::<_, 4, 2>::both(Among(Roessler { b: 0.2 }));
+    assert!(normal_form(&family, &flat, Form::Torus).is_err());
+    let mut corrector = Corrector::new(&family, 1e-13).expect("a corrector");
     let site = roessler(&mut corrector);
     let refused = normal_form(&family, &site, Form::Pitchfork).unwrap_err();
     assert!(

@@ -5,8 +5,8 @@ use crate::common::{data, number};
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;
 use twinslip::continuation::{Met, Stop, WatchedFunction};
-use twinslip::field::{Jacobian, State, VectorField};
-use twinslip::integrate::{Choice, MAX_STEPS, Tolerances};
+use twinslip::field::{Jacobian, State, Vector, VectorField};
+use twinslip::integrate::{AnyField, Choice, MAX_STEPS, Tolerances};
 use twinslip::model::classics::{Brusselator, Langford, Roessler, VanDerPol};
 use twinslip::number::Real;
 use twinslip::orbit::{
@@ -16,25 +16,26 @@ use twinslip::orbit::{
 use twinslip::series::Equations;
 
 /// The orbit that a run settles on, of about this period.
-fn settled<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
+fn settled(
+    family: &dyn ParametrisedField,
     at: [f64; 2],
-    start: State<N>,
+    start: &[f64],
     (settling, period): (f64, f64),
-) -> ContinuationPoint<N> {
+) -> ContinuationPoint {
     let field = family.field(at);
     let mut tracer = Tracer::taylor(1e-10).expect("a tracer");
-    let start = tracer.flow(&*field, &start, settling, None).expect("a run");
-    let shooting = ShootingNodes::along(&mut tracer, &*field, &start, period).expect("a shooting");
+    let start = Vector::from_column_slice(start);
+    let start = tracer.flow(&field, &start, settling, None).expect("a run");
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, period).expect("a shooting");
     ContinuationPoint { shooting, at }
 }
 
 /// The orbit at exactly these parameters.
-fn closed<F: ParametrisedField<N>, const N: usize>(
-    corrector: &mut Corrector<'_, F, N>,
-    site: ContinuationPoint<N>,
+fn closed(
+    corrector: &mut Corrector<'_>,
+    site: ContinuationPoint,
     free: usize,
-) -> ContinuationPoint<N> {
+) -> ContinuationPoint {
     let held = [Condition::Parameter(free, site.at[free])];
     let orbit = corrector.correct(site, &[free], &held, Goal::SHARP);
     orbit.expect("an orbit").site
@@ -48,7 +49,7 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
     let turn = std::f64::consts::TAU / 12.0;
     let nodes = (0..12).map(|k| {
         let (sin, cos) = (turn * f64::from(k)).sin_cos();
-        State::<3>::new(radius * cos, radius * sin, 0.7)
+        Vector::from_vec(vec![radius * cos, radius * sin, 0.7])
     });
     let site = ContinuationPoint {
         shooting: ShootingNodes {
@@ -68,11 +69,10 @@ fn langfords_orbit_sheds_its_torus_where_the_closed_form_says() {
 #[test]
 fn roesslers_orbit_doubles_its_period_and_again() {
     let family = OverParameters::both(Roessler { b: 0.2 });
-    let start = State::<3>::new(-3.0, 0.0, 0.1);
-    let site = settled(&family, [0.2, 2.5], start, (300.0, 5.75));
-    let mut corrector = Corrector::<_, 3>::new(&family, 1e-14).expect("a corrector");
+    let site = settled(&family, [0.2, 2.5], &[-3.0, 0.0, 0.1], (300.0, 5.75));
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let site = closed(&mut corrector, site, 1);
-    let mut rougher = Corrector::<_, 3>::new(&family, 1e-12).expect("a corrector");
+    let mut rougher = Corrector::new(&family, 1e-12).expect("a corrector");
     let doubling = first(&mut rougher, site, (1, 4.0), TestFunction::Doubling).expect("a doubling");
     assert!((2.8..2.9).contains(&doubling.at[1]), "{}", doubling.at[1]);
     // The same by an unlike method, on nodes cut to six digits.
@@ -124,8 +124,8 @@ fn roesslers_orbit_doubles_its_period_and_again() {
 #[test]
 fn van_der_pols_period_at_damping_one_and_a_thousand() {
     let family = OverParameters::both(VanDerPol);
-    let site = settled(&family, [1.0, 0.0], State::<2>::new(2.0, 0.0), (60.0, 6.66));
-    let mut corrector = Corrector::<_, 2>::new(&family, 1e-15).expect("a corrector");
+    let site = settled(&family, [1.0, 0.0], &[2.0, 0.0], (60.0, 6.66));
+    let mut corrector = Corrector::new(&family, 1e-15).expect("a corrector");
     let site = closed(&mut corrector, site, 0);
     // Andersen, C. M. and Geer, J. F. (1982). SIAM J. Appl. Math. 42, 678-693.
     assert!((site.shooting.period() / 6.663_286_859_323_13 - 1.0).abs() < 1e-13);
@@ -136,14 +136,14 @@ fn van_der_pols_period_at_damping_one_and_a_thousand() {
     let (damping, held) = (1000.0, [Condition::Parameter(0, 1000.0)]);
     let at = [damping, 0.0];
     let period = VanDerPol::relaxation_period(damping);
-    let field = ParametrisedField::<2>::field(&family, at);
+    let field = family.field(at);
     // On the slow part of the cycle, and once around.
-    let start = State::<2>::new(1.9, -1.9 / (damping * (1.9 * 1.9 - 1.0)));
+    let start = Vector::from_vec(vec![1.9, -1.9 / (damping * (1.9 * 1.9 - 1.0))]);
     let start = stiff
         .tracer
-        .flow(&*field, &start, period, None)
+        .flow(&field, &start, period, None)
         .expect("a run");
-    let shooting = ShootingNodes::along(&mut stiff.tracer, &*field, &start, period).expect("a run");
+    let shooting = ShootingNodes::along(&mut stiff.tracer, &field, &start, period).expect("a run");
     drop(field);
     let orbit = stiff.correct(ContinuationPoint { shooting, at }, &[0], &held, Goal::STEP);
     let site = orbit.expect("a stiff orbit").site;
@@ -154,11 +154,15 @@ fn van_der_pols_period_at_damping_one_and_a_thousand() {
 #[test]
 fn brusselators_orbits_begin_with_the_period_of_their_hopf_point() {
     let family = OverParameters::both(Brusselator);
-    let start = State::<2>::new(1.2, 2.0);
-    let site = settled(&family, [1.0, 2.05], start, (2000.0, 6.3));
-    let mut corrector = Corrector::<_, 2>::new(&family, 1e-14).expect("a corrector");
+    let site = settled(&family, [1.0, 2.05], &[1.2, 2.0], (2000.0, 6.3));
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let near = closed(&mut corrector, site, 1);
-    let site = settled(&family, [1.0, 2.01], near.shooting.nodes[0], (4000.0, 6.29));
+    let site = settled(
+        &family,
+        [1.0, 2.01],
+        near.shooting.nodes[0].as_slice(),
+        (4000.0, 6.29),
+    );
     let nearer = closed(&mut corrector, site, 1);
     // T - 2 pi shrinks in proportion with B - 2.
     let tau = std::f64::consts::TAU;
@@ -201,13 +205,17 @@ impl VectorField<4> for WithAnother {
 
 struct FourOfThem;
 
-impl ParametrisedField<4> for FourOfThem {
+impl ParametrisedField for FourOfThem {
+    fn dimension(&self) -> usize {
+        4
+    }
+
     fn plane(&self) -> [usize; 2] {
         [0, 1]
     }
 
-    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<4> + '_> {
-        Box::new(WithAnother(at))
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+        AnyField::new::<4>(Box::new(WithAnother(at)))
     }
 
     fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -225,16 +233,16 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
     let family = FourOfThem;
     let choice = Choice::named("rodas5p").expect("a method");
     let tolerances = Tolerances::equal(1e-10).expect("tolerances");
-    let mut corrector = Corrector::<_, 4>::by(
+    let mut corrector = Corrector::by(
         &family,
         Tracer::new(choice, tolerances, MAX_STEPS).expect("a tracer"),
     );
     let at = [0.2, 2.5];
     let field = family.field(at);
-    let start = State::<4>::new(-3.0, 0.0, 0.1, 0.0);
+    let start = Vector::from_vec(vec![-3.0, 0.0, 0.1, 0.0]);
     let tracer = &mut corrector.tracer;
-    let start = tracer.flow(&*field, &start, 100.0, None).expect("a run");
-    let shooting = ShootingNodes::along(tracer, &*field, &start, 5.75).expect("a shooting");
+    let start = tracer.flow(&field, &start, 100.0, None).expect("a run");
+    let shooting = ShootingNodes::along(tracer, &field, &start, 5.75).expect("a shooting");
     drop(field);
     let held = [Condition::Parameter(1, 2.5)];
     // The orbit itself is found in any dimension.
@@ -289,7 +297,7 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
     );
     // In the plane there are neither period doublings nor tori.
     for test_function in [TestFunction::Doubling, TestFunction::Torus] {
-        assert!(test_function.checked::<2>().is_err() && test_function.checked::<3>().is_ok());
+        assert!(test_function.checked(2).is_err() && test_function.checked(3).is_ok());
     }
 }
 
@@ -297,9 +305,9 @@ fn indicators_are_refused_where_they_are_no_test_functions() {
 const SMALL: f64 = 0.4;
 
 /// Of an orbit's branch until it ends, leaves the range or has so many orbits: why, and the orbits' parameter and extent.
-fn along<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: ContinuationPoint<N>,
+fn along(
+    family: &dyn ParametrisedField,
+    site: ContinuationPoint,
     (free, sign): (usize, f64),
     range: (f64, f64),
     most: usize,
@@ -364,8 +372,7 @@ impl Equations<2, 2> for FitzHughNagumo {
 #[test]
 fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
     let family = OverParameters::both(Reaction);
-    let start = State::<3>::new(0.5, 0.4, 2.0);
-    let site = settled(&family, [0.21, 1.55], start, (400.0, 7.1585));
+    let site = settled(&family, [0.21, 1.55], &[0.5, 0.4, 2.0], (400.0, 7.1585));
     let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
     // As many orbits as are asked for, and always further.
     const MOST: usize = 100;
@@ -381,9 +388,8 @@ fn branches_of_systems_on_other_scales_are_followed_to_their_ends() {
     );
     // Through the canards, where steps are short, to the Hopf point v = -sqrt(1 - 0.8 eps).
     let family = OverParameters::both(FitzHughNagumo);
-    let start = State::<2>::new(1.0, 0.0);
     let (eps, period) = (0.08, 39.47);
-    let site = settled(&family, [0.5, eps], start, (2000.0, period));
+    let site = settled(&family, [0.5, eps], &[1.0, 0.0], (2000.0, period));
     let site = closed(&mut Corrector::new(&family, 1e-12).expect("one"), site, 0);
     let (end, orbits) = along(&family, site, (0, -1.0), (0.0, 0.6), 2000);
     let &(current, extent) = orbits.last().expect("orbits");

@@ -4,7 +4,7 @@ use crate::common::{data, number};
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::Error;
 use twinslip::continuation::{Met, WatchedFunction};
-use twinslip::field::{Parametrised, State, place};
+use twinslip::field::{Parametrised, State, Vector, place};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::Smooth;
 use twinslip::number::Real;
@@ -217,13 +217,13 @@ fn a_parameter_that_is_not_there_is_an_error_of_input() {
 type Over = OverParameters<Roessler, 3, 3>;
 
 /// The doubling of the simple orbit along the parameter of this place in the plane, from the attractor at `at`.
-fn doubling(family: &Over, at: [f64; 2], free: usize) -> ContinuationPoint<3> {
-    let mut corrector = Corrector::<_, 3>::new(family, 1e-14).unwrap();
+fn doubling(family: &Over, at: [f64; 2], free: usize) -> ContinuationPoint {
+    let mut corrector = Corrector::new(family, 1e-14).unwrap();
     let field = family.field(at);
-    let start = State::<3>::new(-3.0, 0.0, 0.1);
+    let start = Vector::from_column_slice(&[-3.0, 0.0, 0.1]);
     let mut tracer = Tracer::taylor(1e-10).unwrap();
-    let start = tracer.flow(&*field, &start, 300.0, None).unwrap();
-    let shooting = ShootingNodes::along(&mut tracer, &*field, &start, 5.8).unwrap();
+    let start = tracer.flow(&field, &start, 300.0, None).unwrap();
+    let shooting = ShootingNodes::along(&mut tracer, &field, &start, 5.8).unwrap();
     let held = [Condition::Parameter(free, at[free])];
     let site = ContinuationPoint { shooting, at };
     let orbit = corrector
@@ -253,10 +253,10 @@ fn doubling(family: &Over, at: [f64; 2], free: usize) -> ContinuationPoint<3> {
 /// Along the curve of doublings to this value of the parameter of that place in the plane.
 fn along_curve(
     family: &Over,
-    from: ContinuationPoint<3>,
+    from: ContinuationPoint,
     (to, value): (usize, f64),
-) -> ContinuationPoint<3> {
-    let mut corrector = Corrector::<_, 3>::new(family, 1e-14).unwrap();
+) -> ContinuationPoint {
+    let mut corrector = Corrector::new(family, 1e-14).unwrap();
     let settings = PalcSettings::locus(TestFunction::Doubling, 0.1);
     let meets = [Condition::TestFunction(TestFunction::Doubling)];
     let here = corrector.look(from, &[0, 1], &meets).unwrap();

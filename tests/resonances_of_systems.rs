@@ -36,11 +36,11 @@ impl Equations<3, 2> for Turning {
 
 /// The values of (rho, omega) at which two multipliers on the torus curve have this sum, from omega = 3.5 on until `end`.
 fn resonances<const N: usize>(eps: f64, sums: &[f64], end: f64) -> Vec<(f64, [f64; 2])> {
-    let family = OverParameters::both(Among(Turning { eps }));
-    let mut corrector = Corrector::<_, N>::new(&family, 1e-14).expect("a corrector");
+    let family = OverParameters::<_, N, 2>::both(Among(Turning { eps }));
+    let mut corrector = Corrector::new(&family, 1e-14).expect("a corrector");
     let circle = ContinuationPoint {
         at: [0.3, 3.5],
-        ..langford(0.3)
+        ..langford::<N>(0.3)
     };
     let held = [Condition::Parameter(0, 0.3)];
     let orbit = corrector.correct(circle, &[0], &held, Goal::SHARP);
@@ -130,6 +130,6 @@ fn the_resonance_one_to_two_is_where_the_trace_of_three_variables_says() {
 
 #[test]
 fn resonances_need_two_multipliers() {
-    assert!(TestFunction::Trace(0.0).checked::<2>().is_err());
-    assert!(TestFunction::Trace(0.0).checked::<4>().is_ok());
+    assert!(TestFunction::Trace(0.0).checked(2).is_err());
+    assert!(TestFunction::Trace(0.0).checked(4).is_ok());
 }

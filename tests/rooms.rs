@@ -328,6 +328,26 @@ fn only_the_command_line_speaks_of_flags() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
+/// Above the integrators the number of variables is known when the program runs: only a system written in Rust has it in its type.
+#[test]
+fn only_integrators_and_systems_know_their_dimension_when_compiled() {
+    const ABOVE: [&str; 4] = ["equilibrium", "continuation", "orbit", "bifurcation"];
+    /// The family of the fields of one such system.
+    const OF_SYSTEMS: &str = "OverParameters<S, ";
+    for (room, file) in files() {
+        if !ABOVE.contains(&room.as_str()) {
+            continue;
+        }
+        let text = fs::read_to_string(&file).expect("readable");
+        let known = code(&text).find(|line| {
+            line.contains("const N: usize")
+                && !line.contains(OF_SYSTEMS)
+                && !line.contains("ParametrisedField")
+        });
+        assert_eq!(known, None, "{}", file.display());
+    }
+}
+
 #[test]
 fn only_the_sundials_room_allows_unsafe() {
     for (room, file) in files() {

@@ -1,8 +1,10 @@
 //! Flows: from a vector field and a state at one time to the state, and its tangent, at another.
 //!
-//! Everything above speaks to an integrator through [`Integrator`] alone. What a caller does not ask for is not done: with
+//! Everything above speaks to an integrator through [`Integrator`], or where the number of variables is known when the program runs
+//! through [`AnyIntegrator`]. What a caller does not ask for is not done: with
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
+mod any_field;
 mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
@@ -12,6 +14,11 @@ pub(crate) mod singularity;
 mod tableau;
 mod taylor;
 
+pub(crate) use any_field::of_dimension;
+pub use any_field::{
+    AnyField, AnyIntegrator, AnyObserver, AnyPassage, AnySection, AnyStep, DerivativesAlongArcs,
+    FlowDerivatives, StepSeries,
+};
 pub use auto::Auto;
 pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]

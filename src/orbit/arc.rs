@@ -1,20 +1,21 @@
 //! Arcs of multiple shooting: pieces of trajectories with their derivatives, by any of the methods.
 
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{Choice, Integrator, MAX_STEPS, Taylor, Tolerances, Work};
+use crate::field::{Matrix, Vector};
+use crate::integrate::{
+    AnyField, AnyIntegrator, AnyObserver, Choice, DerivativesAlongArcs, MAX_STEPS, Tolerances, Work,
+};
 
 /// A piece of a trajectory, from a start that the caller knows.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Arc<const N: usize> {
+pub struct Arc {
     /// The state at its end.
-    pub end: State<N>,
+    pub end: Vector,
     /// The derivative of the end in the start.
-    pub tangent: Jacobian<N>,
-    /// The derivatives of the end in the two parameters that were asked for; zero from methods that make none, and where none
-    /// were.
-    pub parameters: [State<N>; 2],
+    pub tangent: Matrix,
+    /// The derivatives of the end in the parameters that were asked for, a column for each; none from methods that make none.
+    pub parameters: Matrix,
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
     /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
@@ -26,7 +27,7 @@ pub struct Arc<const N: usize> {
     pub error: f64,
 }
 
-impl<const N: usize> Arc<N> {
+impl Arc {
     /// Its error where the steps' errors are rounding, which adds up like a random walk.
     pub(crate) fn noise(&self) -> f64 {
         self.error / (self.steps.max(1) as f64).sqrt()
@@ -54,25 +55,25 @@ impl<const N: usize> Arc<N> {
     /// The logarithm of the digits that the tangent's determinant loses to its rounding: of |M|^N / |det M|.
     #[doc(hidden)]
     pub fn loss(&self) -> f64 {
-        (N as f64 * self.tangent.norm().ln() - self.volume()).max(0.0)
+        (self.end.len() as f64 * self.tangent.norm().ln() - self.volume()).max(0.0)
     }
 
     /// ln |det| of the tangent, by the tangent.
     pub(crate) fn tangent_volume(&self) -> f64 {
-        log_determinant(self.tangent)
+        log_determinant(self.tangent.clone())
     }
 }
 
 /// ln |det m|, by elimination with the largest pivots.
-fn log_determinant<const N: usize>(mut m: Jacobian<N>) -> f64 {
-    let mut log = 0.0;
-    for j in 0..N {
-        let pivot = (j..N).max_by(|&a, &b| m[(a, j)].abs().total_cmp(&m[(b, j)].abs()));
+fn log_determinant(mut m: Matrix) -> f64 {
+    let (mut log, count) = (0.0, m.nrows());
+    for j in 0..count {
+        let pivot = (j..count).max_by(|&a, &b| m[(a, j)].abs().total_cmp(&m[(b, j)].abs()));
         m.swap_rows(j, pivot.unwrap_or(j));
         log += m[(j, j)].abs().ln();
-        for i in j + 1..N {
+        for i in j + 1..count {
             let part = m[(i, j)] / m[(j, j)];
-            for l in j..N {
+            for l in j..count {
                 m[(i, l)] -= part * m[(j, l)];
             }
         }
@@ -81,63 +82,70 @@ fn log_determinant<const N: usize>(mut m: Jacobian<N>) -> f64 {
 }
 
 /// What makes arcs.
-pub struct Tracer<const N: usize> {
-    method: ArcIntegrator<N>,
-    name: &'static str,
+pub struct Tracer {
+    method: AnyIntegrator,
     /// What a step may err by, in units of 1 + |y|.
     step_error: f64,
+    bound: WorkBound,
+}
+
+/// All work, and what it may be.
+struct WorkBound {
     work: Work,
-    /// How many steps it may take in all.
+    /// How many steps may be taken in all.
     limit: Option<usize>,
 }
 
-enum ArcIntegrator<const N: usize> {
-    Taylor(Taylor),
-    Other(Box<dyn Integrator<N>>),
+impl WorkBound {
+    fn used_up(&self) -> Option<usize> {
+        self.limit.filter(|&limit| self.work.steps >= limit)
+    }
+
+    fn allowed(&self, end: f64) -> Result<()> {
+        match self.used_up() {
+            Some(limit) => Err(Error::TooManySteps { t: 0.0, end, limit }),
+            None => Ok(()),
+        }
+    }
 }
 
 /// Rounding in a step, relative: of the sums, of the constants and of the change to logarithms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-impl<const N: usize> Tracer<N> {
+impl Tracer {
     /// By this method, with at most so many steps in an arc. `auto` traces with Taylor: a periodic orbit is no place for
     /// strong damping.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for tolerances outside their domain or no steps.
     pub fn new(choice: Choice, tolerances: Tolerances, max_steps: usize) -> Result<Self> {
-        let (method, name) = match choice {
-            Choice::Auto | Choice::Taylor => (
-                ArcIntegrator::Taylor(Taylor::new(tolerances, max_steps)?),
-                Choice::Taylor.name(),
-            ),
-            other => (
-                ArcIntegrator::Other(other.integrator(tolerances, max_steps)?),
-                other.name(),
-            ),
+        let choice = match choice {
+            Choice::Auto => Choice::Taylor,
+            other => other,
         };
         Ok(Tracer {
-            method,
-            name,
+            method: AnyIntegrator::new(choice, tolerances, max_steps)?,
             step_error: tolerances.rtol + tolerances.atol + ROUNDING,
-            work: Work::default(),
-            limit: None,
+            bound: WorkBound {
+                work: Work::default(),
+                limit: None,
+            },
         })
     }
 
     /// The method's name.
     pub fn name(&self) -> &'static str {
-        self.name
+        self.method.name()
     }
 
     /// Whether arcs come with derivatives in the parameters.
     pub(crate) fn differentiates(&self) -> bool {
-        matches!(self.method, ArcIntegrator::Taylor(_))
+        self.method.differentiates()
     }
 
     /// All work so far.
     pub fn work(&self) -> Work {
-        self.work
+        self.bound.work
     }
 
     /// By Taylor's method with this tolerance.
@@ -153,93 +161,88 @@ impl<const N: usize> Tracer<N> {
     /// # Errors
     /// As of [`Self::taylor`].
     pub(crate) fn limited(tolerance: f64, arc: usize, all: usize) -> Result<Self> {
-        Ok(Tracer {
-            limit: Some(all),
-            ..Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, arc.min(all))?
-        })
+        let mut tracer = Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, arc.min(all))?;
+        tracer.bound.limit = Some(all);
+        Ok(tracer)
     }
 
     /// The bound on all steps, where it is used up.
     pub(crate) fn used_up(&self) -> Option<usize> {
-        self.limit.filter(|&limit| self.work.steps >= limit)
-    }
-
-    fn allowed(&self, end: f64) -> Result<()> {
-        match self.used_up() {
-            Some(limit) => Err(Error::TooManySteps { t: 0.0, end, limit }),
-            None => Ok(()),
-        }
+        self.bound.used_up()
     }
 
     /// The arc of this duration from `start`, with the derivatives in the parameters of these places: two, or none.
     ///
     /// # Errors
-    /// Those of [`Integrator::flow`].
+    /// Those of [`AnyIntegrator::derivatives`].
     pub fn arc(
         &mut self,
-        field: &dyn VectorField<N>,
-        start: &State<N>,
+        field: &AnyField<'_>,
+        start: &Vector,
         duration: f64,
         free: &[usize],
-    ) -> Result<Arc<N>> {
-        self.allowed(duration)?;
-        let span = (0.0, duration);
-        let (made, work) = match &mut self.method {
-            ArcIntegrator::Taylor(taylor) => {
-                let made = taylor.derivatives(field, span, start, free);
-                let made = made.map(|(end, d)| {
-                    let logs = (Some(d.log_determinant), d.log_transverse);
-                    let mut columns = d.parameters.iter().copied().map(State::from);
-                    let columns = [(); 2].map(|()| columns.next().unwrap_or_else(State::zeros));
-                    (end, d.start.into(), columns, logs)
-                });
-                (made, Integrator::<N>::work(taylor))
-            }
-            ArcIntegrator::Other(integrator) => {
-                let made = integrator.tangent_flow(field, span, start);
-                let none = ([State::zeros(); 2], (None, None));
-                let made = made.map(|(end, tangent)| (end, tangent, none.0, none.1));
-                (made, integrator.work())
-            }
-        };
-        // Also of what fails.
-        self.work += work;
-        let (end, tangent, in_parameters, logs) = made?;
-        Ok(Arc {
-            end,
-            tangent,
-            parameters: in_parameters,
-            log_determinant: logs.0,
-            log_transverse: logs.1,
-            steps: work.steps,
-            error: self.step_error * work.steps.max(1) as f64,
+    ) -> Result<Arc> {
+        self.arcs(field, free)?.arc(start, duration)
+    }
+
+    /// The same for several arcs: what makes them is made once.
+    ///
+    /// # Errors
+    /// Those of [`AnyIntegrator::arcs`].
+    pub(super) fn arcs<'f>(
+        &'f mut self,
+        field: &'f AnyField<'_>,
+        free: &'f [usize],
+    ) -> Result<Arcs<'f>> {
+        Ok(Arcs {
+            made: self.method.arcs(field, free)?,
+            step_error: self.step_error,
+            bound: &mut self.bound,
         })
     }
 
     /// The flow alone.
     ///
     /// # Errors
-    /// Those of [`Integrator::flow`].
+    /// Those of [`AnyIntegrator::flow`].
     pub fn flow(
         &mut self,
-        field: &dyn VectorField<N>,
-        start: &State<N>,
+        field: &AnyField<'_>,
+        start: &Vector,
         duration: f64,
-        observer: Option<crate::integrate::Observer<'_, N>>,
-    ) -> Result<State<N>> {
-        self.allowed(duration)?;
-        let span = (0.0, duration);
-        let (end, work) = match &mut self.method {
-            ArcIntegrator::Taylor(taylor) => {
-                let end = taylor.flow(field, span, start, observer);
-                (end, Integrator::<N>::work(taylor))
-            }
-            ArcIntegrator::Other(integrator) => {
-                let end = integrator.flow(field, span, start, observer);
-                (end, integrator.work())
-            }
-        };
-        self.work += work;
+        observer: Option<AnyObserver<'_>>,
+    ) -> Result<Vector> {
+        self.bound.allowed(duration)?;
+        let end = self.method.flow(field, (0.0, duration), start, observer);
+        self.bound.work += self.method.work();
         end
+    }
+}
+
+/// What makes arcs of one field, one after the other.
+pub(super) struct Arcs<'f> {
+    made: DerivativesAlongArcs<'f>,
+    step_error: f64,
+    bound: &'f mut WorkBound,
+}
+
+impl Arcs<'_> {
+    /// The arc of this duration from `start`.
+    pub fn arc(&mut self, start: &Vector, duration: f64) -> Result<Arc> {
+        self.bound.allowed(duration)?;
+        let made = self.made.derivatives((0.0, duration), start);
+        // Also of what fails.
+        let work = self.made.work();
+        self.bound.work += work;
+        let (end, made) = made?;
+        Ok(Arc {
+            end,
+            tangent: made.start,
+            parameters: made.parameters,
+            log_determinant: made.log_determinant,
+            log_transverse: made.log_transverse,
+            steps: work.steps,
+            error: self.step_error * work.steps.max(1) as f64,
+        })
     }
 }

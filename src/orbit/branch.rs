@@ -3,17 +3,17 @@
 use super::arc::Tracer;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Corrector;
-use super::family::{OverLoadings, ParametrisedField};
+use super::family::OverLoadings;
 use super::find::SEARCH;
 use super::hopf::{HopfPoint, hopf_points};
 use super::interface_system::InterfaceSystem;
 use super::orbit_curve::{Palc, PalcSettings};
 use super::shooting::close;
 use super::shooting_nodes::ShootingNodes;
-use super::space::{Plane, Space, Whole};
+use super::space::{Space, space_of};
 use crate::equilibrium::Symmetry;
-use crate::error::Result;
-use crate::field::State;
+use crate::error::{Error, Result};
+use crate::field::Vector;
 use crate::model::{DRIVING, Parameter};
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -28,21 +28,25 @@ const STEPS: usize = 400;
 /// How far beyond the wanted ln V_H a branch is followed, in its distance from the Hopf point and absolutely.
 const BEYOND: f64 = 2.0;
 
-impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
+impl<'c, 'f> Palc<'c, 'f> {
     /// Along the branch of a Hopf point, from a small orbit outwards.
     ///
     /// # Errors
-    /// As of [`Palc::from`].
+    /// [`Error::Dimension`] where the family is not of a slab's variables; as of [`Palc::from`].
     pub fn from_hopf(
-        corrector: &'c mut Corrector<'f, F, N>,
+        corrector: &'c mut Corrector<'f>,
         settings: PalcSettings,
         hopf: &HopfPoint,
     ) -> Result<Self> {
+        let dimension = corrector.family.dimension();
+        let known = matches!(dimension, 2 | 3);
+        let what = "the branch of orbits of a Hopf point of a slab";
+        Error::dimension_unless(known, what, "2 or 3", dimension)?;
         let at = hopf.at();
-        let shooting = hopf.ellipse(&*corrector.family.field(at), FIRST);
-        let centre = shooting.nodes.iter().sum::<State<N>>() / shooting.nodes.len() as f64;
+        let shooting = hopf.ellipse(&corrector.family.field(at), FIRST);
+        let centre = shooting.nodes.iter().sum::<Vector>() / shooting.nodes.len() as f64;
         let outwards = TangentVector {
-            nodes: shooting.nodes.iter().map(|x| x - centre).collect(),
+            nodes: shooting.nodes.iter().map(|x| x - &centre).collect(),
             durations: vec![0.0; shooting.nodes.len()],
             parameters: [0.0; 2],
         };
@@ -53,7 +57,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
 
     /// Where the amplitude becomes zero by its last two values, in the coordinate of the free parameter, if the orbits shrink
     /// to an equilibrium.
-    fn vanishes(&self, before: &ContinuationPoint<N>) -> Option<f64> {
+    fn vanishes(&self, before: &ContinuationPoint) -> Option<f64> {
         let here = &self.now.here.site;
         let free = *self.curve.settings.free.first()?;
         let (old, new) = (before.shooting.extent(), here.shooting.extent());
@@ -64,7 +68,7 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     }
 
     /// Which of these Hopf points the branch is about to end at. `before` is where the last step began, with the same nodes.
-    pub fn ends_at(&self, before: &ContinuationPoint<N>, hopfs: &[HopfPoint]) -> Option<usize> {
+    pub fn ends_at(&self, before: &ContinuationPoint, hopfs: &[HopfPoint]) -> Option<usize> {
         /// What the prediction may err by: part of the way that is left, and rounding.
         const PART: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
@@ -80,19 +84,17 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
 
 /// The closed orbits at the slab's V_H on the branches from the Hopf points of a symmetry, the nearest Hopf point first. The
 /// search ends with the first branch that has one.
-pub(super) fn from_hopf<const N: usize>(
+pub(super) fn from_hopf(
     slab: &InterfaceSystem,
     symmetry: Symmetry,
-    space: &impl Space<N>,
-    tracer: &mut Tracer<N>,
-) -> Result<Vec<ShootingNodes<N>>>
-where
-    OverLoadings: ParametrisedField<N>,
-{
+    space: &dyn Space,
+    tracer: &mut Tracer,
+) -> Result<Vec<ShootingNodes>> {
     let mut found = Vec::new();
     let hopfs = hopf_points(slab, symmetry, Parameter::Driving)?;
+    let family = OverLoadings::new(*slab, symmetry);
     for hopf in &hopfs {
-        follow(slab, space, tracer, (hopf, &hopfs), &mut found)?;
+        follow(&family, space, tracer, (hopf, &hopfs), &mut found)?;
         if !found.is_empty() {
             break;
         }
@@ -101,23 +103,19 @@ where
 }
 
 /// Follows one branch, and closes an orbit wherever it passes the slab's V_H.
-fn follow<const N: usize>(
-    slab: &InterfaceSystem,
-    space: &impl Space<N>,
-    tracer: &mut Tracer<N>,
+fn follow(
+    family: &OverLoadings,
+    space: &dyn Space,
+    tracer: &mut Tracer,
     (hopf, hopfs): (&HopfPoint, &[HopfPoint]),
-    found: &mut Vec<ShootingNodes<N>>,
-) -> Result<()>
-where
-    OverLoadings: ParametrisedField<N>,
-{
+    found: &mut Vec<ShootingNodes>,
+) -> Result<()> {
     /// Tolerance of the continuation.
     const ROUGH: f64 = 1e-10;
-    let wanted = slab.loading.driving.ln();
+    let wanted = family.slab.loading.driving.ln();
     let begin = hopf.at()[0];
     let reach = BEYOND + 2.0 * (wanted - begin).abs();
-    let family = OverLoadings(*slab);
-    let mut corrector = Corrector::by(&family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
+    let mut corrector = Corrector::by(family, Tracer::limited(ROUGH, SEARCH, SEARCH)?);
     let Ok(mut palc) =
         Palc::from_hopf(&mut corrector, PalcSettings::branch(DRIVING, LONGEST), hopf)
     else {
@@ -146,21 +144,7 @@ where
 /// The period of the first orbit found at the slab's V_H on branches from Hopf points.
 pub fn period_from_hopf(slab: &InterfaceSystem, symmetry: Symmetry) -> Result<Option<f64>> {
     const TOLERANCE: f64 = 1e-10;
-    let (whole, plane) = (slab.whole(), slab.plane());
-    Ok(if symmetry == Symmetry::Symmetric {
-        let space = Plane {
-            plane: &*plane,
-            whole: None,
-        };
-        let orbits = from_hopf(slab, symmetry, &space, &mut Tracer::taylor(TOLERANCE)?)?;
-        orbits.first().map(|orbit| orbit.period())
-    } else {
-        let orbits = from_hopf(
-            slab,
-            symmetry,
-            &Whole(&*whole),
-            &mut Tracer::taylor(TOLERANCE)?,
-        )?;
-        orbits.first().map(|orbit| orbit.period())
-    })
+    let space = space_of(slab, symmetry);
+    let orbits = from_hopf(slab, symmetry, &*space, &mut Tracer::taylor(TOLERANCE)?)?;
+    Ok(orbits.first().map(|orbit| orbit.period()))
 }

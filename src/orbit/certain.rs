@@ -5,7 +5,6 @@
 
 use super::continuation_point::TangentVector;
 use super::correct::{Condition, Corrector, Goal, Regular};
-use super::family::ParametrisedField;
 use super::orbit_curve::{DirectedPoint, OrbitCurve, PalcSettings, WatchedFunction};
 use crate::continuation::CurveStep;
 
@@ -20,14 +19,14 @@ const DEVIATIONS: f64 = 5.0;
 const FINE: f64 = 2e-15;
 
 /// Whether the zero of what is watched, which was landed on at `orbit` on a step, is one.
-pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
+pub(super) fn certain(
     OrbitCurve {
         corrector,
         settings,
-    }: &mut OrbitCurve<'_, '_, F, N>,
+    }: &mut OrbitCurve<'_, '_>,
     (watch, values): (WatchedFunction, [f64; 2]),
-    orbit: &Regular<N>,
-    step: &CurveStep<DirectedPoint<N>>,
+    orbit: &Regular,
+    step: &CurveStep<DirectedPoint>,
 ) -> bool {
     match watch {
         WatchedFunction::TestFunction(_) if values.iter().all(|value| value.abs() > CLEAR) => {
@@ -46,7 +45,7 @@ pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
     found.unwrap_or_else(|| {
         // By the ends of the step, then, as accurately as these are known.
         let plane = &step.from.direction;
-        let mut at = |orbit: &Regular<N>| measured(corrector, settings, watch, orbit, plane);
+        let mut at = |orbit: &Regular| measured(corrector, settings, watch, orbit, plane);
         let [Some(a), Some(b), Some(middle)] = [at(&step.from.here), at(&step.to.here), at(orbit)]
         else {
             return false;
@@ -59,11 +58,11 @@ pub(super) fn certain<F: ParametrisedField<N>, const N: usize>(
 type Measured = (f64, f64);
 
 /// On the sides at the nearest distance that tells; `None` where no orbits are found there.
-fn beside<F: ParametrisedField<N>, const N: usize>(
-    corrector: &mut Corrector<'_, F, N>,
+fn beside(
+    corrector: &mut Corrector<'_>,
     settings: &PalcSettings,
     watch: WatchedFunction,
-    orbit: &Regular<N>,
+    orbit: &Regular,
     length: f64,
 ) -> Option<bool> {
     let along = orbit.along.first()?.clone();
@@ -86,12 +85,12 @@ fn beside<F: ParametrisedField<N>, const N: usize>(
     Some(false)
 }
 
-fn measured<F: ParametrisedField<N>, const N: usize>(
-    corrector: &mut Corrector<'_, F, N>,
+fn measured(
+    corrector: &mut Corrector<'_>,
     settings: &PalcSettings,
     watch: WatchedFunction,
-    orbit: &Regular<N>,
-    across: &TangentVector<N>,
+    orbit: &Regular,
+    across: &TangentVector,
 ) -> Option<Measured> {
     let plane = [Condition::Plane(across, &orbit.site)];
     match watch {
@@ -100,9 +99,9 @@ fn measured<F: ParametrisedField<N>, const N: usize>(
             Some((orbit.site.at[i], noise.parameters[i]))
         }
         WatchedFunction::TestFunction(test_function) => {
-            let size = test_function.size::<N>(&orbit.spectrum);
+            let size = test_function.size(&orbit.spectrum);
             let noise = corrector.noise_of(test_function, orbit, &settings.free, plane[0])?;
-            let value = test_function.of::<N>(&orbit.spectrum);
+            let value = test_function.of(&orbit.spectrum);
             Some((value / size, noise / size))
         }
         WatchedFunction::Value(i, value) => Some((orbit.site.at[i] - value, 0.0)),

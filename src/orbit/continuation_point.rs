@@ -1,13 +1,13 @@
 //! Continuation points and tangent vectors: an orbit with both parameters, and how its nodes, durations and parameters change.
 
 use super::shooting_nodes::ShootingNodes;
-use crate::field::State;
+use crate::field::Vector;
 
 /// A displacement of an orbit, or a direction in which it can be displaced.
 #[derive(Debug, Clone, PartialEq)]
-pub struct TangentVector<const N: usize> {
+pub struct TangentVector {
     /// Of every node.
-    pub nodes: Vec<State<N>>,
+    pub nodes: Vec<Vector>,
     /// Of every duration.
     pub durations: Vec<f64>,
     /// Of the coordinates of both parameters.
@@ -16,14 +16,14 @@ pub struct TangentVector<const N: usize> {
 
 /// An orbit, or a guess of one, at a place in the plane of parameters.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ContinuationPoint<const N: usize> {
+pub struct ContinuationPoint {
     /// Its nodes and durations.
-    pub shooting: ShootingNodes<N>,
+    pub shooting: ShootingNodes,
     /// The coordinates of the parameters.
     pub at: [f64; 2],
 }
 
-impl<const N: usize> TangentVector<N> {
+impl TangentVector {
     /// The mean over the nodes of the products of their displacements, and those of the parameters. The durations and with
     /// them the period stay out of it: near homoclinic orbits and canards they would drown everything else.
     pub fn dot(&self, other: &Self) -> f64 {
@@ -44,7 +44,7 @@ impl<const N: usize> TangentVector<N> {
     /// Plus x times another.
     pub(crate) fn plus(mut self, x: f64, other: &Self) -> Self {
         let nodes = self.nodes.iter_mut().zip(&other.nodes);
-        nodes.for_each(|(a, b)| *a += b * x);
+        nodes.for_each(|(a, b)| a.axpy(x, b, 1.0));
         let durations = self.durations.iter_mut().zip(&other.durations);
         durations.for_each(|(a, b)| *a += b * x);
         for (a, b) in self.parameters.iter_mut().zip(&other.parameters) {
@@ -54,7 +54,7 @@ impl<const N: usize> TangentVector<N> {
     }
 
     /// What of a tangent vector of this orbit does not depend on its nodes: the change of the parameters and of ln T.
-    pub(super) fn seen_from_afar(&self, shooting: &ShootingNodes<N>) -> [f64; 3] {
+    pub(super) fn seen_from_afar(&self, shooting: &ShootingNodes) -> [f64; 3] {
         let of_period = self.durations.iter().sum::<f64>() / shooting.period();
         [self.parameters[0], self.parameters[1], of_period]
     }
@@ -66,9 +66,20 @@ impl<const N: usize> TangentVector<N> {
     }
 }
 
-impl<const N: usize> ContinuationPoint<N> {
+impl ContinuationPoint {
+    /// The same with other nodes: in other variables.
+    pub(crate) fn with_nodes(&self, nodes: Vec<Vector>) -> Self {
+        ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes,
+                durations: self.shooting.durations.clone(),
+            },
+            at: self.at,
+        }
+    }
+
     /// Displaced by x times this.
-    pub fn moved(&self, tangent: &TangentVector<N>, x: f64) -> Self {
+    pub fn moved(&self, tangent: &TangentVector, x: f64) -> Self {
         ContinuationPoint {
             shooting: self.shooting.moved(&tangent.nodes, &tangent.durations, x),
             at: [0, 1].map(|i| self.at[i] + x * tangent.parameters[i]),
@@ -76,7 +87,7 @@ impl<const N: usize> ContinuationPoint<N> {
     }
 
     /// From another site with as many nodes to this one.
-    pub fn from(&self, other: &Self) -> TangentVector<N> {
+    pub fn from(&self, other: &Self) -> TangentVector {
         let pairs = self.shooting.nodes.iter().zip(&other.shooting.nodes);
         let durations = self
             .shooting
@@ -92,11 +103,11 @@ impl<const N: usize> ContinuationPoint<N> {
 
     /// How large a displacement is: the largest of a node's in units of 1 + |x|, of a duration's relative, of a parameter's
     /// coordinate.
-    pub fn size(&self, tangent: &TangentVector<N>) -> (f64, f64) {
+    pub fn size(&self, tangent: &TangentVector) -> (f64, f64) {
         let mut nodes = 0_f64;
         for (dx, x) in tangent.nodes.iter().zip(&self.shooting.nodes) {
-            for i in 0..N {
-                nodes = nodes.max(dx[i].abs() / (1.0 + x[i].abs()));
+            for (dx, x) in dx.iter().zip(x) {
+                nodes = nodes.max(dx.abs() / (1.0 + x.abs()));
             }
         }
         let pairs = tangent.durations.iter().zip(&self.shooting.durations);

@@ -12,13 +12,15 @@ use super::linear::Linear;
 use super::shooting_nodes::ShootingNodes;
 use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
+use crate::field::Matrix;
 use nalgebra::{Matrix2, Vector2};
+use std::sync::Arc as Shared;
 
 /// What an orbit is to meet.
 #[derive(Debug, Clone, Copy)]
-pub enum Condition<'a, const N: usize> {
+pub enum Condition<'a> {
     /// To lie in the plane through a site with as many nodes, across a direction.
-    Plane(&'a TangentVector<N>, &'a ContinuationPoint<N>),
+    Plane(&'a TangentVector, &'a ContinuationPoint),
     /// The coordinate of this parameter to have this value.
     Parameter(usize, f64),
     /// A bifurcation.
@@ -28,22 +30,22 @@ pub enum Condition<'a, const N: usize> {
 /// An orbit with what is known of its surroundings.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Regular<const N: usize> {
+pub struct Regular {
     /// Where it is.
-    pub site: ContinuationPoint<N>,
+    pub site: ContinuationPoint,
     /// Directions in which it can move, orthonormal: one for each free parameter.
-    pub along: Vec<TangentVector<N>>,
+    pub along: Vec<TangentVector>,
     /// Its spectrum.
     pub spectrum: Spectrum,
     /// The gradients of the test functions among the conditions, in the order of these, as tangent vectors.
-    pub gradients: Vec<TangentVector<N>>,
+    pub gradients: Vec<TangentVector>,
     /// Iterations that it took.
     pub iterations: usize,
     /// The first correction: how far the guess was off.
     pub first: f64,
     /// The last correction: the largest of a node, a duration and a parameter's coordinate.
     pub residual: f64,
-    pub(super) linear: Linear<N>,
+    pub(super) linear: Shared<Linear>,
 }
 
 /// When a correction is at its end.
@@ -84,19 +86,19 @@ const STRETCH: f64 = 0.1;
 const SLOW: f64 = 0.02;
 
 /// What makes orbits of a family.
-pub struct Corrector<'a, F, const N: usize> {
+pub struct Corrector<'a> {
     /// The family.
-    pub family: &'a F,
+    pub family: &'a dyn ParametrisedField,
     /// What makes its arcs.
-    pub tracer: Tracer<N>,
+    pub tracer: Tracer,
 }
 
-impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
+impl<'a> Corrector<'a> {
     /// With a Taylor method of this tolerance.
     ///
     /// # Errors
     /// [`crate::Error::Parameter`] for a tolerance outside its domain.
-    pub fn new(family: &'a F, tolerance: f64) -> crate::Result<Self> {
+    pub fn new(family: &'a dyn ParametrisedField, tolerance: f64) -> crate::Result<Self> {
         Ok(Corrector {
             family,
             tracer: Tracer::taylor(tolerance)?,
@@ -105,14 +107,14 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
 
     /// With any method. Where it makes no derivatives in the parameters they are differences of its flows, which Newton's method
     /// needs but to converge.
-    pub fn by(family: &'a F, tracer: Tracer<N>) -> Self {
+    pub fn by(family: &'a dyn ParametrisedField, tracer: Tracer) -> Self {
         Corrector { family, tracer }
     }
 
     /// The linearisation at a site, with the derivatives in the parameters.
-    pub(super) fn linear(&mut self, site: &ContinuationPoint<N>) -> Option<Linear<N>> {
+    pub(super) fn linear(&mut self, site: &ContinuationPoint) -> Option<Linear> {
         let field = self.family.field(site.at);
-        let mut linear = Linear::of(&mut self.tracer, self.family, &*field, &site.shooting).ok()?;
+        let mut linear = Linear::of(&mut self.tracer, self.family, &field, &site.shooting).ok()?;
         drop(field);
         if !self.tracer.differentiates() {
             self.difference(site, &mut linear)?;
@@ -121,10 +123,14 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// The derivatives in the parameters by central differences.
-    fn difference(&mut self, site: &ContinuationPoint<N>, linear: &mut Linear<N>) -> Option<()> {
+    fn difference(&mut self, site: &ContinuationPoint, linear: &mut Linear) -> Option<()> {
         /// In the coordinates of the parameters.
         const APART: f64 = 1e-5;
         let scale = self.family.scale(site.at);
+        let arcs = Shared::make_mut(&mut linear.arcs);
+        for arc in arcs.iter_mut() {
+            arc.parameters = Matrix::zeros(arc.end.len(), 2);
+        }
         for i in 0..2 {
             let beside = |step: f64| {
                 let mut at = site.at;
@@ -134,9 +140,10 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
             let (below, above) = (beside(-APART), beside(APART));
             let ShootingNodes { nodes, durations } = &site.shooting;
             for (k, (x, &duration)) in nodes.iter().zip(durations).enumerate() {
-                let low = self.tracer.flow(&*below, x, duration, None).ok()?;
-                let high = self.tracer.flow(&*above, x, duration, None).ok()?;
-                linear.arcs[k].parameters[i] = (high - low) / (2.0 * APART * scale[i]);
+                let low = self.tracer.flow(&below, x, duration, None).ok()?;
+                let high = self.tracer.flow(&above, x, duration, None).ok()?;
+                let slope = (high - low) / (2.0 * APART * scale[i]);
+                arcs[k].parameters.set_column(i, &slope);
             }
         }
         Some(())
@@ -146,15 +153,16 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     ///
     /// # Errors
     /// [`Error::NotConverged`] where Newton's method finds none; [`Error::Dimension`] where a test function among the conditions is
-    /// no test function in so many dimensions.
+    /// no test function in so many dimensions; [`Error::Parameter`] where the nodes have others.
     pub fn correct(
         &mut self,
-        guess: ContinuationPoint<N>,
+        guess: ContinuationPoint,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
+        conditions: &[Condition<'_>],
         goal: Goal,
-    ) -> Result<Regular<N>> {
-        checked(conditions)?;
+    ) -> Result<Regular> {
+        checked(conditions, self.family.dimension())?;
+        guess.shooting.checked(self.family.dimension())?;
         let mut reached = (0, f64::INFINITY);
         let found = self.newton(guess, free, conditions, goal, &mut reached);
         found.ok_or(Error::NotConverged {
@@ -168,14 +176,14 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     /// The same; `reached` are the iterations made and the last correction.
     fn newton(
         &mut self,
-        guess: ContinuationPoint<N>,
+        guess: ContinuationPoint,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
+        conditions: &[Condition<'_>],
         goal: Goal,
         reached: &mut (usize, f64),
-    ) -> Option<Regular<N>> {
+    ) -> Option<Regular> {
         let mut site = guess;
-        let mut gradients: Option<Vec<TangentVector<N>>> = None;
+        let mut gradients: Option<Vec<TangentVector>> = None;
         let (mut first, mut last) = (f64::INFINITY, f64::INFINITY);
         for iterations in 1..=goal.iterations {
             let linear = self.linear(&site)?;
@@ -191,7 +199,7 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
                 gradients: &known,
                 by_closing: &by_closing,
             };
-            let weights = weights::<N>(&site, &closing, &along, conditions, &known_here)?;
+            let weights = weights(&site, &closing, &along, conditions, &known_here)?;
             let mut correction = closing;
             for (weight, direction) in weights.iter().zip(&along) {
                 correction = correction.plus(*weight, direction);
@@ -219,14 +227,14 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
                     iterations,
                     first,
                     residual: size,
-                    linear,
+                    linear: Shared::new(linear),
                 });
             }
             // Old gradients serve as long as the corrections shrink, and the test functions are no longer far from zero.
             let off = conditions
                 .iter()
                 .filter_map(test_function)
-                .map(|i| i.of::<N>(&spectrum).abs());
+                .map(|i| i.of(&spectrum).abs());
             let near = off.fold(0.0, f64::max) < NEAR;
             gradients = (near && size < SLOW * last).then_some(known);
             last = size;
@@ -240,11 +248,12 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     /// As of [`Self::correct`]: [`Error::NotConverged`] where the linear equations are singular.
     pub fn look(
         &mut self,
-        site: ContinuationPoint<N>,
+        site: ContinuationPoint,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
-    ) -> Result<Regular<N>> {
-        checked(conditions)?;
+        conditions: &[Condition<'_>],
+    ) -> Result<Regular> {
+        checked(conditions, self.family.dimension())?;
+        site.shooting.checked(self.family.dimension())?;
         let looked = self
             .linear(&site)
             .and_then(|linear| self.look_with(site, linear, free, conditions));
@@ -259,11 +268,11 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     /// The same where the linearisation is known.
     pub(super) fn look_with(
         &mut self,
-        site: ContinuationPoint<N>,
-        linear: Linear<N>,
+        site: ContinuationPoint,
+        linear: Linear,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
-    ) -> Option<Regular<N>> {
+        conditions: &[Condition<'_>],
+    ) -> Option<Regular> {
         let (closing, along) = linear.solutions(free, self.family.scale(site.at))?;
         let spectrum = Spectrum::new(&linear);
         let gradients = self.gradients(&site, &linear, &along, &spectrum, conditions)?;
@@ -275,29 +284,29 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
             spectrum,
             gradients,
             iterations: 0,
-            linear,
+            linear: Shared::new(linear),
         })
     }
 
     /// The gradients of all test functions among the conditions, in the directions in which the orbit can move.
     fn gradients(
         &mut self,
-        site: &ContinuationPoint<N>,
-        linear: &Linear<N>,
-        along: &[TangentVector<N>],
+        site: &ContinuationPoint,
+        linear: &Linear,
+        along: &[TangentVector],
         spectrum: &Spectrum,
-        conditions: &[Condition<'_, N>],
-    ) -> Option<Vec<TangentVector<N>>> {
+        conditions: &[Condition<'_>],
+    ) -> Option<Vec<TangentVector>> {
         let test_functions: Vec<TestFunction> =
             conditions.iter().filter_map(test_function).collect();
         if test_functions.is_empty() {
             return Some(Vec::new());
         }
-        let mut sums: Vec<Option<TangentVector<N>>> = vec![None; test_functions.len()];
+        let mut sums: Vec<Option<TangentVector>> = vec![None; test_functions.len()];
         for direction in along {
             let change = self.change(site, linear, direction, spectrum)?;
             for (sum, test_function) in sums.iter_mut().zip(&test_functions) {
-                let slope = test_function.change_along::<N>(spectrum, &change);
+                let slope = test_function.change_along(spectrum, &change);
                 let part = direction.clone().scaled(slope);
                 *sum = Some(match sum.take() {
                     None => part,
@@ -312,11 +321,11 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     /// iteration to see.
     fn by_closing(
         &mut self,
-        site: &ContinuationPoint<N>,
-        linear: &Linear<N>,
-        closing: &TangentVector<N>,
+        site: &ContinuationPoint,
+        linear: &Linear,
+        closing: &TangentVector,
         spectrum: &Spectrum,
-        conditions: &[Condition<'_, N>],
+        conditions: &[Condition<'_>],
     ) -> Option<Vec<f64>> {
         /// Smaller closings are not looked at.
         const SMALL: f64 = 1e-7;
@@ -329,15 +338,15 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
         }
         let direction = closing.clone().scaled(1.0 / length);
         let change = self.change(site, linear, &direction, spectrum)?;
-        let of = |i: &TestFunction| length * i.change_along::<N>(spectrum, &change);
+        let of = |i: &TestFunction| length * i.change_along(spectrum, &change);
         Some(test_functions.iter().map(of).collect())
     }
 
     /// What a small tangent vector of an orbit changes its spectrum by.
     pub(super) fn by_tangent(
         &mut self,
-        orbit: &Regular<N>,
-        tangent: &TangentVector<N>,
+        orbit: &Regular,
+        tangent: &TangentVector,
     ) -> Option<Spectrum> {
         let length = tangent.dot(tangent).sqrt();
         let direction = tangent.clone().normalised()?;
@@ -352,34 +361,34 @@ impl<'a, F: ParametrisedField<N>, const N: usize> Corrector<'a, F, N> {
     }
 
     /// How the spectrum of an orbit changes in a direction.
-    pub fn slope(&mut self, orbit: &Regular<N>, direction: &TangentVector<N>) -> Option<Spectrum> {
+    pub fn slope(&mut self, orbit: &Regular, direction: &TangentVector) -> Option<Spectrum> {
         self.change(&orbit.site, &orbit.linear, direction, &orbit.spectrum)
     }
 
     /// How the spectrum changes in this direction.
     fn change(
         &mut self,
-        site: &ContinuationPoint<N>,
-        linear: &Linear<N>,
-        direction: &TangentVector<N>,
+        site: &ContinuationPoint,
+        linear: &Linear,
+        direction: &TangentVector,
         spectrum: &Spectrum,
     ) -> Option<Spectrum> {
         let beside = site.moved(direction, STEP);
         let field = self.family.field(beside.at);
         let moved = linear
-            .beside(&mut self.tracer, &*field, &beside.shooting)
+            .beside(&mut self.tracer, &field, &beside.shooting)
             .ok()?;
         Some(Spectrum::change(linear, spectrum, &moved, STEP))
     }
 }
 
 /// Whether all test functions among the conditions are test functions here.
-fn checked<const N: usize>(conditions: &[Condition<'_, N>]) -> Result<()> {
+fn checked(conditions: &[Condition<'_>], dimension: usize) -> Result<()> {
     let mut test_functions = conditions.iter().filter_map(test_function);
-    test_functions.try_for_each(TestFunction::checked::<N>)
+    test_functions.try_for_each(|one| one.checked(dimension))
 }
 
-fn test_function<const N: usize>(condition: &Condition<'_, N>) -> Option<TestFunction> {
+fn test_function(condition: &Condition<'_>) -> Option<TestFunction> {
     match condition {
         Condition::TestFunction(test_function) => Some(*test_function),
         _ => None,
@@ -387,19 +396,19 @@ fn test_function<const N: usize>(condition: &Condition<'_, N>) -> Option<TestFun
 }
 
 /// What is known of the test functions among the conditions.
-struct KnownSpectrum<'a, const N: usize> {
+struct KnownSpectrum<'a> {
     spectrum: &'a Spectrum,
-    gradients: &'a [TangentVector<N>],
+    gradients: &'a [TangentVector],
     by_closing: &'a [f64],
 }
 
 /// How far to go in every direction for the conditions to hold, to first order.
-fn weights<const N: usize>(
-    site: &ContinuationPoint<N>,
-    closing: &TangentVector<N>,
-    along: &[TangentVector<N>],
-    conditions: &[Condition<'_, N>],
-    known: &KnownSpectrum<'_, N>,
+fn weights(
+    site: &ContinuationPoint,
+    closing: &TangentVector,
+    along: &[TangentVector],
+    conditions: &[Condition<'_>],
+    known: &KnownSpectrum<'_>,
 ) -> Option<Vec<f64>> {
     let mut test_functions = known.gradients.iter().zip(known.by_closing);
     let mut rows = Vec::with_capacity(conditions.len());
@@ -417,7 +426,7 @@ fn weights<const N: usize>(
                 let (gradient, by_closing) = test_functions.next()?;
                 (
                     along.iter().map(|t| gradient.dot(t)).collect(),
-                    -test_function.of::<N>(known.spectrum) - by_closing,
+                    -test_function.of(known.spectrum) - by_closing,
                 )
             }
         };

@@ -1,10 +1,9 @@
 //! The same orbit once more, by an unlike method on trajectories of its own.
 
-use super::find::{plane_of, whole_of};
 use super::interface_system::InterfaceSystem;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::{Orbit, OrbitAccuracy, orbit};
-use crate::equilibrium::Symmetry;
+use super::space::space_of;
 use crate::error::Result;
 
 /// What the second method found.
@@ -32,19 +31,10 @@ pub fn crosscheck(
     first: &Orbit,
     accuracy: &OrbitAccuracy,
 ) -> Result<Crosscheck> {
-    let (plane, whole) = (slab.plane(), slab.whole());
+    let space = space_of(slab, first.symmetry);
     let from = |digits: i32| {
-        let Orbit {
-            nodes, durations, ..
-        } = first;
-        if first.symmetry == Symmetry::Symmetric {
-            let space = plane_of(slab, &*plane, &*whole);
-            let shooting = ShootingNodes::of_digits(digits, nodes, durations);
-            orbit(slab, &space, accuracy, shooting)
-        } else {
-            let shooting = ShootingNodes::of_digits(digits, nodes, durations);
-            orbit(slab, &whole_of(&*whole), accuracy, shooting)
-        }
+        let shooting = ShootingNodes::of_digits(digits, &first.nodes, &first.durations);
+        orbit(slab, &*space, accuracy, shooting)
     };
     let [few, more, most] = DIGITS;
     let second = from(few).or_else(|_| from(more)).or_else(|_| from(most))?;

@@ -5,200 +5,246 @@
 //! that of structured orthogonal factorisation: Wright, S. J. (1992). Stable parallel algorithms for two-point boundary value
 //! problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
-use crate::field::{Jacobian, State};
-use nalgebra::{ComplexField, DMatrix, SMatrix, SVector};
+use crate::field::{Matrix, Vector};
+use nalgebra::{ComplexField, DMatrix, DVector, Dim, Dyn, VecStorage};
 
 /// What the equations are in: real or complex numbers.
 pub trait Scalar: ComplexField<RealField = f64> + Copy {}
 
 impl<T: ComplexField<RealField = f64> + Copy> Scalar for T {}
 
+/// Right-hand sides of one node, each in a column.
+type RightHandSides<T, C> = nalgebra::Matrix<T, Dyn, C, VecStorage<T, Dyn, C>>;
+
 /// A pivot below this part of its row's size is zero.
 const SINGULAR: f64 = 1e-14;
 
-/// The rows that a node's elimination leaves behind: `diagonal` (upper triangular) times u_k plus `first` u_0 plus `next`
-/// u_{k+1} equals the right-hand sides.
-#[derive(Debug, Clone, Copy)]
-struct Rows<T, const N: usize, const C: usize> {
-    diagonal: SMatrix<T, N, N>,
-    first: SMatrix<T, N, N>,
-    next: SMatrix<T, N, N>,
-    right: SMatrix<T, N, C>,
-}
-
-/// The equations u_{k+1} = P_k u_k + r_k, u_m = u_0, for C right-hand sides, with all but u_0 eliminated.
+/// The equations u_{k+1} = P_k u_k + r_k, u_m = u_0, for some right-hand sides, with all but u_0 eliminated.
 #[derive(Debug, Clone)]
-pub(super) struct Reduced<T, const N: usize, const C: usize> {
-    left: Vec<Rows<T, N, C>>,
-    /// What is left: `closing` (upper triangular) times u_0 equals `right`.
-    pub closing: SMatrix<T, N, N>,
-    pub right: SMatrix<T, N, C>,
-    /// The same equations as they were before, and of every row the size of what it is the sum of.
-    end: (SMatrix<T, N, N>, SMatrix<T, N, C>),
-    sizes: [f64; N],
+pub(super) struct Reduced<T> {
+    nodes: usize,
+    /// The number of components of a u_k.
+    size: usize,
+    /// Of every node but the first, the rows that its elimination leaves behind: an upper triangular matrix times u_k plus a
+    /// second one times u_0 plus a third one times u_{k+1} equals the right-hand sides, all four side by side.
+    left: Rows<T>,
+    /// What is left: a matrix times u_0 equals the right-hand sides beside it.
+    end: Rows<T>,
+    /// Of every row of these the size of what it is the sum of.
+    sizes: Vec<f64>,
 }
 
 /// Eliminates all nodes but the first.
-pub(super) fn reduce<T: Scalar, const N: usize, const C: usize>(
-    maps: &[SMatrix<T, N, N>],
-    right: &[SMatrix<T, N, C>],
-) -> Reduced<T, N, C> {
-    let nodes = maps.len();
-    // e u_0 + f u_k = c, at first from k = 1.
-    let mut e = -maps[0];
-    let mut f = SMatrix::identity();
-    let mut c = right[0];
-    let mut left = Vec::with_capacity(nodes);
-    for k in 1..nodes {
-        let mut stacked = Stacked {
-            pivot: [f, -maps[k]],
-            first: [e, SMatrix::zeros()],
-            next: [SMatrix::zeros(), SMatrix::identity()],
-            right: [c, right[k]],
-        };
-        stacked.triangulate();
-        left.push(Rows {
-            diagonal: stacked.pivot[0],
-            first: stacked.first[0],
-            next: stacked.next[0],
-            right: stacked.right[0],
-        });
-        (e, f, c) = (stacked.first[1], stacked.next[1], stacked.right[1]);
+pub(super) fn reduce<T: Scalar, C: Dim>(
+    maps: &[DMatrix<T>],
+    right: &[RightHandSides<T, C>],
+) -> Reduced<T> {
+    let (n, columns) = right[0].shape();
+    let width = 3 * n + columns;
+    // The rows of e u_0 + f u_k = c, at first from k = 1, above those of the next node: of every row what u_k, u_0 and u_{k+1}
+    // are multiplied by, and the right-hand sides.
+    let mut work = Rows::zeros(2 * n, width);
+    for i in 0..n {
+        let row = work.row_mut(i);
+        row[i] = T::one();
+        for j in 0..n {
+            row[n + j] = -maps[0][(i, j)];
+        }
+        for j in 0..columns {
+            row[3 * n + j] = right[0][(i, j)];
+        }
     }
-    let sizes = std::array::from_fn(|i| e.row(i).camax().max(f.row(i).camax()));
-    let last = closed(e + f, c);
-    Reduced {
-        left,
-        end: (e + f, c),
-        sizes,
-        closing: last.0,
-        right: last.1,
+    let mut left = Vec::with_capacity((maps.len() - 1) * n * width);
+    for (map, right) in maps.iter().zip(right).skip(1) {
+        for i in 0..n {
+            let row = work.row_mut(n + i);
+            row.fill(T::zero());
+            for j in 0..n {
+                row[j] = -map[(i, j)];
+            }
+            row[2 * n + i] = T::one();
+            for j in 0..columns {
+                row[3 * n + j] = right[(i, j)];
+            }
+        }
+        work.triangulate(n);
+        let (done, rest) = work.entries.split_at_mut(n * width);
+        left.extend_from_slice(done);
+        done.copy_from_slice(rest);
+        // What u_{k+1} is multiplied by comes first now.
+        for i in 0..n {
+            let row = work.row_mut(i);
+            row.copy_within(2 * n..3 * n, 0);
+            row[2 * n..3 * n].fill(T::zero());
+        }
     }
-}
-
-/// The last equations, with an upper triangular matrix.
-fn closed<T: Scalar, const N: usize, const C: usize>(
-    matrix: SMatrix<T, N, N>,
-    right: SMatrix<T, N, C>,
-) -> (SMatrix<T, N, N>, SMatrix<T, N, C>) {
-    let mut last = Stacked {
-        pivot: [matrix, SMatrix::zeros()],
-        first: [SMatrix::zeros(); 2],
-        next: [SMatrix::zeros(); 2],
-        right: [right, SMatrix::zeros()],
+    let mut end = Rows::zeros(n, n + columns);
+    let mut sizes = Vec::with_capacity(n);
+    for i in 0..n {
+        let (matrices, right) = work.row(i).split_at(3 * n);
+        let (f, e) = matrices[..2 * n].split_at(n);
+        let row = end.row_mut(i);
+        for j in 0..n {
+            row[j] = e[j] + f[j];
+        }
+        row[n..].copy_from_slice(right);
+        let all = matrices.iter().map(|x| x.norm1());
+        sizes.push(all.fold(0.0, f64::max));
+    }
+    let left = Rows {
+        width,
+        entries: left,
     };
-    last.triangulate();
-    (last.pivot[0], last.right[0])
+    Reduced {
+        nodes: maps.len(),
+        size: n,
+        left,
+        end,
+        sizes,
+    }
 }
 
-impl<T: Scalar, const N: usize, const C: usize> Reduced<T, N, C> {
+impl<T: Scalar> Reduced<T> {
+    /// What is left, an upper triangular matrix times u_0 equals the right-hand sides beside it.
+    pub fn closing(&self) -> Rows<T> {
+        let mut closing = self.end.clone();
+        closing.triangulate(self.size);
+        closing
+    }
+
     /// The last equations with rows of order one: those that belong to what has grown or decayed on the way are of any size, and
     /// only beside its own is a pivot zero.
-    fn scaled_end(&self) -> (SMatrix<T, N, N>, SMatrix<T, N, C>) {
-        let (mut matrix, mut right) = self.end;
+    fn scaled_end(&self) -> Rows<T> {
+        let mut end = self.end.clone();
         for (i, size) in self.sizes.iter().enumerate().filter(|row| *row.1 > 0.0) {
-            matrix.row_mut(i).scale_mut(1.0 / size);
-            right.row_mut(i).scale_mut(1.0 / size);
+            for x in end.row_mut(i) {
+                *x = x.scale(1.0 / size);
+            }
         }
-        (matrix, right)
+        end
     }
 
     /// All u_k from u_0, for this combination of the right-hand sides; `None` where they are not finite.
     pub fn extended(
         &self,
-        start: &SVector<T, N>,
-        combination: &SVector<T, C>,
-    ) -> Option<Vec<SVector<T, N>>> {
-        let mut u = vec![*start; self.left.len() + 1];
-        let mut next = *start;
-        for (k, rows) in self.left.iter().enumerate().rev() {
-            let rest = rows.right * combination - rows.first * start - rows.next * next;
-            next = rows.diagonal.solve_upper_triangular(&rest)?;
-            u[k + 1] = next;
+        start: &DVector<T>,
+        combination: &DVector<T>,
+    ) -> Option<Vec<DVector<T>>> {
+        let n = self.size;
+        let mut u = vec![start.clone(); self.nodes];
+        for k in (1..self.nodes).rev() {
+            let next = (k + 1) % self.nodes;
+            for i in (0..n).rev() {
+                let row = self.left.row((k - 1) * n + i);
+                let (matrices, right) = row.split_at(3 * n);
+                let (diagonal, others) = matrices.split_at(n);
+                let (first, onto) = others.split_at(n);
+                let mut rest = product(right, combination.as_slice())
+                    - product(first, start.as_slice())
+                    - product(onto, u[next].as_slice());
+                let u = &mut u[k];
+                for j in (i + 1..n).rev() {
+                    rest -= diagonal[j] * u[j];
+                }
+                u[i] = divided(rest, diagonal[i])?;
+            }
         }
-        u.iter()
-            .all(|u| u.iter().all(|x| x.is_finite()))
-            .then_some(u)
+        let finite = |u: &DVector<T>| u.iter().all(|x| x.is_finite());
+        u.iter().all(finite).then_some(u)
     }
 }
 
+/// The sum of the products of two rows' entries.
+fn product<T: Scalar>(a: &[T], b: &[T]) -> T {
+    let products = a.iter().zip(b).map(|(a, b)| *a * *b);
+    products.fold(T::zero(), |sum, x| sum + x)
+}
+
+/// a / b; `None` where b is zero.
+fn divided<T: Scalar>(a: T, b: T) -> Option<T> {
+    (b != T::zero()).then(|| a / b)
+}
+
 /// The solution of u_{k+1} = P_k u_k + r_k for k = 0 .. m - 1, u_m = u_0; `None` where it is singular.
-pub fn solve<T: Scalar, const N: usize>(
-    maps: &[SMatrix<T, N, N>],
-    right: &[SVector<T, N>],
-) -> Option<Vec<SVector<T, N>>> {
-    let reduced = reduce::<T, N, 1>(maps, right);
-    let (matrix, right) = reduced.scaled_end();
-    let (closing, right) = closed(matrix, right);
-    let start = closing.solve_upper_triangular(&right)?;
+pub fn solve<T: Scalar>(maps: &[DMatrix<T>], right: &[DVector<T>]) -> Option<Vec<DVector<T>>> {
+    let reduced = reduce(maps, right);
+    let n = reduced.size;
+    let mut closing = reduced.scaled_end();
+    closing.triangulate(n);
+    let mut start = DVector::zeros(n);
+    for i in (0..n).rev() {
+        let row = closing.row(i);
+        let mut rest = row[n];
+        for j in (i + 1..n).rev() {
+            rest -= row[j] * start[j];
+        }
+        start[i] = divided(rest, row[i])?;
+    }
     // Where one direction is free, rounding alone keeps the last pivot from being zero.
-    let pivots = closing.diagonal().map(T::modulus);
-    let free = pivots.min() <= SINGULAR;
+    let pivots = (0..n).map(|i| closing.row(i)[i].modulus());
+    let free = pivots.fold(f64::INFINITY, f64::min) <= SINGULAR;
     if free {
         return None;
     }
-    reduced.extended(&start, &SVector::repeat(T::one()))
+    reduced.extended(&start, &DVector::from_element(1, T::one()))
 }
 
 /// The direction in which u_{k+1} = P_k u_k, u_m = u_0 is nearest to singular, as displacements of all nodes; `None` where these
 /// are not finite.
-pub(super) fn kernel<const N: usize>(maps: &[Jacobian<N>]) -> Option<Vec<State<N>>> {
-    let reduced = reduce::<f64, N, 1>(maps, &vec![State::zeros(); maps.len()]);
-    let (matrix, _) = reduced.scaled_end();
-    let svd = DMatrix::from_fn(N, N, |i, j| matrix[(i, j)]).svd(false, true);
+pub(super) fn kernel(maps: &[Matrix]) -> Option<Vec<Vector>> {
+    let n = maps.first()?.nrows();
+    let reduced = reduce(maps, &vec![Vector::zeros(n); maps.len()]);
+    let end = reduced.scaled_end();
+    let svd = Matrix::from_fn(n, n, |i, j| end.row(i)[j]).svd(false, true);
     let least = svd.singular_values.imin();
     let start = svd.v_t?.row(least).transpose();
-    reduced.extended(&State::from_fn(|i, _| start[i]), &SVector::zeros())
+    reduced.extended(&start, &Vector::zeros(1))
 }
 
-/// 2N rows in blocks of N.
-struct Stacked<T, const N: usize, const C: usize> {
-    pivot: [SMatrix<T, N, N>; 2],
-    first: [SMatrix<T, N, N>; 2],
-    next: [SMatrix<T, N, N>; 2],
-    right: [SMatrix<T, N, C>; 2],
+/// Equations, each in a row: what the unknowns are multiplied by, and the right-hand sides.
+#[derive(Debug, Clone)]
+pub(super) struct Rows<T> {
+    width: usize,
+    /// Row by row.
+    entries: Vec<T>,
 }
 
-impl<T: Scalar, const N: usize, const C: usize> Stacked<T, N, C> {
-    /// Makes the pivot's first block upper triangular and its second zero, by rotations of two rows at a time.
-    fn triangulate(&mut self) {
-        for j in 0..N {
-            for row in j + 1..2 * N {
-                let (block, i) = (row / N, row % N);
-                let (p, x) = (self.pivot[0][(j, j)], self.pivot[block][(i, j)]);
-                if x == T::zero() {
-                    continue;
-                }
-                let length = p.modulus().hypot(x.modulus());
-                let turn = Turn {
-                    rows: [(0, j), (block, i)],
-                    cosine: p.unscale(length),
-                    sine: x.unscale(length),
-                };
-                turn.apply(&mut self.pivot);
-                turn.apply(&mut self.first);
-                turn.apply(&mut self.next);
-                turn.apply(&mut self.right);
-                self.pivot[block][(i, j)] = T::zero();
-            }
+impl<T: Scalar> Rows<T> {
+    fn zeros(count: usize, width: usize) -> Self {
+        Rows {
+            width,
+            entries: vec![T::zero(); count * width],
         }
     }
-}
 
-/// A rotation of two rows of two blocks.
-struct Turn<T> {
-    rows: [(usize, usize); 2],
-    cosine: T,
-    sine: T,
-}
+    pub fn row(&self, i: usize) -> &[T] {
+        &self.entries[i * self.width..(i + 1) * self.width]
+    }
 
-impl<T: Scalar> Turn<T> {
-    fn apply<const N: usize, const C: usize>(&self, blocks: &mut [SMatrix<T, N, C>; 2]) {
-        let [(a, i), (b, k)] = self.rows;
-        for column in 0..C {
-            let (x, y) = (blocks[a][(i, column)], blocks[b][(k, column)]);
-            blocks[a][(i, column)] = self.cosine.conjugate() * x + self.sine.conjugate() * y;
-            blocks[b][(k, column)] = self.cosine * y - self.sine * x;
+    fn row_mut(&mut self, i: usize) -> &mut [T] {
+        &mut self.entries[i * self.width..(i + 1) * self.width]
+    }
+
+    /// Makes the first n columns upper triangular, with zeros below, by rotations of two rows at a time.
+    fn triangulate(&mut self, n: usize) {
+        let width = self.width;
+        for j in 0..n {
+            // To the left of their j-th entries these rows are zero.
+            let (above, below) = self.entries.split_at_mut((j + 1) * width);
+            let pivot = &mut above[j * width + j..];
+            for row in below.chunks_exact_mut(width) {
+                let row = &mut row[j..];
+                if row[0] == T::zero() {
+                    continue;
+                }
+                let length = pivot[0].modulus().hypot(row[0].modulus());
+                let (cosine, sine) = (pivot[0].unscale(length), row[0].unscale(length));
+                let (across, along) = (cosine.conjugate(), sine.conjugate());
+                for (p, x) in pivot.iter_mut().zip(row.iter_mut()) {
+                    (*p, *x) = (across * *p + along * *x, cosine * *x - sine * *p);
+                }
+                row[0] = T::zero();
+            }
         }
     }
 }

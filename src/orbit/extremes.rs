@@ -1,41 +1,43 @@
 //! How far an orbit goes: its least and greatest stress, slip rate and state, on the series along it.
 
 use super::arc::Tracer;
+use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
-use crate::field::{State, VectorField};
-use crate::integrate::Control;
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnySection, Control};
 use crate::number::polynomial::{Crossing, evaluate, roots};
-use crate::series::{REFERENCE_ORDER, Section, Zeros};
+use crate::series::{REFERENCE_ORDER, Zeros};
 
 /// The extremes over one cycle, and the point where a plane is passed.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Extremes<const N: usize> {
+#[derive(Debug, Clone)]
+pub(super) struct Extremes {
     pub stress: (f64, f64),
     pub slip_rate_max: f64,
     pub state_min: f64,
     /// Where tau falls through the level asked for.
-    pub passage: Option<State<N>>,
+    pub passage: Option<Vector>,
 }
 
 /// Along the shooting's arcs, each from its own node.
-pub(super) fn extremes<const N: usize>(
-    field: &dyn VectorField<N>,
-    shooting: &ShootingNodes<N>,
+pub(super) fn extremes(
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
     level: f64,
-) -> Result<Extremes<N>> {
+) -> Result<Extremes> {
     /// Tolerance of the run.
     const FINE: f64 = 1e-14;
-    let mut tracer = Tracer::<N>::taylor(FINE)?;
-    let axis = |i: usize| {
-        let mut normal = [0.0; N];
-        normal[i] = 1.0;
-        normal
-    };
-    let plane = Section::Plane {
-        normal: axis(0),
+    let mut tracer = Tracer::taylor(FINE)?;
+    let dimension = field.dimension();
+    let plane = AnySection::Plane {
+        normal: axis(dimension, 0),
         offset: level,
     };
+    let turning: Vec<AnySection> = (0..dimension)
+        .map(|i| AnySection::Extremum {
+            normal: axis(dimension, i),
+        })
+        .collect();
     let mut all = Extremes {
         stress: (f64::INFINITY, f64::NEG_INFINITY),
         slip_rate_max: f64::NEG_INFINITY,
@@ -47,8 +49,8 @@ pub(super) fn extremes<const N: usize>(
     // The sign goes on from arc to arc, so that no passage at a node is lost.
     let mut through = Zeros::default();
     for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
-        let mut turning = [(); N].map(|()| Zeros::default());
-        all.see(x);
+        let mut turns_of = vec![Zeros::default(); dimension];
+        all.see(x.as_slice());
         tracer.flow(
             field,
             x,
@@ -59,28 +61,27 @@ pub(super) fn extremes<const N: usize>(
                     return Ok(Control::Continue);
                 };
                 found.clear();
-                for (i, zeros) in turning.iter_mut().enumerate() {
-                    let section = Section::Extremum { normal: axis(i) };
-                    series.crossings(&section, None, zeros, &mut found);
+                for (section, zeros) in turning.iter().zip(&mut turns_of) {
+                    series.crossings(section, None, zeros, &mut found);
                 }
-                found.iter().for_each(|turn| all.see(&turn.state.into()));
+                found.iter().for_each(|turn| all.see(turn.state.as_slice()));
                 if all.passage.is_none() {
                     found.clear();
                     let down = Some(Crossing::Downwards);
                     series.crossings(&plane, down, &mut through, &mut found);
-                    all.passage = found.first().map(|passage| passage.state.into());
+                    all.passage = found.drain(..).next().map(|passage| passage.state);
                 }
-                for rates in &series.slip_rates {
-                    let rates = &rates[..series.order];
+                let end = series.length() / series.unit();
+                for rates in series.slip_rates() {
                     let mut slope = [0.0; REFERENCE_ORDER];
-                    let slope = &mut slope[..series.order - 1];
+                    let slope = &mut slope[..series.order() - 1];
                     for (j, c) in slope.iter_mut().enumerate() {
                         *c = (j + 1) as f64 * rates[j + 1];
                     }
                     turns.clear();
-                    roots(slope, series.length / series.unit, &mut turns);
+                    roots(slope, end, &mut turns);
                     let inside = turns.iter().map(|root| root.at);
-                    for s in inside.chain([0.0, series.length / series.unit]) {
+                    for s in inside.chain([0.0, end]) {
                         all.slip_rate_max = all.slip_rate_max.max(evaluate(rates, s));
                     }
                 }
@@ -91,8 +92,8 @@ pub(super) fn extremes<const N: usize>(
     Ok(all)
 }
 
-impl<const N: usize> Extremes<N> {
-    fn see(&mut self, y: &State<N>) {
+impl Extremes {
+    fn see(&mut self, y: &[f64]) {
         self.stress = (self.stress.0.min(y[0]), self.stress.1.max(y[0]));
         for w in y.iter().skip(1) {
             self.state_min = self.state_min.min(w.exp());

@@ -2,21 +2,25 @@
 
 use super::continuation_point::ContinuationPoint;
 use super::interface_system::InterfaceSystem;
-use super::shooting_nodes::ShootingNodes;
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField, place};
+use crate::field::{Matrix, State, Vector, place};
+use crate::integrate::AnyField;
 use crate::model::{Loading, Parameter, Smooth, from_difference_chart, to_difference_chart};
 use crate::series::Equations;
 
 /// Vector fields over a plane of two parameters.
 ///
 /// Continuation moves in coordinates of the plane that suit it: logarithms where decades are spanned.
-pub trait ParametrisedField<const N: usize>: Sync {
+pub trait ParametrisedField: Sync {
+    /// The number of variables.
+    fn dimension(&self) -> usize;
+
     /// The places, among all of the field's parameters, of the two that span the plane.
     fn plane(&self) -> [usize; 2];
 
     /// The field at these coordinates.
-    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_>;
+    fn field(&self, at: [f64; 2]) -> AnyField<'_>;
 
     /// The parameters themselves.
     fn parameters(&self, at: [f64; 2]) -> [f64; 2];
@@ -26,20 +30,21 @@ pub trait ParametrisedField<const N: usize>: Sync {
 
     /// The normal of the plane in which a node may move where the flow is `flow`: the flow itself, unless some variables had
     /// better stay out of it.
-    fn normal(&self, flow: State<N>) -> State<N> {
+    fn normal(&self, flow: Vector) -> Vector {
         flow
     }
 
     /// What takes a displacement of a point x, where the flow is `flow`, to its part across the flow, in the variables in which
     /// displacements are measured.
-    fn across(&self, _x: &State<N>, flow: &State<N>) -> Jacobian<N> {
+    fn across(&self, _x: &Vector, flow: &Vector) -> Matrix {
         projection(flow)
     }
 }
 
 /// The projection across a direction.
-fn projection<const N: usize>(along: &State<N>) -> Jacobian<N> {
-    Jacobian::<N>::identity() - along * along.transpose() / along.norm_squared()
+fn projection(along: &Vector) -> Matrix {
+    let count = along.len();
+    Matrix::identity(count, count) - along * along.transpose() / along.norm_squared()
 }
 
 /// The places of two parameters among all.
@@ -96,15 +101,19 @@ impl<S: Equations<N, 2>, const N: usize> OverParameters<S, N, 2> {
     }
 }
 
-impl<S: Equations<N, P>, const N: usize, const P: usize> ParametrisedField<N>
+impl<S: Equations<N, P>, const N: usize, const P: usize> ParametrisedField
     for OverParameters<S, N, P>
 {
+    fn dimension(&self) -> usize {
+        N
+    }
+
     fn plane(&self) -> [usize; 2] {
         self.plane
     }
 
-    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<N> + '_> {
-        Box::new(self.at(at))
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+        AnyField::new::<N>(Box::new(self.at(at)))
     }
 
     fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -116,11 +125,22 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> ParametrisedField<N>
     }
 }
 
-/// A slab over (ln V_H, ln K).
-#[derive(Debug, Clone, Copy)]
-pub struct OverLoadings(pub InterfaceSystem);
+/// Orbits of a slab over (ln V_H, ln K).
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct OverLoadings {
+    /// The slab; its own V_H and K do not matter.
+    pub slab: InterfaceSystem,
+    /// Whether the interfaces move alike. Symmetric orbits are in (tau, ln psi), as those of a single interface; all others in (tau,
+    /// ln psi_1, ln psi_2).
+    pub symmetry: Symmetry,
+}
 
 impl OverLoadings {
+    /// The orbits of this symmetry.
+    pub fn new(slab: InterfaceSystem, symmetry: Symmetry) -> Self {
+        OverLoadings { slab, symmetry }
+    }
+
     /// The slab there.
     pub fn slab(&self, at: [f64; 2]) -> InterfaceSystem {
         InterfaceSystem {
@@ -128,7 +148,7 @@ impl OverLoadings {
                 driving: at[0].exp(),
                 stiffness: at[1].exp(),
             },
-            ..self.0
+            ..self.slab
         }
     }
 
@@ -137,24 +157,29 @@ impl OverLoadings {
     }
 }
 
-/// A slab over the logarithms of any two of its parameters, constants of its law among them; the others are held.
+/// Orbits of a slab over the logarithms of any two of its parameters, constants of its law among them; the others are held.
 ///
 /// Derivatives in V_H and K are compiled, as those of [`OverLoadings`]; those in constants of the law run in loops, several times as
 /// long.
 #[derive(Debug, Clone, Copy)]
 pub struct OverLogarithms {
     slab: InterfaceSystem,
+    symmetry: Symmetry,
     plane: [usize; 2],
 }
 
 impl OverLogarithms {
-    /// Over the parameters of these names among [`InterfaceSystem::parameter_names`].
+    /// Over the parameters of these names among [`InterfaceSystem::parameter_names`], the orbits of this symmetry.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a name that is not among them, or if both are the same.
-    pub fn new(slab: InterfaceSystem, names: [&str; 2]) -> Result<Self> {
+    pub fn new(slab: InterfaceSystem, symmetry: Symmetry, names: [&str; 2]) -> Result<Self> {
         let plane = places(slab.parameter_names(), names)?;
-        Ok(OverLogarithms { slab, plane })
+        Ok(OverLogarithms {
+            slab,
+            symmetry,
+            plane,
+        })
     }
 
     /// The slab there.
@@ -171,14 +196,25 @@ impl OverLogarithms {
 
 /// A slab over the logarithms of two parameters, in all its dimensions or in the plane of interfaces that move alike.
 macro_rules! over_logarithms {
-    ($($family:ident $n:literal $field:ident)*) => { $(
-        impl ParametrisedField<$n> for $family {
+    ($($family:ident)*) => { $(
+        impl ParametrisedField for $family {
+            fn dimension(&self) -> usize {
+                match self.symmetry {
+                    Symmetry::Symmetric => 2,
+                    Symmetry::Asymmetric => 3,
+                }
+            }
+
             fn plane(&self) -> [usize; 2] {
                 self.places()
             }
 
-            fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<$n> + '_> {
-                self.slab(at).$field()
+            fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+                let slab = self.slab(at);
+                match self.symmetry {
+                    Symmetry::Symmetric => AnyField::new::<2>(slab.plane()),
+                    Symmetry::Asymmetric => AnyField::new::<3>(slab.whole()),
+                }
             }
 
             fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -191,12 +227,7 @@ macro_rules! over_logarithms {
         }
     )* };
 }
-over_logarithms! {
-    OverLoadings 3 whole
-    OverLoadings 2 plane
-    OverLogarithms 3 whole
-    OverLogarithms 2 plane
-}
+over_logarithms! { OverLoadings OverLogarithms }
 
 /// Two interfaces over (ln V_H, ln K), in the variables that do not lose their difference.
 ///
@@ -204,13 +235,17 @@ over_logarithms! {
 #[derive(Debug, Clone, Copy)]
 pub struct OverDifferenceChart(pub OverLoadings);
 
-impl ParametrisedField<3> for OverDifferenceChart {
+impl ParametrisedField for OverDifferenceChart {
+    fn dimension(&self) -> usize {
+        3
+    }
+
     fn plane(&self) -> [usize; 2] {
         Parameter::PLANE
     }
 
-    fn field(&self, at: [f64; 2]) -> Box<dyn VectorField<3> + '_> {
-        self.0.slab(at).in_difference_chart()
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+        AnyField::new::<3>(self.0.slab(at).in_difference_chart())
     }
 
     fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
@@ -223,54 +258,43 @@ impl ParametrisedField<3> for OverDifferenceChart {
 
     /// Without ln D. Where D is small, tau and psi_2 know nothing of it, and a shift of ln D stays as it is all along the
     /// orbit. A plane that leans towards ln D would mix that shift with what grows by e^(0.5 / K) along the canard.
-    fn normal(&self, flow: State<3>) -> State<3> {
-        State::<3>::new(flow[0], flow[1], 0.0)
+    fn normal(&self, mut flow: Vector) -> Vector {
+        flow[2] = 0.0;
+        flow
     }
 
     /// Measured in (tau, ln psi_1, ln psi_2), as on orbits whose interfaces differ by more.
-    fn across(&self, x: &State<3>, flow: &State<3>) -> Jacobian<3> {
+    fn across(&self, x: &Vector, flow: &Vector) -> Matrix {
         // psi_1 = psi_2 + D
         let part = 1.0 / (1.0 + (x[1] - x[2]).exp());
-        let to_states = Jacobian::<3>::new(1.0, 0.0, 0.0, 0.0, 1.0 - part, part, 0.0, 1.0, 0.0);
-        projection(&(to_states * flow)) * to_states
+        let rows = [1.0, 0.0, 0.0, 0.0, 1.0 - part, part, 0.0, 1.0, 0.0];
+        let to_states = Matrix::from_row_slice(3, 3, &rows);
+        projection(&(&to_states * flow)) * to_states
     }
 }
 
 impl OverDifferenceChart {
     /// An orbit in these variables; `None` where the interfaces do not differ everywhere, or not always in the same sense.
-    pub(crate) fn to_chart(site: &ContinuationPoint<3>) -> Option<ContinuationPoint<3>> {
-        let exchange = |x: &State<3>| State::<3>::new(x[0], x[2], x[1]);
+    pub(crate) fn to_chart(site: &ContinuationPoint) -> Option<ContinuationPoint> {
         let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
-            site.shooting
-                .nodes
-                .iter()
-                .map(each)
-                .collect::<Option<Vec<_>>>()
+            let nodes = site.shooting.nodes.iter();
+            let each = |x: &Vector| {
+                let node = each(&State::<3>::new(x[0], x[1], x[2]))?;
+                Some(Vector::from_column_slice(node.as_slice()))
+            };
+            nodes.map(each).collect::<Option<Vec<_>>>()
         };
-        let nodes = nodes(&to_difference_chart)
-            .or_else(|| nodes(&|x| to_difference_chart(&exchange(x))))?;
-        Some(ContinuationPoint {
-            shooting: ShootingNodes {
-                nodes,
-                durations: site.shooting.durations.clone(),
-            },
-            at: site.at,
-        })
+        let exchanged = |x: &State<3>| to_difference_chart(&State::<3>::new(x[0], x[2], x[1]));
+        let nodes = nodes(&to_difference_chart).or_else(|| nodes(&exchanged))?;
+        Some(site.with_nodes(nodes))
     }
 
     /// The orbit in (tau, ln psi_1, ln psi_2).
-    pub(crate) fn from_chart(site: &ContinuationPoint<3>) -> ContinuationPoint<3> {
-        ContinuationPoint {
-            shooting: ShootingNodes {
-                nodes: site
-                    .shooting
-                    .nodes
-                    .iter()
-                    .map(from_difference_chart)
-                    .collect(),
-                durations: site.shooting.durations.clone(),
-            },
-            at: site.at,
-        }
+    pub(crate) fn from_chart(site: &ContinuationPoint) -> ContinuationPoint {
+        let node = |x: &Vector| {
+            let node = from_difference_chart(&State::<3>::new(x[0], x[1], x[2]));
+            Vector::from_column_slice(node.as_slice())
+        };
+        site.with_nodes(site.shooting.nodes.iter().map(node).collect())
     }
 }

@@ -1,18 +1,17 @@
 //! Finding periodic orbits: from a given point, from settled runs, or along a branch from a Hopf point.
 
 use super::arc::Tracer;
-use super::family::{OverLoadings, ParametrisedField};
 use super::interface_system::InterfaceSystem;
 use super::settle::{passages, settle};
 use super::shooting::close;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::{Orbit, OrbitAccuracy, orbit, traversals};
-use super::space::{Plane, Space, Whole};
+use super::space::{Space, space_of};
 use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
-use crate::field::{State, VectorField};
-use crate::model::Driven;
+use crate::field::Vector;
+use crate::integrate::AnyField;
 
 /// Which orbit is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,59 +70,39 @@ pub fn find(slab: &InterfaceSystem, query: &Query, accuracy: &OrbitAccuracy) -> 
             "a single interface has no asymmetric orbit; ask for the symmetric one".into(),
         ));
     }
-    let whole = slab.whole();
-    if query.symmetry == Symmetry::Asymmetric {
-        let space = whole_of(&*whole);
-        let starts = asymmetric_starts(slab);
-        let chart = |(tau, [w1, w2]): (f64, [f64; 2])| State::<3>::new(tau, w1, w2);
-        return search(slab, &space, query, accuracy, &chart, &starts);
-    }
-    let plane = slab.plane();
-    let space = plane_of(slab, &*plane, &*whole);
-    let chart = |(tau, [w, _]): (f64, [f64; 2])| State::<2>::new(tau, w);
+    let space = space_of(slab, query.symmetry);
+    search(slab, &*space, query, accuracy)
+}
+
+/// Of tau and ln psi of both interfaces, the variables in which orbits of a symmetry are.
+fn variables(symmetry: Symmetry, (tau, [first, second]): (f64, [f64; 2])) -> Vector {
+    Vector::from_vec(match symmetry {
+        Symmetry::Symmetric => vec![tau, first],
+        Symmetry::Asymmetric => vec![tau, first, second],
+    })
+}
+
+/// Starts from which runs are made: below the equilibrium; asymmetric ones beside the symmetric equilibrium and far from it.
+fn starts(slab: &InterfaceSystem, symmetry: Symmetry) -> Vec<Vector> {
     let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
-    let starts = [0.5, 3.0].map(|away| State::<2>::new(tau, w - away));
-    search(slab, &space, query, accuracy, &chart, &starts)
+    let starts = match symmetry {
+        Symmetry::Symmetric => vec![(tau, [w - 0.5; 2]), (tau, [w - 3.0; 2])],
+        Symmetry::Asymmetric => vec![
+            (tau, [w, w + 0.3]),
+            (tau + 1.0, [w, w - 4.0]),
+            (10.0, [0.5_f64.ln(), 1e-3_f64.ln()]),
+        ],
+    };
+    let starts = starts.into_iter();
+    starts.map(|start| variables(symmetry, start)).collect()
 }
 
-/// The space of all orbits of two interfaces.
-pub(super) fn whole_of(whole: &dyn Driven<3>) -> Whole<'_> {
-    Whole(whole)
-}
-
-/// The space of symmetric orbits, within that of all where there are two interfaces.
-pub(super) fn plane_of<'a>(
+fn search(
     slab: &InterfaceSystem,
-    plane: &'a dyn Driven<2>,
-    whole: &'a dyn Driven<3>,
-) -> Plane<'a> {
-    Plane {
-        plane,
-        whole: (slab.interfaces == 2).then_some(whole as _),
-    }
-}
-
-/// Starts from which asymmetric runs are made: beside the symmetric equilibrium and far from it.
-fn asymmetric_starts(slab: &InterfaceSystem) -> [State<3>; 3] {
-    let (tau, w) = (slab.steady_stress(), slab.steady_log_state());
-    [
-        State::<3>::new(tau, w, w + 0.3),
-        State::<3>::new(tau + 1.0, w, w - 4.0),
-        State::<3>::new(10.0, 0.5_f64.ln(), 1e-3_f64.ln()),
-    ]
-}
-
-fn search<const N: usize>(
-    slab: &InterfaceSystem,
-    space: &impl Space<N>,
+    space: &dyn Space,
     query: &Query,
     accuracy: &OrbitAccuracy,
-    chart: &dyn Fn((f64, [f64; 2])) -> State<N>,
-    starts: &[State<N>],
-) -> Result<FoundOrbit>
-where
-    OverLoadings: ParametrisedField<N>,
-{
+) -> Result<FoundOrbit> {
     let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
     let mut guesses = Guesses {
         space,
@@ -132,13 +111,16 @@ where
         otherwise: None,
     };
     match query.begin {
-        InitialGuess::At { start, period } => match period {
-            Some(period) => guesses.over(period, &mut tracer, &chart(start))?,
-            None => guesses.near(slab, &mut tracer, &chart(start))?,
-        },
+        InitialGuess::At { start, period } => {
+            let start = variables(query.symmetry, start);
+            match period {
+                Some(period) => guesses.over(period, &mut tracer, &start)?,
+                None => guesses.near(slab, &mut tracer, &start)?,
+            }
+        }
         InitialGuess::Anywhere => {
-            for start in starts {
-                guesses.settled(slab, &mut tracer, start);
+            for start in starts(slab, query.symmetry) {
+                guesses.settled(slab, &mut tracer, &start);
             }
         }
         InitialGuess::Hopf => {}
@@ -196,17 +178,17 @@ where
 }
 
 /// Closed polygons on the way to an answer.
-struct Guesses<'a, S, const N: usize> {
-    space: &'a S,
+struct Guesses<'a> {
+    space: &'a dyn Space,
     wanted: Symmetry,
-    closed: Vec<ShootingNodes<N>>,
+    closed: Vec<ShootingNodes>,
     /// Why there is none, so far.
     otherwise: Option<Error>,
 }
 
-impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
+impl Guesses<'_> {
     /// Keeps a closed shooting if it has the symmetry and is new.
-    fn take(&mut self, shooting: ShootingNodes<N>) -> bool {
+    fn take(&mut self, shooting: ShootingNodes) -> bool {
         if self.space.symmetry(&shooting) != self.wanted {
             self.otherwise = Some(other_orbit(
                 "the search ended on the symmetric orbit".into(),
@@ -216,7 +198,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
             return false;
         }
         let period = shooting.period();
-        let known = |other: &ShootingNodes<N>| (other.period() / period - 1.0).abs() < SAME_PERIOD;
+        let known = |other: &ShootingNodes| (other.period() / period - 1.0).abs() < SAME_PERIOD;
         if !self.closed.iter().any(known) {
             self.closed.push(shooting);
         }
@@ -225,11 +207,11 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
 
     /// Newton's method on the cycle of a given duration that begins at a point, or some cycles after it: the directions that
     /// contract have come to rest there.
-    fn over(&mut self, period: f64, tracer: &mut Tracer<N>, start: &State<N>) -> Result<()> {
+    fn over(&mut self, period: f64, tracer: &mut Tracer, start: &Vector) -> Result<()> {
         /// Cycles that are waited.
         const WAITED: usize = 3;
         let field = self.space.field();
-        let mut begins = vec![*start];
+        let mut begins = vec![start.clone()];
         for k in 0..=WAITED {
             match tracer.flow(field, &begins[k], period, None) {
                 Ok(next) => begins.push(next),
@@ -239,7 +221,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
         }
         let mut cycles: Vec<_> = begins
             .windows(2)
-            .map(|pair| ((pair[1] - pair[0]).amax(), pair[0]))
+            .map(|pair| ((&pair[1] - &pair[0]).amax(), pair[0].clone()))
             .collect();
         cycles.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, begin) in cycles {
@@ -251,7 +233,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     }
 
     /// Whether Newton's method on the cycle of this duration from this point leads to an orbit of the symmetry.
-    fn closes(&mut self, tracer: &mut Tracer<N>, begin: &State<N>, period: f64) -> bool {
+    fn closes(&mut self, tracer: &mut Tracer, begin: &Vector, period: f64) -> bool {
         let field = self.space.field();
         let closed = ShootingNodes::along(tracer, field, begin, period)
             .and_then(|shooting| close(tracer, field, shooting));
@@ -265,12 +247,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     }
 
     /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.
-    fn near(
-        &mut self,
-        slab: &InterfaceSystem,
-        tracer: &mut Tracer<N>,
-        start: &State<N>,
-    ) -> Result<()> {
+    fn near(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer, start: &Vector) -> Result<()> {
         /// Rough periods that the returns are looked for in; returns; those that a cycle may begin with; cycles tried.
         const LONG: f64 = 30.0;
         const RETURNS: usize = 8;
@@ -284,15 +261,15 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
             // Counted from the start itself if it falls there, else from the first passage.
             let mut found = run.found.into_iter();
             let begin = if field.f(start)[0] < 0.0 {
-                Some((0.0, *start))
+                Some((0.0, start.clone()))
             } else {
                 found.next()
             };
             // Some returns later the directions that contract have come to rest.
             let passed: Vec<_> = begin.into_iter().chain(found).collect();
-            for (i, &(time, begin)) in passed.iter().take(LATER).enumerate() {
+            for (i, (time, begin)) in passed.iter().take(LATER).enumerate() {
                 let later = passed[i + 1..].iter();
-                returns.extend(later.map(|(t, y)| ((y - begin).amax(), begin, t - time)));
+                returns.extend(later.map(|(t, y)| ((y - begin).amax(), begin.clone(), t - time)));
             }
         }
         returns.retain(|&(_, _, period)| period > 1e-9 * length);
@@ -307,7 +284,7 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
     }
 
     /// What a run from this start settles on.
-    fn settled(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer<N>, start: &State<N>) {
+    fn settled(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer, start: &Vector) {
         let field = self.space.field();
         let mut polygons = Vec::new();
         let run = settle(
@@ -332,11 +309,11 @@ impl<S: Space<N>, const N: usize> Guesses<'_, S, N> {
 }
 
 /// The cycle, once around.
-fn once_around<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    mut shooting: ShootingNodes<N>,
-) -> Result<ShootingNodes<N>> {
+fn once_around(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    mut shooting: ShootingNodes,
+) -> Result<ShootingNodes> {
     while let Some(times) = traversals(tracer, field, &shooting)? {
         let part = shooting.period() / f64::from(times);
         let once = ShootingNodes::along(tracer, field, &shooting.nodes[0], part)?;

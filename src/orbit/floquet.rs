@@ -15,9 +15,10 @@ use super::linear::Linear;
 use super::multipliers::multipliers;
 use super::shooting::Closed;
 use crate::equilibrium::Verdict;
-use crate::field::{Jacobian, State};
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
 use crate::number::Uncertain;
-use nalgebra::Complex;
+use nalgebra::{Complex, Matrix2, Vector2};
 
 /// What a multiplier is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -142,7 +143,7 @@ const TURNS: usize = 30;
 const SETTLED: f64 = 1e-12;
 
 /// The sums of the logarithms of the determinants: by the best the method has, and its uncertainty; and their defect.
-fn volume<const N: usize>(arcs: &[Arc<N>]) -> (Uncertain, Option<f64>) {
+fn volume(arcs: &[Arc]) -> (Uncertain, Option<f64>) {
     let by_matrix: f64 = arcs.iter().map(|arc| arc.tangent_volume()).sum();
     let by_trace: Option<f64> = arcs.iter().map(|arc| arc.log_determinant).sum();
     match by_trace {
@@ -166,61 +167,60 @@ fn together(errors: impl Iterator<Item = f64>) -> f64 {
 }
 
 /// The noise of all arcs.
-fn noise<const N: usize>(arcs: &[Arc<N>]) -> f64 {
+fn noise(arcs: &[Arc]) -> f64 {
     together(arcs.iter().map(Arc::noise))
 }
 
 /// f at the next node over f carried there: the trivial multiplier of every arc, and their product minus 1.
-fn trivial_defect<const N: usize>(
-    nodes: &[State<N>],
-    arcs: &[Arc<N>],
-    f: &dyn Fn(&State<N>) -> State<N>,
-) -> f64 {
+fn trivial_defect(nodes: &[Vector], arcs: &[Arc], field: &AnyField<'_>) -> f64 {
+    let flows: Vec<_> = nodes.iter().map(|x| field.f(x)).collect();
     let logs = arcs.iter().enumerate().map(|(k, arc)| {
-        let next = f(&nodes[(k + 1) % nodes.len()]);
-        let carried = arc.tangent * f(&nodes[k]);
+        let next = &flows[(k + 1) % flows.len()];
+        let carried = &arc.tangent * &flows[k];
         (next.dot(&carried) / next.norm_squared()).abs().ln()
     });
     logs.sum::<f64>().exp_m1().abs()
 }
 
 /// The multipliers of an orbit in the space of its field.
-pub fn floquet<const N: usize>(closed: &Closed<N>, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
-    around(&closed.shooting.nodes, &closed.linear, f)
+///
+/// # Panics
+/// Where the field has another number of variables.
+pub fn floquet(closed: &Closed, field: &AnyField<'_>) -> Floquet {
+    around(&closed.shooting.nodes, &closed.linear, field)
 }
 
-impl<const N: usize> Regular<N> {
+impl Regular {
     /// Its multipliers in the space of its field.
-    pub fn floquet(&self, f: &dyn Fn(&State<N>) -> State<N>) -> Floquet {
-        around(&self.site.shooting.nodes, &self.linear, f)
+    ///
+    /// # Panics
+    /// Where the field has another number of variables.
+    pub fn floquet(&self, field: &AnyField<'_>) -> Floquet {
+        around(&self.site.shooting.nodes, &self.linear, field)
     }
 }
 
-fn around<const N: usize>(
-    nodes: &[State<N>],
-    Linear { arcs, maps, .. }: &Linear<N>,
-    f: &dyn Fn(&State<N>) -> State<N>,
-) -> Floquet {
+fn around(nodes: &[Vector], linear: &Linear, field: &AnyField<'_>) -> Floquet {
+    let Linear { arcs, maps, .. } = linear;
     let (volume, liouville_defect) = volume(arcs);
     let errors: Vec<f64> = arcs.iter().map(Arc::noise).collect();
-    let multipliers = match N {
+    let multipliers = match linear.dimension() {
         2 => vec![Multiplier::real(volume.value, volume.uncertainty, false)],
         3 => pair(maps, &errors, volume),
         _ => multipliers(maps, &errors, volume),
     };
     Floquet {
         multipliers,
-        trivial_defect: trivial_defect(nodes, arcs, f),
+        trivial_defect: trivial_defect(nodes, arcs, field),
         liouville_defect,
     }
 }
 
 /// The multipliers of an orbit in the symmetric subspace: across it, from the arcs of the whole space along its nodes.
-pub fn symmetric_floquet(
-    closed: &Closed<2>,
-    f: &dyn Fn(&State<2>) -> State<2>,
-    across: &[Arc<3>],
-) -> Floquet {
+///
+/// # Panics
+/// Where the field has other than two variables, or these arcs other than three.
+pub fn symmetric_floquet(closed: &Closed, field: &AnyField<'_>, across: &[Arc]) -> Floquet {
     let (within, within_defect) = volume(closed.arcs());
     // The antisymmetric mode (0, 1, -1) stays one.
     let by_matrix: f64 = across
@@ -253,27 +253,27 @@ pub fn symmetric_floquet(
     let larger = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
     Floquet {
         multipliers,
-        trivial_defect: trivial_defect(&closed.shooting.nodes, closed.arcs(), f),
+        trivial_defect: trivial_defect(&closed.shooting.nodes, closed.arcs(), field),
         liouville_defect: larger(within_defect, defect),
     }
 }
 
 /// A matrix times e^log.
 #[derive(Debug, Clone, Copy)]
-struct Scaled<const N: usize> {
-    matrix: Jacobian<N>,
+struct Scaled {
+    matrix: Matrix2<f64>,
     log: f64,
 }
 
-impl<const N: usize> Scaled<N> {
+impl Scaled {
     fn identity() -> Self {
         Scaled {
-            matrix: Jacobian::identity(),
+            matrix: Matrix2::identity(),
             log: 0.0,
         }
     }
 
-    fn normalised(matrix: Jacobian<N>, log: f64) -> Self {
+    fn normalised(matrix: Matrix2<f64>, log: f64) -> Self {
         let size = matrix.norm();
         if size == 0.0 {
             return Scaled { matrix, log };
@@ -285,19 +285,19 @@ impl<const N: usize> Scaled<N> {
     }
 }
 
-/// Both multipliers of the planes' maps, whose relative errors are given, with the logarithm of their product known.
-pub fn pair<const N: usize>(
-    maps: &[Jacobian<N>],
-    errors: &[f64],
-    volume: Uncertain,
-) -> Vec<Multiplier> {
+/// Both multipliers of maps of two dimensions, whose relative errors are given, with the logarithm of their product known.
+pub fn pair(maps: &[Matrix], errors: &[f64], volume: Uncertain) -> Vec<Multiplier> {
+    let maps: Vec<_> = maps
+        .iter()
+        .map(|map| Matrix2::from_fn(|i, j| map[(i, j)]))
+        .collect();
     // Of the first k maps, and of those after the k-th.
-    let mut before = vec![Scaled::<N>::identity()];
-    for map in maps {
+    let mut before = vec![Scaled::identity()];
+    for map in &maps {
         let last = before[before.len() - 1];
         before.push(Scaled::normalised(map * last.matrix, last.log));
     }
-    let mut after = vec![Scaled::<N>::identity()];
+    let mut after = vec![Scaled::identity()];
     for map in maps.iter().rev() {
         let last = after[after.len() - 1];
         after.push(Scaled::normalised(last.matrix * map, last.log));
@@ -306,7 +306,6 @@ pub fn pair<const N: usize>(
     let product = before[maps.len()];
     // The trace in units of sqrt(det): both multipliers are real where it is above 2.
     let half = 0.5 * volume.value;
-    // The matrix's first diagonal element is the dropped direction's, zero.
     let trace = product.matrix.trace() * (product.log - half).exp();
     let of_maps = maps.iter().enumerate().map(|(k, map)| {
         let log = before[k].log + after[k + 1].log - half;
@@ -314,7 +313,7 @@ pub fn pair<const N: usize>(
     });
     let error = trace.abs() * 0.5 * volume.uncertainty + together(of_maps);
     if !(trace.is_finite() && error.is_finite()) || error > 0.5 * trace.abs().max(2.0) {
-        return along_direction(maps, errors, volume);
+        return along_direction(&maps, errors, volume);
     }
     let uncertain = 0.5 * volume.uncertainty;
     if trace.abs() - error > 2.0 {
@@ -345,11 +344,7 @@ pub fn pair<const N: usize>(
 
 /// The same where the trace is lost to cancellation: the growth along the direction that dominates, carried around until it
 /// repeats, and along its dual.
-fn along_direction<const N: usize>(
-    maps: &[Jacobian<N>],
-    errors: &[f64],
-    volume: Uncertain,
-) -> Vec<Multiplier> {
+fn along_direction(maps: &[Matrix2<f64>], errors: &[f64], volume: Uncertain) -> Vec<Multiplier> {
     let count = maps.len();
     let floor = || {
         let bound = maps.iter().map(|map| map.norm().ln()).sum::<f64>();
@@ -361,12 +356,11 @@ fn along_direction<const N: usize>(
         };
         vec![one, one]
     };
-    let across = |mut x: State<N>| {
-        x[0] = 0.0;
+    let of_length_one = |x: Vector2<f64>| {
         let size = x.norm();
         (size > 0.0).then(|| (x / size, size))
     };
-    let Some((mut x, _)) = across(State::from_fn(|i, _| 1.0 / (1.0 + i as f64))) else {
+    let Some((mut x, _)) = of_length_one(Vector2::new(1.0 / 2.0, 1.0 / 3.0)) else {
         return floor();
     };
     let mut directions = vec![x; count];
@@ -376,7 +370,7 @@ fn along_direction<const N: usize>(
         log = 0.0;
         for k in 0..count {
             directions[k] = x;
-            let Some((next, size)) = across(maps[k] * x) else {
+            let Some((next, size)) = of_length_one(maps[k] * x) else {
                 return floor();
             };
             log += size.ln();
@@ -388,14 +382,14 @@ fn along_direction<const N: usize>(
             break;
         }
     }
-    let Some((mut y, _)) = across(x) else {
+    let Some((mut y, _)) = of_length_one(x) else {
         return floor();
     };
     let mut duals = vec![y; count];
     for _ in 0..2 {
         for k in (0..count).rev() {
             duals[k] = y;
-            let Some((next, _)) = across(maps[k].tr_mul(&y)) else {
+            let Some((next, _)) = of_length_one(maps[k].tr_mul(&y)) else {
                 return floor();
             };
             y = next;

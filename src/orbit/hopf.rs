@@ -1,10 +1,12 @@
 //! Hopf points of a slab along V_H, and the small orbits beside them.
 
 use super::interface_system::InterfaceSystem;
+use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use crate::equilibrium::{Equilibrium, Solver, Symmetry, eigenvalues, steady_states};
 use crate::error::Result;
-use crate::field::{State, VectorField};
+use crate::field::Vector;
+use crate::integrate::AnyField;
 use crate::model::{Loading, Parameter};
 use nalgebra::Complex;
 
@@ -33,16 +35,19 @@ const BISECTIONS: usize = 60;
 
 /// The equilibrium of a symmetry with its eigenvalues. Of several asymmetric ones that of the largest stress.
 fn spectrum(slab: &InterfaceSystem, symmetry: Symmetry) -> Result<Option<(Equilibrium, Vec<C>)>> {
-    let states = steady_states(
-        &slab.law,
-        slab.loading.driving,
-        slab.interfaces,
-        Solver::Newton,
-    )?;
-    let wanted = states
-        .equilibria
-        .into_iter()
-        .find(|e| e.symmetry == symmetry);
+    let InterfaceSystem {
+        law, interfaces, ..
+    } = slab;
+    let driving = slab.loading.driving;
+    let wanted = match symmetry {
+        // The others take most of the time.
+        Symmetry::Symmetric => Some(Equilibrium::symmetric(law, driving, *interfaces)),
+        Symmetry::Asymmetric => {
+            let states = steady_states(law, driving, *interfaces, Solver::Newton)?;
+            let mut all = states.equilibria.into_iter();
+            all.find(|e| e.symmetry == symmetry)
+        }
+    };
     let Some(equilibrium) = wanted else {
         return Ok(None);
     };
@@ -160,30 +165,26 @@ impl HopfPoint {
     /// The ellipse of this size around the equilibrium on which the linearised system turns.
     ///
     /// With the third eigenvalue l the vectors (J - l) v are of the pair's plane, and there J^2 = -omega^2.
-    pub(crate) fn ellipse<const N: usize>(
-        &self,
-        field: &dyn VectorField<N>,
-        size: f64,
-    ) -> ShootingNodes<N> {
+    pub(crate) fn ellipse(&self, field: &AnyField<'_>, size: f64) -> ShootingNodes {
         /// Nodes.
         const NODES: usize = 12;
-        const { assert!(N == 2 || N == 3, "a pair and at most one more eigenvalue") };
-        let y = State::<N>::from_fn(|i, _| match i {
+        let dimension = field.dimension();
+        let y = Vector::from_fn(dimension, |i, _| match i {
             0 => self.equilibrium.stress.value,
             i => self.equilibrium.log_state[i - 1],
         });
         let jacobian = field.jacobian(&y);
-        let mut along = State::<N>::from_fn(|i, _| if i == 0 { 1.0 } else { 0.0 });
-        if N == 3 {
+        let mut along = axis(dimension, 0);
+        if dimension == 3 {
             // The pair's own trace is zero.
-            along = jacobian * along - along * jacobian.trace();
+            along = &jacobian * &along - &along * jacobian.trace();
         }
-        let across = jacobian * along / self.frequency;
+        let across = jacobian * &along / self.frequency;
         let scale = size / along.amax().max(across.amax());
         let turn = std::f64::consts::TAU / NODES as f64;
         let nodes = (0..NODES).map(|k| {
             let (sin, cos) = (turn * k as f64).sin_cos();
-            y + (along * cos + across * sin) * scale
+            &y + (&along * cos + &across * sin) * scale
         });
         ShootingNodes {
             nodes: nodes.collect(),

@@ -9,17 +9,17 @@ use super::continuation_point::ContinuationPoint;
 use super::family::ParametrisedField;
 use super::linear::{Linear, frame};
 use super::shooting_nodes::ShootingNodes;
-use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
+use crate::field::{Matrix, Vector};
+use crate::integrate::{AnyField, MAX_STEPS, Taylor, Tolerances};
 use crate::series::Jet3;
-use nalgebra::{Complex, SVector, Vector2};
+use nalgebra::{Complex, DVector, Vector2, Vector3};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 type C = Complex<f64>;
 /// Coordinates along two directions.
 type C2 = Vector2<C>;
 /// A displacement in a plane.
-pub(crate) type CState<const N: usize> = SVector<C, N>;
+pub(crate) type CVector = DVector<C>;
 
 /// ln of what an arc may grow by: its cube is a third derivative.
 const GROWTH: f64 = 3.0;
@@ -37,28 +37,28 @@ pub enum Axes {
     Symmetry,
 }
 
-/// The maps from plane to plane around an orbit. Displacements are in the coordinates of the nodes' frames, of which the first,
-/// across the plane, is zero.
-pub struct PoincareMaps<'a, const N: usize> {
-    field: Box<dyn VectorField<N> + 'a>,
+/// The maps from plane to plane around an orbit. Displacements are in the coordinates of the planes: along the columns of the
+/// nodes' frames but the first, the plane's normal.
+pub struct PoincareMaps<'a> {
+    field: AnyField<'a>,
     taylor: Taylor,
-    shooting: ShootingNodes<N>,
-    frames: Vec<Jacobian<N>>,
-    linear: Vec<Jacobian<N>>,
+    shooting: ShootingNodes,
+    frames: Vec<Matrix>,
+    linear: Vec<Matrix>,
     /// Along both axes of planes of two dimensions.
-    jets: Option<Vec<PoincareJet<N>>>,
+    jets: Option<Vec<PoincareJet>>,
 }
 
-impl<'a, const N: usize> PoincareMaps<'a, N> {
+impl<'a> PoincareMaps<'a> {
     /// By arcs of this tolerance. `None` where one can't be had.
-    pub fn new<F: ParametrisedField<N>>(
-        family: &'a F,
-        site: &ContinuationPoint<N>,
+    pub fn new(
+        family: &'a dyn ParametrisedField,
+        site: &ContinuationPoint,
         axes: Axes,
         tolerance: f64,
     ) -> Option<Self> {
         let field = family.field(site.at);
-        let frame = |x: &State<N>| plane(family, &field.f(x), axes);
+        let frame = |x: &Vector| plane(family, field.f(x), axes);
         let frames: Vec<_> = site.shooting.nodes.iter().map(frame).collect();
         let mut maps = PoincareMaps {
             field,
@@ -68,7 +68,7 @@ impl<'a, const N: usize> PoincareMaps<'a, N> {
             linear: Vec::new(),
             jets: None,
         };
-        if N == 3 {
+        if maps.field.dimension() == 3 {
             let axes = |k: usize| [1, 2].map(|j| maps.frames[k].column(j).into_owned());
             let axes: Vec<_> = (0..maps.frames.len()).map(axes).collect();
             let jets = axes.into_iter().enumerate();
@@ -77,7 +77,7 @@ impl<'a, const N: usize> PoincareMaps<'a, N> {
             maps.jets = Some(jets?);
         } else {
             let mut tracer = Tracer::taylor(tolerance).ok()?;
-            maps.linear = Linear::of(&mut tracer, family, &*maps.field, &site.shooting)
+            maps.linear = Linear::of(&mut tracer, family, &maps.field, &site.shooting)
                 .ok()?
                 .maps;
         }
@@ -97,24 +97,25 @@ impl<'a, const N: usize> PoincareMaps<'a, N> {
     }
 
     /// The first derivatives.
-    pub fn linear(&self) -> &[Jacobian<N>] {
+    pub fn linear(&self) -> &[Matrix] {
         &self.linear
     }
 
     /// B(u, v), the second derivative of the k-th map.
-    pub fn second(&mut self, k: usize, u: &CState<N>, v: &CState<N>) -> Option<CState<N>> {
+    pub fn second(&mut self, k: usize, u: &CVector, v: &CVector) -> Option<CVector> {
         if let Some(jets) = &self.jets {
             return Some(jets[k].second(&in_plane(u), &in_plane(v)));
         }
         // Of the real and imaginary parts.
         const UNITS: [C; 2] = [C::ONE, C::I];
-        let mut sum = CState::zeros();
-        for (one, (a, of_a)) in UNITS.iter().zip(parts(u)) {
-            for (other, (b, of_b)) in UNITS.iter().zip(parts(v)) {
-                if of_a > 0.0 && of_b > 0.0 {
-                    let frame = &self.frames[k];
-                    let jet = self.jet(k, [frame * a, frame * b])?;
-                    sum += jet.second(&C2::x(), &C2::y()) * (one * other * of_a * of_b);
+        let mut sum = CVector::zeros(u.len());
+        let of_v = parts(v);
+        for (one, (a, of_a)) in UNITS.iter().zip(&parts(u)) {
+            for (other, (b, of_b)) in UNITS.iter().zip(&of_v) {
+                if *of_a > 0.0 && *of_b > 0.0 {
+                    let directions = [a, b].map(|u| self.direction(k, u));
+                    let jet = self.jet(k, directions)?;
+                    sum += jet.second(&C2::x(), &C2::y()) * (one * other * *of_a * *of_b);
                 }
             }
         }
@@ -122,57 +123,57 @@ impl<'a, const N: usize> PoincareMaps<'a, N> {
     }
 
     /// C(u, u, u*), the third derivative of the k-th map.
-    pub fn third(&mut self, k: usize, u: &CState<N>) -> Option<CState<N>> {
+    pub fn third(&mut self, k: usize, u: &CVector) -> Option<CVector> {
         if let Some(jets) = &self.jets {
             let u = in_plane(u);
             return Some(jets[k].third(&u, &u, &u.conjugate()));
         }
         let [(a, of_a), (b, of_b)] = parts(u);
-        let frame = &self.frames[k];
-        let jet = self.jet(k, [frame * a, frame * b])?;
+        let directions = [a, b].map(|u| self.direction(k, &u));
+        let jet = self.jet(k, directions)?;
         let u = C2::new(C::from(of_a), C::I * of_b);
         Some(jet.third(&u, &u, &u.conjugate()))
     }
 
+    /// The direction of the states that a displacement in the k-th plane is.
+    fn direction(&self, k: usize, u: &Vector) -> Vector {
+        self.frames[k].columns(1, u.len()) * u
+    }
+
     /// The k-th map along these directions of the states.
-    fn jet(&mut self, k: usize, [a, b]: [State<N>; 2]) -> Option<PoincareJet<N>> {
+    fn jet(&mut self, k: usize, [a, b]: [Vector; 2]) -> Option<PoincareJet> {
         let ShootingNodes { nodes, durations } = &self.shooting;
         let next = (k + 1) % nodes.len();
         let onto = &self.frames[next];
-        let start = std::array::from_fn(|i| Jet3::linear(nodes[k][i], [a[i], b[i]]));
+        let count = onto.ncols();
+        let start = (0..count).map(|i| Jet3::linear(nodes[k][i], [a[i], b[i]]));
+        let start: Vec<_> = start.collect();
         let span = (0.0, durations[k]);
         let target = (&onto.column(0).into_owned(), &nodes[next]);
         let landed = self
-            .taylor
-            .transport_onto(&*self.field, span, start, target);
+            .field
+            .transport_onto(&mut self.taylor, span, &start, target);
         let (_, end) = landed.ok()?;
         let component = |j: usize| {
             let mut sum = Jet3::default();
-            for i in 0..N {
+            for i in 0..count {
                 sum = sum + (end[i] - Jet3::constant(nodes[next][i])).scaled(onto[(i, j)]);
             }
             sum
         };
-        let components = |j: usize| {
-            if j == 0 {
-                Jet3::default()
-            } else {
-                component(j)
-            }
-        };
         Some(PoincareJet {
-            components: std::array::from_fn(components),
+            components: (1..count).map(component).collect(),
         })
     }
 }
 
 /// The coordinates in a plane of two dimensions.
-fn in_plane<const N: usize>(u: &CState<N>) -> C2 {
-    C2::new(u[1], u[2])
+fn in_plane(u: &CVector) -> C2 {
+    C2::new(u[0], u[1])
 }
 
 /// The real and the imaginary part, each of order one and its size.
-fn parts<const N: usize>(u: &CState<N>) -> [(State<N>, f64); 2] {
+fn parts(u: &CVector) -> [(Vector, f64); 2] {
     [u.map(|x| x.re), u.map(|x| x.im)].map(|part| {
         let size = part.amax();
         (if size > 0.0 { part / size } else { part }, size)
@@ -181,11 +182,11 @@ fn parts<const N: usize>(u: &CState<N>) -> [(State<N>, f64); 2] {
 
 /// Of the arcs from node to node, what the displacements in the planes become along them: the integral over the arc of the square
 /// of a displacement's part across the flow, as a quadratic form of what it is in the first node's plane.
-pub fn squares<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: &ContinuationPoint<N>,
+pub fn squares(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
     axes: Axes,
-) -> Option<Vec<Jacobian<N>>> {
+) -> Option<Vec<Matrix>> {
     /// Points and weights of Gauss on (0, 1).
     const POINTS: [(f64, f64); 6] = [
         (0.033_765_242_898_423_99, 0.085_662_246_189_585_17),
@@ -203,17 +204,17 @@ pub fn squares<F: ParametrisedField<N>, const N: usize>(
         .flat_map(|i| POINTS.map(|(at, weight)| (i as f64 + at, weight)))
         .map(|(at, weight)| (at / PARTS as f64, weight / PARTS as f64))
         .collect();
-    let mut arc = |(node, &duration): (&State<N>, &f64)| {
-        let mut moved = plane(family, &field.f(node), axes);
-        moved.column_mut(0).fill(0.0);
-        let (mut x, mut at) = (*node, 0.0);
-        let mut sum = Jacobian::<N>::zeros();
+    let mut arcs = tracer.arcs(&field, &[]).ok()?;
+    let mut arc = |(node, &duration): (&Vector, &f64)| {
+        let mut moved = plane(family, field.f(node), axes).remove_column(0);
+        let (mut x, mut at) = (node.clone(), 0.0);
+        let mut sum = Matrix::zeros(moved.ncols(), moved.ncols());
         for &(point, weight) in &points {
-            let part = tracer.arc(&*field, &x, (point - at) * duration, &[]).ok()?;
+            let part = arcs.arc(&x, (point - at) * duration).ok()?;
             (x, at) = (part.end, point);
             moved = part.tangent * moved;
-            let across = family.across(&x, &field.f(&x)) * moved;
-            sum += across.transpose() * across * (weight * duration);
+            let across = family.across(&x, &field.f(&x)) * &moved;
+            sum += across.tr_mul(&across) * (weight * duration);
         }
         Some(sum)
     };
@@ -226,13 +227,9 @@ pub fn squares<F: ParametrisedField<N>, const N: usize>(
         .collect()
 }
 
-/// The plane's coordinates: its normal, and the two directions in it.
-fn plane<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    flow: &State<N>,
-    axes: Axes,
-) -> Jacobian<N> {
-    let normal = family.normal(*flow);
+/// The plane's coordinates: its normal, and the directions in it.
+fn plane(family: &dyn ParametrisedField, flow: Vector, axes: Axes) -> Matrix {
+    let normal = family.normal(flow);
     match axes {
         Axes::Any => frame(&normal),
         Axes::Symmetry => symmetric_frame(&normal),
@@ -241,28 +238,28 @@ fn plane<F: ParametrisedField<N>, const N: usize>(
 
 /// Orthonormal columns in three dimensions: a normal with equal components 1 and 2, the antisymmetric direction, and the one that
 /// is left.
-fn symmetric_frame<const N: usize>(normal: &State<N>) -> Jacobian<N> {
-    let normal = State::<3>::from_fn(|i, _| normal[i]).normalize();
-    let across = State::<3>::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2);
+fn symmetric_frame(normal: &Vector) -> Matrix {
+    let normal = Vector3::new(normal[0], normal[1], normal[2]).normalize();
+    let across = Vector3::new(0.0, FRAC_1_SQRT_2, -FRAC_1_SQRT_2);
     let columns = [normal, across, normal.cross(&across)];
-    Jacobian::from_fn(|i, j| columns[j][i])
+    Matrix::from_fn(3, 3, |i, j| columns[j][i])
 }
 
 /// The same orbit with so many nodes that along no arc anything grows by much.
-pub fn finely_cut<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: &ContinuationPoint<N>,
-) -> Option<ContinuationPoint<N>> {
+pub fn finely_cut(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
+) -> Option<ContinuationPoint> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let mut shooting = site.shooting.clone();
     for _ in 0..SPLITS {
-        let linear = Linear::of(&mut tracer, family, &*field, &shooting).ok()?;
+        let linear = Linear::of(&mut tracer, family, &field, &shooting).ok()?;
         if linear.growth().all(|growth| growth < GROWTH) {
             break;
         }
         let parts = linear.parts(GROWTH);
-        shooting = shooting.split(&mut tracer, &*field, &parts).ok()?;
+        shooting = shooting.split(&mut tracer, &field, &parts).ok()?;
     }
     Some(ContinuationPoint {
         shooting,
@@ -271,34 +268,35 @@ pub fn finely_cut<F: ParametrisedField<N>, const N: usize>(
 }
 
 /// The same orbit with every arc cut into so many parts of equal duration.
-pub fn cut_into<F: ParametrisedField<N>, const N: usize>(
+pub fn cut_into(
     parts: usize,
-    family: &F,
-    site: &ContinuationPoint<N>,
-) -> Option<ContinuationPoint<N>> {
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
+) -> Option<ContinuationPoint> {
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let counts = vec![parts; site.shooting.nodes.len()];
     Some(ContinuationPoint {
-        shooting: site.shooting.split(&mut tracer, &*field, &counts).ok()?,
+        shooting: site.shooting.split(&mut tracer, &field, &counts).ok()?,
         at: site.at,
     })
 }
 
 /// A map from plane to plane, to third order along two directions in the first plane.
 #[derive(Debug, Clone)]
-struct PoincareJet<const N: usize> {
-    components: [Jet3; N],
+struct PoincareJet {
+    /// Of the displacement in the next plane.
+    components: Vec<Jet3>,
 }
 
-impl<const N: usize> PoincareJet<N> {
+impl PoincareJet {
     /// The first derivative of a map of two dimensions along its axes.
-    fn linear(&self) -> Jacobian<N> {
-        Jacobian::from_fn(|i, j| if j == 0 { 0.0 } else { self.components[i].0[j] })
+    fn linear(&self) -> Matrix {
+        Matrix::from_fn(2, 2, |i, j| self.components[i].0[j + 1])
     }
 
-    fn second(&self, u: &C2, v: &C2) -> CState<N> {
-        CState::from_fn(|i, _| {
+    fn second(&self, u: &C2, v: &C2) -> CVector {
+        CVector::from_fn(self.components.len(), |i, _| {
             let c = self.components[i].0;
             u[0] * v[0] * (2.0 * c[3])
                 + (u[0] * v[1] + u[1] * v[0]) * c[4]
@@ -306,8 +304,8 @@ impl<const N: usize> PoincareJet<N> {
         })
     }
 
-    fn third(&self, u: &C2, v: &C2, w: &C2) -> CState<N> {
-        CState::from_fn(|i, _| {
+    fn third(&self, u: &C2, v: &C2, w: &C2) -> CVector {
+        CVector::from_fn(self.components.len(), |i, _| {
             let c = self.components[i].0;
             let [one, two, three, four] = [6.0 * c[6], 2.0 * c[7], 2.0 * c[8], 6.0 * c[9]];
             u[0] * v[0] * w[0] * one

@@ -6,97 +6,143 @@
 
 use super::arc::{Arc, Tracer};
 use super::continuation_point::TangentVector;
-use super::cyclic;
+use super::cyclic::{self, Rows};
 use super::family::ParametrisedField;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
-use crate::field::{Jacobian, State, VectorField};
-use nalgebra::{DMatrix, DVector, SMatrix, SVector};
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
+use nalgebra::DMatrixView;
+use std::sync::Arc as Shared;
 
 /// One linearisation around the circle.
 #[derive(Debug, Clone)]
-pub(super) struct Linear<const N: usize> {
+pub(super) struct Linear {
     /// From every node to the next.
-    pub arcs: Vec<Arc<N>>,
-    /// At every node orthonormal columns, the first the plane's normal.
-    frames: Vec<Jacobian<N>>,
-    /// The maps from plane to plane in these frames; the first row and column, of the flow's direction, are zero.
-    pub maps: Vec<Jacobian<N>>,
+    pub arcs: Shared<Vec<Arc>>,
+    /// What the arcs say of volumes.
+    pub logs: Vec<ArcLogs>,
+    /// At every node orthonormal columns, the first the plane's normal, the others the axes of coordinates in it.
+    frames: Shared<Vec<Matrix>>,
+    /// The maps from plane to plane in these coordinates.
+    pub maps: Vec<Matrix>,
     /// By arc: end minus next node; g / (n . g) and 1 / (n . g), with g the field at the end and n the next node's normal.
-    pub gaps: Vec<State<N>>,
-    inflow: Vec<State<N>>,
-    slowness: Vec<f64>,
+    pub gaps: Vec<Vector>,
+    inflow: Shared<Vec<Vector>>,
+    slowness: Shared<Vec<f64>>,
 }
 
-impl<const N: usize> Linear<N> {
+/// [`Arc::volume`] and [`Arc::log_transverse`].
+#[derive(Debug, Clone, Copy)]
+pub(super) struct ArcLogs {
+    pub volume: f64,
+    pub transverse: Option<f64>,
+}
+
+impl Linear {
     /// In the planes at right angles to the flow.
     pub fn new(
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
-        shooting: &ShootingNodes<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
     ) -> Result<Self> {
         let frames = shooting.nodes.iter().map(|x| frame(&field.f(x))).collect();
-        Self::in_frames(tracer, field, shooting, &[], frames)
+        Self::in_frames(tracer, field, shooting, &[], Shared::new(frames))
     }
 
     /// In the family's planes, with the derivatives in the parameters.
-    pub fn of<F: ParametrisedField<N>>(
-        tracer: &mut Tracer<N>,
-        family: &F,
-        field: &dyn VectorField<N>,
-        shooting: &ShootingNodes<N>,
+    pub fn of(
+        tracer: &mut Tracer,
+        family: &dyn ParametrisedField,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
     ) -> Result<Self> {
-        let normal = |x: &State<N>| frame(&family.normal(field.f(x)));
+        let normal = |x: &Vector| frame(&family.normal(field.f(x)));
         let frames = shooting.nodes.iter().map(normal).collect();
-        Self::in_frames(tracer, field, shooting, &family.plane(), frames)
+        Self::in_frames(
+            tracer,
+            field,
+            shooting,
+            &family.plane(),
+            Shared::new(frames),
+        )
     }
 
     /// The same in the planes of another linearisation nearby, so that the maps can be compared.
     pub fn beside(
         &self,
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
-        shooting: &ShootingNodes<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
     ) -> Result<Self> {
-        Self::in_frames(tracer, field, shooting, &[], self.frames.clone())
+        Self::in_frames(tracer, field, shooting, &[], Shared::clone(&self.frames))
     }
 
     fn in_frames(
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
-        shooting: &ShootingNodes<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
         free: &[usize],
-        frames: Vec<Jacobian<N>>,
+        frames: Shared<Vec<Matrix>>,
     ) -> Result<Self> {
         let count = shooting.nodes.len();
-        let mut linear = Linear {
-            arcs: Vec::with_capacity(count),
-            frames,
-            maps: Vec::with_capacity(count),
-            gaps: Vec::with_capacity(count),
-            inflow: Vec::with_capacity(count),
-            slowness: Vec::with_capacity(count),
-        };
+        let mut all = Vec::with_capacity(count);
+        let mut logs = Vec::with_capacity(count);
+        let mut maps = Vec::with_capacity(count);
+        let mut gaps = Vec::with_capacity(count);
+        let mut all_inflow = Vec::with_capacity(count);
+        let mut all_slowness = Vec::with_capacity(count);
+        let mut arcs = tracer.arcs(field, free)?;
         for (k, (x, &duration)) in shooting.nodes.iter().zip(&shooting.durations).enumerate() {
-            let arc = tracer.arc(field, x, duration, free)?;
+            let arc = arcs.arc(x, duration)?;
             let next = (k + 1) % count;
-            let onto = linear.frames[next];
+            let onto = &frames[next];
             let normal = onto.column(0);
-            let g = field.f(&arc.end);
-            let slowness = 1.0 / normal.dot(&g);
-            let inflow = g * slowness;
-            let moved = arc.tangent * linear.frames[k];
-            let across = moved - inflow * (normal.transpose() * moved);
-            let mut map = onto.tr_mul(&across);
-            map.column_mut(0).fill(0.0);
-            map.row_mut(0).fill(0.0);
-            linear.maps.push(map);
-            linear.gaps.push(arc.end - shooting.nodes[next]);
-            linear.inflow.push(inflow);
-            linear.slowness.push(slowness);
-            linear.arcs.push(arc);
+            let mut inflow = field.f(&arc.end);
+            let slowness = 1.0 / normal.dot(&inflow);
+            inflow *= slowness;
+            let mut across = &arc.tangent * axes(&frames[k]);
+            for mut column in across.column_iter_mut() {
+                let along = normal.dot(&column);
+                column.axpy(-along, &inflow, 1.0);
+            }
+            maps.push(axes(onto).tr_mul(&across));
+            gaps.push(&arc.end - &shooting.nodes[next]);
+            logs.push(ArcLogs {
+                volume: arc.volume(),
+                transverse: arc.log_transverse,
+            });
+            all_inflow.push(inflow);
+            all_slowness.push(slowness);
+            all.push(arc);
         }
-        Ok(linear)
+        Ok(Linear {
+            arcs: Shared::new(all),
+            logs,
+            frames,
+            maps,
+            gaps,
+            inflow: Shared::new(all_inflow),
+            slowness: Shared::new(all_slowness),
+        })
+    }
+
+    /// The same, whose gaps are not said.
+    pub fn without_gaps(&self) -> Self {
+        Linear {
+            arcs: Shared::clone(&self.arcs),
+            logs: self.logs.clone(),
+            frames: Shared::clone(&self.frames),
+            maps: self.maps.clone(),
+            gaps: Vec::new(),
+            inflow: Shared::clone(&self.inflow),
+            slowness: Shared::clone(&self.slowness),
+        }
+    }
+
+    /// The number of variables: one more than the planes have.
+    pub fn dimension(&self) -> usize {
+        self.frames[0].nrows()
     }
 
     /// ln of the largest growth along every arc.
@@ -114,48 +160,61 @@ impl<const N: usize> Linear<N> {
 
     /// The same with the k-th node as the first.
     pub fn beginning_at(mut self, k: usize) -> Self {
-        self.arcs.rotate_left(k);
-        self.frames.rotate_left(k);
+        Shared::make_mut(&mut self.arcs).rotate_left(k);
+        self.logs.rotate_left(k);
+        Shared::make_mut(&mut self.frames).rotate_left(k);
         self.maps.rotate_left(k);
         self.gaps.rotate_left(k);
-        self.inflow.rotate_left(k);
-        self.slowness.rotate_left(k);
+        Shared::make_mut(&mut self.inflow).rotate_left(k);
+        Shared::make_mut(&mut self.slowness).rotate_left(k);
         self
     }
 
-    /// The part of a gap before node k + 1 that the planes see, in the frame there.
-    fn seen(&self, k: usize, gap: &State<N>) -> State<N> {
+    /// The part of a gap before node k + 1 that the plane there sees, in its coordinates. What is across the flow is left of the
+    /// gap.
+    fn see<'a>(&self, k: usize, gap: &mut Vector, seen: impl Iterator<Item = &'a mut f64>) {
         let onto = &self.frames[(k + 1) % self.frames.len()];
-        let across = gap - self.inflow[k] * onto.column(0).dot(gap);
-        let mut seen = onto.tr_mul(&across);
-        seen[0] = 0.0;
-        seen
+        let along = onto.column(0).dot(gap);
+        gap.axpy(-along, &self.inflow[k], 1.0);
+        for (seen, axis) in seen.zip(onto.column_iter().skip(1)) {
+            *seen = axis.dot(gap);
+        }
     }
 
     /// The corrections of all nodes and durations that close these gaps.
-    pub fn correction(&self, gaps: &[State<N>]) -> Option<(Vec<State<N>>, Vec<f64>)> {
-        let count = self.frames.len();
-        let seen: Vec<_> = (0..count).map(|k| self.seen(k, &gaps[k])).collect();
+    pub fn correction(&self, gaps: &[Vector]) -> Option<(Vec<Vector>, Vec<f64>)> {
+        let planar = self.dimension() - 1;
+        let mut across = Vector::zeros(planar + 1);
+        let seen: Vec<_> = (0..self.frames.len())
+            .map(|k| {
+                let mut seen = Vector::zeros(planar);
+                across.copy_from(&gaps[k]);
+                self.see(k, &mut across, seen.iter_mut());
+                seen
+            })
+            .collect();
         let u = cyclic::solve(&self.maps, &seen)?;
-        Some(self.displacement(&u, |k| gaps[k]))
+        Some(self.displacement(&u, |k, arrival| *arrival += &gaps[k]))
     }
 
     /// Nodes and durations from displacements in the planes that the maps carry from one to the next.
-    pub fn carried(&self, u: &[State<N>]) -> (Vec<State<N>>, Vec<f64>) {
-        self.displacement(u, |_| State::zeros())
+    pub fn carried(&self, u: &[Vector]) -> (Vec<Vector>, Vec<f64>) {
+        self.displacement(u, |_, _| ())
     }
 
-    /// Nodes and durations from the displacements in the planes.
+    /// Nodes and durations from the displacements in the planes; `and_gap` adds an arc's gap to the displacement of its end.
     fn displacement(
         &self,
-        u: &[State<N>],
-        gap: impl Fn(usize) -> State<N>,
-    ) -> (Vec<State<N>>, Vec<f64>) {
+        u: &[Vector],
+        and_gap: impl Fn(usize, &mut Vector),
+    ) -> (Vec<Vector>, Vec<f64>) {
         let count = self.frames.len();
-        let nodes: Vec<State<N>> = (0..count).map(|k| self.frames[k] * u[k]).collect();
+        let nodes: Vec<_> = (0..count).map(|k| axes(&self.frames[k]) * &u[k]).collect();
+        let mut arrival = Vector::zeros(self.dimension());
         let durations = (0..count).map(|k| {
-            let normal = self.frames[(k + 1) % count].column(0).into_owned();
-            let arrival = self.arcs[k].tangent * nodes[k] + gap(k);
+            arrival.gemv(1.0, &self.arcs[k].tangent, &nodes[k], 0.0);
+            and_gap(k, &mut arrival);
+            let normal = self.frames[(k + 1) % count].column(0);
             -normal.dot(&arrival) * self.slowness[k]
         });
         let durations = durations.collect();
@@ -171,30 +230,48 @@ impl<const N: usize> Linear<N> {
         &self,
         free: &[usize],
         scale: [f64; 2],
-    ) -> Option<(TangentVector<N>, Vec<TangentVector<N>>)> {
-        let count = self.frames.len();
-        // What the parameters add to the gaps.
-        let pulls = |k: usize| {
-            let mut pulls = [State::<N>::zeros(); 2];
-            for &i in free {
-                pulls[i] = self.arcs[k].parameters[i] * scale[i];
-            }
-            pulls
-        };
-        let right: Vec<SMatrix<f64, N, 3>> = (0..count)
+    ) -> Option<(TangentVector, Vec<TangentVector>)> {
+        self.closing(&self.gaps, free, scale)
+    }
+
+    /// The same for other gaps.
+    pub fn closing(
+        &self,
+        gaps: &[Vector],
+        free: &[usize],
+        scale: [f64; 2],
+    ) -> Option<(TangentVector, Vec<TangentVector>)> {
+        let planar = self.dimension() - 1;
+        let mut across = Vector::zeros(planar + 1);
+        // The gaps, and what each of the free parameters adds to them.
+        let right: Vec<_> = (0..self.frames.len())
             .map(|k| {
-                let [first, second] = pulls(k).map(|pull| self.seen(k, &pull));
-                SMatrix::from_columns(&[self.seen(k, &self.gaps[k]), first, second])
+                let mut right = Matrix::zeros(planar, 1 + free.len());
+                across.copy_from(&gaps[k]);
+                self.see(k, &mut across, right.column_mut(0).iter_mut());
+                for (j, &i) in free.iter().enumerate() {
+                    across.copy_from(&self.arcs[k].parameters.column(i));
+                    across *= scale[i];
+                    self.see(k, &mut across, right.column_mut(1 + j).iter_mut());
+                }
+                right
             })
             .collect();
         let reduced = cyclic::reduce(&self.maps, &right);
-        let (particular, kernel) = underdetermined(&reduced.closing, &reduced.right, free)?;
-        let tangent = |(start, parameters): &(State<N>, [f64; 2]), closing: f64| {
-            let combination = SVector::<f64, 3>::new(closing, parameters[0], parameters[1]);
+        let (particular, kernel) = underdetermined(&reduced.closing(), planar, free)?;
+        let tangent = |(start, parameters): &Displacement, closing: f64| {
+            let mut combination = Vector::zeros(1 + free.len());
+            combination[0] = closing;
+            for (j, &i) in free.iter().enumerate() {
+                combination[1 + j] = parameters[i];
+            }
             let u = reduced.extended(start, &combination)?;
-            let (nodes, durations) = self.displacement(&u, |k| {
-                let [first, second] = pulls(k);
-                self.gaps[k] * closing + first * parameters[0] + second * parameters[1]
+            let (nodes, durations) = self.displacement(&u, |k, arrival| {
+                arrival.axpy(closing, &gaps[k], 1.0);
+                for &i in free {
+                    let pull = self.arcs[k].parameters.column(i);
+                    arrival.axpy(parameters[i] * scale[i], &pull, 1.0);
+                }
             });
             Some(TangentVector {
                 nodes,
@@ -203,7 +280,7 @@ impl<const N: usize> Linear<N> {
             })
         };
         let mut closing = tangent(&particular, 1.0)?;
-        let mut along: Vec<TangentVector<N>> = Vec::with_capacity(kernel.len());
+        let mut along: Vec<TangentVector> = Vec::with_capacity(kernel.len());
         for direction in &kernel {
             let mut direction = tangent(direction, 0.0)?.normalised()?;
             // Twice is enough.
@@ -228,61 +305,68 @@ impl<const N: usize> Linear<N> {
     }
 }
 
-/// A displacement of the first node and of the parameters.
-type Displacement<const N: usize> = (State<N>, [f64; 2]);
+/// A displacement of the first node in its plane and of the parameters.
+type Displacement = (Vector, [f64; 2]);
 
-/// Of closing u = right_0 + p_0 right_1 + p_1 right_2 in (u, p) with these p free: the shortest solution, and the kernel.
-fn underdetermined<const N: usize>(
-    closing: &Jacobian<N>,
-    right: &SMatrix<f64, N, 3>,
+/// Of closing u = right_0 + the sum of p_i right_i over the free parameters in (u, p), in rows of these, with n unknowns in u: the
+/// shortest solution, and the kernel.
+fn underdetermined(
+    rows: &Rows<f64>,
+    n: usize,
     free: &[usize],
-) -> Option<(Displacement<N>, Vec<Displacement<N>>)> {
-    /// A pivot below this part of the largest is zero.
+) -> Option<(Displacement, Vec<Displacement>)> {
+    /// A pivot below this part of the largest, or of one, is zero.
     const SINGULAR: f64 = 1e-13;
-    let unknowns = N + free.len();
+    let unknowns = n + free.len();
     // The transpose, with columns of zeros: its orthogonal factor then is square and ends with the kernel.
-    let mut transposed = DMatrix::<f64>::zeros(unknowns, unknowns);
-    for row in 0..N {
-        for j in 0..N {
-            transposed[(j, row)] = closing[(row, j)];
+    let mut transposed = Matrix::zeros(unknowns, unknowns);
+    for i in 0..n {
+        let row = rows.row(i);
+        for j in 0..n {
+            transposed[(j, i)] = row[j];
         }
-        for (j, &i) in free.iter().enumerate() {
-            transposed[(N + j, row)] = -right[(row, 1 + i)];
+        for j in 0..free.len() {
+            transposed[(n + j, i)] = -row[n + 1 + j];
         }
     }
-    let size = transposed.amax();
+    let size = transposed.amax().max(1.0);
     let (q, r) = transposed.qr().unpack();
-    let regular = (0..N).all(|i| r[(i, i)].abs() > SINGULAR * size);
+    let regular = (0..n).all(|i| r[(i, i)].abs() > SINGULAR * size);
     if !(regular && size.is_finite()) {
         return None;
     }
-    let mut y = DVector::<f64>::zeros(unknowns);
-    for i in 0..N {
+    let mut y = Vector::zeros(unknowns);
+    for i in 0..n {
         let known: f64 = (0..i).map(|j| r[(j, i)] * y[j]).sum();
-        y[i] = (right[(i, 0)] - known) / r[(i, i)];
+        y[i] = (rows.row(i)[n] - known) / r[(i, i)];
     }
-    let start = |x: &DVector<f64>| {
+    let start = |x: &Vector| {
         let mut parameters = [0.0; 2];
         for (j, &i) in free.iter().enumerate() {
-            parameters[i] = x[N + j];
+            parameters[i] = x[n + j];
         }
-        (State::<N>::from_fn(|i, _| x[i]), parameters)
+        (x.rows(0, n).into_owned(), parameters)
     };
-    let kernel = (N..unknowns).map(|j| start(&q.column(j).into_owned()));
+    let kernel = (n..unknowns).map(|j| start(&q.column(j).into_owned()));
     Some((start(&(&q * y)), kernel.collect()))
 }
 
+/// The columns of a frame that span the plane.
+fn axes(frame: &Matrix) -> DMatrixView<'_, f64> {
+    frame.columns(1, frame.ncols() - 1)
+}
+
 /// Orthonormal columns, the first along f, which is not zero: the reflection that takes the first axis there.
-pub(super) fn frame<const N: usize>(f: &State<N>) -> Jacobian<N> {
-    let along = f / f.amax();
-    let along = along / along.norm();
-    let mut v = along;
+pub(super) fn frame(f: &Vector) -> Matrix {
+    let mut v = f / f.amax();
+    v /= v.norm();
     // Away from cancellation; the columns' signs are free but for the first one's.
     let sign = if v[0] < 0.0 { -1.0 } else { 1.0 };
     v[0] += sign;
-    let mut frame = Jacobian::<N>::identity() - v * v.transpose() * (2.0 / v.norm_squared());
-    for mut row in frame.row_iter_mut() {
-        row[0] *= -sign;
-    }
-    frame
+    let twice = 2.0 / v.norm_squared();
+    Matrix::from_fn(v.len(), v.len(), |i, j| {
+        let one = if i == j { 1.0 } else { 0.0 };
+        let entry = one - v[i] * v[j] * twice;
+        if j == 0 { -sign * entry } else { entry }
+    })
 }

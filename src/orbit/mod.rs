@@ -39,7 +39,7 @@ pub use find::{FoundOrbit, InitialGuess, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet};
 pub use hopf::{HopfPoint, hopf_points};
 pub use interface_system::InterfaceSystem;
-pub(crate) use jet::{Axes, CState, PoincareMaps, cut_into, finely_cut, squares};
+pub(crate) use jet::{Axes, CVector, PoincareMaps, cut_into, finely_cut, squares};
 pub(crate) use multipliers::{eigenvalues_of, unit_pair};
 pub(crate) use noise::Noise;
 pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunction};

@@ -5,10 +5,11 @@
 
 use super::floquet::{Kind, Multiplier, TANGENT};
 use super::noise::{PROBES, Signs, graded};
-use super::periodic_schur::{LogEigenvalue, eigenvalues};
-use crate::field::Jacobian;
+use super::periodic_schur::LogEigenvalue;
+pub(crate) use super::periodic_schur::eigenvalues as eigenvalues_of;
+use crate::field::Matrix;
 use crate::number::Uncertain;
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Angles below this, from 0 and from pi, are those of real numbers: rounding parts two equal ones by as much.
@@ -16,40 +17,25 @@ const REAL: f64 = 1e-9;
 /// A logarithm with a larger error is not known.
 const LOST: f64 = 0.5;
 
-/// The maps in the planes, without the flow's own direction.
-pub(super) fn planes<const N: usize>(maps: &[Jacobian<N>]) -> Vec<DMatrix<f64>> {
-    maps.iter()
-        .map(|map| DMatrix::from_fn(N - 1, N - 1, |i, j| map[(i + 1, j + 1)]))
-        .collect()
-}
-
 /// The eigenvalues of the maps' product, the largest first, where the maps' relative errors are given and the logarithm of the
 /// product of all eigenvalues is known.
-pub fn multipliers<const N: usize>(
-    maps: &[Jacobian<N>],
-    errors: &[f64],
-    volume: Uncertain,
-) -> Vec<Multiplier> {
+pub fn multipliers(maps: &[Matrix], errors: &[f64], volume: Uncertain) -> Vec<Multiplier> {
     let found = eigenvalues_of(maps);
     let spreads = found.as_ref().and_then(|all| spreads(maps, errors, all));
     let (Some(mut all), Some(spreads)) = (found, spreads) else {
+        let count = maps.first().map_or(0, |map| map.nrows());
         let unknown = Multiplier {
-            ln_abs: Uncertain::new(volume.value / (N - 1) as f64, f64::INFINITY),
+            ln_abs: Uncertain::new(volume.value / count as f64, f64::INFINITY),
             angle_over_pi: 0.0,
             kind: Kind::BelowFloor,
         };
-        return vec![unknown; N - 1];
+        return vec![unknown; count];
     };
     conjugated(&mut all);
     let pairs = all.iter().zip(&spreads);
     let mut multipliers: Vec<_> = pairs.map(|(one, spread)| spread.multiplier(one)).collect();
     by_volume(&mut multipliers, volume);
     multipliers
-}
-
-/// The eigenvalues of the maps' product, the largest first; `None` where they are not found.
-pub(crate) fn eigenvalues_of<const N: usize>(maps: &[Jacobian<N>]) -> Option<Vec<LogEigenvalue>> {
-    eigenvalues(&planes(maps))
 }
 
 /// What the errors make of an eigenvalue.
@@ -88,11 +74,7 @@ impl Spread {
 }
 
 /// Of every eigenvalue, over some maps with errors of random sign. `None` where one of these has no eigenvalues.
-fn spreads<const N: usize>(
-    maps: &[Jacobian<N>],
-    errors: &[f64],
-    all: &[LogEigenvalue],
-) -> Option<Vec<Spread>> {
+fn spreads(maps: &[Matrix], errors: &[f64], all: &[LogEigenvalue]) -> Option<Vec<Spread>> {
     let mut signs = Signs::new();
     let mut spreads: Vec<_> = all
         .iter()
@@ -221,7 +203,7 @@ pub struct Products {
 
 impl Products {
     /// Of the maps' product; `None` where its eigenvalues are not found.
-    pub(super) fn new<const N: usize>(maps: &[Jacobian<N>]) -> Option<Self> {
+    pub(super) fn new(maps: &[Matrix]) -> Option<Self> {
         let all = eigenvalues_of(maps)?;
         let pairs = all.iter().enumerate().flat_map(|(i, a)| {
             all[..i].iter().map(|b| LogEigenvalue {

@@ -7,12 +7,11 @@
 
 use super::continuation_point::TangentVector;
 use super::correct::{Condition, Corrector, Regular, combination};
-use super::family::ParametrisedField;
 use super::linear::Linear;
 use super::shooting::relative;
 use super::shooting_nodes::ShootingNodes;
 use super::test_function::{Spectrum, TestFunction};
-use crate::field::{Jacobian, State};
+use crate::field::{Matrix, Vector};
 use rand_chacha::ChaCha8Rng;
 use rand_chacha::rand_core::{Rng, SeedableRng};
 
@@ -58,26 +57,30 @@ impl Signs {
     }
 }
 
-impl<const N: usize> Linear<N> {
+impl Linear {
     /// The same with errors of random sign: of the ends of all arcs in place of the gaps, and of their derivatives.
-    pub(super) fn noisy(&self, shooting: &ShootingNodes<N>, signs: &mut Signs) -> Self {
-        let mut noisy = self.clone();
+    pub(super) fn noisy(&self, shooting: &ShootingNodes, signs: &mut Signs) -> Self {
+        let mut noisy = self.without_gaps();
         let count = self.arcs.len();
-        for k in 0..count {
-            let arc = &mut noisy.arcs[k];
+        for (k, arc) in self.arcs.iter().enumerate() {
             let size = arc.rounding();
             let next = &shooting.nodes[(k + 1) % count];
-            noisy.gaps[k] = State::from_fn(|i, _| size * (1.0 + next[i].abs()) * signs.next());
-            let sizes = graded(&self.maps[k]);
-            for i in 1..N {
-                for j in 1..N {
-                    noisy.maps[k][(i, j)] += TANGENT * size * sizes[(i, j)] * signs.next();
+            noisy.gaps.push(Vector::from_fn(next.len(), |i, _| {
+                size * (1.0 + next[i].abs()) * signs.next()
+            }));
+            let map = &mut noisy.maps[k];
+            let sizes = graded(map);
+            for i in 0..map.nrows() {
+                for j in 0..map.ncols() {
+                    map[(i, j)] += TANGENT * size * sizes[(i, j)] * signs.next();
                 }
             }
-            if let Some(log) = &mut arc.log_determinant {
-                *log += TANGENT * size * log.abs() * signs.next();
+            let logs = &mut noisy.logs[k];
+            // By the trace of the Jacobian; else it is the map's.
+            if arc.log_determinant.is_some() {
+                logs.volume += TANGENT * size * logs.volume.abs() * signs.next();
             }
-            if let Some(log) = &mut arc.log_transverse {
+            if let Some(log) = &mut logs.transverse {
                 *log += TANGENT * size * log.abs() * signs.next();
             }
         }
@@ -87,20 +90,20 @@ impl<const N: usize> Linear<N> {
 
 /// What the rounding of each entry of a map is relative to: what two maps like it make of their entries without their signs. Where
 /// one variable hardly feels another all the way, rounding doesn't couple them, as errors relative to the whole map would.
-pub(super) fn graded<const N: usize>(map: &Jacobian<N>) -> Jacobian<N> {
+pub(super) fn graded(map: &Matrix) -> Matrix {
     let sizes = map.abs();
-    let passed = sizes * sizes / map.norm().max(f64::MIN_POSITIVE);
+    let passed = &sizes * &sizes / map.norm().max(f64::MIN_POSITIVE);
     passed.sup(&sizes)
 }
 
-impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
+impl Corrector<'_> {
     /// What the errors of the flow make of an orbit that meets these conditions, which it was corrected to. `None` where they do
     /// not determine it.
     pub(crate) fn noise(
         &mut self,
-        orbit: &Regular<N>,
+        orbit: &Regular,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
+        conditions: &[Condition<'_>],
     ) -> Option<Noise> {
         let shooting = &orbit.site.shooting;
         let mut squares = Noise::default();
@@ -130,16 +133,16 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     pub(crate) fn noise_of(
         &mut self,
         test_function: TestFunction,
-        orbit: &Regular<N>,
+        orbit: &Regular,
         free: &[usize],
-        plane: Condition<'_, N>,
+        plane: Condition<'_>,
     ) -> Option<f64> {
         let (mut sum, mut signs) = (0.0, Signs::new());
         for _ in 0..PROBES {
             let noisy = orbit.linear.noisy(&orbit.site.shooting, &mut signs);
             let tangent = self.answer(orbit, &noisy, free, &[plane])?;
             let changes = [orbit.direct(&noisy), self.by_tangent(orbit, &tangent)?];
-            let change = changes.map(|by| test_function.change_along::<N>(&orbit.spectrum, &by));
+            let change = changes.map(|by| test_function.change_along(&orbit.spectrum, &by));
             sum += (change[0] + change[1]).powi(2);
         }
         Some(deviation(sum))
@@ -148,15 +151,14 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     /// How an orbit moves where the flow errs so and the conditions still hold.
     fn answer(
         &mut self,
-        orbit: &Regular<N>,
-        noisy: &Linear<N>,
+        orbit: &Regular,
+        noisy: &Linear,
         free: &[usize],
-        conditions: &[Condition<'_, N>],
-    ) -> Option<TangentVector<N>> {
+        conditions: &[Condition<'_>],
+    ) -> Option<TangentVector> {
         // The directions are those without errors.
-        let mut linear = orbit.linear.clone();
-        linear.gaps.clone_from(&noisy.gaps);
-        let (closing, along) = linear.solutions(free, self.family.scale(orbit.site.at))?;
+        let scale = self.family.scale(orbit.site.at);
+        let (closing, along) = orbit.linear.closing(&noisy.gaps, free, scale)?;
         let test_functions = conditions
             .iter()
             .any(|condition| matches!(condition, Condition::TestFunction(_)));
@@ -168,7 +170,7 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
         let mut gradients = orbit.gradients.iter();
         let mut rows = Vec::with_capacity(conditions.len());
         for condition in conditions {
-            let slopes = |of: &dyn Fn(&TangentVector<N>) -> f64| along.iter().map(of).collect();
+            let slopes = |of: &dyn Fn(&TangentVector) -> f64| along.iter().map(of).collect();
             rows.push(match condition {
                 Condition::Plane(across, _) => (slopes(&|t| across.dot(t)), -across.dot(&closing)),
                 Condition::Parameter(i, _) => {
@@ -176,7 +178,7 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
                 }
                 Condition::TestFunction(test_function) => {
                     let gradient = gradients.next()?;
-                    let change = |by| test_function.change_along::<N>(&orbit.spectrum, by);
+                    let change = |by| test_function.change_along(&orbit.spectrum, by);
                     let change: f64 = of_spectrum.iter().map(change).sum();
                     (slopes(&|t| gradient.dot(t)), -change)
                 }
@@ -191,9 +193,9 @@ impl<F: ParametrisedField<N>, const N: usize> Corrector<'_, F, N> {
     }
 }
 
-impl<const N: usize> Regular<N> {
+impl Regular {
     /// What errors of the derivatives make of the spectrum, the orbit as it is.
-    fn direct(&self, noisy: &Linear<N>) -> Spectrum {
+    fn direct(&self, noisy: &Linear) -> Spectrum {
         Spectrum::change(&self.linear, &self.spectrum, noisy, 1.0)
     }
 }

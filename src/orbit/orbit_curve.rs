@@ -3,22 +3,22 @@
 use super::certain::certain;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::{Condition, Corrector, Goal, Regular};
-use super::family::ParametrisedField;
 use super::linear::Linear;
 use super::shooting_nodes::ShootingMesh;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
 use crate::model::STIFFNESS;
+use std::sync::Arc as Shared;
 
 /// Where a continuation stands.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct DirectedPoint<const N: usize> {
+pub struct DirectedPoint {
     /// The orbit and its surroundings.
-    pub here: Regular<N>,
+    pub here: Regular,
     /// The direction of the continuation.
-    pub direction: TangentVector<N>,
+    pub direction: TangentVector,
 }
 
 /// What is followed.
@@ -37,7 +37,7 @@ pub type WatchedFunction = continuation::WatchedFunction<TestFunction>;
 
 impl WatchedFunction {
     /// Along a branch a turn is a fold.
-    pub(crate) fn condition<'a, const N: usize>(self) -> Condition<'a, N> {
+    pub(crate) fn condition<'a>(self) -> Condition<'a> {
         match self {
             WatchedFunction::TestFunction(test_function) => Condition::TestFunction(test_function),
             WatchedFunction::Value(i, value) => Condition::Parameter(i, value),
@@ -47,15 +47,15 @@ impl WatchedFunction {
 }
 
 /// Orbits that meet the conditions of a branch or of a bifurcation.
-pub struct OrbitCurve<'c, 'f, F, const N: usize> {
+pub struct OrbitCurve<'c, 'f> {
     /// What makes its orbits.
-    pub corrector: &'c mut Corrector<'f, F, N>,
+    pub corrector: &'c mut Corrector<'f>,
     /// What it is along.
     pub settings: PalcSettings,
 }
 
 /// The pseudo-arclength continuation of periodic orbits.
-pub type Palc<'c, 'f, F, const N: usize> = Continuation<OrbitCurve<'c, 'f, F, N>>;
+pub type Palc<'c, 'f> = Continuation<OrbitCurve<'c, 'f>>;
 
 /// Lengths of the first and of the shortest steps; of orbits smaller than 1 the shortest is this part of their extent.
 const FIRST: f64 = 0.02;
@@ -89,22 +89,18 @@ impl PalcSettings {
     }
 
     /// The curve's own conditions: none on a branch.
-    pub(crate) fn own<'a, const N: usize>(&self) -> Vec<Condition<'a, N>> {
+    pub(crate) fn own<'a>(&self) -> Vec<Condition<'a>> {
         let own = self.test_function.map(Condition::TestFunction);
         own.into_iter().collect()
     }
 
     /// The curve's own conditions and one more.
-    pub fn and<'a, const N: usize>(&self, last: Condition<'a, N>) -> Vec<Condition<'a, N>> {
+    pub fn and<'a>(&self, last: Condition<'a>) -> Vec<Condition<'a>> {
         self.own().into_iter().chain([last]).collect()
     }
 
     /// The direction of the curve at an orbit, with the sign that makes the product with `before` positive.
-    pub fn direction<const N: usize>(
-        &self,
-        at: &Regular<N>,
-        before: &TangentVector<N>,
-    ) -> Option<TangentVector<N>> {
+    pub fn direction(&self, at: &Regular, before: &TangentVector) -> Option<TangentVector> {
         let direction = match (&at.along[..], at.gradients.first()) {
             ([only], _) => only.clone(),
             // Where the test function does not change.
@@ -123,16 +119,16 @@ impl PalcSettings {
     }
 }
 
-impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
+impl<'c, 'f> Palc<'c, 'f> {
     /// From an orbit nearby into a direction: the first correction is across it.
     ///
     /// # Errors
     /// Those of [`Corrector::correct`].
     pub fn from(
-        corrector: &'c mut Corrector<'f, F, N>,
+        corrector: &'c mut Corrector<'f>,
         settings: PalcSettings,
-        site: ContinuationPoint<N>,
-        direction: TangentVector<N>,
+        site: ContinuationPoint,
+        direction: TangentVector,
     ) -> Result<Self> {
         let conditions = settings.and(Condition::Plane(&direction, &site));
         let here = corrector.correct(site.clone(), &settings.free, &conditions, Goal::STEP)?;
@@ -148,10 +144,10 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
     }
 
     /// Going on where another continuation stands, after a change of variables to those of this orbit.
-    pub(crate) fn resumed<G: ParametrisedField<M>, const M: usize>(
-        corrector: &'c mut Corrector<'f, F, N>,
-        other: &Palc<'_, '_, G, M>,
-        site: ContinuationPoint<N>,
+    pub(crate) fn resumed(
+        corrector: &'c mut Corrector<'f>,
+        other: &Palc<'_, '_>,
+        site: ContinuationPoint,
     ) -> Option<Self> {
         let settings = other.curve.settings.clone();
         let DirectedPoint { here, direction } = &other.now;
@@ -170,14 +166,15 @@ impl<'c, 'f, F: ParametrisedField<N>, const N: usize> Palc<'c, 'f, F, N> {
             corrector,
             settings,
         };
-        let now = curve.arrived(here.site, here.linear, afar)?;
+        let linear = Shared::unwrap_or_clone(here.linear);
+        let now = curve.arrived(here.site, linear, afar)?;
         let now = curve.cut(&now)?;
         Some(Continuation::new(curve, now).resuming(other))
     }
 }
 
-impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '_, F, N> {
-    type Point = DirectedPoint<N>;
+impl SolutionCurve for OrbitCurve<'_, '_> {
+    type Point = DirectedPoint;
     type TestFunction = TestFunction;
 
     fn control(&self) -> StepControl {
@@ -194,9 +191,9 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
 
     fn correct(
         &mut self,
-        DirectedPoint { here, direction }: &DirectedPoint<N>,
+        DirectedPoint { here, direction }: &DirectedPoint,
         distance: f64,
-    ) -> Result<(DirectedPoint<N>, f64)> {
+    ) -> Result<(DirectedPoint, f64)> {
         let predicted = here.site.moved(direction, distance);
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
@@ -213,20 +210,16 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
         Ok((DirectedPoint { here, direction }, first))
     }
 
-    fn cosine(&self, a: &DirectedPoint<N>, b: &DirectedPoint<N>) -> f64 {
+    fn cosine(&self, a: &DirectedPoint, b: &DirectedPoint) -> f64 {
         b.direction.dot(&a.direction)
     }
 
-    fn scale(&self, at: &DirectedPoint<N>) -> f64 {
+    fn scale(&self, at: &DirectedPoint) -> f64 {
         at.here.site.shooting.extent().min(1.0)
     }
 
     /// Often a node's plane lies badly: nodes elsewhere may do.
-    fn failed(
-        &mut self,
-        here: &DirectedPoint<N>,
-        again: bool,
-    ) -> Result<Option<DirectedPoint<N>>, Stop> {
+    fn failed(&mut self, here: &DirectedPoint, again: bool) -> Result<Option<DirectedPoint>, Stop> {
         if let Some(steps) = self.corrector.tracer.used_up() {
             return Err(Stop::Failed(format!(
                 "the bound of {steps} steps of the integrator is used up"
@@ -239,7 +232,7 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
     }
 
     /// With the orbit's arcs cut anew where they have become uneven.
-    fn taken(&mut self, to: &DirectedPoint<N>) -> Result<Option<DirectedPoint<N>>, Stop> {
+    fn taken(&mut self, to: &DirectedPoint) -> Result<Option<DirectedPoint>, Stop> {
         if !uneven(&to.here) {
             return Ok(None);
         }
@@ -248,25 +241,27 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
 
     fn checked(&self, watch: WatchedFunction) -> Result<()> {
         match watch {
-            WatchedFunction::TestFunction(test_function) => test_function.checked::<N>(),
+            WatchedFunction::TestFunction(test_function) => {
+                test_function.checked(self.corrector.family.dimension())
+            }
             _ => Ok(()),
         }
     }
 
-    fn value(&self, at: &DirectedPoint<N>, watch: WatchedFunction) -> f64 {
+    fn value(&self, at: &DirectedPoint, watch: WatchedFunction) -> f64 {
         match watch {
             WatchedFunction::Turn(i) => at.direction.parameters[i],
             WatchedFunction::Value(i, value) => at.here.site.at[i] - value,
             WatchedFunction::TestFunction(test_function) => {
                 let at = &at.here.spectrum;
-                test_function.of::<N>(at) / test_function.size::<N>(at)
+                test_function.of(at) / test_function.size(at)
             }
         }
     }
 
     fn slopes(
         &mut self,
-        at: &DirectedPoint<N>,
+        at: &DirectedPoint,
         watches: &[WatchedFunction],
         _: f64,
     ) -> Vec<Option<f64>> {
@@ -280,8 +275,8 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
             WatchedFunction::Turn(_) => None,
             WatchedFunction::Value(i, _) => Some(at.direction.parameters[i]),
             WatchedFunction::TestFunction(test_function) => {
-                let change = test_function.change_along::<N>(spectrum, by.as_ref()?);
-                Some(change / test_function.size::<N>(spectrum))
+                let change = test_function.change_along(spectrum, by.as_ref()?);
+                Some(change / test_function.size(spectrum))
             }
         };
         watches.iter().map(slope).collect()
@@ -294,10 +289,10 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
 
     fn solve(
         &mut self,
-        from: &DirectedPoint<N>,
-        near: &DirectedPoint<N>,
+        from: &DirectedPoint,
+        near: &DirectedPoint,
         watch: WatchedFunction,
-    ) -> Option<(f64, DirectedPoint<N>)> {
+    ) -> Option<(f64, DirectedPoint)> {
         let conditions = self.settings.and(watch.condition());
         let (site, free) = (near.here.site.clone(), &self.settings.free);
         let found = self.corrector.correct(site, free, &conditions, Goal::STEP);
@@ -316,24 +311,21 @@ impl<F: ParametrisedField<N>, const N: usize> SolutionCurve for OrbitCurve<'_, '
     fn certain(
         &mut self,
         change: (WatchedFunction, [f64; 2]),
-        at: &DirectedPoint<N>,
-        step: &CurveStep<DirectedPoint<N>>,
+        at: &DirectedPoint,
+        step: &CurveStep<DirectedPoint>,
     ) -> bool {
         self.settings.test_function.is_some() || certain(self, change, &at.here, step)
     }
 }
 
-impl<F: ParametrisedField<N>, const N: usize> OrbitCurve<'_, '_, F, N> {
+impl OrbitCurve<'_, '_> {
     /// The orbit with its arcs cut anew.
-    fn cut(
-        &mut self,
-        DirectedPoint { here, direction }: &DirectedPoint<N>,
-    ) -> Option<DirectedPoint<N>> {
+    fn cut(&mut self, DirectedPoint { here, direction }: &DirectedPoint) -> Option<DirectedPoint> {
         let site = &here.site;
         let field = self.corrector.family.field(site.at);
         let shooting = site
             .shooting
-            .cut(&mut self.corrector.tracer, &*field, &ShootingMesh::FINE)
+            .cut(&mut self.corrector.tracer, &field, &ShootingMesh::FINE)
             .ok()?;
         drop(field);
         let old = direction.seen_from_afar(&site.shooting);
@@ -349,7 +341,7 @@ impl<F: ParametrisedField<N>, const N: usize> OrbitCurve<'_, '_, F, N> {
             let parts = linear.parts(GROWTH);
             let field = self.corrector.family.field(site.at);
             let tracer = &mut self.corrector.tracer;
-            site.shooting = site.shooting.split(tracer, &*field, &parts).ok()?;
+            site.shooting = site.shooting.split(tracer, &field, &parts).ok()?;
             drop(field);
             linear = self.corrector.linear(&site)?;
         }
@@ -363,10 +355,10 @@ impl<F: ParametrisedField<N>, const N: usize> OrbitCurve<'_, '_, F, N> {
     /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
     fn arrived(
         &mut self,
-        site: ContinuationPoint<N>,
-        linear: Linear<N>,
+        site: ContinuationPoint,
+        linear: Linear,
         old: [f64; 3],
-    ) -> Option<DirectedPoint<N>> {
+    ) -> Option<DirectedPoint> {
         let own = self.settings.own();
         let here = self
             .corrector
@@ -404,7 +396,7 @@ const SPLITS: usize = 6;
 
 /// The node that the tangent vectors left to the orbit move most. All others are found from the first one: from the small end of a
 /// tangent vector that grows by many decades nothing is found.
-fn most_moved<const N: usize>(along: &[TangentVector<N>]) -> usize {
+fn most_moved(along: &[TangentVector]) -> usize {
     let moved = |k: usize| -> f64 {
         let each = along.iter().map(|tangent| tangent.nodes[k].norm_squared());
         each.sum()
@@ -416,7 +408,7 @@ fn most_moved<const N: usize>(along: &[TangentVector<N>]) -> usize {
 }
 
 /// Whether arcs take far more work than the others or than they should, or grow by too much.
-fn uneven<const N: usize>(orbit: &Regular<N>) -> bool {
+fn uneven(orbit: &Regular) -> bool {
     /// Steps of an arc over the mean, and of the mean over what it should be.
     const WORST: f64 = 2.5;
     const MEAN: f64 = 1.6;

@@ -2,12 +2,13 @@
 
 use super::arc::Tracer;
 use super::interface_system::InterfaceSystem;
+use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::Control;
+use crate::integrate::{AnyField, AnySection, Control};
 use crate::number::polynomial::evaluate;
-use crate::series::{Section, Zeros};
+use crate::series::Zeros;
 
 /// Along one cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,47 +27,32 @@ pub struct Profile {
 /// Of a cycle of a slab, in (tau, ln psi_1, ln psi_2) or (tau, ln psi), to some six digits.
 ///
 /// # Errors
-/// Those of the flow.
-pub fn profile<const N: usize>(
-    slab: &InterfaceSystem,
-    shooting: &ShootingNodes<N>,
-) -> Result<Profile> {
+/// [`Error::Dimension`] for nodes of other dimensions; those of the flow.
+pub fn profile(slab: &InterfaceSystem, shooting: &ShootingNodes) -> Result<Profile> {
     /// Tolerance of the run.
     const ROUGH: f64 = 1e-7;
-    const { assert!(N == 2 || N == 3, "a slab's variables") };
+    let dimension = shooting.dimension();
+    let known = matches!(dimension, 2 | 3);
+    Error::dimension_unless(known, "a cycle of a slab", "2 or 3", dimension)?;
+    shooting.checked(dimension)?;
     let mut seen = Extent {
         top: (f64::NEG_INFINITY, [0.0; 2]),
         bottom: f64::INFINITY,
         integral: 0.0,
     };
-    let field = slab.whole();
-    if N == 3 {
-        let whole = shooting
-            .nodes
-            .iter()
-            .map(|x| State::<3>::new(x[0], x[1], x[N - 1]));
-        seen.go(
-            &*field,
-            whole,
-            &shooting.durations,
-            &mut Tracer::taylor(ROUGH)?,
-        )?;
+    let whole = slab.whole();
+    let field = if dimension == 3 {
+        AnyField::of::<3>(&*whole)
     } else {
-        let inner = slab.plane();
-        let plane = shooting.nodes.iter().map(|x| State::<2>::new(x[0], x[1]));
-        seen.go(
-            &*inner,
-            plane,
-            &shooting.durations,
-            &mut Tracer::taylor(ROUGH)?,
-        )?;
-    }
+        AnyField::new::<2>(slab.plane())
+    };
+    seen.go(&field, shooting, &mut Tracer::taylor(ROUGH)?)?;
     let (top, w) = seen.top;
     Ok(Profile {
         mean_stress: seen.integral / shooting.period(),
         stress_range: (seen.bottom, top),
         state: w.map(f64::exp),
-        slip_rate: field.slip_rates(&State::<3>::new(top, w[0], w[1])),
+        slip_rate: whole.slip_rates(&State::<3>::new(top, w[0], w[1])),
     })
 }
 
@@ -78,30 +64,29 @@ struct Extent {
 }
 
 impl Extent {
-    fn see<const N: usize>(&mut self, y: &State<N>) {
+    fn see(&mut self, y: &[f64]) {
         if y[0] > self.top.0 {
-            self.top = (y[0], [y[1], y[N - 1]]);
+            self.top = (y[0], [y[1], y[y.len() - 1]]);
         }
         self.bottom = self.bottom.min(y[0]);
     }
 
-    fn go<const N: usize>(
+    fn go(
         &mut self,
-        field: &dyn crate::field::VectorField<N>,
-        nodes: impl Iterator<Item = State<N>>,
-        durations: &[f64],
-        tracer: &mut Tracer<N>,
+        field: &AnyField<'_>,
+        shooting: &ShootingNodes,
+        tracer: &mut Tracer,
     ) -> Result<()> {
-        let mut normal = [0.0; N];
-        normal[0] = 1.0;
-        let section = Section::Extremum { normal };
-        let mut turns = Vec::new();
-        for (x, &duration) in nodes.zip(durations) {
+        let section = AnySection::Extremum {
+            normal: axis(field.dimension(), 0),
+        };
+        let (mut turns, mut terms) = (Vec::new(), Vec::new());
+        for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             let mut zeros = Zeros::default();
-            self.see(&x);
+            self.see(x.as_slice());
             tracer.flow(
                 field,
-                &x,
+                x,
                 duration,
                 Some(&mut |step| {
                     self.see(step.y1);
@@ -112,14 +97,13 @@ impl Extent {
                     series.crossings(&section, None, &mut zeros, &mut turns);
                     turns
                         .iter()
-                        .for_each(|turn| self.see(&State::from(turn.state)));
+                        .for_each(|turn| self.see(turn.state.as_slice()));
                     // tau stands first, in the variables as in the state.
-                    let mut terms = series.variables[0];
-                    for (j, c) in terms.iter_mut().enumerate() {
-                        *c /= (j + 1) as f64;
-                    }
-                    let s = series.length / series.unit;
-                    self.integral += evaluate(&terms[..=series.order], s) * series.length;
+                    let stress = series.variable(0).iter().enumerate();
+                    terms.clear();
+                    terms.extend(stress.map(|(j, c)| c / (j + 1) as f64));
+                    let s = series.length() / series.unit();
+                    self.integral += evaluate(&terms, s) * series.length();
                     Ok(Control::Continue)
                 }),
             )?;

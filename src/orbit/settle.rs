@@ -4,35 +4,33 @@ use super::arc::Tracer;
 use super::no_orbit;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
-use crate::field::{State, VectorField};
-use crate::integrate::Control;
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnySection, Control};
 use crate::number::polynomial::Crossing;
-use crate::series::{Section, Zeros};
+use crate::series::Zeros;
 
 /// A run's passages of a plane tau = level, downwards.
 #[derive(Debug, Clone)]
-pub(super) struct Passages<const N: usize> {
+pub(super) struct Passages {
     /// Time and state of each.
-    pub found: Vec<(f64, State<N>)>,
+    pub found: Vec<(f64, Vector)>,
     /// Least and greatest stress at the steps.
     pub range: (f64, f64),
     /// The state at the end.
-    pub end: State<N>,
+    pub end: Vector,
 }
 
 /// Follows a run over `duration`, or until `most` passages. The tracer's method must be Taylor's.
-pub(super) fn passages<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    start: &State<N>,
+pub(super) fn passages(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    start: &Vector,
     duration: f64,
     level: f64,
     most: usize,
-) -> Result<Passages<N>> {
-    let mut normal = [0.0; N];
-    normal[0] = 1.0;
-    let section = Section::Plane {
-        normal,
+) -> Result<Passages> {
+    let section = AnySection::Plane {
+        normal: axis(start.len(), 0),
         offset: level,
     };
     let (mut zeros, mut here) = (Zeros::default(), Vec::new());
@@ -45,10 +43,9 @@ pub(super) fn passages<const N: usize>(
         Some(&mut |step| {
             range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
             if let Some(series) = step.series() {
-                here.clear();
                 series.crossings(&section, Some(Crossing::Downwards), &mut zeros, &mut here);
-                for passage in &here {
-                    found.push((step.t0 + passage.time, State::from(passage.state)));
+                for passage in here.drain(..) {
+                    found.push((step.t0 + passage.time, passage.state));
                 }
             }
             Ok(if found.len() >= most {
@@ -61,8 +58,15 @@ pub(super) fn passages<const N: usize>(
     Ok(Passages { found, range, end })
 }
 
+/// The direction of the i-th of so many variables.
+pub(super) fn axis(count: usize, i: usize) -> Vector {
+    let mut axis = Vector::zeros(count);
+    axis[i] = 1.0;
+    axis
+}
+
 /// Largest difference in a component.
-fn apart<const N: usize>(a: &State<N>, b: &State<N>) -> f64 {
+fn apart(a: &Vector, b: &Vector) -> f64 {
     (a - b).amax()
 }
 
@@ -82,14 +86,14 @@ const STRETCHES: u32 = 7;
 ///
 /// # Errors
 /// [`crate::Error::NoOrbit`] where the run comes to rest or comes back nowhere; those of the flow.
-pub(super) fn settle<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    start: &State<N>,
+pub(super) fn settle(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    start: &Vector,
     rough_period: f64,
-    accept: &mut dyn FnMut(&mut Tracer<N>, ShootingNodes<N>) -> bool,
+    accept: &mut dyn FnMut(&mut Tracer, ShootingNodes) -> bool,
 ) -> Result<()> {
-    let mut y = *start;
+    let mut y = start.clone();
     for stretch in 0..STRETCHES {
         let length = FIRST_STRETCH * rough_period * f64::from(1u32 << stretch);
         // Some of it unseen; then how far the stress goes; then where it passes the middle of that.

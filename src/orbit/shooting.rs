@@ -6,31 +6,32 @@ use super::no_orbit;
 use super::noise::{PROBES, Signs};
 use super::shooting_nodes::ShootingNodes;
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
 use crate::number::Uncertain;
 
 /// A closed shooting: a periodic orbit, with the derivatives along it.
 #[derive(Debug, Clone)]
 #[non_exhaustive]
-pub struct Closed<const N: usize> {
+pub struct Closed {
     /// The nodes and durations.
-    pub shooting: ShootingNodes<N>,
+    pub shooting: ShootingNodes,
     /// Iterations made.
     pub iterations: usize,
-    pub(super) linear: Linear<N>,
+    pub(super) linear: Linear,
     /// The last correction, which was not made: of a node in units of 1 + |x|, and of the period, relative.
     residual: (f64, f64),
 }
 
-impl<const N: usize> Closed<N> {
+impl Closed {
     /// The arcs from every node to the next.
-    pub(crate) fn arcs(&self) -> &[Arc<N>] {
+    pub(crate) fn arcs(&self) -> &[Arc] {
         &self.linear.arcs
     }
 
-    /// The maps from the plane across the flow at every node to the next, in orthonormal coordinates of which the first, along
-    /// the flow, is zero.
-    pub fn maps(&self) -> &[Jacobian<N>] {
+    /// The maps from the plane across the flow at every node to the next, in orthonormal coordinates of these planes: one fewer
+    /// than there are variables.
+    pub fn maps(&self) -> &[Matrix] {
         &self.linear.maps
     }
 
@@ -86,21 +87,23 @@ const TRUSTED: f64 = 0.5;
 const HALVINGS: usize = 8;
 
 /// The largest component of dx in units of 1 + |x|.
-pub(super) fn relative<const N: usize>(dx: &State<N>, x: &State<N>) -> f64 {
-    (0..N)
-        .map(|i| dx[i].abs() / (1.0 + x[i].abs()))
+pub(super) fn relative(dx: &Vector, x: &Vector) -> f64 {
+    dx.iter()
+        .zip(x)
+        .map(|(dx, x)| dx.abs() / (1.0 + x.abs()))
         .fold(0.0, f64::max)
 }
 
 /// One whole step of Newton's method.
 ///
 /// # Errors
-/// [`Error::NotConverged`] where the linear equations are singular; those of the flow.
-pub fn newton_step<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    shooting: &ShootingNodes<N>,
-) -> Result<ShootingNodes<N>> {
+/// [`Error::NotConverged`] where the linear equations are singular; those of [`ShootingNodes::checked`]; those of the flow.
+pub fn newton_step(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
+) -> Result<ShootingNodes> {
+    shooting.checked(field.dimension())?;
     let linear = Linear::new(tracer, field, shooting)?;
     let correction = linear.correction(&linear.gaps);
     let (nodes, durations) = correction.ok_or(Error::NotConverged {
@@ -115,12 +118,10 @@ pub fn newton_step<const N: usize>(
 /// Closes a shooting.
 ///
 /// # Errors
-/// [`Error::NotConverged`] where Newton's method does not; those of the flow where no shorter step avoids them.
-pub fn close<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    guess: ShootingNodes<N>,
-) -> Result<Closed<N>> {
+/// [`Error::NotConverged`] where Newton's method does not; those of [`ShootingNodes::checked`]; those of the flow where no shorter
+/// step avoids them.
+pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) -> Result<Closed> {
+    guess.checked(field.dimension())?;
     let mut shooting = guess;
     let mut linear = Linear::new(tracer, field, &shooting)?;
     let mut last = f64::INFINITY;

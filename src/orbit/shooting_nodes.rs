@@ -2,21 +2,20 @@
 
 use super::arc::Tracer;
 use crate::error::Result;
-use crate::field::{State, VectorField};
-use crate::integrate::Control;
+use crate::field::Vector;
+use crate::integrate::{AnyField, Control, of_dimension};
 
 /// Points along a closed curve, and the times from each to the next: a periodic orbit, or a guess of one.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ShootingNodes<const N: usize> {
+pub struct ShootingNodes {
     /// The points.
-    pub nodes: Vec<State<N>>,
+    pub nodes: Vec<Vector>,
     /// From each node to the next, from the last to the first; all of one sign.
     pub durations: Vec<f64>,
 }
 
 /// The end of an arc from a start over a duration, and the logarithm of what its tangent loses.
-pub type EndAndLoss<'a, const N: usize> =
-    &'a mut dyn FnMut(&State<N>, f64) -> Result<(State<N>, f64)>;
+pub type EndAndLoss<'a> = &'a mut dyn FnMut(&Vector, f64) -> Result<(Vector, f64)>;
 
 /// How a cycle is cut into arcs.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -58,11 +57,25 @@ pub fn of_digits(digits: i32, x: f64) -> f64 {
     (x / unit).round() * unit
 }
 
-impl<const N: usize> ShootingNodes<N> {
-    /// Nodes, of at least N coordinates, and durations, with only so many significant digits left: what a second method begins
+impl ShootingNodes {
+    /// The number of variables.
+    pub fn dimension(&self) -> usize {
+        self.nodes.first().map_or(0, |x| x.len())
+    }
+
+    /// That all nodes are points of a field with so many variables.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`](crate::Error::Parameter) where one is not.
+    pub fn checked(&self, dimension: usize) -> Result<()> {
+        let mut nodes = self.nodes.iter();
+        nodes.try_for_each(|x| of_dimension(x.len(), dimension))
+    }
+
+    /// Nodes and durations, with only so many significant digits left: what a second method begins
     /// with.
     pub(crate) fn of_digits(digits: i32, nodes: &[Vec<f64>], durations: &[f64]) -> Self {
-        let node = |x: &Vec<f64>| State::from_fn(|i, _| of_digits(digits, x[i]));
+        let node = |x: &Vec<f64>| Vector::from_fn(x.len(), |i, _| of_digits(digits, x[i]));
         ShootingNodes {
             nodes: nodes.iter().map(node).collect(),
             durations: durations.iter().map(|&t| of_digits(digits, t)).collect(),
@@ -74,13 +87,13 @@ impl<const N: usize> ShootingNodes<N> {
     /// # Errors
     /// Those of the flow.
     pub fn along(
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
-        start: &State<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
+        start: &Vector,
         duration: f64,
     ) -> Result<Self> {
         let whole = ShootingNodes {
-            nodes: vec![*start],
+            nodes: vec![start.clone()],
             durations: vec![duration],
         };
         whole.meshed(tracer, field)
@@ -90,7 +103,7 @@ impl<const N: usize> ShootingNodes<N> {
     ///
     /// # Errors
     /// Those of the flow.
-    pub fn meshed(&self, tracer: &mut Tracer<N>, field: &dyn VectorField<N>) -> Result<Self> {
+    pub fn meshed(&self, tracer: &mut Tracer, field: &AnyField<'_>) -> Result<Self> {
         self.cut(tracer, field, &ShootingMesh::COARSE)
     }
 
@@ -100,25 +113,26 @@ impl<const N: usize> ShootingNodes<N> {
     /// Those of the flow.
     pub(super) fn cut(
         &self,
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
         mesh: &ShootingMesh,
     ) -> Result<Self> {
         // Time, state and measure at every step's end; no cut but at these.
         let (mut way, mut begin, mut measure) = (Vec::new(), 0.0, 0.0);
         for (start, &duration) in self.nodes.iter().zip(&self.durations) {
-            let mut trace = field.jacobian(start).trace().abs();
-            way.push((begin, *start, measure));
+            let mut trace = field.trace(start.as_slice()).abs();
+            way.push((begin, start.clone(), measure));
             tracer.flow(
                 field,
                 start,
                 duration,
                 Some(&mut |step| {
-                    let next = field.jacobian(step.y1).trace().abs();
+                    let next = field.trace(step.y1).abs();
                     let volume = 0.5 * (trace + next) * (step.t1 - step.t0).abs();
                     trace = next;
                     measure += 1.0 / mesh.steps + volume / mesh.volume;
-                    way.push((begin + step.t1, *step.y1, measure));
+                    let end = Vector::from_column_slice(step.y1);
+                    way.push((begin + step.t1, end, measure));
                     Ok(Control::Continue)
                 }),
             )?;
@@ -135,7 +149,7 @@ impl<const N: usize> ShootingNodes<N> {
                 break;
             };
             at += next;
-            nodes.push(way[at].1);
+            nodes.push(way[at].1.clone());
             times.push(way[at].0);
             at += 1;
             if at == way.len() {
@@ -153,13 +167,13 @@ impl<const N: usize> ShootingNodes<N> {
     /// # Errors
     /// Those of the closure.
     #[doc(hidden)]
-    pub fn refined(&self, end_and_loss: EndAndLoss<'_, N>) -> Result<Self> {
+    pub fn refined(&self, end_and_loss: EndAndLoss<'_>) -> Result<Self> {
         let mut finer = ShootingNodes {
             nodes: Vec::new(),
             durations: Vec::new(),
         };
         for (x, &duration) in self.nodes.iter().zip(&self.durations) {
-            let mut x = *x;
+            let mut x = x.clone();
             // Pieces still to be looked at, the next one last.
             let mut pieces = vec![(duration, 0)];
             while let Some((duration, depth)) = pieces.pop() {
@@ -184,8 +198,8 @@ impl<const N: usize> ShootingNodes<N> {
     /// Those of the flow.
     pub(super) fn split(
         &self,
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
+        tracer: &mut Tracer,
+        field: &AnyField<'_>,
         parts: &[usize],
     ) -> Result<Self> {
         let mut finer = ShootingNodes {
@@ -194,12 +208,12 @@ impl<const N: usize> ShootingNodes<N> {
         };
         for ((x, duration), &parts) in self.nodes.iter().zip(&self.durations).zip(parts) {
             let part = duration / parts as f64;
-            let mut node = *x;
+            let mut node = x.clone();
             for i in 0..parts {
                 if i > 0 {
                     node = tracer.flow(field, &node, part, None)?;
                 }
-                finer.nodes.push(node);
+                finer.nodes.push(node.clone());
                 finer.durations.push(part);
             }
         }
@@ -210,12 +224,7 @@ impl<const N: usize> ShootingNodes<N> {
     ///
     /// # Errors
     /// Those of the flow.
-    pub fn shifted(
-        &self,
-        tracer: &mut Tracer<N>,
-        field: &dyn VectorField<N>,
-        part: f64,
-    ) -> Result<Self> {
+    pub fn shifted(&self, tracer: &mut Tracer, field: &AnyField<'_>, part: f64) -> Result<Self> {
         let mut moved = self.clone();
         for (x, duration) in moved.nodes.iter_mut().zip(&self.durations) {
             *x = tracer.flow(field, x, part * duration, None)?;
@@ -236,7 +245,7 @@ impl<const N: usize> ShootingNodes<N> {
     }
 
     /// With this part of a correction of nodes and durations.
-    pub(super) fn moved(&self, nodes: &[State<N>], durations: &[f64], part: f64) -> Self {
+    pub(super) fn moved(&self, nodes: &[Vector], durations: &[f64], part: f64) -> Self {
         let moved = self.nodes.iter().zip(nodes);
         let stretched = self.durations.iter().zip(durations);
         ShootingNodes {
@@ -255,7 +264,7 @@ impl<const N: usize> ShootingNodes<N> {
         let over = |pick: fn(f64, f64) -> f64, from: f64, i: usize| {
             self.nodes.iter().map(|x| x[i]).fold(from, pick)
         };
-        (0..N)
+        (0..self.dimension())
             .map(|i| over(f64::max, f64::NEG_INFINITY, i) - over(f64::min, f64::INFINITY, i))
             .fold(0.0, f64::max)
     }

@@ -10,8 +10,7 @@ use super::shooting_nodes::ShootingNodes;
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::field::VectorField;
-use crate::integrate::{Choice, MAX_STEPS, Tolerances, Work};
+use crate::integrate::{AnyField, Choice, MAX_STEPS, Tolerances, Work};
 use crate::number::Uncertain;
 
 /// A periodic orbit.
@@ -106,19 +105,19 @@ const SHIFTS: [f64; 2] = [0.37, 0.71];
 /// What the period differs by counts so many times.
 const SPREAD: f64 = 2.0;
 
-/// A closed shooting of either dimension with its multipliers.
-pub(super) struct Solved<const N: usize> {
-    pub closed: Closed<N>,
+/// A closed shooting with its multipliers.
+pub(super) struct Solved {
+    pub closed: Closed,
     pub floquet: Floquet,
     pub iterations: usize,
 }
 
 /// Closes a guess, refines its nodes for the multipliers, and closes it again.
-pub(super) fn solve<const N: usize>(
-    space: &impl Space<N>,
-    tracers: &mut Tracers<N>,
-    guess: ShootingNodes<N>,
-) -> Result<Solved<N>> {
+pub(super) fn solve(
+    space: &dyn Space,
+    tracers: &mut Tracers,
+    guess: ShootingNodes,
+) -> Result<Solved> {
     let field = space.field();
     let first = close(&mut tracers.here, field, guess)?;
     if let Some(times) = traversals(&mut tracers.here, field, &first.shooting)? {
@@ -142,10 +141,10 @@ pub(super) fn solve<const N: usize>(
 }
 
 /// How many times the cycle is a shorter one traversed; `None` where it is its own.
-pub(super) fn traversals<const N: usize>(
-    tracer: &mut Tracer<N>,
-    field: &dyn VectorField<N>,
-    shooting: &ShootingNodes<N>,
+pub(super) fn traversals(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
 ) -> Result<Option<u32>> {
     /// Times around that are looked for, and how near the beginning such a part ends, in units of the extent.
     const TIMES: [u32; 5] = [2, 3, 5, 7, 11];
@@ -160,11 +159,11 @@ pub(super) fn traversals<const N: usize>(
             k += 1;
         }
         let there = if part == before {
-            shooting.nodes[k]
+            shooting.nodes[k].clone()
         } else {
             tracer.flow(field, &shooting.nodes[k], part - before, None)?
         };
-        if (there - shooting.nodes[0]).amax() < SAME * extent {
+        if (there - &shooting.nodes[0]).amax() < SAME * extent {
             return Ok(Some(times));
         }
     }
@@ -172,11 +171,11 @@ pub(super) fn traversals<const N: usize>(
 }
 
 /// The orbit near a guess, with everything.
-pub(super) fn orbit<const N: usize>(
+pub(super) fn orbit(
     slab: &InterfaceSystem,
-    space: &impl Space<N>,
+    space: &dyn Space,
     accuracy: &OrbitAccuracy,
-    guess: ShootingNodes<N>,
+    guess: ShootingNodes,
 ) -> Result<Orbit> {
     let mut tracers = Tracers::new(accuracy)?;
     let Solved {
@@ -214,9 +213,9 @@ pub(super) fn orbit<const N: usize>(
         period.uncertainty += SPREAD * apart;
     }
     let extremes = extremes(space.field(), shooting, level)?;
-    let point = extremes.passage.unwrap_or(shooting.nodes[0]);
+    let point = extremes.passage.as_ref().unwrap_or(&shooting.nodes[0]);
     // What others differ by, and within a stress extreme's rounding as well.
-    let of_stress = |of: &dyn Fn(&Extremes<N>) -> f64| {
+    let of_stress = |of: &dyn Fn(&Extremes) -> f64| {
         let stress = of(&extremes);
         let apart = others.iter().map(|other| (of(other) - stress).abs());
         let noise = (node_error + 4.0 * f64::EPSILON) * (1.0 + stress.abs());
@@ -224,8 +223,8 @@ pub(super) fn orbit<const N: usize>(
     };
     /// Of several passages in a cycle another one is farther off.
     const SAME: f64 = 1e-3;
-    let passages = others.iter().filter_map(|other| other.passage);
-    let of_point = passages.map(|other| relative(&(other - point), &point));
+    let passages = others.iter().filter_map(|other| other.passage.as_ref());
+    let of_point = passages.map(|other| relative(&(other - point), point));
     let of_point = of_point.filter(|&off| off < SAME);
     let point_uncertainty = node_error + SPREAD * of_point.fold(0.0, f64::max);
     Ok(Orbit {

@@ -2,39 +2,48 @@
 
 use super::arc::{Arc, Tracer};
 use super::floquet::{Floquet, floquet, symmetric_floquet};
+use super::interface_system::InterfaceSystem;
 use super::shooting::Closed;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::OrbitAccuracy;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::field::{State, VectorField};
-use crate::integrate::Work;
+use crate::field::Vector;
+use crate::integrate::{AnyField, Work};
 
-/// A dimension in which orbits are found.
-pub(super) trait Space<const N: usize> {
+/// A space in which orbits are found.
+pub(super) trait Space {
     /// The vector field.
-    fn field(&self) -> &dyn VectorField<N>;
+    fn field(&self) -> &AnyField<'_>;
     /// A node and its arc in the space of all multipliers: the arc's end and the digits that it loses.
-    fn loss(
-        &self,
-        tracers: &mut Tracers<N>,
-        x: &State<N>,
-        duration: f64,
-    ) -> Result<(State<N>, f64)>;
+    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)>;
     /// The multipliers.
-    fn floquet(&self, tracers: &mut Tracers<N>, closed: &Closed<N>) -> Result<Floquet>;
+    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet>;
     /// Whether both interfaces move alike.
-    fn symmetry(&self, shooting: &ShootingNodes<N>) -> Symmetry;
+    fn symmetry(&self, shooting: &ShootingNodes) -> Symmetry;
+}
+
+/// Where the orbits of a slab are that have a symmetry: all orbits of two interfaces, or the symmetric ones, within all where
+/// there are two interfaces.
+pub(super) fn space_of(slab: &InterfaceSystem, symmetry: Symmetry) -> Box<dyn Space> {
+    let whole = || AnyField::new::<3>(slab.whole());
+    match symmetry {
+        Symmetry::Asymmetric => Box::new(Whole(whole())),
+        Symmetry::Symmetric => Box::new(Plane {
+            plane: AnyField::new::<2>(slab.plane()),
+            whole: (slab.interfaces == 2).then(whole),
+        }),
+    }
 }
 
 /// The tracers of one accuracy.
-pub(super) struct Tracers<const N: usize> {
-    pub here: Tracer<N>,
+pub(super) struct Tracers {
+    pub here: Tracer,
     /// In the whole space, for symmetric orbits.
-    whole: Tracer<3>,
+    whole: Tracer,
 }
 
-impl<const N: usize> Tracers<N> {
+impl Tracers {
     pub fn new(accuracy: &OrbitAccuracy) -> Result<Self> {
         let OrbitAccuracy {
             method,
@@ -56,28 +65,24 @@ impl<const N: usize> Tracers<N> {
 }
 
 /// The whole space of two interfaces.
-pub(super) struct Whole<'a>(pub &'a dyn VectorField<3>);
+pub(super) struct Whole<'a>(pub AnyField<'a>);
 
-impl Space<3> for Whole<'_> {
-    fn field(&self) -> &dyn VectorField<3> {
-        self.0
+impl Space for Whole<'_> {
+    fn field(&self) -> &AnyField<'_> {
+        &self.0
     }
 
-    fn loss(
-        &self,
-        tracers: &mut Tracers<3>,
-        x: &State<3>,
-        duration: f64,
-    ) -> Result<(State<3>, f64)> {
-        let arc = tracers.here.arc(self.0, x, duration, &[])?;
-        Ok((arc.end, arc.loss()))
+    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
+        let arc = tracers.here.arc(&self.0, x, duration, &[])?;
+        let loss = arc.loss();
+        Ok((arc.end, loss))
     }
 
-    fn floquet(&self, _: &mut Tracers<3>, closed: &Closed<3>) -> Result<Floquet> {
-        Ok(floquet(closed, &|x| self.0.f(x)))
+    fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
+        Ok(floquet(closed, &self.0))
     }
 
-    fn symmetry(&self, shooting: &ShootingNodes<3>) -> Symmetry {
+    fn symmetry(&self, shooting: &ShootingNodes) -> Symmetry {
         /// Interfaces that differ by less move alike: they would by rounding.
         const ALIKE: f64 = 1e-9;
         let apart = shooting.nodes.iter().map(|x| (x[1] - x[2]).abs());
@@ -91,58 +96,49 @@ impl Space<3> for Whole<'_> {
 
 /// The plane of a single interface, or of two that move alike, with the whole space around it.
 pub(super) struct Plane<'a> {
-    pub plane: &'a dyn VectorField<2>,
-    pub whole: Option<&'a dyn VectorField<3>>,
+    pub plane: AnyField<'a>,
+    pub whole: Option<AnyField<'a>>,
 }
 
 impl Plane<'_> {
-    fn across(
-        &self,
-        tracers: &mut Tracers<2>,
-        x: &State<2>,
-        duration: f64,
-    ) -> Result<Option<Arc<3>>> {
-        let embedded = State::<3>::new(x[0], x[1], x[1]);
+    fn across(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<Option<Arc>> {
+        let embedded = Vector::from_column_slice(&[x[0], x[1], x[1]]);
         self.whole
+            .as_ref()
             .map(|whole| tracers.whole.arc(whole, &embedded, duration, &[]))
             .transpose()
     }
 }
 
-impl Space<2> for Plane<'_> {
-    fn field(&self) -> &dyn VectorField<2> {
-        self.plane
+impl Space for Plane<'_> {
+    fn field(&self) -> &AnyField<'_> {
+        &self.plane
     }
 
-    fn loss(
-        &self,
-        tracers: &mut Tracers<2>,
-        x: &State<2>,
-        duration: f64,
-    ) -> Result<(State<2>, f64)> {
+    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
         Ok(match self.across(tracers, x, duration)? {
-            Some(arc) => (State::<2>::new(arc.end[0], arc.end[1]), arc.loss()),
+            Some(arc) => (arc.end.rows(0, 2).into_owned(), arc.loss()),
             None => {
-                let arc = tracers.here.arc(self.plane, x, duration, &[])?;
-                (arc.end, arc.loss())
+                let arc = tracers.here.arc(&self.plane, x, duration, &[])?;
+                let loss = arc.loss();
+                (arc.end, loss)
             }
         })
     }
 
-    fn floquet(&self, tracers: &mut Tracers<2>, closed: &Closed<2>) -> Result<Floquet> {
-        let f = |x: &State<2>| self.plane.f(x);
+    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
         if self.whole.is_none() {
-            return Ok(floquet(closed, &f));
+            return Ok(floquet(closed, &self.plane));
         }
         let shooting = &closed.shooting;
         let mut arcs = Vec::with_capacity(shooting.nodes.len());
         for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             arcs.extend(self.across(tracers, x, duration)?);
         }
-        Ok(symmetric_floquet(closed, &f, &arcs))
+        Ok(symmetric_floquet(closed, &self.plane, &arcs))
     }
 
-    fn symmetry(&self, _: &ShootingNodes<2>) -> Symmetry {
+    fn symmetry(&self, _: &ShootingNodes) -> Symmetry {
         Symmetry::Symmetric
     }
 }

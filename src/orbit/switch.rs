@@ -4,25 +4,25 @@ use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::correct::Regular;
 use super::cyclic;
 use super::shooting_nodes::ShootingNodes;
-use crate::field::State;
+use crate::field::Vector;
 
 /// A place to begin a branch, and its direction there.
-pub type Switch<const N: usize> = (ContinuationPoint<N>, TangentVector<N>);
+pub type Switch = (ContinuationPoint, TangentVector);
 
-impl<const N: usize> Regular<N> {
-    /// At a period doubling: the orbit traversed twice, and the tangent vector that makes both rounds differ. `None` where that is not
-    /// finite.
-    pub fn doubled(&self) -> Option<Switch<N>> {
+impl Regular {
+    /// At a period doubling: the orbit traversed twice, and the tangent vector that makes both rounds differ. `None` where that is
+    /// not finite.
+    pub fn doubled(&self) -> Option<Switch> {
         // What comes back after one round with the other sign.
         let mut maps = self.linear.maps.clone();
         let last = maps.last_mut()?;
-        *last = -*last;
+        last.neg_mut();
         let round = cyclic::kernel(&maps)?;
         let (nodes, durations) = self.linear.carried(&round);
         let shooting = &self.site.shooting;
-        let twice = |x: &[State<N>], sign: f64| -> Vec<State<N>> {
+        let twice = |x: &[Vector], sign: f64| -> Vec<Vector> {
             x.iter()
-                .copied()
+                .cloned()
                 .chain(x.iter().map(|x| x * sign))
                 .collect()
         };
@@ -44,17 +44,19 @@ impl<const N: usize> Regular<N> {
         };
         Some((site, tangent.normalised()?))
     }
-}
 
-impl Regular<2> {
-    /// At a pitchfork: the orbit among all states, and the tangent vector in which both interfaces part. `None` where the arcs do not
-    /// say how they do.
-    pub fn asymmetric(&self) -> Option<Switch<3>> {
+    /// At a pitchfork: the orbit among all states, and the tangent vector in which both interfaces part. `None` where the arcs do
+    /// not say how they do, and for orbits in other than two variables, which are no symmetric ones.
+    pub fn asymmetric(&self) -> Option<Switch> {
         let ContinuationPoint { shooting, at } = &self.site;
+        if shooting.dimension() != 2 {
+            return None;
+        }
+        let state = |x: [f64; 3]| Vector::from_column_slice(&x);
         let mut apart = 1.0;
         let mut nodes = Vec::with_capacity(shooting.nodes.len());
-        for arc in &self.linear.arcs {
-            nodes.push(State::<3>::new(0.0, apart, -apart));
+        for arc in self.linear.arcs.iter() {
+            nodes.push(state([0.0, apart, -apart]));
             apart *= arc.log_transverse?.exp();
         }
         let tangent = TangentVector {
@@ -62,10 +64,7 @@ impl Regular<2> {
             durations: vec![0.0; shooting.durations.len()],
             parameters: [0.0; 2],
         };
-        let embedded = shooting
-            .nodes
-            .iter()
-            .map(|x| State::<3>::new(x[0], x[1], x[1]));
+        let embedded = shooting.nodes.iter().map(|x| state([x[0], x[1], x[1]]));
         let site = ContinuationPoint {
             shooting: ShootingNodes {
                 nodes: embedded.collect(),

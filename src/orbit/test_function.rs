@@ -11,7 +11,7 @@
 use super::linear::Linear;
 use super::multipliers::Products;
 use crate::error::{Error, Result};
-use crate::field::Jacobian;
+use crate::field::Matrix;
 
 /// What is to be zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -46,44 +46,49 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    pub(super) fn new<const N: usize>(linear: &Linear<N>) -> Self {
-        let maps = linear.maps.iter();
-        let product = maps.fold(Jacobian::<N>::identity(), |product, map| map * product);
-        let across: Option<f64> = linear.arcs.iter().map(|arc| arc.log_transverse).sum();
+    pub(super) fn new(linear: &Linear) -> Self {
+        let dimension = linear.dimension();
+        let mut products = Chain::identity(dimension - 1);
+        linear.maps.iter().for_each(|map| products.then(map));
+        let across: Option<f64> = linear.logs.iter().map(|logs| logs.transverse).sum();
         Spectrum {
-            dimension: N,
-            // Of the identity's first diagonal entry the maps leave nothing.
-            trace: product.trace(),
+            dimension,
+            trace: products.matrix.trace(),
             volume: volume(linear),
             across: across.unwrap_or(f64::NAN),
-            products: (N > 3).then(|| Products::new(&linear.maps)).flatten(),
+            products: (dimension > 3)
+                .then(|| Products::new(&linear.maps))
+                .flatten(),
         }
     }
 
     /// The change from one linearisation to another in the same planes, divided by the step between them.
-    pub(super) fn change<const N: usize>(
-        from: &Linear<N>,
-        spectrum: &Spectrum,
-        to: &Linear<N>,
-        step: f64,
-    ) -> Self {
-        let count = from.maps.len();
-        let mut after = vec![Jacobian::<N>::identity(); count];
-        for k in (1..count).rev() {
-            after[k - 1] = after[k] * from.maps[k];
+    pub(super) fn change(from: &Linear, spectrum: &Spectrum, to: &Linear, step: f64) -> Self {
+        let (count, planar) = (from.maps.len(), from.dimension() - 1);
+        let mut after = Vec::with_capacity(count);
+        after.push(Matrix::identity(planar, planar));
+        for k in 1..count {
+            after.push(&after[k - 1] * &from.maps[count - k]);
         }
-        let mut before = Jacobian::<N>::identity();
+        let mut before = Chain::identity(planar);
         let mut trace = 0.0;
-        for (k, after) in after.iter().enumerate() {
-            trace += (after * (to.maps[k] - from.maps[k]) * before).trace();
-            before = from.maps[k] * before;
+        for (k, after) in after.iter().rev().enumerate() {
+            // The trace of after times the change times before.
+            before.spare.copy_from(&to.maps[k]);
+            before.spare -= &from.maps[k];
+            for (i, column) in before.matrix.column_iter().enumerate() {
+                for (j, x) in column.iter().enumerate() {
+                    trace += x * before.spare.column(j).tr_dot(&after.row(i));
+                }
+            }
+            before.then(&from.maps[k]);
         }
-        let volumes = from.arcs.iter().zip(&to.arcs);
-        let volume: f64 = volumes.map(|(a, b)| b.volume() - a.volume()).sum();
+        let logs = from.logs.iter().zip(&to.logs);
+        let volume: f64 = logs.map(|(a, b)| b.volume - a.volume).sum();
         let there = Spectrum::new(to);
         let products = spectrum.products.zip(there.products);
         Spectrum {
-            dimension: N,
+            dimension: from.dimension(),
             trace: trace / step,
             volume: volume / step,
             across: (there.across - spectrum.across) / step,
@@ -116,8 +121,30 @@ impl Spectrum {
     }
 }
 
-fn volume<const N: usize>(linear: &Linear<N>) -> f64 {
-    linear.arcs.iter().map(|arc| arc.volume()).sum()
+/// A product of maps, made one by one.
+struct Chain {
+    matrix: Matrix,
+    /// Room for the next.
+    spare: Matrix,
+}
+
+impl Chain {
+    fn identity(count: usize) -> Self {
+        let matrix = Matrix::identity(count, count);
+        Chain {
+            spare: matrix.clone(),
+            matrix,
+        }
+    }
+
+    fn then(&mut self, map: &Matrix) {
+        map.mul_to(&self.matrix, &mut self.spare);
+        std::mem::swap(&mut self.matrix, &mut self.spare);
+    }
+}
+
+fn volume(linear: &Linear) -> f64 {
+    linear.logs.iter().map(|logs| logs.volume).sum()
 }
 
 impl TestFunction {
@@ -125,43 +152,53 @@ impl TestFunction {
     ///
     /// # Errors
     /// [`Error::Dimension`] where it is not: its zeros would be no bifurcations.
-    pub fn checked<const N: usize>(self) -> Result<()> {
+    pub fn checked(self, dimension: usize) -> Result<()> {
         let (what, known, holds) = match self {
-            TestFunction::Fold => ("the test function of folds of orbits", "2 or more", N >= 2),
-            TestFunction::Doubling => {
-                ("the test function of period doublings", "3 or more", N >= 3)
-            }
+            TestFunction::Fold => (
+                "the test function of folds of orbits",
+                "2 or more",
+                dimension >= 2,
+            ),
+            TestFunction::Doubling => (
+                "the test function of period doublings",
+                "3 or more",
+                dimension >= 3,
+            ),
             TestFunction::Torus => (
                 "the test function of torus bifurcations",
                 "3 or more",
-                N >= 3,
+                dimension >= 3,
             ),
             TestFunction::Trace(_) => (
                 "the test function of strong resonances",
                 "3 or more",
-                N >= 3,
+                dimension >= 3,
             ),
-            TestFunction::Transverse => ("the test function of pitchforks of orbits", "2", N == 2),
+            TestFunction::Transverse => (
+                "the test function of pitchforks of orbits",
+                "2",
+                dimension == 2,
+            ),
         };
-        Error::dimension_unless(holds, what, known, N)
+        Error::dimension_unless(holds, what, known, dimension)
     }
 
     /// Its value, where it is a test function.
-    pub(crate) fn of<const N: usize>(self, spectrum: &Spectrum) -> f64 {
+    pub(crate) fn of(self, spectrum: &Spectrum) -> f64 {
         let Spectrum {
+            dimension,
             trace,
             volume,
             across,
             products,
-            ..
         } = *spectrum;
         let product = |of: fn(&Products) -> f64| products.as_ref().map_or(f64::NAN, of);
         match self {
-            TestFunction::Fold if N > 3 => product(|all| all.fold),
-            TestFunction::Doubling if N > 3 => product(|all| all.doubling),
-            TestFunction::Torus if N > 3 => product(|all| all.torus),
-            TestFunction::Trace(value) if N > 3 => product(|all| all.pair) - value,
-            TestFunction::Fold if N == 2 => volume.exp_m1(),
+            TestFunction::Fold if dimension > 3 => product(|all| all.fold),
+            TestFunction::Doubling if dimension > 3 => product(|all| all.doubling),
+            TestFunction::Torus if dimension > 3 => product(|all| all.torus),
+            TestFunction::Trace(value) if dimension > 3 => product(|all| all.pair) - value,
+            TestFunction::Fold if dimension == 2 => volume.exp_m1(),
             TestFunction::Fold => 1.0 - trace + volume.exp(),
             TestFunction::Doubling => 1.0 + trace + volume.exp(),
             TestFunction::Torus => volume,
@@ -171,9 +208,9 @@ impl TestFunction {
     }
 
     /// What its value is to be divided by to be of order one.
-    pub(super) fn size<const N: usize>(self, at: &Spectrum) -> f64 {
+    pub(super) fn size(self, at: &Spectrum) -> f64 {
         match self {
-            TestFunction::Fold | TestFunction::Doubling if N == 3 => {
+            TestFunction::Fold | TestFunction::Doubling if at.dimension == 3 => {
                 1.0 + at.trace.abs() + at.volume.exp()
             }
             _ => 1.0,
@@ -181,17 +218,17 @@ impl TestFunction {
     }
 
     /// Its change with that of the spectrum.
-    pub(crate) fn change_along<const N: usize>(self, at: &Spectrum, by: &Spectrum) -> f64 {
-        if N > 3 {
+    pub(crate) fn change_along(self, at: &Spectrum, by: &Spectrum) -> f64 {
+        if at.dimension > 3 {
             // All are linear in the products.
             return match self {
-                TestFunction::Trace(_) => TestFunction::Trace(0.0).of::<N>(by),
-                _ => self.of::<N>(by),
+                TestFunction::Trace(_) => TestFunction::Trace(0.0).of(by),
+                _ => self.of(by),
             };
         }
         let of_det = at.volume.exp() * by.volume;
         match self {
-            TestFunction::Fold if N == 2 => of_det,
+            TestFunction::Fold if at.dimension == 2 => of_det,
             TestFunction::Fold => of_det - by.trace,
             TestFunction::Doubling => of_det + by.trace,
             TestFunction::Torus => by.volume,

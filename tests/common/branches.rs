@@ -3,17 +3,16 @@
 use std::ops::ControlFlow::{Break, Continue};
 use twinslip::continuation::{Met, WatchedFunction};
 use twinslip::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, ParametrisedField,
-    TestFunction,
+    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, TestFunction,
 };
 
 /// Along a branch towards greater values of a parameter: the first zero of a test function below `end`.
-pub fn first<F: ParametrisedField<N>, const N: usize>(
-    corrector: &mut Corrector<'_, F, N>,
-    site: ContinuationPoint<N>,
+pub fn first(
+    corrector: &mut Corrector<'_>,
+    site: ContinuationPoint,
     (free, end): (usize, f64),
     test_function: TestFunction,
-) -> Option<ContinuationPoint<N>> {
+) -> Option<ContinuationPoint> {
     let settings = PalcSettings::branch(free, 0.3);
     let here = corrector.look(site, &settings.free, &[]).expect("an orbit");
     let mut direction = here.along[0].clone();

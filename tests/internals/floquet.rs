@@ -1,29 +1,21 @@
 //! Multipliers of products of maps.
 
-use twinslip::field::{Jacobian, State};
+use nalgebra::{Matrix2, Vector2};
+use twinslip::field::Matrix;
 use twinslip::internals::pair;
 use twinslip::number::Uncertain;
 use twinslip::orbit::{Kind, Multiplier};
 /// Maps between planes in turning frames, each of which multiplies one direction by e^a and the other by e^b.
-fn maps(of: &[(f64, f64)]) -> Vec<Jacobian<3>> {
+fn maps(of: &[(f64, f64)]) -> Vec<Matrix> {
     let frame = |k: usize| {
         let (sin, cos) = (0.4 + 0.7 * (k % of.len()) as f64).sin_cos();
         // Not at right angles.
-        Jacobian::<3>::new(
-            1.0,
-            0.0,
-            0.0,
-            0.0,
-            cos,
-            -0.6 * sin,
-            0.0,
-            sin,
-            0.8 * cos + 0.3,
-        )
+        Matrix2::new(cos, -0.6 * sin, sin, 0.8 * cos + 0.3)
     };
     let each = of.iter().enumerate().map(|(k, &(a, b))| {
-        let inner = Jacobian::<3>::from_diagonal(&State::<3>::new(0.0, a.exp(), b.exp()));
-        frame(k + 1) * inner * frame(k).try_inverse().unwrap()
+        let inner = Matrix2::from_diagonal(&Vector2::new(a.exp(), b.exp()));
+        let map = frame(k + 1) * inner * frame(k).try_inverse().unwrap();
+        Matrix::from_column_slice(2, 2, map.as_slice())
     });
     each.collect()
 }

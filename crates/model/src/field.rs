@@ -5,13 +5,19 @@
 
 use crate::error::{Error, Result};
 use crate::series::{Jet3, Solution, Tangent, TaylorMap};
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{DMatrix, DVector, SMatrix, SVector};
 
 /// A point of the phase space.
 pub type State<const N: usize> = SVector<f64, N>;
 
 /// The matrix of first derivatives, `J[i][j] = d f_i / d y_j`; also a tangent flow, d y_i(t) / d y_j(0).
 pub type Jacobian<const N: usize> = SMatrix<f64, N, N>;
+
+/// A point, or a displacement, of a phase space whose dimension is known when the program runs.
+pub type Vector = DVector<f64>;
+
+/// The same of a matrix of derivatives.
+pub type Matrix = DMatrix<f64>;
 
 /// An autonomous system of N ordinary differential equations.
 ///

@@ -1,7 +1,8 @@
 //! The bialternate product: of a matrix the sums of any two eigenvalues; and of a field with a pair on the imaginary axis the first
 //! Lyapunov coefficient.
 
-use crate::field::{State, VectorField};
+use crate::field::Vector;
+use crate::integrate::AnyField;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The bialternate product 2 A (.) 1, of size N (N - 1) / 2: its eigenvalues are the sums of two of A's.
@@ -17,63 +18,48 @@ pub(super) fn bialternate(a: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
-type Vector = DVector<Complex<f64>>;
+type CVector = DVector<Complex<f64>>;
 
 /// The real and the imaginary part.
-fn parts<const N: usize>(x: &Vector) -> [State<N>; 2] {
-    [
-        State::from_fn(|i, _| x[i].re),
-        State::from_fn(|i, _| x[i].im),
-    ]
+fn parts(x: &CVector) -> [Vector; 2] {
+    [x.map(|z| z.re), x.map(|z| z.im)]
 }
 
 /// A real bilinear form applied to complex vectors.
-fn bilinear<const N: usize>(
-    form: impl Fn(&State<N>, &State<N>) -> State<N>,
-    x: &Vector,
-    y: &Vector,
-) -> Vector {
-    let ([a, b], [c, d]) = (parts::<N>(x), parts::<N>(y));
+fn bilinear(form: impl Fn(&Vector, &Vector) -> Vector, x: &CVector, y: &CVector) -> CVector {
+    let ([a, b], [c, d]) = (parts(x), parts(y));
     let (re, im) = (form(&a, &c) - form(&b, &d), form(&a, &d) + form(&b, &c));
-    DVector::from_fn(N, |i, _| Complex::new(re[i], im[i]))
+    re.zip_map(&im, Complex::new)
 }
 
 /// D3f[x, y, z] as the difference of second derivatives along z.
-fn trilinear<const N: usize>(
-    field: &dyn VectorField<N>,
-    at: &State<N>,
-    [x, y, z]: [&Vector; 3],
-) -> Vector {
+fn trilinear(field: &AnyField<'_>, at: &Vector, [x, y, z]: [&CVector; 3]) -> CVector {
     let h = 1e-4 * (1.0 + at.amax());
-    let along = |direction: State<N>| {
+    let along = |direction: Vector| {
         let there = |step: f64| {
-            let place = at + direction * (step * h);
+            let place = at + &direction * (step * h);
             bilinear(|a, b| field.second_derivative(&place, a, b), x, y)
         };
         // fourth order
         let (near, far) = (there(1.0) - there(-1.0), there(2.0) - there(-2.0));
         (near * Complex::from(8.0) - far) / Complex::from(12.0 * h)
     };
-    let [re, im] = parts::<N>(z).map(along);
+    let [re, im] = parts(z).map(along);
     re + im * Complex::i()
 }
 
 /// l_1 (Kuznetsov 2004, (5.62)) with <q, q> = 1 at an equilibrium with the eigenvalues +-i omega. None if a matrix is singular.
-pub(super) fn lyapunov<const N: usize>(
-    field: &dyn VectorField<N>,
-    at: &State<N>,
-    omega: f64,
-) -> Option<f64> {
-    let real = field.jacobian(at);
-    let a = DMatrix::from_fn(N, N, |i, j| Complex::from(real[(i, j)]));
+pub(super) fn lyapunov(field: &AnyField<'_>, at: &Vector, omega: f64) -> Option<f64> {
+    let n = at.len();
+    let a = field.jacobian(at).map(Complex::from);
     let i_omega = Complex::new(0.0, omega);
-    let one = DMatrix::<Complex<f64>>::identity(N, N);
+    let one = DMatrix::<Complex<f64>>::identity(n, n);
     let q = null_vector(&(&a - &one * i_omega))?;
     let p = null_vector(&(a.adjoint() + &one * i_omega))?;
     // <p, q> = 1, conjugate-linear in p
     let p = &p / p.dotc(&q).conj();
     let conjugate = q.map(|x| x.conj());
-    let b = |x: &Vector, y: &Vector| bilinear(|u, v| field.second_derivative(at, u, v), x, y);
+    let b = |x: &CVector, y: &CVector| bilinear(|u, v| field.second_derivative(at, u, v), x, y);
     let mean = a.clone().lu().solve(&b(&q, &conjugate))?;
     let double = (&one * (i_omega * 2.0) - &a).lu().solve(&b(&q, &q))?;
     let sum = p.dotc(&trilinear(field, at, [&q, &q, &conjugate])) - p.dotc(&b(&q, &mean)) * 2.0
@@ -83,7 +69,7 @@ pub(super) fn lyapunov<const N: usize>(
 }
 
 /// The unit vector that the matrix maps to nearly zero.
-fn null_vector(matrix: &DMatrix<Complex<f64>>) -> Option<Vector> {
+fn null_vector(matrix: &DMatrix<Complex<f64>>) -> Option<CVector> {
     let decomposed = matrix.clone().svd(false, true);
     let smallest = decomposed.singular_values.imin();
     Some(decomposed.v_t?.row(smallest).adjoint())

@@ -3,7 +3,8 @@
 //! A family of fields is a function of one parameter. Test functions: the tangent's component along p (fold); the determinant
 //! of the extended Jacobian over the tangent (branch point); the determinant of the bialternate product 2 J (.) 1, the product of
 //! all sums of two eigenvalues (Hopf; Kuznetsov 2004, section 10.2.2). The derivative in p is that of the field, or where
-//! the field has no parameter of this name a difference of fourth order, with some 11 digits of special points; third derivatives, for the first Lyapunov coefficient, are differences too.
+//! the field has no parameter of this name a difference of fourth order, with some 11 digits of special points; third derivatives,
+//! for the first Lyapunov coefficient, are differences too.
 //!
 //! Limits: two sums of eigenvalues that vanish together, and several branches through one point, are not untangled.
 
@@ -13,24 +14,25 @@ use crate::continuation::{
     Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, ZeroProblem, follow,
 };
 use crate::error::{Error, Result};
-use crate::field::{State, VectorField, place};
-use nalgebra::{Complex, DMatrix, DVector};
+use crate::field::{Matrix, Vector, place};
+use crate::integrate::{AnyField, of_dimension};
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
 
 /// The field at a value of the parameter.
-pub type Fields<'a, const N: usize> = &'a dyn Fn(f64) -> Box<dyn VectorField<N>>;
+pub type Fields<'a> = &'a dyn Fn(f64) -> AnyField<'a>;
 
 /// The equilibria of a family of fields along one parameter.
 #[derive(Clone, Copy)]
-pub struct FieldEquilibria<'a, const N: usize> {
+pub struct FieldEquilibria<'a> {
     /// The fields.
-    pub fields: Fields<'a, N>,
+    pub fields: Fields<'a>,
     /// The parameter's name, by which the fields know its derivatives.
     pub along: &'a str,
 }
 
-impl<const N: usize> std::fmt::Debug for FieldEquilibria<'_, N> {
+impl std::fmt::Debug for FieldEquilibria<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("Family")
             .field("along", &self.along)
@@ -41,9 +43,9 @@ impl<const N: usize> std::fmt::Debug for FieldEquilibria<'_, N> {
 /// A point of a branch of equilibria.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct FoundEquilibrium<const N: usize> {
+pub struct FoundEquilibrium {
     /// The state.
-    pub state: State<N>,
+    pub state: Vector,
     /// The varied parameter.
     pub parameter: f64,
     /// By real part, the largest first.
@@ -55,27 +57,28 @@ pub struct FoundEquilibrium<const N: usize> {
     /// The first Lyapunov coefficient of a Hopf point, with <q, q> = 1: positive where the small orbits are unstable.
     pub coefficient: Option<f64>,
     /// The unit tangent of the branch in (state, parameter).
-    pub tangent: DVector<f64>,
+    pub tangent: Vector,
 }
 
 /// Where a branch begins, and which way it goes.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Onward<const N: usize> {
+pub struct Onward {
     /// Nearly an equilibrium.
-    pub state: State<N>,
+    pub state: Vector,
     /// The varied parameter there.
     pub parameter: f64,
-    /// N + 1 long, in (state, parameter).
-    pub direction: DVector<f64>,
+    /// One longer than the state, in (state, parameter).
+    pub direction: Vector,
     /// Whether the first point may have another parameter, and lies across the direction.
     pub across: bool,
 }
 
-impl<const N: usize> Onward<N> {
+impl Onward {
     /// With the parameter growing, or falling.
-    pub fn along(state: State<N>, parameter: f64, growing: bool) -> Self {
-        let mut direction = DVector::zeros(N + 1);
-        direction[N] = if growing { 1.0 } else { -1.0 };
+    pub fn along(state: Vector, parameter: f64, growing: bool) -> Self {
+        let n = state.len();
+        let mut direction = Vector::zeros(n + 1);
+        direction[n] = if growing { 1.0 } else { -1.0 };
         Onward {
             state,
             parameter,
@@ -88,31 +91,28 @@ impl<const N: usize> Onward<N> {
 /// Part of 1 + |p| by which the parameter is changed for a derivative.
 const CHANGE: f64 = 1e-3;
 
-impl<const N: usize> FieldEquilibria<'_, N> {
-    fn field(&self, parameter: f64) -> Box<dyn VectorField<N>> {
+impl<'a> FieldEquilibria<'a> {
+    fn field(&self, parameter: f64) -> AnyField<'a> {
         (self.fields)(parameter)
     }
 
     /// df/dp.
-    fn in_parameter(&self, y: &State<N>, p: f64) -> State<N> {
+    fn in_parameter(&self, y: &Vector, p: f64) -> Vector {
         let here = self.field(p);
-        if let Some(field) = here.parametrised()
-            && let Ok(place) = place(field.names(), self.along)
-        {
-            return field.parameter_derivative(y, place);
+        if let Ok(place) = place(here.parameter_names(), self.along) {
+            return here.parameter_derivative(y, place);
         }
         let h = CHANGE * (1.0 + p.abs());
         let f = |p: f64| self.field(p).f(y);
         ((f(p + h) - f(p - h)) * 8.0 - (f(p + 2.0 * h) - f(p - 2.0 * h))) / (12.0 * h)
     }
 
-    fn dense(&self, y: &State<N>, p: f64) -> DMatrix<f64> {
-        let j = self.field(p).jacobian(y);
-        DMatrix::from_fn(N, N, |i, l| j[(i, l)])
+    fn jacobian(&self, y: &Vector, p: f64) -> Matrix {
+        self.field(p).jacobian(y)
     }
 
-    fn eigenvalues(&self, y: &State<N>, p: f64) -> Vec<Complex<f64>> {
-        let all = self.dense(y, p).complex_eigenvalues();
+    fn eigenvalues(&self, y: &Vector, p: f64) -> Vec<Complex<f64>> {
+        let all = self.jacobian(y, p).complex_eigenvalues();
         let mut all: Vec<_> = all.iter().copied().collect();
         all.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
         all
@@ -120,7 +120,7 @@ impl<const N: usize> FieldEquilibria<'_, N> {
 
     /// omega of the pair whose real part is nearest to zero, if it is a pair: the test function vanishes for two real
     /// eigenvalues of opposite sign too.
-    fn frequency(&self, y: &State<N>, p: f64) -> Option<f64> {
+    fn frequency(&self, y: &Vector, p: f64) -> Option<f64> {
         let all = self.eigenvalues(y, p);
         let pair = all.into_iter().filter(|z| z.im > 0.0);
         let nearest = pair.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
@@ -130,21 +130,27 @@ impl<const N: usize> FieldEquilibria<'_, N> {
     /// The equilibria from a start until the range ends.
     ///
     /// # Errors
-    /// Those of [`follow`].
+    /// [`Error::Parameter`] for a start of another dimension than the fields'; those of [`follow`].
     pub fn follow(
         &self,
-        onward: &Onward<N>,
+        onward: &Onward,
         settings: &Settings,
-        seen: &mut dyn FnMut(&FoundEquilibrium<N>) -> ControlFlow<()>,
+        seen: &mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
     ) -> Result<Branch> {
+        let dimension = self.field(onward.parameter).dimension();
+        of_dimension(onward.state.len(), dimension)?;
         let start = Start {
-            u: DVector::from_column_slice(onward.state.as_slice()),
+            u: onward.state.clone(),
             lambda: onward.parameter,
             direction: onward.direction.clone(),
             across: onward.across,
         };
+        let problem = Equations {
+            family: self,
+            dimension,
+        };
         let mut look = EquilibriumObserver { family: self, seen };
-        follow(self, &start, settings, &mut look)
+        follow(&problem, &start, settings, &mut look)
     }
 
     /// The two ways that leave a branch point, on the branch that crosses the one it was found on.
@@ -153,17 +159,13 @@ impl<const N: usize> FieldEquilibria<'_, N> {
     /// where it is a pitchfork, and nearly so elsewhere.
     ///
     /// # Errors
-    /// [`Error::NotConverged`] if the singular value decomposition fails.
-    pub fn switch(&self, point: &FoundEquilibrium<N>, distance: f64) -> Result<[Onward<N>; 2]> {
-        let y = point.state;
-        let mut matrix = DMatrix::zeros(N + 1, N + 1);
-        let j = self.dense(&y, point.parameter);
-        matrix.view_mut((0, 0), (N, N)).copy_from(&j);
-        let in_p = self.in_parameter(&y, point.parameter);
-        matrix
-            .view_mut((0, N), (N, 1))
-            .copy_from_slice(in_p.as_slice());
-        matrix.row_mut(N).copy_from(&point.tangent.transpose());
+    /// [`Error::Parameter`] for a point of another dimension than the fields'; [`Error::NotConverged`] if the singular value
+    /// decomposition fails.
+    pub fn switch(&self, point: &FoundEquilibrium, distance: f64) -> Result<[Onward; 2]> {
+        let (y, p) = (&point.state, point.parameter);
+        let n = y.len();
+        of_dimension(n, self.field(p).dimension())?;
+        let matrix = self.bordered(y, p, &point.tangent);
         let decomposed = matrix.svd(false, true);
         let smallest = decomposed.singular_values.imin();
         let Some(null) = decomposed.v_t.map(|v_t| v_t.row(smallest).transpose()) else {
@@ -175,37 +177,50 @@ impl<const N: usize> FieldEquilibria<'_, N> {
             });
         };
         Ok([1.0, -1.0].map(|sign| {
-            let direction: DVector<f64> = &null * sign;
+            let direction: Vector = &null * sign;
             Onward {
-                state: y + State::<N>::from_fn(|i, _| direction[i] * distance),
-                parameter: point.parameter + direction[N] * distance,
+                state: y + direction.rows(0, n) * distance,
+                parameter: p + direction[n] * distance,
                 direction,
                 across: true,
             }
         }))
     }
+
+    /// The derivatives of f in (state, parameter).
+    fn extended(&self, y: &Vector, p: f64) -> Matrix {
+        let n = y.len();
+        let mut all = self.jacobian(y, p).insert_column(n, 0.0);
+        all.set_column(n, &self.in_parameter(y, p));
+        all
+    }
+
+    /// The same, and the tangent below.
+    fn bordered(&self, y: &Vector, p: f64, tangent: &Vector) -> Matrix {
+        let n = y.len();
+        let mut square = self.extended(y, p).insert_row(n, 0.0);
+        square.set_row(n, &tangent.transpose());
+        square
+    }
 }
 
-fn state<const N: usize>(u: &DVector<f64>) -> State<N> {
-    State::<N>::from_column_slice(u.as_slice())
+/// f(y; p) = 0 in so many variables.
+struct Equations<'a, 'b> {
+    family: &'a FieldEquilibria<'b>,
+    dimension: usize,
 }
 
-impl<const N: usize> ZeroProblem for FieldEquilibria<'_, N> {
+impl ZeroProblem for Equations<'_, '_> {
     fn dimension(&self) -> usize {
-        N
+        self.dimension
     }
 
-    fn residual(&self, u: &DVector<f64>, lambda: f64) -> Result<DVector<f64>> {
-        let f = self.field(lambda).f(&state(u));
-        Ok(DVector::from_column_slice(f.as_slice()))
+    fn residual(&self, u: &Vector, lambda: f64) -> Result<Vector> {
+        Ok(self.family.field(lambda).f(u))
     }
 
-    fn jacobian(&self, u: &DVector<f64>, lambda: f64) -> Result<DMatrix<f64>> {
-        let y = state(u);
-        let in_parameter = self.in_parameter(&y, lambda);
-        let mut all = self.dense(&y, lambda).insert_column(N, 0.0);
-        all.column_mut(N).copy_from_slice(in_parameter.as_slice());
-        Ok(all)
+    fn jacobian(&self, u: &Vector, lambda: f64) -> Result<Matrix> {
+        Ok(self.family.extended(u, lambda))
     }
 }
 
@@ -216,7 +231,7 @@ fn certain(x: f64, rounding: f64) -> f64 {
 }
 
 /// The product of all sums of two eigenvalues.
-fn sums(jacobian: &DMatrix<f64>) -> f64 {
+fn sums(jacobian: &Matrix) -> f64 {
     /// Of the entries, relative, with which the product is computed again to see what rounding makes of it.
     const ROUNDING: f64 = 32.0 * f64::EPSILON;
     /// So often, with other signs.
@@ -234,28 +249,26 @@ fn sums(jacobian: &DMatrix<f64>) -> f64 {
 /// The test functions' order.
 const LABELS: [Label; 3] = [Label::Lp, Label::Bp, Label::Hb];
 
-struct EquilibriumObserver<'a, 'b, const N: usize> {
-    family: &'a FieldEquilibria<'b, N>,
-    seen: &'a mut dyn FnMut(&FoundEquilibrium<N>) -> ControlFlow<()>,
+struct EquilibriumObserver<'a, 'b> {
+    family: &'a FieldEquilibria<'b>,
+    seen: &'a mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
 }
 
-impl<const N: usize> CurveObserver for EquilibriumObserver<'_, '_, N> {
+impl CurveObserver for EquilibriumObserver<'_, '_> {
     fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
-        let y = state(&point.u);
-        let extended = self.family.jacobian(&point.u, point.lambda)?;
-        let mut square = extended.insert_row(N, 0.0);
-        square.row_mut(N).copy_from(&point.tangent.transpose());
+        let (y, p) = (&point.u, point.lambda);
+        let square = self.family.bordered(y, p, &point.tangent);
         /// Below this a component of the unit tangent is rounding: that of the difference in p.
         const SLOPE: f64 = 1e-12;
         Ok(vec![
             certain(point.lambda_slope(), SLOPE),
             square.determinant(),
-            sums(&self.family.dense(&y, point.lambda)),
+            sums(&self.family.jacobian(y, p)),
         ])
     }
 
     fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
-        let (y, p) = (state(&point.u), point.lambda);
+        let (y, p) = (&point.u, point.lambda);
         let label = match mark {
             PointKind::Step => None,
             PointKind::Zero(i) => Some(LABELS[i]),
@@ -263,20 +276,20 @@ impl<const N: usize> CurveObserver for EquilibriumObserver<'_, '_, N> {
             PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
         };
         let mut found = FoundEquilibrium {
-            state: y,
+            state: y.clone(),
             parameter: p,
-            eigenvalues: self.family.eigenvalues(&y, p),
+            eigenvalues: self.family.eigenvalues(y, p),
             label,
             period: None,
             coefficient: None,
             tangent: point.tangent.clone(),
         };
         if label == Some(Label::Hb) {
-            let Some(omega) = self.family.frequency(&y, p) else {
+            let Some(omega) = self.family.frequency(y, p) else {
                 return ControlFlow::Continue(());
             };
             found.period = Some(TAU / omega);
-            found.coefficient = lyapunov(&*self.family.field(p), &y, omega);
+            found.coefficient = lyapunov(&self.family.field(p), y, omega);
         }
         (self.seen)(&found)
     }

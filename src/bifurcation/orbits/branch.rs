@@ -3,14 +3,13 @@
 
 use super::chart::Chart;
 use super::orbit_branch::OrbitBranch;
-use super::rows::symmetry;
 use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria, within};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Corrector, HopfPoint, OverLoadings, Palc, PalcSettings, ParametrisedField, Regular, Switch,
-    Tracer, hopf_points,
+    Corrector, HopfPoint, Palc, PalcSettings, ParametrisedField, Regular, Switch, Tracer,
+    hopf_points,
 };
 use std::ops::ControlFlow::{self, Break, Continue};
 
@@ -30,9 +29,7 @@ const SAME: f64 = 1e-6;
 ///
 /// # Errors
 /// Those of [`Tracer::limited`].
-pub(super) fn new_corrector<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-) -> Result<Corrector<'_, F, N>> {
+pub(super) fn new_corrector(family: &dyn ParametrisedField) -> Result<Corrector<'_>> {
     Ok(Corrector::by(family, Tracer::limited(ROUGH, ARC, WORK)?))
 }
 
@@ -59,14 +56,13 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
 
 /// A period doubling, and how often the period has doubled before it.
 pub(super) struct Doubling {
-    pub orbit: Regular<3>,
+    pub orbit: Regular,
     pub before: usize,
 }
 
 /// All branches, and what is known of them so far.
 pub(super) struct BranchSet<'r> {
     pub request: &'r BranchRequest,
-    pub family: OverLoadings,
     /// The free parameter's place and the range of its coordinate.
     pub free: usize,
     pub range: (f64, f64),
@@ -75,7 +71,7 @@ pub(super) struct BranchSet<'r> {
     pub hopfs: Vec<HopfPoint>,
     pub reached: Vec<bool>,
     /// Pitchforks on symmetric branches, and where asymmetric branches have come to one.
-    pub pitchforks: Vec<Regular<2>>,
+    pub pitchforks: Vec<Regular>,
     pub merged: Vec<f64>,
     /// Period doublings, and which of them a branch of doubled orbits has begun or ended at.
     pub doublings: Vec<Doubling>,
@@ -87,7 +83,6 @@ impl<'r> BranchSet<'r> {
         let (a, b) = (request.range.0.ln(), request.range.1.ln());
         BranchSet {
             request,
-            family: OverLoadings(request.slab),
             free: request.along.place(),
             range: (a.min(b), a.max(b)),
             count: 0,
@@ -98,6 +93,11 @@ impl<'r> BranchSet<'r> {
             doublings: Vec::new(),
             visited: Vec::new(),
         }
+    }
+
+    /// Orbits of this symmetry in the usual variables.
+    pub fn chart(&self, symmetry: Symmetry) -> Chart {
+        Chart::new(self.request.slab, symmetry)
     }
 
     /// Whether a branch is told of. One that is not is followed all the same: its other end and the branches that begin on it
@@ -117,11 +117,11 @@ impl<'r> BranchSet<'r> {
     }
 
     fn symmetric(&mut self, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
-        self.all_of::<2>(Symmetry::Symmetric, seen)
+        self.all_of(Symmetry::Symmetric, seen)
     }
 
     fn asymmetric(&mut self, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
-        if self.all_of::<3>(Symmetry::Asymmetric, seen)?.is_break() {
+        if self.all_of(Symmetry::Asymmetric, seen)?.is_break() {
             return Ok(Break(()));
         }
         for i in 0..self.pitchforks.len() {
@@ -155,14 +155,7 @@ impl<'r> BranchSet<'r> {
         Ok(Continue(()))
     }
 
-    fn all_of<const N: usize>(
-        &mut self,
-        symmetry: Symmetry,
-        seen: EventObserver<'_>,
-    ) -> Result<ControlFlow<()>>
-    where
-        OverLoadings: Chart<N>,
-    {
+    fn all_of(&mut self, symmetry: Symmetry, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
         let free = self.free;
         self.hopfs = hopf_points(&self.request.slab, symmetry, self.request.along)?;
         self.hopfs
@@ -173,7 +166,7 @@ impl<'r> BranchSet<'r> {
                 continue;
             }
             self.reached[i] = true;
-            if self.one_of::<N>(i, seen)?.is_break() {
+            if self.one_of(i, symmetry, seen)?.is_break() {
                 return Ok(Break(()));
             }
         }
@@ -184,28 +177,25 @@ impl<'r> BranchSet<'r> {
         PalcSettings::branch(self.free, LONGEST * self.request.step)
     }
 
-    fn one_of<const N: usize>(
+    fn one_of(
         &mut self,
         i: usize,
+        symmetry: Symmetry,
         seen: EventObserver<'_>,
-    ) -> Result<ControlFlow<()>>
-    where
-        OverLoadings: Chart<N>,
-    {
+    ) -> Result<ControlFlow<()>> {
         let number = self.next();
         let hopf = self.hopfs[i].clone();
-        let family = self.family;
-        let mut corrector = new_corrector::<_, N>(&family)?;
+        let chart = self.chart(symmetry);
+        let mut corrector = new_corrector(chart.family())?;
         let begin = hopf.at()[self.free];
         let inside = self.in_range(begin);
-        let symmetry = symmetry::<N>();
         let special = Event::Special(self.hopf(i)).on(number, symmetry);
         let special = special.against(self.request.tolerance);
         if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
         match Palc::from_hopf(&mut corrector, self.settings(), &hopf) {
-            Ok(mut palc) => OrbitBranch::new(self, (number, symmetry), begin, seen).go(&mut palc),
+            Ok(mut palc) => OrbitBranch::new(self, number, chart, begin, seen).go(&mut palc),
             Err(error) if inside && self.tells(number) => {
                 let special = Special {
                     note: Some(format!("no orbit is found beside the Hopf point: {error}")),
@@ -224,19 +214,18 @@ impl<'r> BranchSet<'r> {
     /// Along a branch that bifurcates.
     fn aside(
         &mut self,
-        (site, direction): Switch<3>,
+        (site, direction): Switch,
         times: usize,
         seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
         let number = self.next();
-        let family = self.family;
-        let mut corrector = new_corrector::<_, 3>(&family)?;
+        let chart = self.chart(Symmetry::Asymmetric);
+        let mut corrector = new_corrector(chart.family())?;
         let begin = site.at[self.free];
         let first = site.moved(&direction, ASIDE);
         match Palc::from(&mut corrector, self.settings(), first, direction) {
             Ok(mut palc) => {
-                let symmetry = Symmetry::Asymmetric;
-                let mut branch = OrbitBranch::new(self, (number, symmetry), begin, seen);
+                let mut branch = OrbitBranch::new(self, number, chart, begin, seen);
                 branch.times = times;
                 branch.go(&mut palc)
             }

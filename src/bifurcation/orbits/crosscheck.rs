@@ -5,8 +5,9 @@
 
 use super::refine::SpecialOrbit;
 use crate::bifurcation::Special;
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::State;
+use crate::field::Vector;
 use crate::integrate::{Choice, MAX_STEPS, Tolerances};
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, Goal, InterfaceSystem, OverDifferenceChart,
@@ -35,25 +36,26 @@ pub fn crosscheck(
     };
     let period = special.period.map_or(f64::NAN, |period| period.value);
     let first = [special.driving.value, special.stiffness.value, period];
+    let family = |symmetry| OverLoadings::new(*slab, symmetry);
     let planar = orbit.nodes.first().is_some_and(|x| x.len() == 2);
-    let family = OverLoadings(*slab);
     let across = orbit
         .meets
         .contains(&WatchedFunction::TestFunction(TestFunction::Transverse));
     let second = if across {
-        second_pitchfork(family, orbit, method)?
+        second_pitchfork(slab, orbit, method)?
     } else if planar {
-        second::<_, 2>(&family, orbit, method)?
+        second(&family(Symmetry::Symmetric), orbit, method)?
     } else if orbit.in_difference_chart {
-        second::<_, 3>(&OverDifferenceChart(family), orbit, method)?
+        let family = OverDifferenceChart(family(Symmetry::Asymmetric));
+        second(&family, orbit, method)?
     } else {
-        second::<_, 3>(&family, orbit, method)?
+        second(&family(Symmetry::Asymmetric), orbit, method)?
     };
     Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
 }
 
-fn second<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
+fn second(
+    family: &dyn ParametrisedField,
     orbit: &SpecialOrbit,
     method: Choice,
 ) -> Result<[f64; 3]> {
@@ -65,7 +67,7 @@ fn second<F: ParametrisedField<N>, const N: usize>(
     let tolerances = Tolerances::equal(TOLERANCE)?;
     let mut corrector = Corrector::by(family, Tracer::new(method, tolerances, MAX_STEPS)?);
     let found = DIGITS.iter().find_map(|&digits| {
-        let site = cut::<N>(orbit, digits);
+        let site = cut(orbit, digits);
         corrector
             .correct(site, &orbit.free, &conditions, Goal::SHARP)
             .ok()
@@ -76,33 +78,33 @@ fn second<F: ParametrisedField<N>, const N: usize>(
 /// The same at a pitchfork, in another formulation too: there an orbit closes on which the interfaces differ by next to nothing,
 /// so that how much they do is free.
 fn second_pitchfork(
-    family: OverLoadings,
+    slab: &InterfaceSystem,
     orbit: &SpecialOrbit,
     method: Choice,
 ) -> Result<[f64; 3]> {
     /// ln D at the first node: far below rounding, and far above the smallest number.
     const FAINT: f64 = -300.0;
-    let family = OverDifferenceChart(family);
+    let family = OverDifferenceChart(OverLoadings::new(*slab, Symmetry::Asymmetric));
     let tolerances = Tolerances::equal(TOLERANCE)?;
     let mut corrector = Corrector::by(&family, Tracer::new(method, tolerances, MAX_STEPS)?);
     let others = orbit
         .meets
         .iter()
         .filter(|meets| **meets != WatchedFunction::TestFunction(TestFunction::Transverse));
-    let others: Vec<Condition<'_, 3>> = others.map(|exactly| exactly.condition()).collect();
+    let others: Vec<Condition<'_>> = others.map(|exactly| exactly.condition()).collect();
     let mut found = |digits: i32| {
-        let ContinuationPoint { shooting, at } = cut::<2>(orbit, digits);
+        let ContinuationPoint { shooting, at } = cut(orbit, digits);
         let field = family.field(at);
         let (mut nodes, mut faint) = (Vec::new(), FAINT);
         for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
-            let node = State::<3>::new(x[0], x[1], faint);
-            let end = corrector.tracer.flow(&*field, &node, duration, None).ok()?;
+            let node = Vector::from_column_slice(&[x[0], x[1], faint]);
+            let end = corrector.tracer.flow(&field, &node, duration, None).ok()?;
             faint = end[2];
             nodes.push(node);
         }
         drop(field);
         let shift = TangentVector {
-            nodes: vec![State::<3>::new(0.0, 0.0, 1.0); nodes.len()],
+            nodes: vec![Vector::from_column_slice(&[0.0, 0.0, 1.0]); nodes.len()],
             durations: vec![0.0; nodes.len()],
             parameters: [0.0; 2],
         };
@@ -120,10 +122,7 @@ fn second_pitchfork(
 }
 
 /// V_H, K and the period of what was found.
-fn found_again<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    found: Option<Regular<N>>,
-) -> Result<[f64; 3]> {
+fn found_again(family: &dyn ParametrisedField, found: Option<Regular>) -> Result<[f64; 3]> {
     let again = found.ok_or(Error::NotConverged {
         what: "the special orbit, by the second method",
         iterations: Goal::SHARP.iterations,
@@ -135,7 +134,7 @@ fn found_again<F: ParametrisedField<N>, const N: usize>(
 }
 
 /// The orbit with only so many digits left.
-fn cut<const N: usize>(orbit: &SpecialOrbit, digits: i32) -> ContinuationPoint<N> {
+fn cut(orbit: &SpecialOrbit, digits: i32) -> ContinuationPoint {
     let mut at = orbit.at;
     // What is not free is given.
     for &i in &orbit.free {

@@ -3,6 +3,7 @@
 use super::chart::Chart;
 use super::normal_form::Form;
 use crate::bifurcation::{Criticality, Label, Special};
+use crate::equilibrium::Symmetry;
 use crate::model::{DRIVING, Parameter, STIFFNESS};
 use crate::number::Uncertain;
 use crate::orbit::{
@@ -19,12 +20,8 @@ pub(super) struct CubicCoefficient {
 
 impl CubicCoefficient {
     /// By the cubic coefficient in the space of all states.
-    pub fn at<F: Chart<N>, const N: usize>(
-        family: &F,
-        site: &ContinuationPoint<N>,
-        form: Form,
-    ) -> Self {
-        let (coefficient, criticality) = family.normal_form(site, form);
+    pub fn at(chart: Chart, site: &ContinuationPoint, form: Form) -> Self {
+        let (coefficient, criticality) = chart.normal_form(site, form);
         CubicCoefficient {
             criticality,
             coefficient,
@@ -32,9 +29,9 @@ impl CubicCoefficient {
     }
 
     /// The same at a point of a curve. `None` for folds.
-    pub fn along<F: Chart<N>, const N: usize>(
-        family: &F,
-        site: &ContinuationPoint<N>,
+    pub fn along(
+        chart: Chart,
+        site: &ContinuationPoint,
         test_function: TestFunction,
     ) -> Option<Self> {
         let form = match test_function {
@@ -43,7 +40,7 @@ impl CubicCoefficient {
             TestFunction::Transverse => Form::Pitchfork,
             _ => return None,
         };
-        Some(CubicCoefficient::at(family, site, form))
+        Some(CubicCoefficient::at(chart, site, form))
     }
 }
 
@@ -59,8 +56,8 @@ impl Special {
 
 /// An orbit on a curve where it is decided which way the bifurcation goes.
 #[derive(Debug, Clone)]
-pub(super) struct Decided<const N: usize> {
-    site: ContinuationPoint<N>,
+pub(super) struct Decided {
+    site: ContinuationPoint,
     /// ln of the multipliers' product.
     volume: f64,
     coefficient: Uncertain,
@@ -69,9 +66,9 @@ pub(super) struct Decided<const N: usize> {
 /// Tolerance of the orbits at which the coefficient is looked at.
 const FINE: f64 = 1e-15;
 
-impl<const N: usize> Decided<N> {
+impl Decided {
     /// `None` where it is not decided.
-    pub fn new(here: &Regular<N>, way: &CubicCoefficient) -> Option<Self> {
+    pub fn new(here: &Regular, way: &CubicCoefficient) -> Option<Self> {
         (way.criticality != Criticality::Undecided).then(|| Decided {
             site: here.site.clone(),
             volume: here.spectrum.volume,
@@ -80,19 +77,19 @@ impl<const N: usize> Decided<N> {
     }
 
     /// The orbit on the curve near a site, at this ln K: whether it is decided there or not.
-    fn beside<F: Chart<N>>(
-        site: &ContinuationPoint<N>,
-        family: &F,
+    fn beside(
+        site: &ContinuationPoint,
+        chart: Chart,
         test_function: TestFunction,
         log_stiffness: f64,
     ) -> Option<Self> {
-        let mut corrector = Corrector::new(family, FINE).ok()?;
+        let mut corrector = Corrector::new(chart.family(), FINE).ok()?;
         let held = Condition::Parameter(STIFFNESS, log_stiffness);
         let conditions = [Condition::TestFunction(test_function), held];
         let here = corrector
             .correct(site.clone(), &Parameter::PLANE, &conditions, Goal::SHARP)
             .ok()?;
-        let way = CubicCoefficient::along(family, &here.site, test_function)?;
+        let way = CubicCoefficient::along(chart, &here.site, test_function)?;
         Some(Decided {
             volume: here.spectrum.volume,
             coefficient: way.coefficient,
@@ -103,12 +100,7 @@ impl<const N: usize> Decided<N> {
     /// Between this orbit and another one on the same curve the bifurcation may change the way that it goes, where the
     /// coefficient is zero: a Chenciner point, a degenerate period doubling or pitchfork. By the method of false position in
     /// ln K.
-    pub fn change<F: Chart<N>>(
-        &self,
-        to: &Self,
-        family: &F,
-        test_function: TestFunction,
-    ) -> Option<Special> {
+    pub fn change(&self, to: &Self, chart: Chart, test_function: TestFunction) -> Option<Special> {
         /// Steps; a change of ln K that is the last; and how often an end may stay before its value is halved.
         const STEPS: usize = 60;
         const LAST: f64 = 1e-13;
@@ -131,7 +123,7 @@ impl<const N: usize> Decided<N> {
             } else {
                 &b
             };
-            let here = Self::beside(&nearer.site, family, test_function, at)?;
+            let here = Self::beside(&nearer.site, chart, test_function, at)?;
             let value = here.coefficient.value;
             let moved = (at - from).abs().min((at - to).abs());
             let found = value.abs() <= here.coefficient.uncertainty || moved < LAST;
@@ -154,18 +146,18 @@ impl<const N: usize> Decided<N> {
             }
         }
         let zero = zero.filter(|zero| zero.coefficient.value.abs() < largest)?;
-        zero.special(family, test_function)
+        zero.special(chart, test_function)
     }
 
     /// The zero of the coefficient, with the uncertainty that its own leaves.
-    fn special<F: Chart<N>>(&self, family: &F, test_function: TestFunction) -> Option<Special> {
+    fn special(&self, chart: Chart, test_function: TestFunction) -> Option<Special> {
         /// How far beside it the slopes are taken, in ln K.
         const BESIDE: f64 = 1e-4;
         /// Rounding, in the logarithms.
         const ROUNDING: f64 = 1e-13;
         let other = Self::beside(
             &self.site,
-            family,
+            chart,
             test_function,
             self.site.at[STIFFNESS] + BESIDE,
         )?;
@@ -194,19 +186,20 @@ impl<const N: usize> Decided<N> {
 /// The degenerate pitchfork near an orbit at which a curve of folds of asymmetric orbits has come to symmetric ones.
 pub(super) fn degenerate_pitchfork(
     family: &OverLoadings,
-    near: &ContinuationPoint<2>,
+    near: &ContinuationPoint,
 ) -> Option<Special> {
     /// How far to both sides it is looked for, in ln K.
     const FAR: f64 = 0.01;
+    let chart = Chart::Plane(OverLoadings::new(family.slab, Symmetry::Symmetric));
     let [below, above] = [-FAR, FAR].map(|off| {
         Decided::beside(
             near,
-            family,
+            chart,
             TestFunction::Transverse,
             near.at[STIFFNESS] + off,
         )
     });
-    below?.change(&above?, family, TestFunction::Transverse)
+    below?.change(&above?, chart, TestFunction::Transverse)
 }
 
 /// What a change of the way that a pitchfork goes is.

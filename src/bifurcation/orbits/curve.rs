@@ -1,15 +1,13 @@
 //! One two-parameter curve of bifurcations, followed in both directions from a point on it.
 
 use super::branch::new_corrector;
-use super::chart::Chart;
 use super::half_curve::{HalfCurve, Pass};
 use super::locus::Locus;
 use crate::bifurcation::EventObserver;
 use crate::error::Result;
 use crate::model::STIFFNESS;
 use crate::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, OverLoadings, Palc, PalcSettings, Regular,
-    TangentVector,
+    Condition, ContinuationPoint, Corrector, Goal, Palc, PalcSettings, Regular, TangentVector,
 };
 use std::ops::ControlFlow;
 
@@ -23,17 +21,14 @@ pub(super) struct Curve {
 
 /// Follows the curve on which the seed lies, within the ranges that are asked for: first one way, to tell of it from its end
 /// on, then the other. `None` where the seed can't be corrected.
-pub(super) fn through<const N: usize>(
-    locus: &Locus<'_, N>,
+pub(super) fn through(
+    locus: &Locus<'_>,
     number: usize,
-    seed: ContinuationPoint<N>,
+    seed: ContinuationPoint,
     seen: EventObserver<'_>,
-) -> Result<Option<Curve>>
-where
-    OverLoadings: Chart<N>,
-{
+) -> Result<Option<Curve>> {
     let settings = PalcSettings::locus(locus.test_function, locus.longest());
-    let mut corrector = new_corrector::<_, N>(&locus.family)?;
+    let mut corrector = new_corrector(locus.chart.family())?;
     let Some((here, direction)) = first(&mut corrector, &settings, seed) else {
         return Ok(None);
     };
@@ -73,16 +68,13 @@ where
 }
 
 /// The bifurcation at the seed's K, and a direction along the curve there.
-fn first<const N: usize>(
-    corrector: &mut Corrector<'_, OverLoadings, N>,
+fn first(
+    corrector: &mut Corrector<'_>,
     settings: &PalcSettings,
-    seed: ContinuationPoint<N>,
-) -> Option<(ContinuationPoint<N>, TangentVector<N>)>
-where
-    OverLoadings: Chart<N>,
-{
+    seed: ContinuationPoint,
+) -> Option<(ContinuationPoint, TangentVector)> {
     let fixed = settings.and(Condition::Parameter(STIFFNESS, seed.at[STIFFNESS]));
-    let closed: Regular<N> = corrector
+    let closed: Regular = corrector
         .correct(seed, &settings.free, &fixed, Goal::STEP)
         .ok()?;
     let here = corrector.look(closed.site, &settings.free, &settings.own());

@@ -42,7 +42,7 @@ pub(super) struct Pass {
 }
 
 impl Pass {
-    pub fn of<const N: usize>(site: &ContinuationPoint<N>) -> Self {
+    pub fn of(site: &ContinuationPoint) -> Self {
         Pass {
             at: site.at,
             period: site.shooting.period().ln(),
@@ -63,6 +63,8 @@ pub(super) struct HalfCurve<'r, 's> {
     request: &'r LocusRequest,
     test_function: TestFunction,
     number: usize,
+    /// The variables that orbits are in at the moment.
+    chart: Chart,
     symmetry: Symmetry,
     /// Where both ways begin.
     begin: Pass,
@@ -76,8 +78,8 @@ pub(super) struct HalfCurve<'r, 's> {
 }
 
 impl<'r, 's> HalfCurve<'r, 's> {
-    pub fn new<const N: usize>(
-        locus: &Locus<'r, N>,
+    pub fn new(
+        locus: &Locus<'r>,
         number: usize,
         begin: Pass,
         seen: Option<EventObserver<'s>>,
@@ -86,7 +88,8 @@ impl<'r, 's> HalfCurve<'r, 's> {
             request: locus.request,
             test_function: locus.test_function,
             number,
-            symmetry: symmetry::<N>(),
+            chart: locus.chart,
+            symmetry: symmetry(locus.chart.dimension()),
             begin,
             seen,
             events: Vec::new(),
@@ -115,7 +118,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         told
     }
 
-    fn watches<const N: usize>(&self) -> Vec<WatchedFunction> {
+    fn watches(&self) -> Vec<WatchedFunction> {
         let request = self.request;
         let mut watches = vec![WatchedFunction::Turn(STIFFNESS)];
         match self.test_function {
@@ -125,7 +128,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
                     resonances.map(|r| WatchedFunction::TestFunction(TestFunction::Trace(r.1))),
                 );
             }
-            TestFunction::Doubling | TestFunction::Fold if N == 3 => {
+            TestFunction::Doubling | TestFunction::Fold if self.chart.dimension() == 3 => {
                 watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
             }
             _ => {}
@@ -148,9 +151,9 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     /// What was asked for at the orbit where both ways begin: neither comes to it.
-    pub fn begins<F: Chart<N>, const N: usize>(&mut self, palc: &mut Palc<'_, '_, F, N>) {
+    pub fn begins(&mut self, palc: &mut Palc<'_, '_>) {
         let here = palc.now.here.clone();
-        for watch in self.watches::<N>() {
+        for watch in self.watches() {
             if let WatchedFunction::Value(i, value) = watch
                 && (self.begin.at[i] - value).abs() < SAME
                 && self.told.is_continue()
@@ -162,7 +165,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     /// Whether the way begins at the end of a range and leads out of it.
-    pub fn leaves<const N: usize>(&self, now: &DirectedPoint<N>) -> bool {
+    pub fn leaves(&self, now: &DirectedPoint) -> bool {
         let ranges = [self.request.driving, self.request.stiffness];
         (0..2).any(|i| {
             let (from, to) = (ranges[i].0.ln(), ranges[i].1.ln());
@@ -172,10 +175,10 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     /// To the end, in other variables where these lose digits.
-    pub fn go<F: Chart<N>, const N: usize>(&mut self, palc: &mut Palc<'_, '_, F, N>) -> Result<()> {
-        let mut decided: Option<Decided<N>> = None;
+    pub fn go(&mut self, palc: &mut Palc<'_, '_>) -> Result<()> {
+        let mut decided: Option<Decided> = None;
         let mut lost = false;
-        let watches = self.watches::<N>();
+        let watches = self.watches();
         let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
             Met::Zero(WatchedFunction::Value(..), at)
                 if Pass::of(&at.here.site).is(&self.begin) =>
@@ -185,43 +188,40 @@ impl<'r, 's> HalfCurve<'r, 's> {
             Met::Zero(watch, at) => self.zero(palc, watch, &at.here),
             Met::Point(now) => {
                 let here = &now.here;
-                let family = palc.curve.corrector.family;
-                if family.merges(&here.site, &before.here.site) {
-                    return self.merged(&family.slab(), &family.usual(&here.site));
+                let chart = self.chart;
+                if chart.merges(&here.site, &before.here.site) {
+                    return self.merged(&chart.slab(), &chart.usual(&here.site));
                 }
-                let way = self.row(family, here)?;
+                let way = self.row(here)?;
                 if let Some(now) = way.and_then(|way| Decided::new(here, &way))
                     && let Some(before) = decided.replace(now.clone())
-                    && let Some(special) = before.change(&now, family, self.test_function)
+                    && let Some(special) = before.change(&now, chart, self.test_function)
                 {
                     self.tell(Event::Special(special))?;
                 }
-                lost = family.loses(&here.site);
+                lost = chart.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
             }
         })?;
         if end == Stop::Observer && !lost || self.told.is_break() {
             return Ok(());
         }
-        let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
-        if let Some((chart, there)) = family.keeping(site) {
-            let mut corrector = new_corrector::<_, 3>(&chart)?;
+        let site = &palc.now.here.site;
+        if let Some((chart, there)) = self.chart.keeping(site) {
+            let mut corrector = new_corrector(chart.family())?;
             if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
+                self.chart = chart;
                 return self.go(&mut palc);
             }
         }
-        let mut special = rough(Label::Mx, &family.usual(site));
+        let mut special = rough(Label::Mx, &self.chart.usual(site));
         special.note = Some(end.to_string());
         let _ = self.tell(Event::Special(special));
         Ok(())
     }
 
     /// A point of the curve; which way the bifurcation goes there, where that is asked for.
-    fn row<F: Chart<N>, const N: usize>(
-        &mut self,
-        family: &F,
-        here: &Regular<N>,
-    ) -> ControlFlow<(), Option<CubicCoefficient>> {
+    fn row(&mut self, here: &Regular) -> ControlFlow<(), Option<CubicCoefficient>> {
         // The last correction was made; with old gradients a small part of it is left.
         const LEFT: f64 = 0.05;
         let uncertainty = LEFT * here.residual + 100.0 * ROUGH;
@@ -229,23 +229,19 @@ impl<'r, 's> HalfCurve<'r, 's> {
             .site
             .at
             .map(|x| Uncertain::new(x.exp(), uncertainty * x.exp()));
-        let way = self.way(family, here);
+        let way = self.way(here);
         self.put(here, at, way, None)?;
         Continue(way)
     }
 
-    fn way<F: Chart<N>, const N: usize>(
-        &self,
-        family: &F,
-        here: &Regular<N>,
-    ) -> Option<CubicCoefficient> {
+    fn way(&self, here: &Regular) -> Option<CubicCoefficient> {
         let wanted = self.request.criticality;
-        wanted.then(|| CubicCoefficient::along(family, &here.site, self.test_function))?
+        wanted.then(|| CubicCoefficient::along(self.chart, &here.site, self.test_function))?
     }
 
-    fn put<const N: usize>(
+    fn put(
         &mut self,
-        here: &Regular<N>,
+        here: &Regular,
         [driving, stiffness]: [Uncertain; 2],
         way: Option<CubicCoefficient>,
         label: Option<Label>,
@@ -266,11 +262,11 @@ impl<'r, 's> HalfCurve<'r, 's> {
         self.tell(Event::Locus(row))
     }
 
-    fn zero<F: Chart<N>, const N: usize>(
+    fn zero(
         &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
+        palc: &mut Palc<'_, '_>,
         watch: WatchedFunction,
-        at: &Regular<N>,
+        at: &Regular,
     ) -> ControlFlow<()> {
         let test_function = self.test_function;
         let trace = at.spectrum.trace;
@@ -290,7 +286,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
                 let label = if end { Label::Ep } else { Label::Uz };
                 (label, end)
             }
-            WatchedFunction::Turn(_) => return self.turn(palc, at),
+            WatchedFunction::Turn(_) => return self.turn(at),
             WatchedFunction::TestFunction(TestFunction::Trace(value)) => {
                 let Some((label, _)) = RESONANCES.iter().find(|r| r.1 == value) else {
                     return Continue(());
@@ -305,14 +301,13 @@ impl<'r, 's> HalfCurve<'r, 's> {
             },
         };
         let meets = [WatchedFunction::TestFunction(test_function), watch];
-        let family = palc.curve.corrector.family;
         let meets = (&palc.curve.settings.free[..], &meets[..]);
-        let (mut special, orbit) = special(family, label, &at.site, meets);
+        let (mut special, orbit) = special(self.chart, label, &at.site, meets);
         let orbit = orbit.as_ref().unwrap_or(at);
         if let WatchedFunction::Value(i, value) = watch {
             special.given(self.given(i, value));
         }
-        let way = self.way(family, orbit);
+        let way = self.way(orbit);
         special.goes(way);
         let known = [special.driving, special.stiffness];
         self.put(orbit, known, way, Some(label))?;
@@ -330,13 +325,8 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     /// K is stationary along the curve here: its largest value, if it is that.
-    fn turn<F: Chart<N>, const N: usize>(
-        &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
-        at: &Regular<N>,
-    ) -> ControlFlow<()> {
-        let family = palc.curve.corrector.family;
-        if let Some(top) = top(family, &at.site, self.test_function)
+    fn turn(&mut self, at: &Regular) -> ControlFlow<()> {
+        if let Some(top) = top(self.chart.family(), &at.site, self.test_function)
             && top.largest
         {
             let [driving, stiffness] = top.at;
@@ -350,11 +340,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     /// A curve of asymmetric orbits has come to symmetric ones: to the pitchfork at this K.
-    fn merged<const N: usize>(
-        &mut self,
-        family: &OverLoadings,
-        last: &ContinuationPoint<N>,
-    ) -> ControlFlow<()> {
+    fn merged(&mut self, family: &OverLoadings, last: &ContinuationPoint) -> ControlFlow<()> {
         let near = middle(last);
         let special = degenerate_pitchfork(family, &near).unwrap_or_else(|| {
             let mut special = rough(Label::Cp, &near);

@@ -11,7 +11,7 @@ use super::scan::Scan;
 use crate::bifurcation::{Event, EventObserver, LocusKind, LocusRequest, within};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::orbit::{ContinuationPoint, InterfaceSystem, OverLoadings, TestFunction};
+use crate::orbit::{ContinuationPoint, InterfaceSystem, TestFunction};
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
@@ -53,10 +53,10 @@ pub fn loci(
             for symmetry in own {
                 let told = match symmetry {
                     Symmetry::Symmetric => {
-                        Locus::<2>::all(request, &mut scan.symmetric, &mut count, seen)?
+                        Locus::all(request, &mut scan.symmetric, &mut count, seen)?
                     }
                     Symmetry::Asymmetric => {
-                        Locus::<3>::all(request, &mut scan.asymmetric, &mut count, seen)?
+                        Locus::all(request, &mut scan.asymmetric, &mut count, seen)?
                     }
                 };
                 if told.is_break() {
@@ -77,8 +77,8 @@ pub fn loci(
 struct Scans {
     slab: InterfaceSystem,
     driving: (f64, f64),
-    symmetric: Scan<2>,
-    asymmetric: Scan<3>,
+    symmetric: Scan,
+    asymmetric: Scan,
 }
 
 impl Scans {
@@ -169,23 +169,20 @@ fn scanned((from, to): (f64, f64)) -> Vec<f64> {
 }
 
 /// The curves of one kind and symmetry.
-pub(super) struct Locus<'r, const N: usize> {
+pub(super) struct Locus<'r> {
     /// The values of ln K at which bifurcations are looked for.
     pub scan: &'r [f64],
     pub request: &'r LocusRequest,
-    pub family: OverLoadings,
+    pub chart: Chart,
     pub test_function: TestFunction,
     /// Where the curves so far pass these.
     known: Vec<Pass>,
 }
 
-impl<'r, const N: usize> Locus<'r, N>
-where
-    OverLoadings: Chart<N>,
-{
+impl<'r> Locus<'r> {
     fn all(
         request: &'r LocusRequest,
-        branches: &mut Scan<N>,
+        branches: &mut Scan,
         count: &mut usize,
         seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
@@ -193,7 +190,7 @@ where
         let mut locus = Locus {
             scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
-            family: OverLoadings(request.slab),
+            chart: Chart::new(request.slab, branches.symmetry),
             test_function: of_kind(request.kind),
             known: Vec::new(),
         };
@@ -224,7 +221,7 @@ where
     }
 
     /// Whether a curve that was followed passes there.
-    fn is_known(&self, seed: &ContinuationPoint<N>) -> bool {
+    fn is_known(&self, seed: &ContinuationPoint) -> bool {
         let here = Pass::of(seed);
         self.known.iter().any(|pass| pass.is(&here))
     }

@@ -21,13 +21,13 @@
 
 use crate::bifurcation::Criticality;
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State};
+use crate::field::{Matrix, Vector};
 use crate::number::Uncertain;
 use crate::orbit::{
-    Axes, CState, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps, cut_into,
+    Axes, CVector, ContinuationPoint, LogEigenvalue, ParametrisedField, PoincareMaps, cut_into,
     cyclic, eigenvalues_of, finely_cut, squares, unit_pair,
 };
-use nalgebra::{Complex, Matrix1, Matrix2, Matrix4, Vector1, Vector4};
+use nalgebra::Complex;
 use std::f64::consts::PI;
 
 type C = Complex<f64>;
@@ -56,17 +56,25 @@ impl Form {
     ///
     /// # Errors
     /// [`Error::Dimension`] where they do not.
-    pub fn checked<const N: usize>(self) -> Result<()> {
+    pub fn checked(self, dimension: usize) -> Result<()> {
         let (what, known, holds) = match self {
-            Form::Doubling => ("the normal form of period doublings", "3 or more", N >= 3),
-            Form::Torus => ("the normal form of torus bifurcations", "3 or more", N >= 3),
+            Form::Doubling => (
+                "the normal form of period doublings",
+                "3 or more",
+                dimension >= 3,
+            ),
+            Form::Torus => (
+                "the normal form of torus bifurcations",
+                "3 or more",
+                dimension >= 3,
+            ),
             Form::Pitchfork => (
                 "the normal form of pitchforks of orbits of two interfaces",
                 "3",
-                N == 3,
+                dimension == 3,
             ),
         };
-        Error::dimension_unless(holds, what, known, N)
+        Error::dimension_unless(holds, what, known, dimension)
     }
 }
 
@@ -76,20 +84,23 @@ impl Form {
 /// nothing bifurcates.
 ///
 /// # Errors
-/// [`Error::Dimension`] for forms that orbits of so many variables do not have.
-pub fn normal_form<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: &ContinuationPoint<N>,
+/// [`Error::Dimension`] for forms that orbits of so many variables do not have; those of
+/// [`crate::orbit::ShootingNodes::checked`] for nodes with another number of variables than the family.
+pub fn normal_form(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
     form: Form,
 ) -> Result<(Uncertain, Criticality)> {
-    form.checked::<N>()?;
+    let dimension = family.dimension();
+    site.shooting.checked(dimension)?;
+    form.checked(dimension)?;
     Ok(classified(family, site, form))
 }
 
 /// The same of a form that such orbits have.
-pub(super) fn classified<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: &ContinuationPoint<N>,
+pub(super) fn classified(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
     form: Form,
 ) -> (Uncertain, Criticality) {
     let Some(coefficient) = coefficient(family, site, form) else {
@@ -109,9 +120,9 @@ pub(super) fn classified<F: ParametrisedField<N>, const N: usize>(
     (coefficient, criticality)
 }
 
-fn coefficient<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    site: &ContinuationPoint<N>,
+fn coefficient(
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
     form: Form,
 ) -> Option<Uncertain> {
     let site = finely_cut(family, site)?;
@@ -140,26 +151,31 @@ fn coefficient<F: ParametrisedField<N>, const N: usize>(
 }
 
 /// An orbit with the maps around it.
-struct Circle<'a, const N: usize> {
-    maps: PoincareMaps<'a, N>,
+struct Circle<'a> {
+    maps: PoincareMaps<'a>,
     /// What the square of a displacement in a node's plane adds up to, over the arc that begins there.
-    squares: Vec<Jacobian<N>>,
+    squares: Vec<Matrix>,
     period: f64,
 }
 
-impl<const N: usize> Circle<'_, N> {
+impl Circle<'_> {
+    /// The dimension of the planes.
+    fn dimension(&self) -> usize {
+        self.maps.linear().first().map_or(0, Matrix::ncols)
+    }
+
     /// The same from the node to which most has grown. All nodes are found from the first; from the small end of what grows by
     /// many decades nothing is found.
     fn begun_at_the_top(mut self, axes: Axes) -> Self {
         let mut top = (0, 0.0);
         // Of symmetric orbits, what is symmetric is all that has to be solved for.
-        let kept = |mut x: State<N>| {
+        let kept = |mut x: Vector| {
             if axes == Axes::Symmetry {
-                x[1] = 0.0;
+                x[0] = 0.0;
             }
             x
         };
-        let (mut log, mut moved) = (0.0, kept(State::repeat(1.0)));
+        let (mut log, mut moved) = (0.0, kept(Vector::repeat(self.dimension(), 1.0)));
         // Once around for what is there at the beginning to die out.
         for turn in 0..2 {
             for (k, map) in self.maps.linear().iter().enumerate() {
@@ -182,7 +198,7 @@ impl<const N: usize> Circle<'_, N> {
     /// b = <p, C(q,q,q) + 3 B(q, h)> / 6  (5.40)
     fn doubling(&mut self) -> Option<f64> {
         let (mu, one) = (C::from(-1.0), C::from(1.0));
-        if N > 3 && !self.doubles() {
+        if self.dimension() > 2 && !self.doubles() {
             return None;
         }
         let (q, p) = self.eigenvectors(mu)?;
@@ -197,35 +213,36 @@ impl<const N: usize> Circle<'_, N> {
     /// c = <p, C(q,q,q) + 3 B(q, h)> / 6, with q antisymmetric and h symmetric: each is one number in every plane. As products
     /// and quotients they keep their digits where small differences fall by fifty decades along the orbit.
     fn pitchfork(&mut self) -> Option<f64> {
-        let axis = |i: usize| CState::<N>::from_fn(|j, _| C::from(f64::from(u8::from(i == j))));
-        let (across, along) = (axis(1), axis(2));
+        let axis = |i: usize| CVector::from_fn(2, |j, _| C::from(f64::from(u8::from(i == j))));
+        let (across, along) = (axis(0), axis(1));
         let mut q = vec![1.0];
         for map in self.maps.linear() {
-            q.push(q[q.len() - 1] * map[(1, 1)]);
+            q.push(q[q.len() - 1] * map[(0, 0)]);
         }
         let longest = q.iter().copied().fold(0.0, f64::max);
         q.iter_mut().for_each(|q| *q /= longest);
         let maps = self.maps.linear().iter();
-        let in_plane: Vec<_> = maps.map(|map| Matrix1::new(map[(2, 2)])).collect();
+        let in_plane = maps.map(|map| Matrix::from_element(1, 1, map[(1, 1)]));
+        let in_plane: Vec<_> = in_plane.collect();
         let bent = self.each(|maps, k| maps.second(k, &across, &across))?;
-        let square = |(bent, q): (&CState<N>, &f64)| Vector1::new(bent[2].re * q * q);
+        let square = |(bent, q): (&CVector, &f64)| Vector::from_element(1, bent[1].re * q * q);
         let squares: Vec<_> = bent.iter().zip(&q).map(square).collect();
         let h = cyclic::solve(&in_plane, &squares)?;
         let mut sum = 0.0;
         for k in 0..h.len() {
-            let third = self.maps.third(k, &across)?[1].re * q[k] * q[k];
-            let mixed = self.maps.second(k, &across, &along)?[1].re * h[k][0];
+            let third = self.maps.third(k, &across)?[0].re * q[k] * q[k];
+            let mixed = self.maps.second(k, &across, &along)?[0].re * h[k][0];
             sum += (third + 3.0 * mixed) * (q[k] / q[k + 1]);
         }
-        let q: Vec<_> = q.iter().map(|&q| across * C::from(q)).collect();
+        let q: Vec<_> = q.iter().map(|&q| &across * C::from(q)).collect();
         Some(sum / 6.0 / self.mean_square(&q))
     }
 
     /// The mean over the period of |q|^2.
-    fn mean_square(&self, q: &[CState<N>]) -> f64 {
-        let of = |(q, square): (&CState<N>, &Jacobian<N>)| {
+    fn mean_square(&self, q: &[CVector]) -> f64 {
+        let of = |(q, square): (&CVector, &Matrix)| {
             let (re, im) = (q.map(|x| x.re), q.map(|x| x.im));
-            re.dot(&(square * re)) + im.dot(&(square * im))
+            re.dot(&(square * &re)) + im.dot(&(square * &im))
         };
         let sum: f64 = q.iter().zip(&self.squares).map(of).sum();
         sum / self.period
@@ -236,7 +253,7 @@ impl<const N: usize> Circle<'_, N> {
         let one = C::from(1.0);
         let mu = self.multiplier()?;
         let (q, p) = self.eigenvectors(mu)?;
-        let conjugate: Vec<_> = q.iter().map(CState::conjugate).collect();
+        let conjugate: Vec<_> = q.iter().map(CVector::conjugate).collect();
         let length = self.each(|maps, k| maps.second(k, &q[k], &conjugate[k]))?;
         let h11 = self.solve(one, &length)?;
         let square = self.each(|maps, k| maps.second(k, &q[k], &q[k]))?;
@@ -253,8 +270,8 @@ impl<const N: usize> Circle<'_, N> {
 
     fn each(
         &mut self,
-        of: impl Fn(&mut PoincareMaps<'_, N>, usize) -> Option<CState<N>>,
-    ) -> Option<Vec<CState<N>>> {
+        of: impl Fn(&mut PoincareMaps<'_>, usize) -> Option<CVector>,
+    ) -> Option<Vec<CVector>> {
         let count = self.maps.linear().len();
         (0..count).map(|k| of(&mut self.maps, k)).collect()
     }
@@ -269,8 +286,8 @@ impl<const N: usize> Circle<'_, N> {
     /// e^(i theta): by the trace of a return map of two dimensions, else by the pair that is nearest to the unit circle.
     fn multiplier(&self) -> Option<C> {
         let maps = self.maps.linear();
-        let sum = if N == 3 {
-            let start = Jacobian::<N>::identity();
+        let sum = if self.dimension() == 2 {
+            let start = Matrix::identity(2, 2);
             maps.iter().fold(start, |map, next| next * map).trace()
         } else {
             let pair = unit_pair(&eigenvalues_of(maps)?)?;
@@ -281,7 +298,7 @@ impl<const N: usize> Circle<'_, N> {
     }
 
     /// u_{k+1} = P_k u_k + r_k with u_m = mu u_0.
-    fn solve(&self, mu: C, right: &[CState<N>]) -> Option<Vec<CState<N>>> {
+    fn solve(&self, mu: C, right: &[CVector]) -> Option<Vec<CVector>> {
         let mut right = right.to_vec();
         *right.last_mut()? /= mu;
         around(self.maps.linear(), mu.inv(), &right)
@@ -289,26 +306,26 @@ impl<const N: usize> Circle<'_, N> {
 
     /// q_{k+1} = P_k q_k, q_m = mu q_0; and the same of the transposed maps, p_k for the k-th map. By
     /// inverse iteration a little beside the multiplier.
-    fn eigenvectors(&self, mu: C) -> Option<(Vec<CState<N>>, Vec<CState<N>>)> {
+    fn eigenvectors(&self, mu: C) -> Option<(Vec<CVector>, Vec<CVector>)> {
         const ITERATIONS: usize = 3;
-        let maps = self.maps.linear();
+        let (maps, count) = (self.maps.linear(), self.dimension());
         let last = maps.len() - 1;
         // From the last plane but one down to the first, and from the last plane at last, where the circle closes.
-        let mut transposed: Vec<_> = maps[..last].iter().rev().map(Jacobian::transpose).collect();
+        let mut transposed: Vec<_> = maps[..last].iter().rev().map(Matrix::transpose).collect();
         transposed.push(maps[last].transpose());
         let factor = (mu * (1.0 + BESIDE)).inv();
-        let kernel = |maps: &[Jacobian<N>]| {
+        let kernel = |maps: &[Matrix]| {
             // Real, so that what belongs to a real multiplier stays real; and only where the circle closes, so that it is the
             // return map's.
-            let mut v = vec![CState::zeros(); maps.len()];
-            v[0] = CState::from_fn(|i, _| C::from(0.7_f64.powi(i as i32 - 1)));
-            v[0][0] = C::ZERO;
+            let mut start = CVector::from_fn(count, |i, _| C::from(0.7_f64.powi(i as i32)));
+            let mut v = Vec::new();
             for _ in 0..ITERATIONS {
-                let mut right = vec![CState::zeros(); maps.len()];
-                right[last] = v[0];
+                let mut right = vec![CVector::zeros(count); maps.len()];
+                right[last] = start;
                 v = around(maps, factor, &right)?;
                 let longest = v.iter().map(|v| v.norm()).fold(0.0, f64::max);
                 v.iter_mut().for_each(|v| *v /= C::from(longest));
+                start = v[0].clone();
             }
             Some(v)
         };
@@ -319,7 +336,7 @@ impl<const N: usize> Circle<'_, N> {
 
     /// What keeps g_{k+1} = P_k g_k + r_k, g_m = mu g_0, from being solvable: x, where x mu q_0 has to be added to g_m; divided by
     /// mu.
-    fn solvability(&self, mu: C, p: &[CState<N>], q: &[CState<N>], right: &[CState<N>]) -> C {
+    fn solvability(&self, mu: C, p: &[CVector], q: &[CVector], right: &[CVector]) -> C {
         let last = right.len() - 1;
         let mut sum = C::from(0.0);
         for (k, (p, r)) in p.iter().zip(right).enumerate() {
@@ -333,12 +350,8 @@ impl<const N: usize> Circle<'_, N> {
 const BESIDE: f64 = 1e-7;
 
 /// u_{k+1} = P_k u_k + r_k, u_m = u_0, where the last of the maps is P times a complex factor.
-fn around<const N: usize>(
-    maps: &[Jacobian<N>],
-    factor: C,
-    right: &[CState<N>],
-) -> Option<Vec<CState<N>>> {
-    if N == 3 {
+fn around(maps: &[Matrix], factor: C, right: &[CVector]) -> Option<Vec<CVector>> {
+    if maps.first()?.ncols() == 2 {
         return around_plane(maps, factor, right);
     }
     let mut maps: Vec<_> = maps.iter().map(|map| map.map(C::from)).collect();
@@ -347,28 +360,19 @@ fn around<const N: usize>(
 }
 
 /// The same in planes of two dimensions, in real numbers: coefficients keep their last digits.
-fn around_plane<const N: usize>(
-    maps: &[Jacobian<N>],
-    factor: C,
-    right: &[CState<N>],
-) -> Option<Vec<CState<N>>> {
+fn around_plane(maps: &[Matrix], factor: C, right: &[CVector]) -> Option<Vec<CVector>> {
     let last = maps.len() - 1;
-    let real = |(k, map): (usize, &Jacobian<N>)| -> Matrix4<f64> {
+    let real = |(k, map): (usize, &Matrix)| -> Matrix {
         let factor = if k == last { factor } else { C::from(1.0) };
-        let rotation = Matrix2::new(factor.re, -factor.im, factor.im, factor.re);
-        rotation.kronecker(&map.fixed_view::<2, 2>(1, 1))
+        let rotation = [factor.re, -factor.im, factor.im, factor.re];
+        Matrix::from_row_slice(2, 2, &rotation).kronecker(map)
     };
     let real: Vec<_> = maps.iter().enumerate().map(real).collect();
     let right = right.iter();
     let right: Vec<_> = right
-        .map(|r| Vector4::new(r[1].re, r[2].re, r[1].im, r[2].im))
+        .map(|r| Vector::from_column_slice(&[r[0].re, r[1].re, r[0].im, r[1].im]))
         .collect();
     let solution = cyclic::solve(&real, &right)?;
-    let complex = |u: &Vector4<f64>| {
-        CState::from_fn(|i, _| match i {
-            0 => C::ZERO,
-            _ => C::new(u[i - 1], u[i + 1]),
-        })
-    };
+    let complex = |u: &Vector| CVector::from_fn(2, |i, _| C::new(u[i], u[i + 2]));
     Some(solution.iter().map(complex).collect())
 }

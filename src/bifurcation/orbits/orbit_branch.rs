@@ -5,7 +5,7 @@ use super::chart::{Chart, embedded, middle};
 use super::cubic_coefficient::CubicCoefficient;
 use super::normal_form::Form;
 use super::refine::{refined, rough, special};
-use super::rows::{GivenParameters, asked, row};
+use super::rows::{GivenParameters, asked, row, symmetry};
 use super::vertical::Vertical;
 use crate::bifurcation::{Event, EventObserver, Label, Special};
 use crate::continuation::{Met, Stop};
@@ -23,6 +23,8 @@ const STEPS: usize = 5000;
 pub(super) struct OrbitBranch<'b, 'r, 's> {
     pub branches: &'b mut BranchSet<'r>,
     pub number: usize,
+    /// The variables that orbits are in at the moment.
+    chart: Chart,
     symmetry: Symmetry,
     /// Whether it has been in the range.
     pub inside: bool,
@@ -48,7 +50,8 @@ enum Back {
 impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     pub fn new(
         branches: &'b mut BranchSet<'r>,
-        (number, symmetry): (usize, Symmetry),
+        number: usize,
+        chart: Chart,
         begin: f64,
         seen: EventObserver<'s>,
     ) -> Self {
@@ -56,7 +59,8 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         OrbitBranch {
             branches,
             number,
-            symmetry,
+            chart,
+            symmetry: symmetry(chart.dimension()),
             inside,
             begin,
             times: 0,
@@ -67,28 +71,26 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// To the end, in other variables where these lose digits; breaks where whoever is told had enough.
-    pub fn go<F: Chart<N>, const N: usize>(
-        mut self,
-        palc: &mut Palc<'_, '_, F, N>,
-    ) -> Result<ControlFlow<()>> {
+    pub fn go(mut self, palc: &mut Palc<'_, '_>) -> Result<ControlFlow<()>> {
         let end = self.along(palc)?;
         if end == Some(Stop::Observer) {
             return Ok(self.told);
         }
         if let Some(vertical) = self.vertical.filter(Vertical::is_shown) {
-            let special = vertical.end(palc, self.branches.free, self.given(None));
+            let special = vertical.end(palc, self.chart, self.branches.free, self.given(None));
             let _ = self.tell(Event::Special(special));
             return Ok(self.told);
         }
-        let (site, family) = (&palc.now.here.site, palc.curve.corrector.family);
-        if let Some((chart, there)) = family.keeping(site) {
-            let mut corrector = new_corrector::<_, 3>(&chart)?;
+        let site = &palc.now.here.site;
+        if let Some((chart, there)) = self.chart.keeping(site) {
+            let mut corrector = new_corrector(chart.family())?;
             if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
+                self.chart = chart;
                 return self.go(&mut palc);
             }
         }
         if self.inside {
-            let mut special = rough(Label::Mx, &family.usual(site));
+            let mut special = rough(Label::Mx, &self.chart.usual(site));
             special.note = Some(end.map_or_else(
                 || "the interfaces come so near each other that their difference is lost".into(),
                 |end| end.to_string(),
@@ -99,12 +101,9 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// In the same variables throughout; `None` where these lose digits, or where the branch is vertical.
-    fn along<F: Chart<N>, const N: usize>(
-        &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
-    ) -> Result<Option<Stop>> {
+    fn along(&mut self, palc: &mut Palc<'_, '_>) -> Result<Option<Stop>> {
         let (mut failed, mut left) = (None, false);
-        let end = palc.follow(&self.watches::<N>(), STEPS, &mut |palc, before, met| {
+        let end = palc.follow(&self.watches(), STEPS, &mut |palc, before, met| {
             let last = &before.here.site;
             let met = match met {
                 Met::Zero(watch, at) => {
@@ -113,7 +112,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
                 }
                 Met::Point(now) => {
                     let back = self.comes_back(palc, before);
-                    let loses = palc.curve.corrector.family.loses(&now.here.site);
+                    let loses = self.chart.loses(&now.here.site);
                     match self.orbit(palc, now, last, back) {
                         // A branch that has ended does not go on in other variables.
                         Ok(Continue(())) if loses || self.is_vertical(palc, now) => {
@@ -136,11 +135,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// Whether so much of the branch has been vertical that it is followed no further.
-    fn is_vertical<F: Chart<N>, const N: usize>(
-        &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
-        now: &DirectedPoint<N>,
-    ) -> bool {
+    fn is_vertical(&mut self, palc: &mut Palc<'_, '_>, now: &DirectedPoint) -> bool {
         let free = self.branches.free;
         self.vertical = self
             .vertical
@@ -148,7 +143,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         self.vertical.is_some_and(|vertical| vertical.is_enough())
     }
 
-    fn watches<const N: usize>(&self) -> Vec<WatchedFunction> {
+    fn watches(&self) -> Vec<WatchedFunction> {
         let BranchSet {
             free,
             range,
@@ -156,7 +151,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             ..
         } = *self.branches;
         let mut watches = vec![WatchedFunction::Turn(free)];
-        if N == 3 {
+        if self.chart.dimension() == 3 {
             watches.push(WatchedFunction::TestFunction(TestFunction::Doubling));
             watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
         } else if request.slab.interfaces == 2 {
@@ -181,11 +176,11 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// The next orbit: its row, and whether the branch goes on.
-    fn orbit<F: Chart<N>, const N: usize>(
+    fn orbit(
         &mut self,
-        palc: &Palc<'_, '_, F, N>,
-        DirectedPoint { here, .. }: &DirectedPoint<N>,
-        last: &ContinuationPoint<N>,
+        palc: &Palc<'_, '_>,
+        DirectedPoint { here, .. }: &DirectedPoint,
+        last: &ContinuationPoint,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         let site = &here.site;
@@ -195,14 +190,14 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             self.shrunk(i);
             return Ok(Break(()));
         }
-        let family = palc.curve.corrector.family;
-        if family.merges(site, last) {
-            self.merged(&family.usual(last));
+        let chart = self.chart;
+        if chart.merges(site, last) {
+            self.merged(&chart.usual(last));
             return Ok(Break(()));
         }
         if let Some(back) = back {
             if back == Back::Jumped {
-                let mut special = rough(Label::Mx, &family.usual(site));
+                let mut special = rough(Label::Mx, &chart.usual(site));
                 special.note =
                     Some("the walk has come onto the branch that this one parted from".into());
                 let _ = self.tell(Event::Special(special));
@@ -217,7 +212,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             });
         }
         self.inside = true;
-        let mut row = row(family, self.number, here, None)?;
+        let mut row = row(chart, self.number, here, None)?;
         row.given(self.given(None));
         Ok(self.tell(Event::Branch(row)))
     }
@@ -242,12 +237,12 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// An asymmetric branch has met the symmetric one.
-    fn merged<const N: usize>(&mut self, last: &ContinuationPoint<N>) {
+    fn merged(&mut self, last: &ContinuationPoint) {
         let site = middle(last);
         let across = [WatchedFunction::TestFunction(TestFunction::Transverse)];
         let free = self.branches.free;
-        let family = self.branches.family;
-        let Some(refined_point) = refined::<_, 2>(&family, &site, &[free], &across) else {
+        let chart = self.branches.chart(Symmetry::Symmetric);
+        let Some(refined_point) = refined(chart.family(), &site, &[free], &across) else {
             return;
         };
         let coordinate = refined_point.orbit.site.at[free];
@@ -261,11 +256,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// Whether a branch of doubled orbits has come back, on the step from `before`, to one that goes round once only.
-    fn comes_back<F: Chart<N>, const N: usize>(
-        &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
-        before: &DirectedPoint<N>,
-    ) -> Option<Back> {
+    fn comes_back(&mut self, palc: &mut Palc<'_, '_>, before: &DirectedPoint) -> Option<Back> {
         /// Below this both rounds are the same one.
         const SAME: f64 = 1e-6;
         if self.times == 0 {
@@ -281,12 +272,12 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         let field = palc.curve.corrector.family.field(*at);
         let half = 0.5 * shooting.period();
         let tracer = &mut palc.curve.corrector.tracer;
-        let after = tracer.flow(&*field, &shooting.nodes[0], half, None).ok()?;
-        ((after - shooting.nodes[0]).amax() < SAME).then_some(Back::Jumped)
+        let after = tracer.flow(&field, &shooting.nodes[0], half, None).ok()?;
+        ((after - &shooting.nodes[0]).amax() < SAME).then_some(Back::Jumped)
     }
 
     /// Whether there is a period doubling, where the parameter turns.
-    fn back<const N: usize>(&mut self, site: &ContinuationPoint<N>) -> bool {
+    fn back(&mut self, site: &ContinuationPoint) -> bool {
         /// Of the turn in the coordinate, and of the period from twice that at the doubling.
         const NEAR: (f64, f64) = (2e-3, 1e-3);
         let free = self.branches.free;
@@ -304,12 +295,12 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// Something that is watched is zero here.
-    fn zero<F: Chart<N>, const N: usize>(
+    fn zero(
         &mut self,
-        palc: &mut Palc<'_, '_, F, N>,
+        palc: &mut Palc<'_, '_>,
         watch: WatchedFunction,
-        at: &Regular<N>,
-        last: &ContinuationPoint<N>,
+        at: &Regular,
+        last: &ContinuationPoint,
         back: Option<Back>,
     ) -> Result<ControlFlow<()>> {
         // At the doubling that the branch has come back to the parameter turns, and that is no fold.
@@ -323,11 +314,10 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         // Where the branch leaves the range it ends, where it enters it begins.
         let ends = label == Label::Ep && self.inside;
         self.inside |= label == Label::Ep;
-        let family = palc.curve.corrector.family;
         let meets = (&palc.curve.settings.free[..], &[watch][..]);
-        let (mut special, orbit) = special(family, label, &at.site, meets);
+        let (mut special, orbit) = special(self.chart, label, &at.site, meets);
         let mut row = row(
-            family,
+            self.chart,
             self.number,
             orbit.as_ref().unwrap_or(at),
             Some(label),
@@ -335,7 +325,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         row.given(self.given(Some(watch)));
         special.given(self.given(Some(watch)));
         if let Some(orbit) = &orbit {
-            self.remember(family, label, orbit, &mut special);
+            self.remember(label, orbit, &mut special);
         }
         if self.tell(Event::Special(special)).is_break() || self.tell(Event::Branch(row)).is_break()
         {
@@ -357,18 +347,15 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// What a zero means here; nothing, or nothing new, for some.
-    fn label<F: Chart<N>, const N: usize>(
+    fn label(
         &self,
-        palc: &Palc<'_, '_, F, N>,
+        palc: &Palc<'_, '_>,
         watch: WatchedFunction,
-        at: &Regular<N>,
-        last: &ContinuationPoint<N>,
+        at: &Regular,
+        last: &ContinuationPoint,
     ) -> Option<Label> {
         let BranchSet { range, .. } = *self.branches;
-        let merges = || {
-            let family = palc.curve.corrector.family;
-            family.merges(&palc.now.here.site, last)
-        };
+        let merges = || self.chart.merges(&palc.now.here.site, last);
         let label = match watch {
             // At the pitchfork, where the branch meets its mirror image.
             WatchedFunction::Turn(_) if merges() => return None,
@@ -390,18 +377,13 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     /// Which way it goes, and that branches begin here.
-    fn remember<F: Chart<N>, const N: usize>(
-        &mut self,
-        family: &F,
-        label: Label,
-        orbit: &Regular<N>,
-        special: &mut Special,
-    ) {
+    fn remember(&mut self, label: Label, orbit: &Regular, special: &mut Special) {
+        let chart = self.chart;
         let form = match label {
             Label::Pd => Form::Doubling,
             Label::Tr => Form::Torus,
             Label::Pf => {
-                if let Some(orbit) = family.symmetric(orbit) {
+                if let Some(orbit) = chart.symmetric(orbit) {
                     self.pitchfork(special, orbit);
                     self.branches.pitchforks.push(orbit.clone());
                 }
@@ -409,11 +391,11 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             }
             _ => return,
         };
-        let Some(whole) = family.whole(orbit) else {
+        let Some(whole) = chart.whole(orbit) else {
             return;
         };
-        special.goes(Some(CubicCoefficient::at(family, &orbit.site, form)));
-        if label == Label::Pd && !family.loses(&orbit.site) {
+        special.goes(Some(CubicCoefficient::at(chart, &orbit.site, form)));
+        if label == Label::Pd && !chart.loses(&orbit.site) {
             self.branches.doublings.push(Doubling {
                 orbit: whole.clone(),
                 before: self.times,
@@ -422,12 +404,9 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         }
     }
 
-    fn pitchfork(&self, special: &mut Special, orbit: &Regular<2>) {
+    fn pitchfork(&self, special: &mut Special, orbit: &Regular) {
         let site = embedded(&orbit.site);
-        special.goes(Some(CubicCoefficient::at(
-            &self.branches.family,
-            &site,
-            Form::Pitchfork,
-        )));
+        let whole = self.branches.chart(Symmetry::Asymmetric);
+        special.goes(Some(CubicCoefficient::at(whole, &site, Form::Pitchfork)));
     }
 }

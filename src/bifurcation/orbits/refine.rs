@@ -37,9 +37,9 @@ impl SpecialOrbit {
 
 /// A special orbit.
 #[derive(Debug, Clone)]
-pub struct RefinedPoint<const N: usize> {
+pub struct RefinedPoint {
     /// The best solution.
-    pub orbit: Regular<N>,
+    pub orbit: Regular,
     /// The parameters (not their coordinates).
     pub at: [Uncertain; 2],
     /// The period.
@@ -59,23 +59,23 @@ const ENOUGH: f64 = 1e-11;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
 /// The orbit near a site where all these are zero, in the last digits.
-pub fn refined<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    near: &ContinuationPoint<N>,
+pub fn refined(
+    family: &dyn ParametrisedField,
+    near: &ContinuationPoint,
     free: &[usize],
     meets: &[WatchedFunction],
-) -> Option<RefinedPoint<N>> {
+) -> Option<RefinedPoint> {
     let conditions: Vec<_> = meets.iter().map(|exactly| exactly.condition()).collect();
-    let mut solutions: Vec<Regular<N>> = Vec::new();
+    let mut solutions: Vec<Regular> = Vec::new();
     for (tolerance, part) in SOLUTIONS {
         let mut corrector = Corrector::new(family, tolerance).ok()?;
         let begin = solutions.first().map_or(near, |first| &first.site);
         let field = family.field(begin.at);
         // Few long arcs round least often.
         let shooting = if solutions.is_empty() {
-            begin.shooting.meshed(&mut corrector.tracer, &*field).ok()?
+            begin.shooting.meshed(&mut corrector.tracer, &field).ok()?
         } else {
-            let shifted = begin.shooting.shifted(&mut corrector.tracer, &*field, part);
+            let shifted = begin.shooting.shifted(&mut corrector.tracer, &field, part);
             shifted.ok()?
         };
         drop(field);
@@ -93,7 +93,7 @@ pub fn refined<F: ParametrisedField<N>, const N: usize>(
     let mut corrector = Corrector::new(family, SOLUTIONS[0].0).ok()?;
     let noise = corrector.noise(&solutions[0], free, &conditions);
     let noise = noise.unwrap_or(Noise::UNKNOWN);
-    let all = |of: &dyn Fn(&Regular<N>) -> f64, noise: f64, rounding: f64| {
+    let all = |of: &dyn Fn(&Regular) -> f64, noise: f64, rounding: f64| {
         let first = of(&solutions[0]);
         let spread = solutions.iter().map(|s| (of(s) - first).abs());
         let spread = spread.fold(0.0, f64::max);
@@ -107,7 +107,7 @@ pub fn refined<F: ParametrisedField<N>, const N: usize>(
         by_value || !free.contains(&i)
     };
     let parameter = |i: usize| {
-        let of = |s: &Regular<N>| family.parameters(s.site.at)[i];
+        let of = |s: &Regular| family.parameters(s.site.at)[i];
         let rounding = ROUNDING + f64::EPSILON * solutions[0].site.at[i].abs();
         if fixed(i) {
             let given = of(&solutions[0]);
@@ -126,48 +126,48 @@ pub fn refined<F: ParametrisedField<N>, const N: usize>(
 }
 
 /// A special point of a slab: the best that could be done, or a place on the continuation; and its orbit, where it is refined.
-pub(super) fn special<F: Chart<N>, const N: usize>(
-    family: &F,
+pub(super) fn special(
+    chart: Chart,
     label: Label,
-    near: &ContinuationPoint<N>,
+    near: &ContinuationPoint,
     (free, meets): (&[usize], &[WatchedFunction]),
-) -> (Special, Option<Regular<N>>) {
-    let Some(refined_point) = refined(family, near, free, meets) else {
-        let kept = kept(family, label, near, free, meets);
-        let special = kept.unwrap_or_else(|| rough(label, &family.usual(near)));
+) -> (Special, Option<Regular>) {
+    let Some(refined_point) = refined(chart.family(), near, free, meets) else {
+        let kept = kept(chart, label, near, free, meets);
+        let special = kept.unwrap_or_else(|| rough(label, &chart.usual(near)));
         return (special, None);
     };
     let mut special = refined_point.special(label);
     let orbit = Some(refined_point.orbit);
     if special.driving.uncertainty > ENOUGH * special.driving.value.abs()
-        && let Some(better) = kept(family, label, near, free, meets)
+        && let Some(better) = kept(chart, label, near, free, meets)
         && better.driving.uncertainty < special.driving.uncertainty
     {
         return (better, orbit);
     }
     if let Some(orbit) = &mut special.orbit {
-        orbit.in_difference_chart = family.keeps_difference();
+        orbit.in_difference_chart = chart.keeps_difference();
     }
     (special, orbit)
 }
 
 /// The same in the difference chart, if there is one.
-fn kept<F: Chart<N>, const N: usize>(
-    family: &F,
+fn kept(
+    chart: Chart,
     label: Label,
-    near: &ContinuationPoint<N>,
+    near: &ContinuationPoint,
     free: &[usize],
     meets: &[WatchedFunction],
 ) -> Option<Special> {
-    let (chart, there) = family.keeping(near)?;
-    let mut special = refined(&chart, &there, free, meets)?.special(label);
+    let (chart, there) = chart.keeping(near)?;
+    let mut special = refined(chart.family(), &there, free, meets)?.special(label);
     if let Some(orbit) = &mut special.orbit {
         orbit.in_difference_chart = true;
     }
     Some(special)
 }
 
-impl<const N: usize> RefinedPoint<N> {
+impl RefinedPoint {
     /// As a special point of a slab.
     pub fn special(&self, label: Label) -> Special {
         let ContinuationPoint { shooting, at } = &self.orbit.site;
@@ -191,7 +191,7 @@ impl<const N: usize> RefinedPoint<N> {
 }
 
 /// A point of which no more is claimed than that it lies on the continuation.
-pub(super) fn rough<const N: usize>(label: Label, site: &ContinuationPoint<N>) -> Special {
+pub(super) fn rough(label: Label, site: &ContinuationPoint) -> Special {
     let unknown = |x: f64| Uncertain::new(x, f64::INFINITY);
     let [driving, stiffness] = site.at.map(|x| unknown(x.exp()));
     Special {

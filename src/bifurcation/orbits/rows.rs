@@ -7,32 +7,32 @@ use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Profile, Regular, profile};
 
-/// The symmetry of orbits in N variables.
-pub(super) fn symmetry<const N: usize>() -> Symmetry {
-    match N {
+/// The symmetry of orbits in so many variables.
+pub(super) fn symmetry(dimension: usize) -> Symmetry {
+    match dimension {
         2 => Symmetry::Symmetric,
         _ => Symmetry::Asymmetric,
     }
 }
 
 /// An orbit of a slab, in any of its variables.
-pub(super) fn row<F: Chart<N>, const N: usize>(
-    family: &F,
+pub(super) fn row(
+    chart: Chart,
     branch: usize,
-    orbit: &Regular<N>,
+    orbit: &Regular,
     label: Option<Label>,
 ) -> Result<BranchRow> {
     /// ln |mu| that is zero within the accuracy of a continuation.
     const NEUTRAL: f64 = 1e-6;
-    let here = family.slab().slab(orbit.site.at);
+    let here = chart.slab().slab(orbit.site.at);
     let Profile {
         mean_stress,
         stress_range,
         state,
         slip_rate,
-    } = profile(&here, &family.usual(&orbit.site).shooting)?;
+    } = profile(&here, &chart.usual(&orbit.site).shooting)?;
     let spectrum = &orbit.spectrum;
-    let logs = if N == 3 {
+    let logs = if spectrum.dimension == 3 {
         spectrum.log_multipliers()?.map(Some)
     } else {
         // Within the plane, and across it.
@@ -52,7 +52,7 @@ pub(super) fn row<F: Chart<N>, const N: usize>(
     let [driving, stiffness] = [here.loading.driving, here.loading.stiffness];
     Ok(BranchRow {
         branch,
-        symmetry: symmetry::<N>(),
+        symmetry: symmetry(spectrum.dimension),
         driving,
         stiffness,
         stress: mean_stress,

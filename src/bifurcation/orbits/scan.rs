@@ -7,8 +7,8 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::{DRIVING, Parameter};
 use crate::orbit::{
-    ContinuationPoint, Corrector, DirectedPoint, HopfPoint, InterfaceSystem, OverLoadings, Palc,
-    PalcSettings, TestFunction, Tracer, WatchedFunction, hopf_points,
+    ContinuationPoint, Corrector, DirectedPoint, HopfPoint, InterfaceSystem, Palc, PalcSettings,
+    TestFunction, Tracer, WatchedFunction, hopf_points,
 };
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -22,20 +22,17 @@ const WORK: usize = 5_000_000;
 const TOLERANCE: f64 = 1e-8;
 
 /// The bifurcations of orbits of one symmetry.
-pub(super) struct Scan<const N: usize> {
+pub(super) struct Scan {
     slab: InterfaceSystem,
     driving: (f64, f64),
-    symmetry: Symmetry,
+    pub symmetry: Symmetry,
     /// What is looked for.
     watches: Vec<WatchedFunction>,
     /// What has been found, at these K.
-    found: Vec<(f64, Vec<(WatchedFunction, ContinuationPoint<N>)>)>,
+    found: Vec<(f64, Vec<(WatchedFunction, ContinuationPoint)>)>,
 }
 
-impl<const N: usize> Scan<N>
-where
-    OverLoadings: Chart<N>,
-{
+impl Scan {
     pub fn new(slab: InterfaceSystem, driving: (f64, f64), symmetry: Symmetry) -> Self {
         Scan {
             slab,
@@ -59,7 +56,7 @@ where
         &mut self,
         stiffness: f64,
         test_function: TestFunction,
-    ) -> Result<Vec<ContinuationPoint<N>>> {
+    ) -> Result<Vec<ContinuationPoint>> {
         if !self.found.iter().any(|found| found.0 == stiffness) {
             let here = self.all_at(stiffness)?;
             self.found.push((stiffness, here));
@@ -71,7 +68,7 @@ where
         Ok(of_kind.map(|one| one.1.clone()).collect())
     }
 
-    fn all_at(&self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint<N>)>> {
+    fn all_at(&self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint)>> {
         let slab = self.slab.of_stiffness(stiffness);
         let (mut found, mut reached) = (Vec::new(), Vec::new());
         let hopfs = hopf_points(&slab, self.symmetry, Parameter::Driving)?;
@@ -89,15 +86,15 @@ where
         slab: &InterfaceSystem,
         (i, hopfs): (usize, &[HopfPoint]),
         reached: &mut Vec<usize>,
-        found: &mut Vec<(WatchedFunction, ContinuationPoint<N>)>,
+        found: &mut Vec<(WatchedFunction, ContinuationPoint)>,
     ) -> Result<()> {
-        let family = OverLoadings(*slab);
+        let chart = Chart::new(*slab, self.symmetry);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
-        let inside = |site: &ContinuationPoint<N>| (from..=to).contains(&site.at[DRIVING]);
+        let inside = |site: &ContinuationPoint| (from..=to).contains(&site.at[DRIVING]);
         // On to the other Hopf point of the branch, or the whole branch would be followed from there too.
         let last_one = i + 1 == hopfs.len();
         let tracer = Tracer::limited(TOLERANCE, WORK, WORK)?;
-        let mut corrector = Corrector::<_, N>::by(&family, tracer);
+        let mut corrector = Corrector::by(chart.family(), tracer);
         let settings = PalcSettings::branch(DRIVING, LONGEST);
         let Ok(mut palc) = Palc::from_hopf(&mut corrector, settings, &hopfs[i]) else {
             return Ok(());
@@ -105,7 +102,7 @@ where
         let mut been = (from..=to).contains(&hopfs[i].at()[0]);
         palc.follow(&self.watches, STEPS, &mut |palc, before, met| match met {
             Met::Zero(watch, DirectedPoint { here: at, .. }) => {
-                let pitchfork = family.merges(&palc.now.here.site, &before.here.site);
+                let pitchfork = chart.merges(&palc.now.here.site, &before.here.site);
                 let is_one = match watch {
                     WatchedFunction::TestFunction(TestFunction::Torus) => {
                         at.spectrum.trace.abs() < 2.0
@@ -124,7 +121,7 @@ where
                 been |= inside(here);
                 let end = palc.ends_at(&before.here.site, hopfs);
                 reached.extend(end);
-                let merged = family.merges(here, &before.here.site);
+                let merged = chart.merges(here, &before.here.site);
                 if left && last_one || end.is_some() || merged {
                     Break(())
                 } else {

@@ -12,9 +12,9 @@ use crate::orbit::{
 };
 
 /// A stationary value of K on a curve.
-pub struct Top<const N: usize> {
+pub struct Top {
     /// A point of the curve next to it.
-    pub orbit: Regular<N>,
+    pub orbit: Regular,
     /// Both parameters.
     pub at: [Uncertain; 2],
     /// The period.
@@ -30,11 +30,11 @@ const WIDTHS: [f64; 2] = [0.04, 0.027];
 const FINE: f64 = 1e-16;
 
 /// The stationary point of the second coordinate along the curve of a test function, near a site on it.
-pub fn top<F: ParametrisedField<N>, const N: usize>(
-    family: &F,
-    near: &ContinuationPoint<N>,
+pub fn top(
+    family: &dyn ParametrisedField,
+    near: &ContinuationPoint,
     test_function: TestFunction,
-) -> Option<Top<N>> {
+) -> Option<Top> {
     let mut corrector = Corrector::new(family, FINE).ok()?;
     let settings = PalcSettings::locus(test_function, 1.0);
     let own = [Condition::TestFunction(test_function)];
@@ -82,10 +82,10 @@ struct Stationary {
     errors: [f64; 2],
 }
 
-fn stationary<F: ParametrisedField<N>, const N: usize>(
-    corrector: &mut Corrector<'_, F, N>,
-    near: &ContinuationPoint<N>,
-    direction: &TangentVector<N>,
+fn stationary(
+    corrector: &mut Corrector<'_>,
+    near: &ContinuationPoint,
+    direction: &TangentVector,
     width: f64,
     test_function: TestFunction,
 ) -> Option<Stationary> {

@@ -42,10 +42,10 @@ fn widened(range: (f64, f64), x: f64, first: bool) -> (f64, f64) {
 
 impl Vertical {
     /// With the next orbit; `None` where the parameter varies.
-    pub fn and<F: Chart<N>, const N: usize>(
+    pub fn and(
         self,
-        palc: &mut Palc<'_, '_, F, N>,
-        DirectedPoint { here, direction }: &DirectedPoint<N>,
+        palc: &mut Palc<'_, '_>,
+        DirectedPoint { here, direction }: &DirectedPoint,
         free: usize,
     ) -> Option<Self> {
         let (site, first) = (&here.site, self.orbits == 0);
@@ -78,17 +78,15 @@ impl Vertical {
     }
 
     /// The end of the branch, in words.
-    pub fn end<F: Chart<N>, const N: usize>(
+    pub fn end(
         &self,
-        palc: &Palc<'_, '_, F, N>,
+        palc: &Palc<'_, '_>,
+        chart: Chart,
         free: usize,
         mut given: GivenParameters,
     ) -> Special {
         let name = ["V_H", "K"][free];
-        let mut special = rough(
-            Label::Ep,
-            &palc.curve.corrector.family.usual(&palc.now.here.site),
-        );
+        let mut special = rough(Label::Ep, &chart.usual(&palc.now.here.site));
         given[free] = None;
         special.given(given);
         let place = [&mut special.driving, &mut special.stiffness];

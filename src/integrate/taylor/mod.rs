@@ -15,7 +15,9 @@ use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflo
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
 use crate::number::DoubleDouble;
-use crate::series::{Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, TaylorMap};
+use crate::series::{
+    Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
+};
 use std::cell::LazyCell;
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
@@ -121,14 +123,35 @@ impl Taylor {
         y0: &State<N>,
         free: &[usize],
     ) -> Result<(State<N>, Derivatives<N>)> {
+        let mut tangent = self.tangent(field, free)?;
+        self.derivatives_by(&mut *tangent, field, t, y0)
+    }
+
+    /// What [`Taylor::derivatives`] are made by, for several of them one after the other.
+    pub(super) fn tangent<'f, const N: usize>(
+        &mut self,
+        field: &'f dyn VectorField<N>,
+        free: &[usize],
+    ) -> Result<Box<dyn Tangent<N> + 'f>> {
         self.work = Work::default();
         checked_places(field, free)?;
         let analytic = analytic(field)?;
-        let mut tangent = match self.arithmetic {
+        Ok(match self.arithmetic {
             Arithmetic::Double => analytic.tangent(free),
             Arithmetic::DoubleDouble => analytic.reference_tangent(free),
-        };
-        let (end, _) = self.trajectory(field, t, y0, &mut *tangent, None, &mut |_, _| false)?;
+        })
+    }
+
+    /// The derivatives by that.
+    pub(super) fn derivatives_by<const N: usize>(
+        &mut self,
+        tangent: &mut dyn Tangent<N>,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+    ) -> Result<(State<N>, Derivatives<N>)> {
+        self.work = Work::default();
+        let (end, _) = self.trajectory(field, t, y0, tangent, None, &mut |_, _| false)?;
         Ok((end, tangent.derivatives()))
     }
 

@@ -279,7 +279,7 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N>
                 any
             }
         };
-        self.columns = VariationalEquations::new(x, lane(N), lane(N + 1));
+        self.columns.restart(x, lane(N), lane(N + 1));
         self.states = zero.like(0.5 * (N - 1) as f64);
         self.log_determinant = zero;
         self.log_transverse = zero;

@@ -63,6 +63,11 @@ impl<X: Element> VariationalEquations<X> {
         }
     }
 
+    /// The same anew, beginning at x.
+    pub fn restart(&mut self, x: [X; 3], driving: X, stiffness: X) {
+        (self.x, self.driving, self.stiffness) = (x, driving, stiffness);
+    }
+
     /// The columns at the end of the last step.
     pub fn state(&self) -> &[X; 3] {
         &self.x

@@ -372,7 +372,8 @@ impl<'a> Transported<'a> {
             };
             (0..self.start.len()).map(relative).fold(0.0, f64::max)
         };
-        let of = |monomial| longest_of_columns(accuracy, most, |k| size(monomial, k));
+        let ends = [0, 1, accuracy.order - 1, accuracy.order];
+        let of = |monomial| longest_of_columns(accuracy, most, ends.map(|k| size(monomial, k)));
         (0..10).map(of).fold(most, f64::min)
     }
 }

@@ -149,24 +149,23 @@ fn product<T: Element, X: Element>(a: &[T], column: &[X], width: usize, any: X) 
 }
 
 /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the tolerance,
-/// from the sizes of the columns' k-th coefficients.
+/// from the sizes of the columns' first two coefficients and of these last two.
 #[inline(always)]
 pub(super) fn longest_of_columns<X: Element>(
     accuracy: &Accuracy,
     most: f64,
-    sizes: impl Fn(usize) -> X,
+    [begins, grows, before, last]: [X; 4],
 ) -> f64 {
     /// Columns are not as small.
     const NOTHING: f64 = 1e-250;
     let order = accuracy.order;
-    let begins = sizes(0);
     let any = begins;
     // Derivatives in parameters begin at zero.
-    let grows = sizes(1) * any.like(most);
+    let grows = grows * any.like(most);
     let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
     let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
-    let before = (sizes(order - 1) * per_tolerable).largest_lane();
-    let last = (sizes(order) * per_tolerable).largest_lane();
+    let before = (before * per_tolerable).largest_lane();
+    let last = (last * per_tolerable).largest_lane();
     let before = -rough_log2(before) / (order - 1) as f64;
     let last = -rough_log2(last) / order as f64;
     rough_exp2(before.min(last))
@@ -236,7 +235,8 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
             let relative = |i: usize| (level[i * chunks + chunk] * per_unit[i]).abs();
             (0..n).map(relative).fold(any.like(0.0), Element::max)
         };
-        let of = |chunk| longest_of_columns(accuracy, most, |k| size(chunk, k));
+        let ends = [0, 1, accuracy.order - 1, accuracy.order];
+        let of = |chunk| longest_of_columns(accuracy, most, ends.map(|k| size(chunk, k)));
         (0..chunks).map(of).fold(most, f64::min)
     }
 

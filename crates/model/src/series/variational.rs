@@ -146,7 +146,14 @@ impl<S: Equations<N, P>, X: Element, const N: usize, const P: usize> Variational
         self.stepper.expand(accuracy);
         let unit = self.stepper.unit();
         let most = Element::min(self.stepper.longest(accuracy), (limit / unit).abs());
-        let longest = longest_of_columns(accuracy, most.first(), |k| self.column_sizes(k));
+        // One by one: a closure would be compiled for any processor.
+        let sizes = [
+            self.column_sizes(0),
+            self.column_sizes(1),
+            self.column_sizes(accuracy.order - 1),
+            self.column_sizes(accuracy.order),
+        ];
+        let longest = longest_of_columns(accuracy, most.first(), sizes);
         let h = Element::min(most, limit.like(longest));
         let taken = self.stepper.advance_by(accuracy, h, limit);
         let grown = self.mean_trace(accuracy.order, (taken / unit).value) * taken.value;
