@@ -12,6 +12,27 @@ const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-sym
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for";
 
+/// The laws with their sources, for help.
+fn laws() -> String {
+    let laws = AnyLaw::NAMES.iter().zip(AnyLaw::SOURCES);
+    let laws: Vec<_> = laws
+        .map(|(name, source)| format!("{name} {source}"))
+        .collect();
+    format!(
+        "Friction law, by the paper's equations or others: {}",
+        listed(&laws)
+    )
+}
+
+/// a, b or c.
+fn listed(all: &[impl AsRef<str>]) -> String {
+    let all: Vec<&str> = all.iter().map(AsRef::as_ref).collect();
+    match &all[..] {
+        [others @ .., last] if !others.is_empty() => format!("{} or {last}", others.join(", ")),
+        _ => all.concat(),
+    }
+}
+
 /// What slides and how it is driven; the defaults are the paper's.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
@@ -31,9 +52,8 @@ pub struct ModelOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
 pub struct SlabOptions {
-    /// Friction law: spinodal, bounded, regularised-ageing, dieterich-ruina (equations 35, 6, 5 and 4 of the paper) or slip (Ruina
-    /// 1983)
-    #[arg(long, value_name = "NAME", default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
+    /// Friction law.
+    #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
     /// Number of frictional interfaces in the slab, 1 or 2
     #[arg(long, value_name = "N", default_value_t = 2)]
@@ -71,8 +91,8 @@ pub struct SlabOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Numerics")]
 pub struct NumericsOptions {
-    /// Integrator: auto, taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23
-    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = Names::of(Choice::names()), hide_possible_values = true)]
+    /// Integrator.
+    #[arg(long, value_name = "NAME", help = format!("Integrator: {}", listed(&Choice::names())), default_value = "auto", value_parser = Names::of(Choice::names()), hide_possible_values = true)]
     pub method: String,
     /// Relative local error tolerance
     #[arg(long, value_name = "X", default_value = "1e-8", value_parser = number, allow_negative_numbers = true)]

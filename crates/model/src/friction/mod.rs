@@ -208,19 +208,22 @@ pub fn positive(name: &str, value: f64) -> Result<f64> {
 /// What there is once for all laws, from their list: the type of each, [`AnyLaw`], and the dispatch. It is handed a `$`, for the macro
 /// that it makes.
 macro_rules! laws {
-    ($d:tt $($(#[$equation:meta])* $file:ident::$law:ident,)+) => {
+    ($d:tt $(#[doc = $equation:literal] $file:ident::$law:ident,)+) => {
         $(pub use $file::$law;)+
 
         /// Any of the laws, chosen at run time.
         #[derive(Debug, Clone, Copy, PartialEq)]
         #[non_exhaustive]
         pub enum AnyLaw<C = f64> {
-            $($(#[$equation])* $law($law<C>),)+
+            $(#[doc = $equation] $law($law<C>),)+
         }
 
         impl AnyLaw {
             /// The names by which the command line knows the laws.
             pub const NAMES: [&'static str; [$($law::NAME),+].len()] = [$($law::NAME),+];
+
+            /// Where each is from: the paper's equation, or who wrote of it and when.
+            pub const SOURCES: [&'static str; AnyLaw::NAMES.len()] = [$($equation.trim_ascii()),+];
 
             /// The law of that name.
             ///
