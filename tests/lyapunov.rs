@@ -2,12 +2,11 @@
 
 use crate::common as shared;
 use crate::common::lorenz;
-use lorenz::{Field, Lorenz, Rotation};
-use nalgebra::SVector;
+use lorenz::{Field, Lorenz, Quadratic, Rotation};
 use twinslip::Error;
-use twinslip::field::{State, VectorField};
+use twinslip::field::Vector;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::integrate::{Control, Integrator, MAX_STEPS, Taylor, Tolerances};
+use twinslip::integrate::{AnyField, AnyIntegrator, Choice, Control, MAX_STEPS, Tolerances};
 use twinslip::model::{Loading, two_interfaces};
 use twinslip::number::polynomial::Crossing;
 use twinslip::section::{
@@ -18,11 +17,11 @@ use twinslip::section::{
 const ACCURACY: f64 = 1e-12;
 
 fn returns(
-    field: &dyn VectorField<3>,
-    start: State<3>,
-    surface: &Surface<3>,
+    field: &AnyField<'_>,
+    start: [f64; 3],
+    surface: &Surface,
     (skip, returns): (usize, usize),
-) -> ReturnRecord<3> {
+) -> ReturnRecord {
     let watching = Watching {
         skip,
         returns,
@@ -30,17 +29,23 @@ fn returns(
         accuracy: ACCURACY,
         waypoints: true,
     };
-    let mut taylor = Taylor::new(Tolerances::equal(ACCURACY).unwrap(), MAX_STEPS).unwrap();
+    let tolerances = Tolerances::equal(ACCURACY).unwrap();
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS).unwrap();
+    let start = Vector::from_column_slice(&start);
     let see = &mut |_: usize, _: Option<&_>| Control::Continue;
     let record = record(&mut taylor, field, &start, surface, &watching, see);
     assert_eq!(record.ended, Ended::Complete);
-    assert!(Integrator::<3>::work(&taylor).steps > returns);
+    assert!(taylor.work().steps > returns);
     record
 }
 
+fn system<Q: Quadratic + 'static>(of: Q) -> AnyField<'static> {
+    AnyField::new::<3>(Box::new(Field(of)))
+}
+
 /// A plane x_i = offset of a system whose state is the variables themselves.
-fn plane(i: usize, offset: f64) -> Surface<3> {
-    let mut normal = [0.0; 3];
+fn plane(i: usize, offset: f64) -> Surface {
+    let mut normal = Vector::zeros(3);
     normal[i] = 1.0;
     Surface {
         normal,
@@ -51,7 +56,8 @@ fn plane(i: usize, offset: f64) -> Surface<3> {
 }
 
 #[track_caller]
-fn holds<const N: usize>(found: &LyapunovSpectrum<N>, exact: [f64; N], within: f64) {
+fn holds<const N: usize>(found: &LyapunovSpectrum, exact: [f64; N], within: f64) {
+    assert_eq!(found.exponents.len(), N);
     for (found, exact) in found.exponents.iter().zip(exact) {
         let apart = (found.value - exact).abs();
         assert!(
@@ -69,12 +75,14 @@ fn holds<const N: usize>(found: &LyapunovSpectrum<N>, exact: [f64; N], within: f
 #[test]
 fn lorenz() {
     let section = plane(2, 27.0);
-    let start = State::<3>::new(1.0, 1.0, 27.5);
-    let run = returns(&Field(Lorenz), start, &section, (100, 8000));
-    let found = spectrum(&Field(Lorenz), &run).unwrap();
+    let (field, start) = (system(Lorenz), [1.0, 1.0, 27.5]);
+    let run = returns(&field, start, &section, (100, 8000));
+    let found = spectrum(&field, &run).unwrap();
     assert!(found.converged, "{found:?}");
     // The published digits err by half of the last one.
-    let [first, flow, last] = found.exponents;
+    let [first, flow, last] = found.exponents[..] else {
+        panic!("{found:?}");
+    };
     assert!(
         (first.value - 0.9056).abs() < first.uncertainty + 5e-5,
         "{first:?}"
@@ -93,22 +101,22 @@ fn lorenz() {
     );
     let sum: f64 = found.exponents.iter().map(|x| x.value).sum();
     assert!((sum + 41.0 / 3.0).abs() < 1e-9, "{sum}");
-    let regime = verdict(&Field(Lorenz), &section, &run, Some(found.known())).unwrap();
+    let regime = verdict(&field, &section, &run, Some(found.known())).unwrap();
     assert_eq!(regime.regime, Regime::Chaotic, "{regime:?}");
     // Without exponents nobody says so.
-    let regime = verdict(&Field(Lorenz), &section, &run, None).unwrap();
+    let regime = verdict(&field, &section, &run, None).unwrap();
     assert_eq!(regime.regime, Regime::Undecided);
 }
 
 /// Between the blocks of a chaotic run the means scatter as their interval says: those of other stretches lie within it.
 #[test]
 fn intervals_hold_for_other_stretches_of_the_same_run() {
-    let section = plane(2, 27.0);
+    let (field, section) = (system(Lorenz), plane(2, 27.0));
     let mut outside = 0;
     for k in 0..20 {
-        let start = State::<3>::new(1.0 + 0.3 * f64::from(k), 1.0, 27.5);
-        let run = returns(&Field(Lorenz), start, &section, (50, 600));
-        let first = spectrum(&Field(Lorenz), &run).unwrap().exponents[0];
+        let start = [1.0 + 0.3 * f64::from(k), 1.0, 27.5];
+        let run = returns(&field, start, &section, (50, 600));
+        let first = spectrum(&field, &run).unwrap().exponents[0];
         outside += usize::from((first.value - 0.9056).abs() > first.uncertainty);
     }
     // At 99 % two of twenty outside have a chance of one in fifty.
@@ -120,16 +128,11 @@ fn intervals_hold_for_other_stretches_of_the_same_run() {
 
 #[test]
 fn a_rotation_with_a_decaying_direction() {
-    let system = Field(Rotation {
+    let system = system(Rotation {
         frequency: 3.0,
         decay: 0.25,
     });
-    let run = returns(
-        &system,
-        State::<3>::new(1.0, -0.5, 1e-3),
-        &plane(1, 0.0),
-        (0, 400),
-    );
+    let run = returns(&system, [1.0, -0.5, 1e-3], &plane(1, 0.0), (0, 400));
     let found = spectrum(&system, &run).unwrap();
     holds(&found, [0.0, 0.0, -0.25], 1e-8);
     assert!(found.converged);
@@ -137,11 +140,12 @@ fn a_rotation_with_a_decaying_direction() {
 
 #[test]
 fn at_rest_they_are_the_real_parts_of_the_eigenvalues() {
-    let system = Field(Rotation {
+    let system = system(Rotation {
         frequency: 3.0,
         decay: 0.25,
     });
-    let found = at_equilibrium(&system, &SVector::zeros());
+    let found = at_equilibrium(&system, &Vector::zeros(3));
+    assert_eq!(found.len(), 3);
     for (found, exact) in found.iter().zip([0.0, 0.0, -0.25]) {
         assert!((found.value - exact).abs() <= found.uncertainty);
     }
@@ -157,11 +161,11 @@ fn periodic_orbits_have_the_logarithms_of_their_multipliers() {
     for orbit in data["orbits"].as_array().unwrap() {
         let at = |name: &str| shared::number(&orbit[name]);
         let (k, v, period) = (at("K"), at("V_H"), at("period"));
-        let field = two_interfaces(law, Loading::new(v, k).unwrap());
-        let start = State::<3>::new(at("section tau_s"), at("psi1").ln(), at("psi2").ln());
-        let surface = Surface::stress(start[0], Crossing::Upwards);
-        let run = returns(&*field, start, &surface, (400, 200));
-        let found = spectrum(&*field, &run).unwrap();
+        let field = AnyField::new::<3>(two_interfaces(law, Loading::new(v, k).unwrap()));
+        let start = [at("section tau_s"), at("psi1").ln(), at("psi2").ln()];
+        let surface = Surface::stress(3, start[0], Crossing::Upwards);
+        let run = returns(&field, start, &surface, (400, 200));
+        let found = spectrum(&field, &run).unwrap();
         let ln_abs = |i: usize| {
             let (re, im) = shared::complex(&orbit["mu"][i]);
             re.hypot(im).ln()
@@ -199,13 +203,26 @@ fn periodic_orbits_have_the_logarithms_of_their_multipliers() {
 
 #[test]
 fn too_few_returns_are_refused() {
-    let run = returns(
-        &Field(Lorenz),
-        State::<3>::new(1.0, 1.0, 27.5),
-        &plane(2, 27.0),
-        (0, 30),
+    let field = system(Lorenz);
+    let run = returns(&field, [1.0, 1.0, 27.5], &plane(2, 27.0), (0, 30));
+    let refused = spectrum(&field, &run);
+    assert!(
+        matches!(refused, Err(Error::Parameter { .. })),
+        "{refused:?}"
     );
-    let refused = spectrum(&Field(Lorenz), &run);
+}
+
+#[test]
+fn returns_of_another_dimension_are_refused() {
+    let (field, section) = (system(Lorenz), plane(2, 27.0));
+    let mut run = returns(&field, [1.0, 1.0, 27.5], &section, (0, 80));
+    run.returns[70].state = Vector::zeros(2);
+    let refused = spectrum(&field, &run);
+    assert!(
+        matches!(refused, Err(Error::Parameter { .. })),
+        "{refused:?}"
+    );
+    let refused = verdict(&field, &section, &run, None);
     assert!(
         matches!(refused, Err(Error::Parameter { .. })),
         "{refused:?}"

@@ -331,7 +331,14 @@ fn only_the_command_line_speaks_of_flags() {
 /// Above the integrators the number of variables is known when the program runs: only a system written in Rust has it in its type.
 #[test]
 fn only_integrators_and_systems_know_their_dimension_when_compiled() {
-    const ABOVE: [&str; 4] = ["equilibrium", "continuation", "orbit", "bifurcation"];
+    const ABOVE: [&str; 6] = [
+        "equilibrium",
+        "continuation",
+        "section",
+        "orbit",
+        "sweep",
+        "bifurcation",
+    ];
     /// The family of the fields of one such system.
     const OF_SYSTEMS: &str = "OverParameters<S, ";
     for (room, file) in files() {

@@ -10,7 +10,7 @@ use twinslip::section::{Regime, spectrum, verdict};
 fn the_exponents_of_a_torus() {
     let case = Case::paper(0.2, 0.102);
     let record = case.record("auto", 1e-10, case.near_symmetric(0.3), (3000, 2000));
-    let found = spectrum(&*case.field, &record).unwrap();
+    let found = spectrum(&case.field, &record).unwrap();
     assert!(found.converged);
     for x in &found.exponents[..2] {
         assert!(
@@ -19,7 +19,7 @@ fn the_exponents_of_a_torus() {
         );
     }
     assert!(found.exponents[2].value < -1e-4);
-    let made = verdict(&*case.field, &case.surface, &record, Some(found.known())).unwrap();
+    let made = verdict(&case.field, &case.surface, &record, Some(found.known())).unwrap();
     assert_eq!(made.regime, Regime::Torus, "{made:?}");
 }
 
@@ -29,14 +29,14 @@ fn chaos_has_a_positive_exponent() {
     let case = Case::paper(0.14, 0.094);
     for (method, rtol, returns) in [("auto", 1e-10, 6000), ("rodas5p", 1e-7, 1500)] {
         let record = case.record(method, rtol, case.near_symmetric(0.01), (500, returns));
-        let found = spectrum(&*case.field, &record).unwrap();
+        let found = spectrum(&case.field, &record).unwrap();
         println!("{method}: {:?}", found.exponents);
         assert!(
             found.exponents[0].value > found.exponents[0].uncertainty,
             "{method}: {found:?}"
         );
         assert!(found.liouville_defect.abs() < 1e-6 && found.converged);
-        let made = verdict(&*case.field, &case.surface, &record, Some(found.known())).unwrap();
+        let made = verdict(&case.field, &case.surface, &record, Some(found.known())).unwrap();
         assert_eq!(made.regime, Regime::Chaotic, "{method}: {made:?}");
         assert_eq!(case.verdict(&record).regime, Regime::Undecided);
     }
@@ -135,8 +135,8 @@ fn the_bias_of_a_coarse_record_is_counted() {
     let case = Case::paper(0.2, 0.102);
     let start = case.near_symmetric(0.3);
     let of = |rtol: f64| {
-        let record = case.record("taylor", rtol, start, (3000, 2000));
-        spectrum(&*case.field, &record).unwrap()
+        let record = case.record("taylor", rtol, start.clone(), (3000, 2000));
+        spectrum(&case.field, &record).unwrap()
     };
     let (coarse, fine) = (of(1e-4), of(1e-12));
     for (coarse, fine) in coarse.exponents.iter().zip(&fine.exponents) {

@@ -2,8 +2,9 @@
 
 use crate::common::among::{Among, mixed};
 use crate::common::{data, number};
-use twinslip::field::{State, VectorField};
-use twinslip::integrate::{Control, MAX_STEPS, Taylor, Tolerances};
+use twinslip::Error;
+use twinslip::field::{Matrix, State, Vector};
+use twinslip::integrate::{AnyField, AnyIntegrator, Choice, Control, MAX_STEPS, Tolerances};
 use twinslip::model::Smooth;
 use twinslip::model::classics::{Langford, Lorenz};
 use twinslip::number::polynomial::Crossing;
@@ -15,18 +16,28 @@ use twinslip::section::{
 use twinslip::series::Equations;
 
 /// A plane normal . x = offset, passed upwards.
-fn plane<const N: usize>(normal: State<N>, offset: f64) -> Surface<N> {
+fn plane(normal: Vector, offset: f64) -> Surface {
     Surface {
-        normal: normal.into(),
+        normal,
         offset,
         direction: Crossing::Upwards,
         chart: SeriesVariables::Plain,
     }
 }
 
+/// A point of three variables, among others.
+fn point<const N: usize>(x: [f64; 3]) -> Vector {
+    Vector::from_column_slice(mixed::<N>(&State::from(x)).as_slice())
+}
+
 /// A plane of three variables, among others.
-fn of_three<const N: usize>(normal: [f64; 3], offset: f64) -> Surface<N> {
-    plane(mixed(&State::from(normal)), offset)
+fn of_three<const N: usize>(normal: [f64; 3], offset: f64) -> Surface {
+    plane(point::<N>(normal), offset)
+}
+
+fn taylor(tolerance: f64) -> AnyIntegrator {
+    let tolerances = Tolerances::equal(tolerance).unwrap();
+    AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS).unwrap()
 }
 
 fn watching(skip: usize, returns: usize) -> Watching {
@@ -40,12 +51,12 @@ fn watching(skip: usize, returns: usize) -> Watching {
 }
 
 /// The exponents along a run from a start on or near what attracts it.
-fn exponents<const N: usize>(
-    field: &dyn VectorField<N>,
-    start: &State<N>,
-    surface: &Surface<N>,
+fn exponents(
+    field: &AnyField<'_>,
+    start: &Vector,
+    surface: &Surface,
     returns: usize,
-) -> (ReturnRecord<N>, LyapunovSpectrum<N>) {
+) -> (ReturnRecord, LyapunovSpectrum) {
     let see = &mut |_: usize, _: Option<&_>| Control::Continue;
     let watching = watching(0, returns);
     let run = record_finely(field, start, surface, &watching, MAX_STEPS, see).unwrap();
@@ -109,10 +120,11 @@ fn check_orbit<S: Equations<N, P>, const N: usize, const P: usize>(
         .iter()
         .map(number)
         .collect();
-    let point = State::<N>::from_vec(point);
+    let point = Vector::from_vec(point);
+    let field = AnyField::of::<N>(&field);
     let multipliers = record["multipliers"].as_array().unwrap();
     let logs: Vec<f64> = multipliers.iter().map(|m| number(&m["ln_abs"])).collect();
-    let mut normal = State::<N>::zeros();
+    let mut normal = Vector::zeros(N);
     normal[1] = 1.0;
     // In the direction in which it passes its point.
     let mut surface = plane(normal, point[1]);
@@ -126,18 +138,17 @@ fn check_orbit<S: Equations<N, P>, const N: usize, const P: usize>(
     assert_holds(&found.exponents, &exact, 0.02);
     assert!(found.converged);
 
-    let mut taylor = Taylor::new(Tolerances::equal(1e-14).unwrap(), MAX_STEPS).unwrap();
-    let (mut y, mut time) = (point, 0.0);
-    let mut derivative = nalgebra::SMatrix::<f64, N, N>::identity();
+    let mut taylor = taylor(1e-14);
+    let (mut y, mut time) = (point.clone(), 0.0);
+    let mut derivative = Matrix::identity(N, N);
     while time < period - 1e-6 {
         let landing = return_map(&field, &surface, &mut taylor, &y, 10.0 * period).unwrap();
         derivative = landing.derivative * derivative;
         (y, time) = (landing.state, time + landing.time);
     }
     assert!((time - period).abs() < 1e-11, "{time}, {period}");
-    assert!((y - point).amax() < 1e-11, "{y}");
-    let dense = nalgebra::DMatrix::from_fn(N, N, |i, j| derivative[(i, j)]);
-    let mut moduli: Vec<f64> = dense
+    assert!((&y - point).amax() < 1e-11, "{y}");
+    let mut moduli: Vec<f64> = derivative
         .complex_eigenvalues()
         .iter()
         .map(|z| z.norm())
@@ -190,9 +201,10 @@ fn langford<const N: usize>(rho: f64) -> Smooth<Among<Langford>, N, 2> {
 fn check_circle<const N: usize>() {
     const RHO: f64 = 1.0;
     let radius = Langford::radius(RHO);
-    let start = mixed::<N>(&State::<3>::new(radius, 0.0, 0.7));
-    let surface = of_three([0.0, 1.0, 0.0], 0.0);
-    let (_, found) = exponents(&langford::<N>(RHO), &start, &surface, 400);
+    let start = point::<N>([radius, 0.0, 0.7]);
+    let surface = of_three::<N>([0.0, 1.0, 0.0], 0.0);
+    let field = langford::<N>(RHO);
+    let (_, found) = exponents(&AnyField::of::<N>(&field), &start, &surface, 400);
     let pair = 0.5 * (1.0 - 0.49 - RHO * radius * radius);
     let mut exact = vec![0.0, pair, pair];
     exact.extend(of_others::<N>());
@@ -209,15 +221,15 @@ fn exponents_of_a_circle_among_others_are_known() {
 }
 
 /// The regime on the torus that the orbit sheds, and how fast it winds.
-fn torus<const N: usize>() -> RegimeVerdict<N> {
+fn torus<const N: usize>() -> RegimeVerdict {
     let rho = 0.98 * Langford::torus();
     let field = langford::<N>(rho);
-    let start = mixed::<N>(&State::<3>::new(Langford::radius(rho) + 0.05, 0.0, 0.7));
-    let surface = of_three([0.0, 1.0, 0.0], 0.0);
-    let mut taylor = Taylor::new(Tolerances::equal(1e-12).unwrap(), MAX_STEPS).unwrap();
+    let field = AnyField::of::<N>(&field);
+    let start = point::<N>([Langford::radius(rho) + 0.05, 0.0, 0.7]);
+    let surface = of_three::<N>([0.0, 1.0, 0.0], 0.0);
     let see = &mut |_: usize, _: Option<&_>| Control::Continue;
     let run = record(
-        &mut taylor,
+        &mut taylor(1e-12),
         &field,
         &start,
         &surface,
@@ -242,16 +254,9 @@ fn a_torus_among_others_winds_as_in_three_dimensions() {
         (rotation.value - turns).abs() < 0.02,
         "{rotation:?}, {turns}"
     );
-    let four = torus::<4>();
-    let six = torus::<6>();
-    let twelve = torus::<12>();
-    for (regime, curve, n) in [
-        (four.regime, four.curve, 4),
-        (six.regime, six.curve, 6),
-        (twelve.regime, twelve.curve, 12),
-    ] {
-        assert_eq!(regime, Regime::Torus, "{n}");
-        let other = curve.unwrap().rotation;
+    for (told, n) in [(torus::<4>(), 4), (torus::<6>(), 6), (torus::<12>(), 12)] {
+        assert_eq!(told.regime, Regime::Torus, "{n}");
+        let other = told.curve.unwrap().rotation;
         let apart = (other.value - rotation.value).abs();
         assert!(
             apart < other.uncertainty + rotation.uncertainty,
@@ -266,8 +271,9 @@ fn chaos<const N: usize>() {
         equations: Among(Lorenz::classical()),
         parameters: [28.0, 8.0 / 3.0],
     };
-    let surface = of_three([0.0, 0.0, 1.0], 27.0);
-    let start = mixed::<N>(&State::<3>::new(1.0, 1.0, 27.5));
+    let field = AnyField::of::<N>(&field);
+    let surface = of_three::<N>([0.0, 0.0, 1.0], 27.0);
+    let start = point::<N>([1.0, 1.0, 27.5]);
     let (run, found) = exponents(&field, &start, &surface, 3000);
     // Sprott, J. C. (2003). Chaos and Time-Series Analysis, table A.3.
     let mut exact = vec![0.9056, 0.0, -14.5723];
@@ -289,4 +295,51 @@ fn chaos<const N: usize>() {
 fn chaos_is_told_in_any_number_of_dimensions() {
     chaos::<4>();
     chaos::<6>();
+}
+
+/// Starts and surfaces of another dimension than the field's end in a typed error.
+#[test]
+fn points_and_surfaces_of_another_dimension_are_refused() {
+    let field = langford::<4>(1.0);
+    let field = AnyField::of::<4>(&field);
+    let (start, surface) = (
+        point::<4>([1.0, 0.0, 0.7]),
+        of_three::<4>([0.0, 1.0, 0.0], 0.0),
+    );
+    let (short, flat) = (
+        point::<3>([1.0, 0.0, 0.7]),
+        of_three::<3>([0.0, 1.0, 0.0], 0.0),
+    );
+    for (start, surface) in [(&short, &surface), (&start, &flat)] {
+        let see = &mut |_: usize, _: Option<&_>| Control::Continue;
+        let watching = watching(0, 3);
+        let run = record(&mut taylor(1e-9), &field, start, surface, &watching, see);
+        assert!(
+            matches!(run.ended, Ended::Failed(Error::Parameter { .. })),
+            "{:?}",
+            run.ended
+        );
+        assert!(run.returns.is_empty() && run.waypoints.is_empty());
+        let landing = return_map(&field, surface, &mut taylor(1e-9), start, 10.0);
+        assert!(matches!(landing, Err(Error::Parameter { .. })));
+    }
+}
+
+/// Only Taylor's method has the series that a return map lands by.
+#[test]
+fn a_return_map_needs_series() {
+    let field = langford::<3>(1.0);
+    let field = AnyField::of::<3>(&field);
+    let surface = of_three::<3>([0.0, 1.0, 0.0], 0.0);
+    let tolerances = Tolerances::equal(1e-9).unwrap();
+    let mut rodas =
+        AnyIntegrator::new(Choice::named("rodas5p").unwrap(), tolerances, MAX_STEPS).unwrap();
+    let landing = return_map(
+        &field,
+        &surface,
+        &mut rodas,
+        &point::<3>([1.0, 0.0, 0.7]),
+        10.0,
+    );
+    assert!(matches!(landing, Err(Error::NotAnalytic)));
 }

@@ -6,7 +6,7 @@
 use super::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, Matrix, State, Vector, VectorField};
-use crate::number::polynomial::Crossing;
+use crate::number::{DoubleDouble, polynomial::Crossing};
 use crate::series::{Expansion, Jet3, Section, Tangent, Zeros};
 
 /// A vector field of any dimension.
@@ -71,6 +71,11 @@ impl<'a> AnyField<'a> {
     /// The trace of J(y): the rate at which volumes grow.
     pub fn trace(&self, y: &[f64]) -> f64 {
         self.0.trace(y)
+    }
+
+    /// J(y)^-1 f(y): how far Newton's method says that y is from an equilibrium. `None` where it says nothing.
+    pub fn newton_step(&self, y: &[f64]) -> Option<Vector> {
+        self.0.newton_step(y)
     }
 
     /// D2f(y)[u, v].
@@ -295,10 +300,35 @@ pub struct AnyStep<'a> {
     pub t1: f64,
     /// State at `t1`.
     pub y1: &'a [f64],
+    /// A bound on how far the first component strays from its value at `t0`, of methods to which it costs nothing; else
+    /// infinity.
+    pub reach: f64,
+    dense: &'a dyn Fn(f64) -> Vector,
     series: &'a dyn Fn() -> Option<&'a dyn StepSeries>,
 }
 
 impl<'a> AnyStep<'a> {
+    /// What `see` makes of a step of a field whose dimension the compiler knows.
+    pub(crate) fn of<const N: usize, T>(
+        step: &Step<'_, N>,
+        see: impl FnOnce(&AnyStep<'_>) -> T,
+    ) -> T {
+        see(&AnyStep {
+            t0: step.t0,
+            y0: step.y0.as_slice(),
+            t1: step.t1,
+            y1: step.y1.as_slice(),
+            reach: step.reach,
+            dense: &|t| vector(&(step.dense)(t)),
+            series: &|| step.series().map(|series| series as &dyn StepSeries),
+        })
+    }
+
+    /// The continuous solution at a time within the step.
+    pub fn dense(&self, t: f64) -> Vector {
+        (self.dense)(t)
+    }
+
     /// The series at `t0`, of methods that step by one.
     pub fn series(&self) -> Option<&'a dyn StepSeries> {
         (self.series)()
@@ -307,6 +337,8 @@ impl<'a> AnyStep<'a> {
 
 /// The power series of a step in any dimension: an [`Expansion`].
 pub trait StepSeries {
+    /// The time of the beginning, in 31 digits.
+    fn begin(&self) -> DoubleDouble;
     /// The time from the beginning of the step to its end.
     fn length(&self) -> f64;
     /// The unit of time.
@@ -320,7 +352,7 @@ pub trait StepSeries {
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
     fn crossings(
         &self,
-        section: &AnySection,
+        section: AnySection<'_>,
         direction: Option<Crossing>,
         zeros: &mut Zeros,
         found: &mut Vec<AnyPassage>,
@@ -328,19 +360,19 @@ pub trait StepSeries {
 }
 
 /// A function that is watched for zeros, as [`Section`].
-#[derive(Debug, Clone, PartialEq)]
-pub enum AnySection {
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AnySection<'a> {
     /// normal . x - offset.
     Plane {
         /// The plane's normal.
-        normal: Vector,
+        normal: &'a Vector,
         /// Its distance from 0 in the length of the normal.
         offset: f64,
     },
     /// The time derivative of normal . x.
     Extremum {
         /// What is largest or smallest.
-        normal: Vector,
+        normal: &'a Vector,
     },
 }
 
@@ -357,6 +389,10 @@ pub struct AnyPassage {
 }
 
 impl<const N: usize> StepSeries for Expansion<N> {
+    fn begin(&self) -> DoubleDouble {
+        self.begin
+    }
+
     fn length(&self) -> f64 {
         self.length
     }
@@ -379,7 +415,7 @@ impl<const N: usize> StepSeries for Expansion<N> {
 
     fn crossings(
         &self,
-        section: &AnySection,
+        section: AnySection<'_>,
         direction: Option<Crossing>,
         zeros: &mut Zeros,
         found: &mut Vec<AnyPassage>,
@@ -388,7 +424,7 @@ impl<const N: usize> StepSeries for Expansion<N> {
         let section = match section {
             AnySection::Plane { normal, offset } => Section::Plane {
                 normal: components(normal),
-                offset: *offset,
+                offset,
             },
             AnySection::Extremum { normal } => Section::Extremum {
                 normal: components(normal),
@@ -410,6 +446,7 @@ trait Flows: Send + Sync {
     fn f(&self, y: &[f64]) -> Vector;
     fn jacobian(&self, y: &[f64]) -> Matrix;
     fn trace(&self, y: &[f64]) -> f64;
+    fn newton_step(&self, y: &[f64]) -> Option<Vector>;
     fn second_derivative(&self, y_u_v: [&[f64]; 3]) -> Vector;
     fn parameter_names(&self) -> &[&'static str];
     fn parameter_derivative(&self, y: &[f64], place: usize) -> Vector;
@@ -433,6 +470,32 @@ trait Flows: Send + Sync {
         start: &[Jet3],
         plane: (&[f64], &[f64]),
     ) -> Result<(Jet3, Vec<Jet3>)>;
+}
+
+/// The solution of A x = b by elimination with partial pivoting: runs ask for it so often that it shall not allocate.
+fn solve<const N: usize>(mut a: Jacobian<N>, mut b: State<N>) -> Option<State<N>> {
+    for k in 0..N {
+        let pivot = (k..N).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
+        if a[(pivot, k)] == 0.0 {
+            return None;
+        }
+        a.swap_rows(k, pivot);
+        b.swap_rows(k, pivot);
+        for i in k + 1..N {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k..N {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..N).rev() {
+        for j in k + 1..N {
+            b[k] -= a[(k, j)] * b[j];
+        }
+        b[k] /= a[(k, k)];
+    }
+    Some(b)
 }
 
 /// A field of N variables.
@@ -477,6 +540,12 @@ impl<const N: usize> Flows for Static<'_, N> {
 
     fn trace(&self, y: &[f64]) -> f64 {
         self.field().jacobian(&state(y)).trace()
+    }
+
+    fn newton_step(&self, y: &[f64]) -> Option<Vector> {
+        let y = state(y);
+        let step = solve(self.field().jacobian(&y), self.field().f(&y))?;
+        step.iter().all(|x| x.is_finite()).then(|| vector(&step))
     }
 
     fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vector {
@@ -539,14 +608,7 @@ impl<const N: usize> Flows for Static<'_, N> {
         let (end, work) = match observer {
             None => run(None),
             Some(observer) => run(Some(&mut |step: &Step<'_, N>| {
-                let series = || step.series().map(|series| series as &dyn StepSeries);
-                observer(&AnyStep {
-                    t0: step.t0,
-                    y0: step.y0.as_slice(),
-                    t1: step.t1,
-                    y1: step.y1.as_slice(),
-                    series: &series,
-                })
+                AnyStep::of(step, &mut *observer)
             })),
         };
         by.work = work;

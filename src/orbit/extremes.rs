@@ -29,15 +29,11 @@ pub(super) fn extremes(
     const FINE: f64 = 1e-14;
     let mut tracer = Tracer::taylor(FINE)?;
     let dimension = field.dimension();
+    let axes: Vec<_> = (0..dimension).map(|i| axis(dimension, i)).collect();
     let plane = AnySection::Plane {
-        normal: axis(dimension, 0),
+        normal: &axes[0],
         offset: level,
     };
-    let turning: Vec<AnySection> = (0..dimension)
-        .map(|i| AnySection::Extremum {
-            normal: axis(dimension, i),
-        })
-        .collect();
     let mut all = Extremes {
         stress: (f64::INFINITY, f64::NEG_INFINITY),
         slip_rate_max: f64::NEG_INFINITY,
@@ -61,14 +57,15 @@ pub(super) fn extremes(
                     return Ok(Control::Continue);
                 };
                 found.clear();
-                for (section, zeros) in turning.iter().zip(&mut turns_of) {
+                for (normal, zeros) in axes.iter().zip(&mut turns_of) {
+                    let section = AnySection::Extremum { normal };
                     series.crossings(section, None, zeros, &mut found);
                 }
                 found.iter().for_each(|turn| all.see(turn.state.as_slice()));
                 if all.passage.is_none() {
                     found.clear();
                     let down = Some(Crossing::Downwards);
-                    series.crossings(&plane, down, &mut through, &mut found);
+                    series.crossings(plane, down, &mut through, &mut found);
                     all.passage = found.drain(..).next().map(|passage| passage.state);
                 }
                 let end = series.length() / series.unit();

@@ -77,9 +77,8 @@ impl Extent {
         shooting: &ShootingNodes,
         tracer: &mut Tracer,
     ) -> Result<()> {
-        let section = AnySection::Extremum {
-            normal: axis(field.dimension(), 0),
-        };
+        let stress = axis(field.dimension(), 0);
+        let section = AnySection::Extremum { normal: &stress };
         let (mut turns, mut terms) = (Vec::new(), Vec::new());
         for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             let mut zeros = Zeros::default();
@@ -94,7 +93,7 @@ impl Extent {
                         return Ok(Control::Continue);
                     };
                     turns.clear();
-                    series.crossings(&section, None, &mut zeros, &mut turns);
+                    series.crossings(section, None, &mut zeros, &mut turns);
                     turns
                         .iter()
                         .for_each(|turn| self.see(turn.state.as_slice()));

@@ -29,8 +29,9 @@ pub(super) fn passages(
     level: f64,
     most: usize,
 ) -> Result<Passages> {
+    let stress = axis(start.len(), 0);
     let section = AnySection::Plane {
-        normal: axis(start.len(), 0),
+        normal: &stress,
         offset: level,
     };
     let (mut zeros, mut here) = (Zeros::default(), Vec::new());
@@ -43,7 +44,7 @@ pub(super) fn passages(
         Some(&mut |step| {
             range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
             if let Some(series) = step.series() {
-                series.crossings(&section, Some(Crossing::Downwards), &mut zeros, &mut here);
+                series.crossings(section, Some(Crossing::Downwards), &mut zeros, &mut here);
                 for passage in here.drain(..) {
                     found.push((step.t0 + passage.time, passage.state));
                 }

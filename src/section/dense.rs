@@ -2,10 +2,10 @@
 
 use super::surface::Surface;
 use crate::error::Result;
-use crate::field::VectorField;
-use crate::integrate::Step;
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnyPassage, AnyStep};
 use crate::number::bracketed_root;
-use crate::series::{Passage, Zeros};
+use crate::series::Zeros;
 
 /// Parts of a step. As the slope is looked at too, a crossing is missed only where the dense output turns three times in one
 /// of them.
@@ -13,24 +13,24 @@ const PARTS: usize = 4;
 
 /// Appends the crossings in the surface's direction within a step that has no series; `zeros` carries the sign of the height
 /// over steps of either kind.
-pub(super) fn crossings<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    step: &Step<'_, N>,
+pub(super) fn crossings(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    step: &AnyStep<'_>,
     zeros: &mut Zeros,
-    found: &mut Vec<Passage<N>>,
+    found: &mut Vec<AnyPassage>,
 ) -> Result<()> {
     let at = |t: f64| {
         if t == step.t1 {
-            *step.y1
+            Vector::from_column_slice(step.y1)
         } else {
-            (step.dense)(t)
+            step.dense(t)
         }
     };
     let knot = |t: f64| {
         let y = at(t);
-        let slope = surface.gradient(&y).dot(&field.f(&y));
-        (t, surface.height(&y), slope)
+        let slope = surface.rate(y.as_slice(), &field.f(&y));
+        (t, surface.height(y.as_slice()), slope)
     };
     let mut left = knot(step.t0);
     if zeros.sign == 0.0 {
@@ -43,14 +43,14 @@ pub(super) fn crossings<const N: usize>(
             step.t0 + (step.t1 - step.t0) * part as f64 / PARTS as f64
         };
         let right = knot(t);
-        let mut knots = vec![right];
+        let mut turn = None;
         if left.2 * right.2 < 0.0 {
             let slope = |t: f64| (knot(t).2, f64::NAN);
             if let Ok(t) = bracketed_root("the extremum of a height", left.0, right.0, slope) {
-                knots.insert(0, knot(t));
+                turn = Some(knot(t));
             }
         }
-        for right in knots {
+        for right in turn.into_iter().chain([right]) {
             // At 0 the next knot decides.
             if right.1 * zeros.sign < 0.0 {
                 zeros.sign = -zeros.sign;
@@ -65,10 +65,10 @@ pub(super) fn crossings<const N: usize>(
                     left.0
                 };
                 if zeros.sign == surface.sign_behind() {
-                    found.push(Passage {
+                    found.push(AnyPassage {
                         time: t,
                         crossing: surface.direction,
-                        state: at(t).data.0[0],
+                        state: at(t),
                     });
                 }
             }

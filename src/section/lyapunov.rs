@@ -12,12 +12,14 @@
 //! systems and for Hamiltonian systems; a method for computing all of them. Meccanica 15, 9-20 and 21-30.
 
 use super::curve::weighted_mean;
-use super::rest::newton_step;
 use super::returns::{Return, ReturnRecord, See, Watching, record};
 use super::surface::Surface;
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{Control, MAX_STEPS, Taylor, Tolerances};
+use crate::field::{Matrix, Vector};
+use crate::integrate::{
+    AnyField, AnyIntegrator, Choice, Control, DerivativesAlongArcs, MAX_STEPS, Tolerances,
+    of_dimension,
+};
 use crate::number::Uncertain;
 use nalgebra::{Complex, DMatrix};
 
@@ -41,12 +43,12 @@ const BIAS: f64 = 10.0;
 const EIGENVALUES: f64 = 8.0 * f64::EPSILON;
 
 /// The Lyapunov exponents of a run, in descending order.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct LyapunovSpectrum<const N: usize> {
+pub struct LyapunovSpectrum {
     /// Exponents in one over time, each with an interval of 99 % confidence from block averages and the bias of the run. That of
     /// the flow's own direction is zero; its interval is what the run and the tangents can tell of that.
-    pub exponents: [Uncertain; N],
+    pub exponents: Vec<Uncertain>,
     /// Whether the two halves of the run agree on all of them within these intervals. If not, there is no saying where the
     /// exponents end.
     pub converged: bool,
@@ -68,7 +70,7 @@ pub struct Exponents<'a> {
     pub converged: bool,
 }
 
-impl<const N: usize> LyapunovSpectrum<N> {
+impl LyapunovSpectrum {
     /// The largest exponent but that along the flow; `None` where there is no other.
     pub fn across_flow(&self) -> Option<Uncertain> {
         let mut others = self.exponents.iter();
@@ -85,11 +87,11 @@ impl<const N: usize> LyapunovSpectrum<N> {
 }
 
 /// What a part of the run does to the perturbations.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct GrowthSegment<const N: usize> {
+#[derive(Debug, Clone)]
+pub(crate) struct GrowthSegment {
     pub time: f64,
     /// Logarithms of the growth of the orthogonal perturbations, along the flow first.
-    pub growth: [f64; N],
+    pub growth: Vec<f64>,
     pub log_determinant: f64,
 }
 
@@ -100,12 +102,9 @@ pub(crate) struct GrowthSegment<const N: usize> {
 /// sum of all, which is the mean of the trace.
 ///
 /// # Errors
-/// [`Error::Parameter`] for fewer than 60 returns, [`Error::NonFinite`] where the field vanishes or a tangent does, and those
-/// of [`Taylor::derivatives`].
-pub fn spectrum<const N: usize>(
-    field: &dyn VectorField<N>,
-    record: &ReturnRecord<N>,
-) -> Result<LyapunovSpectrum<N>> {
+/// [`Error::Parameter`] for fewer than 60 returns and for those of another dimension, [`Error::NonFinite`] where the field
+/// vanishes or a tangent does, and those of [`AnyIntegrator::derivatives`].
+pub fn spectrum(field: &AnyField<'_>, record: &ReturnRecord) -> Result<LyapunovSpectrum> {
     let found = spectrum_watched(field, record, &mut |_| Control::Continue)?;
     Ok(found.expect("nobody stops it"))
 }
@@ -115,15 +114,15 @@ pub fn spectrum<const N: usize>(
 ///
 /// # Errors
 /// [`Error::Parameter`] for no steps.
-pub fn record_finely<const N: usize>(
-    field: &dyn VectorField<N>,
-    start: &State<N>,
-    surface: &Surface<N>,
+pub fn record_finely(
+    field: &AnyField<'_>,
+    start: &Vector,
+    surface: &Surface,
     watching: &Watching,
     max_steps: usize,
-    see: See<'_, N>,
-) -> Result<ReturnRecord<N>> {
-    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, max_steps)?;
+    see: See<'_>,
+) -> Result<ReturnRecord> {
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, max_steps)?;
     let watching = Watching {
         skip: 0,
         accuracy: TOLERANCE,
@@ -137,11 +136,11 @@ pub fn record_finely<const N: usize>(
 ///
 /// # Errors
 /// Those of [`spectrum`].
-pub fn spectrum_watched<const N: usize>(
-    field: &dyn VectorField<N>,
-    record: &ReturnRecord<N>,
+pub fn spectrum_watched(
+    field: &AnyField<'_>,
+    record: &ReturnRecord,
     see: &mut dyn FnMut(f64) -> Control,
-) -> Result<Option<LyapunovSpectrum<N>>> {
+) -> Result<Option<LyapunovSpectrum>> {
     if record.returns.len() < FEWEST_FOR_EXPONENTS {
         return Err(Error::parameter(
             "returns",
@@ -149,13 +148,16 @@ pub fn spectrum_watched<const N: usize>(
             "at least 60 for exponents, which are means with an uncertainty",
         ));
     }
+    for point in record.returns.iter().chain(&record.waypoints) {
+        of_dimension(point.state.len(), field.dimension())?;
+    }
     let Some(segments) = segments(field, record, see)? else {
         return Ok(None);
     };
     let aligned = (ALIGNMENT * segments.len() as f64) as usize;
     let relative = SYSTEMATIC.max(PER_ACCURACY * record.accuracy);
     // The flow's own growth is that of |f|, which the ends of the run alone decide.
-    let speed = |point: &Return<N>| field.f(&point.state).norm().ln();
+    let speed = |point: &Return| field.f(&point.state).norm().ln();
     let returns = &record.returns[aligned..];
     let gained = speed(&returns[returns.len() - 1]) - speed(&returns[0]);
     Ok(Some(summary(&segments[aligned..], relative, gained)))
@@ -164,23 +166,25 @@ pub fn spectrum_watched<const N: usize>(
 /// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order. They err by
 /// what another step of Newton's method to the equilibrium changes, and by the rounding of the eigenvalues, each as far as its
 /// condition lets it.
-pub fn at_equilibrium<const N: usize>(
-    field: &dyn VectorField<N>,
-    equilibrium: &State<N>,
-) -> [Uncertain; N] {
+///
+/// # Panics
+/// Where the equilibrium has another number of components than the field has variables.
+pub fn at_equilibrium(field: &AnyField<'_>, equilibrium: &Vector) -> Vec<Uncertain> {
     let before = eigenvalues(&field.jacobian(equilibrium));
-    let step = newton_step(field, equilibrium).unwrap_or_else(State::zeros);
-    let jacobian = field.jacobian(&(equilibrium - step));
+    let jacobian = match field.newton_step(equilibrium.as_slice()) {
+        Some(step) => field.jacobian(&(equilibrium - step)),
+        None => field.jacobian(equilibrium),
+    };
     let values = eigenvalues(&jacobian);
-    std::array::from_fn(|i| {
+    let exponent = |i: usize| {
         let moved = (values[i].re - before[i].re).abs();
         Uncertain::new(values[i].re, moved + rounding(&jacobian, &values, i))
-    })
+    };
+    (0..values.len()).map(exponent).collect()
 }
 
 /// The eigenvalues, those with the largest real part first.
-fn eigenvalues<const N: usize>(matrix: &Jacobian<N>) -> Vec<Complex<f64>> {
-    let matrix = DMatrix::from_iterator(N, N, matrix.iter().copied());
+fn eigenvalues(matrix: &Matrix) -> Vec<Complex<f64>> {
     let mut values: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();
     values.sort_by(|a, b| b.re.total_cmp(&a.re));
     values
@@ -188,16 +192,16 @@ fn eigenvalues<const N: usize>(matrix: &Jacobian<N>) -> Vec<Complex<f64>> {
 
 /// What an eigenvalue errs by: the product of the other factors J - lambda_j is what the adjugate of J - lambda_i is, and over
 /// the derivative of the characteristic polynomial the condition of lambda_i. Where they coincide they err by a root.
-fn rounding<const N: usize>(matrix: &Jacobian<N>, values: &[Complex<f64>], i: usize) -> f64 {
-    let size = matrix.norm();
+fn rounding(matrix: &Matrix, values: &[Complex<f64>], i: usize) -> f64 {
+    let (n, size) = (matrix.nrows(), matrix.norm());
     let matrix = matrix.map(|x| Complex::new(x, 0.0));
-    let identity = nalgebra::SMatrix::<Complex<f64>, N, N>::identity();
-    let (mut adjugate, mut slope) = (identity, 1.0);
+    let identity = DMatrix::<Complex<f64>>::identity(n, n);
+    let (mut adjugate, mut slope) = (identity.clone(), 1.0);
     for (_, other) in values.iter().enumerate().filter(|(j, _)| *j != i) {
-        adjugate *= matrix - identity * *other;
+        adjugate *= &matrix - &identity * *other;
         slope *= (values[i] - other).norm();
     }
-    let worst = size * EIGENVALUES.powf(1.0 / N as f64);
+    let worst = size * EIGENVALUES.powf(1.0 / n as f64);
     let simple = EIGENVALUES * size * adjugate.norm() / slope;
     if simple.is_finite() {
         simple.min(worst)
@@ -207,29 +211,30 @@ fn rounding<const N: usize>(matrix: &Jacobian<N>, values: &[Complex<f64>], i: us
 }
 
 /// From each return to the next; `None` if it was stopped.
-fn segments<const N: usize>(
-    field: &dyn VectorField<N>,
-    record: &ReturnRecord<N>,
+fn segments(
+    field: &AnyField<'_>,
+    record: &ReturnRecord,
     see: &mut dyn FnMut(f64) -> Control,
-) -> Result<Option<Vec<GrowthSegment<N>>>> {
-    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
-    let start = record.returns[0];
+) -> Result<Option<Vec<GrowthSegment>>> {
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+    let mut arcs = taylor.arcs(field, &[])?;
+    let start = &record.returns[0];
     let mut frame = beginning(&field.f(&start.state));
     orthonormalise(&mut frame, start.time)?;
     let mut points = record.waypoints.iter().peekable();
     let mut segments = Vec::with_capacity(record.returns.len());
     for pair in record.returns.windows(2) {
-        let (mut here, end) = (pair[0], pair[1]);
+        let (mut here, end) = (&pair[0], &pair[1]);
         let mut segment = GrowthSegment {
             time: end.time - here.time,
-            growth: [0.0; N],
+            growth: vec![0.0; field.dimension()],
             log_determinant: 0.0,
         };
         while here.time < end.time {
-            let between = |point: &&Return<N>| point.time < end.time;
-            let next = points.next_if(between).copied().unwrap_or(end);
+            let between = |point: &&Return| point.time < end.time;
+            let next = points.next_if(between).unwrap_or(end);
             if next.time > here.time {
-                carry(field, &mut taylor, (&here, &next), &mut frame, &mut segment)?;
+                carry(field, &mut arcs, (here, next), &mut frame, &mut segment)?;
                 here = next;
             }
         }
@@ -242,24 +247,24 @@ fn segments<const N: usize>(
 }
 
 /// The flow's direction, and others that lie in no subspace that a symmetry might keep.
-fn beginning<const N: usize>(f: &State<N>) -> Jacobian<N> {
-    let mut frame: Jacobian<N> =
-        Jacobian::from_fn(|i, j| (0.7 + 1.3 * i as f64 + 2.1 * j as f64).cos());
+fn beginning(f: &Vector) -> Matrix {
+    let n = f.len();
+    let mut frame = Matrix::from_fn(n, n, |i, j| (0.7 + 1.3 * i as f64 + 2.1 * j as f64).cos());
     frame.set_column(0, f);
     frame
 }
 
 /// Carries the perturbations over a piece of a segment.
-fn carry<const N: usize>(
-    field: &dyn VectorField<N>,
-    taylor: &mut Taylor,
-    (here, next): (&Return<N>, &Return<N>),
-    frame: &mut Jacobian<N>,
-    segment: &mut GrowthSegment<N>,
+fn carry(
+    field: &AnyField<'_>,
+    arcs: &mut DerivativesAlongArcs<'_>,
+    (here, next): (&Return, &Return),
+    frame: &mut Matrix,
+    segment: &mut GrowthSegment,
 ) -> Result<()> {
     let span = (0.0, next.time - here.time);
-    let (end, tangent) = taylor.derivatives(field, span, &here.state, &[])?;
-    *frame = Jacobian::from(tangent.start) * *frame;
+    let (end, tangent) = arcs.derivatives(span, &here.state)?;
+    *frame = tangent.start * &*frame;
     let along = frame.column(0).norm().ln();
     // The flow's direction anew at each point: it would turn into one that grows.
     frame.set_column(0, &field.f(&end));
@@ -268,15 +273,16 @@ fn carry<const N: usize>(
     for (sum, growth) in segment.growth.iter_mut().zip(growth) {
         *sum += growth;
     }
-    segment.log_determinant += tangent.log_determinant;
+    // Taylor's method makes it.
+    segment.log_determinant += tangent.log_determinant.ok_or(Error::NotAnalytic)?;
     Ok(())
 }
 
 /// Makes the columns orthonormal from the first on, twice over for what rounding leaves; the logarithms of their lengths.
-fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[f64; N]> {
-    let mut lengths = [0.0; N];
+fn orthonormalise(columns: &mut Matrix, t: f64) -> Result<Vec<f64>> {
+    let mut lengths = vec![0.0; columns.ncols()];
     for (j, of_column) in lengths.iter_mut().enumerate() {
-        let mut column: State<N> = columns.column(j).into_owned();
+        let mut column = columns.column(j).into_owned();
         let mut length = 0.0;
         for _ in 0..2 {
             for i in 0..j {
@@ -301,14 +307,11 @@ fn orthonormalise<const N: usize>(columns: &mut Jacobian<N>, t: f64) -> Result<[
 
 /// The exponents, with what these growths err by in terms of the largest of them, and what |f| gained, in the logarithm: what
 /// the growth along the flow differs from that by is the bias of the run.
-pub(crate) fn summary<const N: usize>(
-    segments: &[GrowthSegment<N>],
-    relative: f64,
-    gained: f64,
-) -> LyapunovSpectrum<N> {
+pub(crate) fn summary(segments: &[GrowthSegment], relative: f64, gained: f64) -> LyapunovSpectrum {
+    let n = segments.first().map_or(0, |segment| segment.growth.len());
     let time: f64 = segments.iter().map(|segment| segment.time).sum();
     let growth =
-        |segment: &GrowthSegment<N>| segment.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
+        |segment: &GrowthSegment| segment.growth.iter().fold(0.0_f64, |a, x| a.max(x.abs()));
     let size = segments.iter().map(growth).sum::<f64>() / time;
     let along_flow = segments
         .iter()
@@ -317,12 +320,12 @@ pub(crate) fn summary<const N: usize>(
         / time;
     let systematic = relative * size + BIAS * (along_flow - gained / time).abs();
     let mut converged = true;
-    let mut exponents: [Uncertain; N] = std::array::from_fn(|i| {
-        if i == 0 && N > 1 {
+    let exponent = |i: usize| {
+        if i == 0 && n > 1 {
             return Uncertain::new(along_flow, gained.abs() / time + systematic);
         }
-        let of = |segment: &GrowthSegment<N>| {
-            if i + 1 == N {
+        let of = |segment: &GrowthSegment| {
+            if i + 1 == n {
                 segment.log_determinant - segment.growth[..i].iter().sum::<f64>()
             } else {
                 segment.growth[i]
@@ -338,22 +341,23 @@ pub(crate) fn summary<const N: usize>(
         // Each half has an interval wider by the root of two, and so has their difference again.
         converged &= drift <= DRIFT * 2.0 * uncertainty;
         Uncertain::new(value, uncertainty)
-    });
-    if N > 1 {
+    };
+    let mut exponents: Vec<Uncertain> = (0..n).map(exponent).collect();
+    if n > 1 {
         // The sum of all is the mean of the trace, exactly.
         let trace = segments
             .iter()
             .map(|segment| segment.log_determinant)
             .sum::<f64>()
             / time;
-        let others: f64 = exponents[..N - 1].iter().map(|x| x.value).sum();
-        let last = &mut exponents[N - 1];
+        let others: f64 = exponents[..n - 1].iter().map(|x| x.value).sum();
+        let last = &mut exponents[n - 1];
         last.uncertainty += (trace - others - last.value).abs();
         last.value = trace - others;
     }
     exponents.sort_by(|a, b| b.value.total_cmp(&a.value));
     let defect =
-        |segment: &GrowthSegment<N>| segment.growth.iter().sum::<f64>() - segment.log_determinant;
+        |segment: &GrowthSegment| segment.growth.iter().sum::<f64>() - segment.log_determinant;
     LyapunovSpectrum {
         exponents,
         converged,
@@ -364,10 +368,7 @@ pub(crate) fn summary<const N: usize>(
 }
 
 /// The rates over blocks of as many segments, with what is left over in the last.
-fn block_means<const N: usize>(
-    segments: &[GrowthSegment<N>],
-    of: impl Fn(&GrowthSegment<N>) -> f64,
-) -> Vec<f64> {
+fn block_means(segments: &[GrowthSegment], of: impl Fn(&GrowthSegment) -> f64) -> Vec<f64> {
     (0..BLOCKS)
         .map(|block| {
             let block =

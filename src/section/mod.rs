@@ -19,7 +19,7 @@ pub use periodicity::{LONGEST_PERIOD, Periodic, periodicity};
 pub(crate) use periodicity::{PeriodicSearch, reduce};
 pub use regime::{FEWEST_RETURNS, Regime, RegimeVerdict, verdict};
 pub(crate) use regime::{IRREGULAR, REGULAR, aperiodic, points};
-pub(crate) use rest::{equilibrium_near, growth, newton_step};
+pub(crate) use rest::{equilibrium_near, growth};
 pub(crate) use returns::{AT_START, Recorder, Watched};
 pub use returns::{Ended, Return, ReturnRecord, See, Watching, record, usual_patience};
 pub use surface::{Landing, SeriesVariables, Surface, half_driving_stress, return_map};

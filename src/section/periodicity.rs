@@ -8,10 +8,9 @@ use super::rest::equilibrium_near;
 use super::returns::{Return, ReturnRecord};
 use super::surface::{Landing, Surface, return_map};
 use crate::error::Result;
-use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{MAX_STEPS, Taylor, Tolerances};
+use crate::field::{Matrix, Vector};
+use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances, of_dimension};
 use crate::number::Uncertain;
-use nalgebra::DMatrix;
 
 /// The longest period that is looked for.
 pub const LONGEST_PERIOD: usize = 64;
@@ -39,11 +38,11 @@ const REPEATS: usize = 3;
 /// An attracting periodic point of a return map.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Periodic<const N: usize> {
+pub struct Periodic {
     /// q: the map returns to the point after so many returns, and not earlier.
     pub returns: usize,
     /// The point, near the last return.
-    pub point: State<N>,
+    pub point: Vector,
     /// The time of q returns.
     pub period: Uncertain,
     /// The largest modulus of the multipliers; less than one where it attracts.
@@ -58,18 +57,23 @@ pub struct Periodic<const N: usize> {
 /// [`LONGEST_PERIOD`], or too few returns to tell.
 ///
 /// # Errors
-/// Those of an integrator with no room for its tolerances; a map that fails on the way means that there is no such point.
-pub fn periodicity<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    record: &ReturnRecord<N>,
-) -> Result<Option<Periodic<N>>> {
-    let mut taylor = Taylor::new(Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+/// [`crate::Error::Parameter`] for a surface or returns of another dimension than the field, and those of an integrator with no
+/// room for its tolerances; a map that fails on the way means that there is no such point.
+pub fn periodicity(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    record: &ReturnRecord,
+) -> Result<Option<Periodic>> {
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
     let returns = &record.returns[..];
+    of_dimension(surface.normal.len(), field.dimension())?;
+    for point in returns {
+        of_dimension(point.state.len(), field.dimension())?;
+    }
     let arrived = ARRIVED.max(PER_ACCURACY * record.accuracy);
     let n = returns.len();
     for q in 1..=LONGEST_PERIOD.min(n / REPEATS) {
-        let apart = |i: usize| (returns[i].state - returns[i - q].state).amax();
+        let apart = |i: usize| (&returns[i].state - &returns[i - q].state).amax();
         let near = (n - q..n).map(apart).fold(0.0, f64::max);
         let before = (n / 2..(n / 2 + q).min(n)).filter(|&i| i >= q).map(apart);
         // No need to ask where they neither are near nor come nearer; only the search takes time.
@@ -87,7 +91,7 @@ pub fn periodicity<const N: usize>(
     Ok(None)
 }
 
-impl<const N: usize> Periodic<N> {
+impl Periodic {
     /// Whether the point attracts, beyond doubt.
     pub(crate) fn attracts(&self) -> bool {
         self.multiplier <= 1.0 - NEUTRAL
@@ -95,29 +99,29 @@ impl<const N: usize> Periodic<N> {
 }
 
 /// The search for a q-periodic point, attracting or not, that returns have come closer to or arrived at.
-pub(crate) struct PeriodicSearch<'a, const N: usize> {
-    field: &'a dyn VectorField<N>,
-    surface: &'a Surface<N>,
-    taylor: &'a mut Taylor,
-    returns: &'a [Return<N>],
+pub(crate) struct PeriodicSearch<'a> {
+    field: &'a AnyField<'a>,
+    surface: &'a Surface,
+    taylor: &'a mut AnyIntegrator,
+    returns: &'a [Return],
     q: usize,
     arrived: f64,
     /// Newton's method begins here, goes no farther than `near`, and ends at a step of `converged`: the error is then about
     /// its square, and the integrator's tolerance.
-    pub from: State<N>,
+    pub from: Vector,
     pub near: f64,
     pub converged: f64,
     /// What distances must have shrunk to.
     pub shrunk: f64,
 }
 
-impl<'a, const N: usize> PeriodicSearch<'a, N> {
+impl<'a> PeriodicSearch<'a> {
     /// Near the last of these returns, which are good to `accuracy` times a thousand; and q.
     pub fn new(
-        field: &'a dyn VectorField<N>,
-        surface: &'a Surface<N>,
-        taylor: &'a mut Taylor,
-        returns: &'a [Return<N>],
+        field: &'a AnyField<'a>,
+        surface: &'a Surface,
+        taylor: &'a mut AnyIntegrator,
+        returns: &'a [Return],
         (accuracy, q): (f64, usize),
     ) -> Self {
         PeriodicSearch {
@@ -127,7 +131,7 @@ impl<'a, const N: usize> PeriodicSearch<'a, N> {
             returns,
             q,
             arrived: ARRIVED.max(PER_ACCURACY * accuracy),
-            from: returns[returns.len() - 1].state,
+            from: returns[returns.len() - 1].state.clone(),
             near: NEAR,
             converged: CONVERGED,
             shrunk: SHRUNK,
@@ -135,7 +139,7 @@ impl<'a, const N: usize> PeriodicSearch<'a, N> {
     }
 
     /// The point, if there is one.
-    pub fn point(&mut self) -> Option<Periodic<N>> {
+    pub fn point(&mut self) -> Option<Periodic> {
         let mut point = self.surface.nearest(&self.from);
         let mut size = f64::INFINITY;
         for _ in 0..ITERATIONS {
@@ -144,22 +148,19 @@ impl<'a, const N: usize> PeriodicSearch<'a, N> {
                 state: to,
                 derivative,
                 ..
-            } = *along.last()?;
-            let inside = self.surface.directions(&point);
-            let reduced = reduce(&derivative, &inside);
-            let residual = inside.transpose() * matrix(&(to - point));
-            let identity = DMatrix::identity(N - 1, N - 1);
+            } = along.last()?;
+            let inside = self.surface.directions(point.as_slice());
+            let reduced = reduce(derivative, &inside);
+            let residual = inside.transpose() * (to - &point);
+            let identity = Matrix::identity(reduced.nrows(), reduced.ncols());
             let step = (identity - &reduced).lu().solve(&residual)?;
             let before = size;
             size = step.amax();
             if !size.is_finite() {
                 return None;
             }
-            let step = inside * step;
-            point = self
-                .surface
-                .nearest(&(point + State::from_fn(|i, _| step[i])));
-            if (point - self.from).amax() > self.near {
+            point = self.surface.nearest(&(point + inside * step));
+            if (&point - &self.from).amax() > self.near {
                 return None;
             }
             // Rounding ends the convergence too, where the map magnifies it.
@@ -170,26 +171,26 @@ impl<'a, const N: usize> PeriodicSearch<'a, N> {
         None
     }
 
-    fn judged(&self, point: State<N>, along: &[Landing<N>], error: f64) -> Option<Periodic<N>> {
+    fn judged(&self, point: Vector, along: &[Landing], error: f64) -> Option<Periodic> {
         // An equilibrium on the section is no orbit.
-        if equilibrium_near(self.field, &point, self.arrived).is_some() {
+        if equilibrium_near(self.field, point.as_slice(), self.arrived).is_some() {
             return None;
         }
         // A point may come back sooner, where its multipliers turn the returns around it by a part of a turn.
         let sooner = |d: &usize| {
             self.q.is_multiple_of(*d)
-                && (along[d - 1].state - point).amax() < SAME.max(10.0 * error)
+                && (&along[d - 1].state - &point).amax() < SAME.max(10.0 * error)
         };
         let q = (1..self.q).find(sooner).unwrap_or(self.q);
         let Landing {
             time, derivative, ..
-        } = along[q - 1];
-        let reduced = reduce(&derivative, &self.surface.directions(&point));
+        } = &along[q - 1];
+        let reduced = reduce(derivative, &self.surface.directions(point.as_slice()));
         let moduli = reduced.complex_eigenvalues().map(|z| z.norm());
         let multiplier = moduli.iter().copied().fold(0.0, f64::max);
         let n = self.returns.len();
         let phase = |i: &usize| (n - 1 - i).is_multiple_of(self.q);
-        let distance = |i: usize| (self.returns[i].state - point).amax();
+        let distance = |i: usize| (&self.returns[i].state - &point).amax();
         let over =
             |range: std::ops::Range<usize>| range.filter(phase).map(distance).fold(0.0, f64::max);
         let (early, late) = (over(0..n / 2), over(n - n.div_ceil(4).max(self.q)..n));
@@ -200,48 +201,36 @@ impl<'a, const N: usize> PeriodicSearch<'a, N> {
         let rounding = time * (error + 1e3 * TOLERANCE);
         Some(Periodic {
             returns: q,
-            point,
-            period: Uncertain::new(time, rounding),
+            period: Uncertain::new(*time, rounding),
             multiplier,
             distance: distance(n - 1),
+            point,
             last_step: error,
         })
     }
 
     /// q returns from a point, each with the time since and the derivative in the point.
-    fn iterate(&mut self, from: &State<N>) -> Option<Vec<Landing<N>>> {
+    fn iterate(&mut self, from: &Vector) -> Option<Vec<Landing>> {
         // Twice what the run itself took, where it was near.
         let last = self.returns.len() - 1;
         let patience = 2.0 * (self.returns[last].time - self.returns[last - self.q].time);
-        let mut here = Landing {
-            time: 0.0,
-            state: *from,
-            derivative: Jacobian::<N>::identity(),
-        };
-        let mut along = Vec::with_capacity(self.q);
+        let mut along: Vec<Landing> = Vec::with_capacity(self.q);
         for _ in 0..self.q {
             let taylor = &mut *self.taylor;
-            let next = return_map(self.field, self.surface, taylor, &here.state, patience).ok()?;
-            here = Landing {
-                time: here.time + next.time,
-                state: next.state,
-                derivative: next.derivative * here.derivative,
-            };
-            along.push(here);
+            let here = along.last();
+            let begin = here.map_or(from, |here| &here.state);
+            let mut next = return_map(self.field, self.surface, taylor, begin, patience).ok()?;
+            if let Some(here) = here {
+                next.time += here.time;
+                next.derivative *= &here.derivative;
+            }
+            along.push(next);
         }
         Some(along)
     }
 }
 
 /// The part of a derivative within the section.
-pub(crate) fn reduce<const N: usize>(
-    derivative: &Jacobian<N>,
-    inside: &DMatrix<f64>,
-) -> DMatrix<f64> {
-    let full = DMatrix::from_iterator(N, N, derivative.iter().copied());
-    inside.transpose() * full * inside
-}
-
-fn matrix<const N: usize>(y: &State<N>) -> DMatrix<f64> {
-    DMatrix::from_iterator(N, 1, y.iter().copied())
+pub(crate) fn reduce(derivative: &Matrix, inside: &Matrix) -> Matrix {
+    inside.transpose() * derivative * inside
 }

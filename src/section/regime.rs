@@ -6,9 +6,9 @@ use super::periodicity::{Periodic, periodicity};
 use super::returns::{Ended, Return, ReturnRecord};
 use super::surface::Surface;
 use crate::error::Result;
-use crate::field::{State, VectorField};
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
 use crate::number::Uncertain;
-use nalgebra::{DMatrix, DVector};
 
 /// Returns without which neither torus nor chaos is told.
 pub const FEWEST_RETURNS: usize = 200;
@@ -63,18 +63,18 @@ impl Regime {
 /// A regime, with what it rests on.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct RegimeVerdict<const N: usize> {
+pub struct RegimeVerdict {
     /// The regime.
     pub regime: Regime,
     /// The periodic point that the returns close in on.
-    pub periodic: Option<Periodic<N>>,
+    pub periodic: Option<Periodic>,
     /// The closed curves on which the returns of a torus lie, where they bend little enough to be seen.
     pub curve: Option<InvariantCurve>,
     /// Why nothing can be said, and what to try.
     pub why: Option<&'static str>,
 }
 
-impl<const N: usize> RegimeVerdict<N> {
+impl RegimeVerdict {
     fn of(regime: Regime) -> Self {
         RegimeVerdict {
             regime,
@@ -94,16 +94,17 @@ impl<const N: usize> RegimeVerdict<N> {
 
 /// The regime of a recorded run. Periodic is one whose returns close in on an attracting periodic point; a torus has
 /// quasi-periodic returns and, where the exponents are given, two that vanish within their intervals; chaos has a largest
-/// exponent that is positive beyond its interval, for long enough to make much of a disturbance. Without exponents chaos is not told.
+/// exponent that is positive beyond its interval, for long enough to make much of a disturbance. Without exponents chaos is not
+/// told.
 ///
 /// # Errors
 /// Those of [`periodicity`].
-pub fn verdict<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    record: &ReturnRecord<N>,
+pub fn verdict(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    record: &ReturnRecord,
     exponents: Option<Exponents<'_>>,
-) -> Result<RegimeVerdict<N>> {
+) -> Result<RegimeVerdict> {
     if let Ended::Steady { .. } = record.ended {
         return Ok(RegimeVerdict::of(Regime::Steady));
     }
@@ -114,7 +115,7 @@ pub fn verdict<const N: usize>(
             ..RegimeVerdict::of(Regime::Periodic)
         });
     }
-    if N < 3 {
+    if field.dimension() < 3 {
         return Ok(RegimeVerdict::undecided(
             "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more",
         ));
@@ -128,12 +129,12 @@ pub fn verdict<const N: usize>(
 }
 
 /// The regime of returns, 200 or more, that close in on no periodic point.
-pub(crate) fn aperiodic<const N: usize>(
-    surface: &Surface<N>,
-    returns: &[Return<N>],
+pub(crate) fn aperiodic(
+    surface: &Surface,
+    returns: &[Return],
     accuracy: f64,
     exponents: Option<Exponents<'_>>,
-) -> RegimeVerdict<N> {
+) -> RegimeVerdict {
     let duration = returns[returns.len() - 1].time - returns[0].time;
     let points = points(surface, returns);
     let mut verdict = wandering(&points, (duration, accuracy), exponents);
@@ -144,11 +145,11 @@ pub(crate) fn aperiodic<const N: usize>(
 }
 
 /// The regime of returns that are not periodic, recorded for so long and so accurately.
-fn wandering<const N: usize>(
+fn wandering(
     points: &[[f64; 2]],
     (duration, accuracy): (f64, f64),
     exponents: Option<Exponents<'_>>,
-) -> RegimeVerdict<N> {
+) -> RegimeVerdict {
     let disorder = regularity(points);
     let holds_zero = |x: &Uncertain| x.value.abs() <= x.uncertainty;
     // A run that slowly leaves an equilibrium or an orbit has a positive exponent too, but little comes of it.
@@ -196,16 +197,16 @@ fn wandering<const N: usize>(
 }
 
 /// Two coordinates of the returns within the section; of more, those along the principal axes of the returns.
-pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]) -> Vec<[f64; 2]> {
-    let origin = returns[0].state;
-    let inside = surface.directions(&origin);
-    let inside = if N > 3 {
-        principal(&inside, &origin, returns)
+pub(crate) fn points(surface: &Surface, returns: &[Return]) -> Vec<[f64; 2]> {
+    let origin = &returns[0].state;
+    let inside = surface.directions(origin.as_slice());
+    let inside = if inside.ncols() > 2 {
+        principal(&inside, origin, returns)
     } else {
         inside
     };
-    let along = |point: &Return<N>, j: usize| -> f64 {
-        (0..N)
+    let along = |point: &Return, j: usize| -> f64 {
+        (0..origin.len())
             .map(|i| inside[(i, j)] * (point.state[i] - origin[i]))
             .sum()
     };
@@ -216,24 +217,22 @@ pub(crate) fn points<const N: usize>(surface: &Surface<N>, returns: &[Return<N>]
 }
 
 /// The two orthogonal directions, out of all these, in which the returns spread most.
-fn principal<const N: usize>(
-    inside: &DMatrix<f64>,
-    origin: &State<N>,
-    returns: &[Return<N>],
-) -> DMatrix<f64> {
-    let count = returns.len() as f64;
-    let coordinates = |point: &Return<N>| {
-        let moved = point.state - origin;
-        DVector::from_fn(N - 1, |j, _| inside.column(j).dot(&moved))
+fn principal(inside: &Matrix, origin: &Vector, returns: &[Return]) -> Matrix {
+    let (count, directions) = (returns.len() as f64, inside.ncols());
+    let coordinates = |point: &Return| {
+        let moved = &point.state - origin;
+        Vector::from_fn(directions, |j, _| inside.column(j).dot(&moved))
     };
-    let all: Vec<DVector<f64>> = returns.iter().map(coordinates).collect();
-    let mean = all.iter().fold(DVector::zeros(N - 1), |sum, x| sum + x) / count;
-    let covariance = all.iter().fold(DMatrix::zeros(N - 1, N - 1), |sum, x| {
-        let off = x - &mean;
-        sum + &off * off.transpose()
-    });
+    let all: Vec<Vector> = returns.iter().map(coordinates).collect();
+    let mean = all.iter().fold(Vector::zeros(directions), |sum, x| sum + x) / count;
+    let covariance = all
+        .iter()
+        .fold(Matrix::zeros(directions, directions), |sum, x| {
+            let off = x - &mean;
+            sum + &off * off.transpose()
+        });
     let eigen = covariance.symmetric_eigen();
-    let mut order: Vec<usize> = (0..N - 1).collect();
+    let mut order: Vec<usize> = (0..directions).collect();
     order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
     inside * eigen.eigenvectors.select_columns(&order[..2])
 }

@@ -4,9 +4,9 @@ use super::dense::crossings;
 use super::rest::{equilibrium_near, spirals_into};
 use super::surface::Surface;
 use crate::error::{Error, Result};
-use crate::field::{State, VectorField};
-use crate::integrate::{Control, Integrator, Step};
-use crate::series::{Passage, Zeros};
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnyIntegrator, AnyPassage, AnyStep, Control, of_dimension};
+use crate::series::Zeros;
 
 /// Steps between two looks for an equilibrium.
 const BETWEEN_LOOKS: usize = 32;
@@ -16,12 +16,12 @@ pub(crate) const AT_START: f64 = 1e-11;
 const BETWEEN_WAYPOINTS: usize = 6;
 
 /// A point of a run.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Return<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Return {
     /// Its time.
     pub time: f64,
     /// The state there.
-    pub state: State<N>,
+    pub state: Vector,
 }
 
 /// How many returns are wanted, and how long to wait for them.
@@ -58,7 +58,7 @@ pub fn usual_patience(driving: f64, stiffness: f64) -> f64 {
 /// How a recording ended.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub enum Ended<const N: usize> {
+pub enum Ended {
     /// With all returns.
     Complete,
     /// At an equilibrium, which it can't leave.
@@ -66,7 +66,7 @@ pub enum Ended<const N: usize> {
         /// The time when it had come there; 0 if it began there.
         time: f64,
         /// The equilibrium.
-        equilibrium: State<N>,
+        equilibrium: Vector,
         /// Whether the run was drawn to it; an unstable one holds only a run that begins on it.
         stable: bool,
     },
@@ -78,13 +78,13 @@ pub enum Ended<const N: usize> {
 
 /// What was recorded.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ReturnRecord<const N: usize> {
+pub struct ReturnRecord {
     /// The returns after those that were let pass.
-    pub returns: Vec<Return<N>>,
+    pub returns: Vec<Return>,
     /// Points of the run between the first and the last of these, both included, a few steps apart.
-    pub waypoints: Vec<Return<N>>,
+    pub waypoints: Vec<Return>,
     /// How it ended.
-    pub ended: Ended<N>,
+    pub ended: Ended,
     /// The relative tolerance of the run.
     pub accuracy: f64,
 }
@@ -93,26 +93,34 @@ pub struct ReturnRecord<const N: usize> {
 /// of those before it, and may end the recording; so may it after every step, where it is told of none.
 ///
 /// A run that comes to a stable equilibrium ends there ([`Ended::Steady`]); one that wanders but does not return within the
-/// patience ends as [`Ended::Failed`] with [`Error::NoReturn`].
-pub fn record<const N: usize>(
-    integrator: &mut dyn Integrator<N>,
-    field: &dyn VectorField<N>,
-    start: &State<N>,
-    surface: &Surface<N>,
+/// patience ends as [`Ended::Failed`] with [`Error::NoReturn`], and one whose start or surface is of another dimension than the
+/// field with [`Error::Parameter`].
+pub fn record(
+    integrator: &mut AnyIntegrator,
+    field: &AnyField<'_>,
+    start: &Vector,
+    surface: &Surface,
     watching: &Watching,
-    see: See<'_, N>,
-) -> ReturnRecord<N> {
-    if let Some((equilibrium, stable)) = equilibrium_near(field, start, AT_START) {
-        return ReturnRecord {
-            returns: Vec::new(),
-            waypoints: Vec::new(),
-            ended: Ended::Steady {
-                time: 0.0,
-                equilibrium,
-                stable,
-            },
-            accuracy: watching.accuracy,
-        };
+    see: See<'_>,
+) -> ReturnRecord {
+    let nothing = |ended: Ended| ReturnRecord {
+        returns: Vec::new(),
+        waypoints: Vec::new(),
+        ended,
+        accuracy: watching.accuracy,
+    };
+    let variables = field.dimension();
+    let fits = of_dimension(start.len(), variables)
+        .and_then(|()| of_dimension(surface.normal.len(), variables));
+    if let Err(error) = fits {
+        return nothing(Ended::Failed(error));
+    }
+    if let Some((equilibrium, stable)) = equilibrium_near(field, start.as_slice(), AT_START) {
+        return nothing(Ended::Steady {
+            time: 0.0,
+            equilibrium,
+            stable,
+        });
     }
     let mut recorder = Recorder::new();
     let watched = Watched {
@@ -123,7 +131,7 @@ pub fn record<const N: usize>(
     let all = (watching.skip + watching.returns) as f64;
     // The patience ends a run before this, but a flow needs an end.
     let span = (0.0, (2.0 * (all + 1.0) * watching.patience).min(f64::MAX));
-    let mut observer = |step: &Step<'_, N>| recorder.step(&watched, step, see);
+    let mut observer = |step: &AnyStep<'_>| recorder.step(&watched, step, see);
     let flowed = integrator.flow(field, span, start, Some(&mut observer));
     let ended = match (flowed, recorder.ended.take()) {
         (Err(error), _) => Ended::Failed(error),
@@ -144,34 +152,34 @@ pub fn record<const N: usize>(
 
 /// What a recorder watches a run by.
 #[derive(Clone, Copy)]
-pub(crate) struct Watched<'a, const N: usize> {
-    pub field: &'a dyn VectorField<N>,
-    pub surface: &'a Surface<N>,
+pub(crate) struct Watched<'a> {
+    pub field: &'a AnyField<'a>,
+    pub surface: &'a Surface,
     pub watching: &'a Watching,
 }
 
 /// Told of every return, with the number of those before it, and of the end of every step, where it is told of none.
-pub type See<'a, const N: usize> = &'a mut dyn FnMut(usize, Option<&Return<N>>) -> Control;
+pub type See<'a> = &'a mut dyn FnMut(usize, Option<&Return>) -> Control;
 
 /// Sees the steps of a run.
-pub(crate) struct Recorder<const N: usize> {
+pub(crate) struct Recorder {
     /// Of the height over the surface; its sign is carried over steps of either kind.
     zeros: Zeros,
-    found: Vec<Passage<N>>,
+    found: Vec<AnyPassage>,
     pub passed: usize,
     /// After those let pass.
-    pub returns: Vec<Return<N>>,
-    waypoints: Vec<Return<N>>,
+    pub returns: Vec<Return>,
+    waypoints: Vec<Return>,
     pub steps: usize,
     /// The time of the last return, and the lowest and highest height since.
     since: f64,
     range: (f64, f64),
     /// Where the patience has been over once: when, and how far the run had swung until then.
     window: Option<(f64, f64)>,
-    pub ended: Option<Ended<N>>,
+    pub ended: Option<Ended>,
 }
 
-impl<const N: usize> Recorder<N> {
+impl Recorder {
     pub fn new() -> Self {
         Recorder {
             zeros: Zeros::default(),
@@ -198,9 +206,9 @@ impl<const N: usize> Recorder<N> {
     /// Sees a step, the next of the same run.
     pub fn step(
         &mut self,
-        watched: &Watched<'_, N>,
-        step: &Step<'_, N>,
-        see: See<'_, N>,
+        watched: &Watched<'_>,
+        step: &AnyStep<'_>,
+        see: See<'_>,
     ) -> Result<Control> {
         let surface = watched.surface;
         self.steps += 1;
@@ -209,22 +217,19 @@ impl<const N: usize> Recorder<N> {
         if sign != self.zeros.sign || surface.within(step.y0, step.reach) {
             self.cross(watched, step)?;
         }
-        for k in 0..self.found.len() {
-            let Passage { time, state, .. } = self.found[k];
-            let state = State::from(state);
+        let mut found = std::mem::take(&mut self.found);
+        for AnyPassage { time, state, .. } in found.drain(..) {
             self.arrive(watched, Return { time, state }, see);
             if self.ended.is_some() {
                 return Ok(Control::Stop);
             }
         }
-        let here = Return {
-            time: step.t1,
-            state: *step.y1,
-        };
+        // Its room is used again.
+        self.found = found;
         if see(self.passed, None) == Control::Stop {
             self.ended = Some(Ended::Stopped);
         }
-        self.between_returns(watched, &here);
+        self.between_returns(watched, step.t1, step.y1);
         Ok(if self.ended.is_some() {
             Control::Stop
         } else {
@@ -233,27 +238,31 @@ impl<const N: usize> Recorder<N> {
     }
 
     /// Finds where a step crosses the surface.
-    fn cross(&mut self, watched: &Watched<'_, N>, step: &Step<'_, N>) -> Result<()> {
+    fn cross(&mut self, watched: &Watched<'_>, step: &AnyStep<'_>) -> Result<()> {
         let Watched { field, surface, .. } = *watched;
         let Some(series) = step.series() else {
             return crossings(field, surface, step, &mut self.zeros, &mut self.found);
         };
         let direction = Some(surface.direction);
-        let section = surface.section();
-        series.crossings(&section, direction, &mut self.zeros, &mut self.found);
+        series.crossings(
+            surface.section(),
+            direction,
+            &mut self.zeros,
+            &mut self.found,
+        );
         for passage in &mut self.found {
-            passage.time = (series.begin + passage.time).hi();
+            passage.time = (series.begin() + passage.time).hi();
         }
         Ok(())
     }
 
-    fn arrive(&mut self, watched: &Watched<'_, N>, here: Return<N>, see: See<'_, N>) {
+    fn arrive(&mut self, watched: &Watched<'_>, here: Return, see: See<'_>) {
         let Watching { skip, returns, .. } = *watched.watching;
         let recorded = self.passed >= skip;
         if recorded {
-            self.returns.push(here);
+            self.returns.push(here.clone());
             if watched.watching.waypoints {
-                self.waypoints.push(here);
+                self.waypoints.push(here.clone());
             }
         }
         let told = see(self.passed, Some(&here));
@@ -262,7 +271,7 @@ impl<const N: usize> Recorder<N> {
         self.window = None;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
         // An equilibrium may lie on the section: then its noise returns for ever.
-        self.look(watched, &here);
+        self.look(watched, here.time, here.state.as_slice());
         if self.ended.is_none() && self.passed == skip + returns {
             self.ended = Some(Ended::Complete);
         }
@@ -271,31 +280,32 @@ impl<const N: usize> Recorder<N> {
         }
     }
 
-    fn between_returns(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
-        let height = watched.surface.height(&here.state);
+    fn between_returns(&mut self, watched: &Watched<'_>, time: f64, y: &[f64]) {
+        let height = watched.surface.height(y);
         self.range = (self.range.0.min(height), self.range.1.max(height));
         if self.steps.is_multiple_of(BETWEEN_WAYPOINTS)
             && watched.watching.waypoints
             && !self.returns.is_empty()
         {
-            self.waypoints.push(*here);
+            let state = Vector::from_column_slice(y);
+            self.waypoints.push(Return { time, state });
         }
         let begun = self.window.map_or(self.since, |(begun, _)| begun);
-        let late = here.time - begun > watched.watching.patience;
+        let late = time - begun > watched.watching.patience;
         if late || self.steps.is_multiple_of(BETWEEN_LOOKS) {
-            self.look(watched, here);
+            self.look(watched, time, y);
         }
         if late && self.ended.is_none() {
-            self.late(watched, here);
+            self.late(watched, time, y);
         }
     }
 
     /// Ends at a stable equilibrium.
-    fn look(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
-        let near = equilibrium_near(watched.field, &here.state, watched.watching.settled());
+    fn look(&mut self, watched: &Watched<'_>, time: f64, y: &[f64]) {
+        let near = equilibrium_near(watched.field, y, watched.watching.settled());
         if let Some((equilibrium, stable @ true)) = near {
             self.ended = Some(Ended::Steady {
-                time: here.time,
+                time,
                 equilibrium,
                 stable,
             });
@@ -304,27 +314,27 @@ impl<const N: usize> Recorder<N> {
 
     /// The patience is over. A run that spirals into an equilibrium as slowly as its eigenvalues say has one window more to
     /// show it.
-    fn late(&mut self, watched: &Watched<'_, N>, here: &Return<N>) {
+    fn late(&mut self, watched: &Watched<'_>, time: f64, y: &[f64]) {
         let size = self.range.1 - self.range.0;
-        let window = here.time - self.window.map_or(self.since, |(begun, _)| begun);
+        let window = time - self.window.map_or(self.since, |(begun, _)| begun);
         if let Some((_, before)) = self.window {
-            let spiral = spirals_into(watched.field, &here.state, (before, size), window);
+            let spiral = spirals_into(watched.field, y, (before, size), window);
             self.ended = Some(match spiral {
                 Some(equilibrium) => Ended::Steady {
-                    time: here.time,
+                    time,
                     equilibrium,
                     stable: true,
                 },
-                None => Ended::Failed(self.no_return(watched.surface, here.time)),
+                None => Ended::Failed(self.no_return(watched.surface, time)),
             });
         } else if window > 0.0 {
-            self.window = Some((here.time, size));
+            self.window = Some((time, size));
             self.range = (f64::INFINITY, f64::NEG_INFINITY);
         }
     }
 
     /// That it has not returned until now.
-    pub(crate) fn no_return(&self, surface: &Surface<N>, t: f64) -> Error {
+    pub(crate) fn no_return(&self, surface: &Surface, t: f64) -> Error {
         let offset = surface.offset;
         Error::NoReturn {
             since: self.since,

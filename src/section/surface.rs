@@ -4,12 +4,11 @@
 //! of a polynomial: it is landed on to the last digits, and none is missed. The paper's section is tau = tau_ss(V_H/2) (4.3.1).
 
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
+use crate::field::{Matrix, Vector};
 use crate::friction::{Law, steady_stress};
-use crate::integrate::{Control, Integrator, Taylor};
+use crate::integrate::{AnyField, AnyIntegrator, AnySection, Control, of_dimension};
 use crate::number::{DoubleDouble, polynomial::Crossing};
-use crate::series::{Section, Zeros};
-use nalgebra::DMatrix;
+use crate::series::Zeros;
 
 /// From the state that a field is integrated in to the variables of its series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -22,31 +21,31 @@ pub enum SeriesVariables {
 
 impl SeriesVariables {
     /// The variables at a state.
-    pub fn variables<const N: usize>(self, y: &State<N>) -> State<N> {
-        State::from_fn(|i, _| self.variable(y, i))
+    pub fn variables(self, y: &[f64]) -> Vector {
+        Vector::from_fn(y.len(), |i, _| self.variable(y, i))
     }
 
-    fn variable<const N: usize>(self, y: &State<N>, i: usize) -> f64 {
+    fn variable(self, y: &[f64], i: usize) -> f64 {
         match self {
             SeriesVariables::LogStates if i > 0 => y[i].exp(),
             _ => y[i],
         }
     }
 
-    /// The derivative of each variable in its component of the state.
-    fn slopes<const N: usize>(self, y: &State<N>) -> State<N> {
-        State::from_fn(|i, _| match self {
+    /// The derivative of a variable in its component of the state.
+    fn slope(self, y: &[f64], i: usize) -> f64 {
+        match self {
             SeriesVariables::LogStates if i > 0 => y[i].exp(),
             _ => 1.0,
-        })
+        }
     }
 }
 
 /// A plane normal . x = offset that a flow crosses in one direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Surface<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Surface {
     /// The normal, in the variables of the series.
-    pub normal: [f64; N],
+    pub normal: Vector,
     /// normal . x on the plane.
     pub offset: f64,
     /// [`Crossing::Upwards`] or [`Crossing::Downwards`] along the normal.
@@ -60,13 +59,11 @@ pub fn half_driving_stress(law: &impl Law, driving: f64, interfaces: usize) -> f
     steady_stress(law, driving / interfaces as f64)
 }
 
-impl<const N: usize> Surface<N> {
-    /// tau = const, in (tau, ln psi, ..).
-    pub fn stress(tau: f64, direction: Crossing) -> Self {
-        let mut normal = [0.0; N];
-        normal[0] = 1.0;
+impl Surface {
+    /// tau = const, in (tau, ln psi, ..), so many variables in all.
+    pub fn stress(dimension: usize, tau: f64, direction: Crossing) -> Self {
         Surface {
-            normal,
+            normal: Vector::from_fn(dimension, |i, _| if i == 0 { 1.0 } else { 0.0 }),
             offset: tau,
             direction,
             chart: SeriesVariables::LogStates,
@@ -74,33 +71,50 @@ impl<const N: usize> Surface<N> {
     }
 
     /// normal . x - offset at a state.
-    pub fn height(&self, y: &State<N>) -> f64 {
-        // Of a plane of constant stress, without the exponentials.
-        let terms = (0..N).filter(|&i| self.normal[i] != 0.0);
-        terms
-            .map(|i| self.normal[i] * self.chart.variable(y, i))
-            .sum::<f64>()
-            - self.offset
+    ///
+    /// # Panics
+    /// Where the state has fewer components than the normal.
+    #[inline]
+    pub fn height(&self, y: &[f64]) -> f64 {
+        let mut sum = 0.0;
+        for (i, &normal) in self.normal.as_slice().iter().enumerate() {
+            // Of a plane of constant stress, without the exponentials.
+            if normal != 0.0 {
+                sum += normal * self.chart.variable(y, i);
+            }
+        }
+        sum - self.offset
     }
 
     /// Whether a step that begins at y and in which the first component strays no farther than `reach` may pass the plane.
-    pub(crate) fn within(&self, y: &State<N>, reach: f64) -> bool {
+    pub(crate) fn within(&self, y: &[f64], reach: f64) -> bool {
         /// For the rounding of the bound.
         const MARGIN: f64 = 1.000_001;
         // Of the other components nothing is known.
-        self.normal[1..].iter().any(|x| *x != 0.0)
+        self.normal.as_slice()[1..].iter().any(|x| *x != 0.0)
             || self.height(y).abs() <= MARGIN * reach * self.normal[0].abs()
     }
 
     /// Its derivative in the state.
-    pub(crate) fn gradient(&self, y: &State<N>) -> State<N> {
-        State::from(self.normal).component_mul(&self.chart.slopes(y))
+    pub(crate) fn gradient(&self, y: &[f64]) -> Vector {
+        Vector::from_fn(self.normal.len(), |i, _| {
+            self.normal[i] * self.chart.slope(y, i)
+        })
+    }
+
+    /// How fast the height grows at a state that moves at this velocity.
+    pub(crate) fn rate(&self, y: &[f64], velocity: &Vector) -> f64 {
+        // As of the height.
+        let terms = (0..self.normal.len()).filter(|&i| self.normal[i] != 0.0);
+        terms
+            .map(|i| self.normal[i] * self.chart.slope(y, i) * velocity[i])
+            .sum()
     }
 
     /// The plane as the series know it.
-    pub fn section(&self) -> Section<N> {
-        Section::Plane {
-            normal: self.normal,
+    pub fn section(&self) -> AnySection<'_> {
+        AnySection::Plane {
+            normal: &self.normal,
             offset: self.offset,
         }
     }
@@ -113,96 +127,101 @@ impl<const N: usize> Surface<N> {
         }
     }
 
-    /// N - 1 orthonormal directions within the surface at a state, as columns.
-    pub(crate) fn directions(&self, y: &State<N>) -> DMatrix<f64> {
+    /// Orthonormal directions within the surface at a state, one fewer than variables, as columns.
+    pub(crate) fn directions(&self, y: &[f64]) -> Matrix {
+        let n = self.normal.len();
         let normal = self.gradient(y).normalize();
         // The axes without the one closest to the normal, made orthogonal to it and to each other.
         let closest = normal.iamax();
-        let mut columns: Vec<State<N>> = Vec::with_capacity(N - 1);
-        for axis in (0..N).filter(|&axis| axis != closest) {
-            let mut e = State::<N>::zeros();
+        let mut columns: Vec<Vector> = Vec::with_capacity(n - 1);
+        for axis in (0..n).filter(|&axis| axis != closest) {
+            let mut e = Vector::zeros(n);
             e[axis] = 1.0;
             for against in std::iter::once(&normal).chain(&columns) {
                 e -= against * against.dot(&e);
             }
             columns.push(e.normalize());
         }
-        DMatrix::from_fn(N, N - 1, |i, j| columns[j][i])
+        Matrix::from_fn(n, n - 1, |i, j| columns[j][i])
     }
 
     /// The point of the surface near a state that is almost on it.
-    pub fn nearest(&self, y: &State<N>) -> State<N> {
+    pub fn nearest(&self, y: &Vector) -> Vector {
         /// Newton's method on one equation that is nearly linear.
         const ITERATIONS: usize = 6;
-        let mut y = *y;
+        let mut y = y.clone();
         for _ in 0..ITERATIONS {
-            let gradient = self.gradient(&y);
-            y -= gradient * (self.height(&y) / gradient.norm_squared());
+            let gradient = self.gradient(y.as_slice());
+            let along = self.height(y.as_slice()) / gradient.norm_squared();
+            y -= gradient * along;
         }
         y
     }
 }
 
 /// Where the return map leads.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
-pub struct Landing<const N: usize> {
+pub struct Landing {
     /// The time it takes.
     pub time: f64,
     /// The point on the section.
-    pub state: State<N>,
+    pub state: Vector,
     /// The derivative of the map: it takes directions within the section to such directions.
-    pub derivative: Jacobian<N>,
+    pub derivative: Matrix,
 }
 
 /// Steps of a piece of the way over which a derivative is taken at once.
 pub(crate) const STEPS_OF_PIECE: usize = 6;
 
-/// The return map from a point of the section: the next crossing in the surface's direction, after at most `patience`.
+/// The return map from a point of the section: the next crossing in the surface's direction, after at most `patience`, by
+/// Taylor's method.
 ///
 /// Its derivative is the product of those from section to section along the way. Over the whole way at once it would be lost:
 /// along the flow perturbations grow as its speed does, which in stick-slip is by ten orders, and back.
 ///
 /// # Errors
-/// [`Error::NoReturn`], and those of [`Taylor::derivatives`].
+/// [`Error::NoReturn`], [`Error::Parameter`] for a surface or a point of another dimension than the field,
+/// [`Error::NotAnalytic`] for methods other than Taylor's, and those of [`AnyIntegrator::derivatives`].
 ///
 /// ```
-/// use twinslip::field::State;
+/// use twinslip::field::Vector;
 /// use twinslip::friction::{AnyLaw, Parameters};
-/// use twinslip::integrate::{MAX_STEPS, Taylor, Tolerances};
+/// use twinslip::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances};
 /// use twinslip::model::{Loading, two_interfaces};
 /// use twinslip::number::polynomial::Crossing;
 /// use twinslip::section::{Surface, half_driving_stress, return_map};
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-/// let field = two_interfaces(law, Loading::new(0.12, 0.14)?);
-/// let surface = Surface::<3>::stress(half_driving_stress(&law, 0.12, 2), Crossing::Downwards);
-/// let mut taylor = Taylor::new(Tolerances::equal(1e-12)?, MAX_STEPS)?;
-/// let mut y = State::<3>::new(surface.offset, -4.0, -3.5);
+/// let field = AnyField::new::<3>(two_interfaces(law, Loading::new(0.12, 0.14)?));
+/// let surface = Surface::stress(3, half_driving_stress(&law, 0.12, 2), Crossing::Downwards);
+/// let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(1e-12)?, MAX_STEPS)?;
+/// let mut y = Vector::from_vec(vec![surface.offset, -4.0, -3.5]);
 /// for _ in 0..100 {
-///     y = return_map(&*field, &surface, &mut taylor, &y, 2e4)?.state;
+///     y = return_map(&field, &surface, &mut taylor, &y, 2e4)?.state;
 /// }
 /// // The stick-slip cycle is a fixed point.
-/// let again = return_map(&*field, &surface, &mut taylor, &y, 2e4)?;
+/// let again = return_map(&field, &surface, &mut taylor, &y, 2e4)?;
 /// assert!((again.state - y).amax() < 1e-8);
 /// # Ok(())
 /// # }
 /// ```
-pub fn return_map<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    taylor: &mut Taylor,
-    from: &State<N>,
+pub fn return_map(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    by: &mut AnyIntegrator,
+    from: &Vector,
     patience: f64,
-) -> Result<Landing<N>> {
+) -> Result<Landing> {
+    of_dimension(surface.normal.len(), field.dimension())?;
     let section = surface.section();
     let mut zeros = Zeros::default();
     zeros.sign = surface.sign_behind();
     let mut found = Vec::new();
     let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
     let (mut steps, mut now) = (0, DoubleDouble::ZERO);
-    let mut points = vec![(now, *from)];
-    taylor.flow(
+    let mut points = vec![(now, from.clone())];
+    by.flow(
         field,
         (0.0, patience),
         from,
@@ -210,19 +229,22 @@ pub fn return_map<const N: usize>(
             let height = surface.height(step.y1);
             (lowest, highest) = (lowest.min(height), highest.max(height));
             let series = step.series().ok_or(Error::NotAnalytic)?;
-            series.crossings(&section, Some(surface.direction), &mut zeros, &mut found);
+            series.crossings(section, Some(surface.direction), &mut zeros, &mut found);
             if let Some(passage) = found.first() {
-                now = series.begin + passage.time;
+                now = series.begin() + passage.time;
                 return Ok(Control::Stop);
             }
             steps += 1;
             if steps % STEPS_OF_PIECE == 0 {
-                points.push((series.begin + series.length, *step.y1));
+                points.push((
+                    series.begin() + series.length(),
+                    Vector::from_column_slice(step.y1),
+                ));
             }
             Ok(Control::Continue)
         }),
     )?;
-    let Some(passage) = found.first() else {
+    let Some(passage) = found.into_iter().next() else {
         return Err(Error::NoReturn {
             since: 0.0,
             t: patience,
@@ -231,37 +253,42 @@ pub fn return_map<const N: usize>(
             highest: surface.offset + highest,
         });
     };
-    let (_, derivative) = derivative_along(field, surface, taylor, &points, now)?;
+    let (_, derivative) = derivative_along(field, surface, by, &points, now)?;
     Ok(Landing {
         time: now.hi(),
-        state: State::from(passage.state),
+        state: passage.state,
         derivative,
     })
 }
 
 /// The derivative of the map that leads from the first of these points, through the others, to the surface at the time `now`,
 /// after the last of them; and the state there.
-pub(crate) fn derivative_along<const N: usize>(
-    field: &dyn VectorField<N>,
-    surface: &Surface<N>,
-    taylor: &mut Taylor,
-    points: &[(DoubleDouble, State<N>)],
+pub(crate) fn derivative_along(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    by: &mut AnyIntegrator,
+    points: &[(DoubleDouble, Vector)],
     now: DoubleDouble,
-) -> Result<(State<N>, Jacobian<N>)> {
-    let mut derivative = Jacobian::<N>::identity();
-    let mut state = State::zeros();
+) -> Result<(Vector, Matrix)> {
+    let n = field.dimension();
+    let mut derivative = Matrix::identity(n, n);
+    let mut state = Vector::zeros(n);
+    let mut arcs = by.arcs(field, &[])?;
     for (k, (begin, y)) in points.iter().enumerate() {
         let next = points.get(k + 1);
         let end = next.map_or(now, |(end, _)| *end);
         let span = (0.0, (end - *begin).hi());
-        let (to, tangent) = taylor.derivatives(field, span, y, &[])?;
+        let (to, tangent) = arcs.derivatives(span, y)?;
         state = to;
-        let f = field.f(&to);
+        let f = field.f(&state);
         // Between, the section that the flow crosses at a right angle.
-        let gradient = next.map_or_else(|| surface.gradient(&to), |_| f);
-        derivative = Jacobian::from(tangent.start) * derivative;
+        let gradient = match next {
+            Some(_) => f.clone(),
+            None => surface.gradient(state.as_slice()),
+        };
+        derivative = tangent.start * derivative;
         // A perturbation arrives earlier or later: what it moves across the section is taken back along the flow.
-        derivative -= f * (gradient.transpose() * derivative) / gradient.dot(&f);
+        derivative -= &f * (gradient.transpose() * &derivative) / gradient.dot(&f);
     }
     Ok((state, derivative))
 }

@@ -1,9 +1,10 @@
 //! Aperiodic motion: runs that close in on nothing, which are tori, chaos, or neither yet.
 
-use super::classify::{Classified, Classifier, alike, begun, steady};
+use super::classify::{Classified, Classifier, alike, begun, state, steady};
 use super::finite_difference_exponent::stretching;
 use super::flows::Flows;
 use super::watch::{SweepRun, see};
+use crate::field::Vector;
 use crate::integrate::Control;
 use crate::section::{
     Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
@@ -77,7 +78,7 @@ impl Classifier {
             if count < FEWEST_FOR_EXPONENTS {
                 return Some(Err("too few returns for exponents; raise `max_returns`"));
             }
-            let late: &[Return<3>] = &all[all.len() - count..];
+            let late: &[Return] = &all[all.len() - count..];
             let found = stretching(run, late, flows, self.settings.rtol)?;
             let made = aperiodic(&run.surface, late, self.settings.rtol, Some(found.known()));
             if made.regime == Regime::Chaotic {
@@ -101,8 +102,11 @@ impl Classifier {
         };
         let mut stress = run.stress;
         let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
-        let start = run.recorder.returns.last().map_or(run.state, |at| at.state);
-        let (field, surface) = (&*run.field, &run.surface);
+        let start = run.recorder.returns.last().map_or_else(
+            || Vector::from_column_slice(run.state.as_slice()),
+            |at| at.state.clone(),
+        );
+        let (field, surface) = (&run.field, &run.surface);
         let max_steps = self.settings.max_steps;
         let recorded = record_finely(field, &start, surface, &watching, max_steps, see_all)
             .map_err(|_| "its tangents fail")?;
@@ -110,7 +114,7 @@ impl Classifier {
             see(&mut stress, point.state[0]);
         }
         if let Ended::Steady { equilibrium, .. } = recorded.ended {
-            return Ok(steady(run, equilibrium, true));
+            return Ok(steady(run, &equilibrium, true));
         }
         let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
         let known = Some(found.known());
@@ -119,7 +123,7 @@ impl Classifier {
             Regime::Torus | Regime::Chaotic => {
                 let mut told = told(run, made.regime, stress);
                 told.row.returns += recorded.returns.len();
-                told.attractor = recorded.returns.last().map(|at| at.state);
+                told.attractor = recorded.returns.last().map(|at| state(&at.state));
                 told.row.lyapunov_max = found.across_flow();
                 Ok(told)
             }

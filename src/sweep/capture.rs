@@ -5,8 +5,9 @@
 //! falls wherever |P| C |x| < 1, and a level set of V within that ball holds all runs that are in it (Lyapunov). A run need not be
 //! followed into the equilibrium, where it creeps.
 
-use crate::field::{Jacobian, State, VectorField};
-use crate::section::{growth, newton_step};
+use crate::field::{Jacobian, State, Vector};
+use crate::integrate::AnyField;
+use crate::section::growth;
 use nalgebra::{SMatrix, SVector};
 
 /// Distance, in every component, at which an equilibrium is looked for.
@@ -37,7 +38,7 @@ struct Neighbourhood {
 
 impl Capture {
     /// The stable equilibrium that no run through y leaves, if y is so close to one.
-    pub fn of(&mut self, field: &dyn VectorField<3>, y: &State<3>) -> Option<State<3>> {
+    pub fn of(&mut self, field: &AnyField<'_>, y: &State<3>) -> Option<State<3>> {
         let close = |here: &&Neighbourhood| (y - here.equilibrium).amax() < NEAR;
         if let Some(here) = self.known.iter().find(close) {
             return here.around(y);
@@ -61,8 +62,18 @@ impl Capture {
     }
 }
 
+/// The step of Newton's method to an equilibrium.
+fn newton_step(field: &AnyField<'_>, y: &State<3>) -> Option<State<3>> {
+    let step = field.newton_step(y.as_slice())?;
+    Some(State::from_column_slice(step.as_slice()))
+}
+
+fn vector(y: &State<3>) -> Vector {
+    Vector::from_column_slice(y.as_slice())
+}
+
 /// The equilibrium that Newton's method leads to.
-fn equilibrium(field: &dyn VectorField<3>, near: State<3>) -> Option<State<3>> {
+fn equilibrium(field: &AnyField<'_>, near: State<3>) -> Option<State<3>> {
     let (mut at, mut before) = (near, f64::INFINITY);
     for _ in 0..ITERATIONS {
         let step = newton_step(field, &at)?;
@@ -78,9 +89,11 @@ fn equilibrium(field: &dyn VectorField<3>, near: State<3>) -> Option<State<3>> {
 }
 
 impl Neighbourhood {
-    fn of(field: &dyn VectorField<3>, equilibrium: State<3>) -> Self {
-        let stable = growth(field, &equilibrium) < 0.0;
-        let matrix = lyapunov_matrix(&field.jacobian(&equilibrium)).filter(|_| stable);
+    fn of(field: &AnyField<'_>, equilibrium: State<3>) -> Self {
+        let stable = growth(field, equilibrium.as_slice()) < 0.0;
+        let jacobian = field.jacobian(&vector(&equilibrium));
+        let jacobian = Jacobian::<3>::from_column_slice(jacobian.as_slice());
+        let matrix = lyapunov_matrix(&jacobian).filter(|_| stable);
         let holds = matrix.map(|p| {
             let sizes = p.symmetric_eigenvalues();
             let curvature = MARGIN * curvature(field, &equilibrium);
@@ -97,13 +110,14 @@ impl Neighbourhood {
 }
 
 /// A bound on |D2f(y)\[u, v\]| for |u| = |v| = 1.
-fn curvature(field: &dyn VectorField<3>, y: &State<3>) -> f64 {
-    let axis = |i: usize| State::<3>::from_fn(|j, _| f64::from(u8::from(i == j)));
+fn curvature(field: &AnyField<'_>, y: &State<3>) -> f64 {
+    let y = vector(y);
+    let axis = |i: usize| Vector::from_fn(3, |j, _| f64::from(u8::from(i == j)));
     let mut squares = 0.0;
     for i in 0..3 {
         for j in 0..3 {
             squares += field
-                .second_derivative(y, &axis(i), &axis(j))
+                .second_derivative(&y, &axis(i), &axis(j))
                 .norm_squared();
         }
     }

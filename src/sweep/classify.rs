@@ -1,18 +1,17 @@
 //! Classifies what a run has settled on, from its returns.
 
 use super::flows::Flows;
-use super::watch::{SweepRun, see, turn};
+use super::watch::{SweepRun, apart, see, turn};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State};
-use crate::integrate::{Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
+use crate::field::{Matrix, State, Vector};
+use crate::integrate::{AnyIntegrator, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::{DoubleDouble, Uncertain};
 use crate::section::{
     Ended, Periodic, PeriodicSearch, Regime, STEPS_OF_PIECE, at_equilibrium, derivative_along,
     reduce,
 };
-use nalgebra::DMatrix;
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
@@ -40,8 +39,8 @@ const ON_ORBIT: f64 = 1e-5;
 /// Judges runs; its integrators are used over and over.
 pub(super) struct Classifier {
     pub(super) settings: SweepSettings,
-    fine: Taylor,
-    pub(super) coarse: Taylor,
+    fine: AnyIntegrator,
+    pub(super) coarse: AnyIntegrator,
 }
 
 /// What is known of a run's end, and where the next one may start from it.
@@ -52,11 +51,13 @@ pub(super) struct Classified {
 
 impl Classifier {
     pub fn new(settings: &SweepSettings) -> Result<Self> {
-        let fine = TOLERANCE.min(settings.rtol);
+        let taylor = |tolerance: f64, max_steps: usize| {
+            AnyIntegrator::new(Choice::Taylor, Tolerances::equal(tolerance)?, max_steps)
+        };
         Ok(Classifier {
             settings: settings.clone(),
-            fine: Taylor::new(Tolerances::equal(fine)?, MAX_STEPS)?,
-            coarse: Taylor::new(Tolerances::equal(settings.rtol)?, settings.max_steps)?,
+            fine: taylor(TOLERANCE.min(settings.rtol), MAX_STEPS)?,
+            coarse: taylor(settings.rtol, settings.max_steps)?,
         })
     }
 
@@ -67,7 +68,7 @@ impl Classifier {
                 equilibrium,
                 stable,
                 ..
-            }) => return Some(steady(run, equilibrium, stable)),
+            }) => return Some(steady(run, &equilibrium, stable)),
             Some(Ended::Failed(error)) => {
                 return match error {
                     Error::NoReturn {
@@ -119,7 +120,7 @@ impl Classifier {
 
     /// The periodic orbit that the run closes in on.
     fn periodic(&mut self, run: &mut SweepRun, q: usize) -> Option<Classified> {
-        let at = (&*run.field, &run.surface, run.returns());
+        let at = (&run.field, &run.surface, run.returns());
         let mut search =
             PeriodicSearch::new(at.0, at.1, &mut self.coarse, at.2, (self.settings.rtol, q));
         search.converged = CONVERGED;
@@ -127,21 +128,21 @@ impl Classifier {
         if self.attracts(&found) {
             return self.orbit(run, &found);
         }
-        let y = run.returns().last()?.state;
-        if (y - found.point).amax() < ON_ORBIT {
-            run.let_go(y);
+        let y = &run.returns().last()?.state;
+        if apart(y, &found.point) < ON_ORBIT {
+            run.let_go(state(y));
         }
         None
     }
 
     /// What the run creeps to.
     fn creeping(&mut self, run: &SweepRun) -> Option<Classified> {
-        let (field, returns) = (&*run.field, run.returns());
+        let (field, returns) = (&run.field, run.returns());
         if returns.len() < FEWEST_TO_CREEP {
             return None;
         }
         if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
-            return Some(steady(run, equilibrium, true));
+            return Some(steady(run, &equilibrium, true));
         }
         // Where little is between the map and the identity, the point is off by much more than the map.
         let rtol = self.settings.rtol;
@@ -153,21 +154,21 @@ impl Classifier {
     }
 
     /// Whether the point attracts, beyond the error of its multiplier.
-    fn attracts(&self, found: &Periodic<3>) -> bool {
+    fn attracts(&self, found: &Periodic) -> bool {
         found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * self.settings.rtol
     }
 
-    fn orbit(&mut self, run: &SweepRun, found: &Periodic<3>) -> Option<Classified> {
+    fn orbit(&mut self, run: &SweepRun, found: &Periodic) -> Option<Classified> {
         let mut stress = (found.point[0], found.point[0]);
         let mut unlike = 0.0_f64;
-        let (mut point, mut period) = (found.point, found.period.value);
+        let (mut point, mut period) = (found.point.clone(), found.period.value);
         let (mut before, mut step) = (found.multiplier, found.last_step);
         let mut largest: Option<Uncertain> = None;
         let mut told = begun(run, Regime::Periodic);
         for _ in 0..ROUNDS {
-            let mut points = vec![(DoubleDouble::ZERO, point)];
+            let mut points = vec![(DoubleDouble::ZERO, point.clone())];
             let mut steps = 0;
-            let mut observer = |step: &Step<'_, 3>| {
+            let mut observer = |step: &AnyStep<'_>| {
                 see(&mut stress, step.y1[0]);
                 let series = step.series().ok_or(Error::NotAnalytic)?;
                 if let Some(turn) = turn(series) {
@@ -176,18 +177,19 @@ impl Classifier {
                 unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
                 steps += 1;
                 if steps % STEPS_OF_PIECE == 0 {
-                    points.push((series.begin + series.length, *step.y1));
+                    let end = series.begin() + series.length();
+                    points.push((end, Vector::from_column_slice(step.y1)));
                 }
                 Ok(Control::Continue)
             };
-            let (field, time) = (&*run.field, (0.0, period));
+            let (field, time) = (&run.field, (0.0, period));
             let flown = self.fine.flow(field, time, &point, Some(&mut observer));
             let end = flown.ok()?;
             // The point is known better than the time: to the first order it ends on the section.
             let rate = field.f(&end)[0];
-            period -= run.surface.height(&end) / rate;
+            period -= run.surface.height(end.as_slice()) / rate;
             if told.attractor.is_none() {
-                (told.attractor, told.row.period) = (Some(point), Some(period));
+                (told.attractor, told.row.period) = (Some(state(&point)), Some(period));
             }
             points.retain(|(begin, _)| begin.hi() < period);
             let now = DoubleDouble::from(period);
@@ -205,11 +207,11 @@ impl Classifier {
                 break;
             }
             largest = Some(here);
-            (told.attractor, told.row.period) = (Some(point), Some(period));
+            (told.attractor, told.row.period) = (Some(state(&point)), Some(period));
             if changes <= error {
                 break;
             }
-            point = run.surface.nearest(&(point + left));
+            point = run.surface.nearest(&(point + &left));
             (before, step) = (mu, left.amax());
         }
         told.row.symmetry = Some(symmetry(unlike));
@@ -232,29 +234,27 @@ struct Revolution {
     /// What its logarithm errs by.
     error: f64,
     /// What Newton's method would move the point by.
-    left: State<3>,
+    left: Vector,
 }
 
 /// The larger multiplier by where the way around ends and its derivative; `None` where mu is too small to be told from rounding.
 fn largest_multiplier(
     run: &SweepRun,
-    point: &State<3>,
-    (end, derivative): &(State<3>, Jacobian<3>),
+    point: &Vector,
+    (end, derivative): &(Vector, Matrix),
 ) -> Option<Revolution> {
     const LEAST: f64 = 1e-6;
-    let inside = run.surface.directions(point);
+    let inside = run.surface.directions(point.as_slice());
     let reduced = reduce(derivative, &inside);
     let values = reduced.complex_eigenvalues();
     let mu = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
     if !(mu > LEAST && mu.is_finite()) {
         return None;
     }
-    let residual = DMatrix::from_fn(3, 1, |i, _| end[i] - point[i]);
-    let identity = DMatrix::identity(2, 2);
+    let identity = Matrix::identity(2, 2);
     let left = (identity - &reduced)
         .lu()
-        .solve(&(inside.transpose() * residual))?;
-    let left = inside * left;
+        .solve(&(inside.transpose() * (end - point)))?;
     // A double multiplier errs by the root of what the derivative does.
     let error = DERIVATIVE_PER_RTOL * TOLERANCE;
     let (size, apart) = (reduced.norm(), (values[0] - values[1]).norm());
@@ -262,11 +262,16 @@ fn largest_multiplier(
     Some(Revolution {
         mu,
         error: error * size / mu * double.max(1.0),
-        left: State::from_fn(|i, _| left[i]),
+        left: inside * left,
     })
 }
 
-pub(super) fn alike(y: &State<3>) -> bool {
+/// As the lanes and the rows take it.
+pub(super) fn state(y: &Vector) -> State<3> {
+    State::from_column_slice(y.as_slice())
+}
+
+pub(super) fn alike(y: &Vector) -> bool {
     (y[1] - y[2]).abs() < ALIKE
 }
 
@@ -291,16 +296,16 @@ pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
             note,
             ..SweepRow::new(point.number, point.loading, point.start.into(), regime)
         },
-        attractor: run.recorder.returns.last().map(|at| at.state),
+        attractor: run.recorder.returns.last().map(|at| state(&at.state)),
     }
 }
 
-pub(super) fn steady(run: &SweepRun, equilibrium: State<3>, stable: bool) -> Classified {
+pub(super) fn steady(run: &SweepRun, equilibrium: &Vector, stable: bool) -> Classified {
     let mut told = begun(run, Regime::Steady);
-    told.attractor = Some(equilibrium);
+    told.attractor = Some(state(equilibrium));
     told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));
     told.row.stress_range = Some((equilibrium[0], equilibrium[0]));
-    told.row.lyapunov_max = Some(at_equilibrium(&*run.field, &equilibrium)[0]);
+    told.row.lyapunov_max = Some(at_equilibrium(&run.field, equilibrium)[0]);
     if !stable {
         told.row.note = Some("starts at an unstable steady state and rests there".into());
     }

@@ -6,9 +6,10 @@
 
 use super::flows::Flows;
 use super::watch::SweepRun;
+use crate::error::Error;
 use crate::field::State;
-use crate::integrate::{BatchRun, Control, Step};
-use crate::section::{ALIGNMENT, GrowthSegment, LyapunovSpectrum, Return, Surface, summary};
+use crate::integrate::{BatchRun, Control, Step, StepSeries};
+use crate::section::{ALIGNMENT, GrowthSegment, LyapunovSpectrum, Return, summary};
 use crate::series::Zeros;
 use nalgebra::{Matrix2, Vector2};
 
@@ -23,10 +24,10 @@ const BESIDE: [[f64; 2]; 4] = [[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]
 /// another way.
 pub(super) fn stretching(
     run: &SweepRun,
-    returns: &[Return<3>],
+    returns: &[Return],
     flows: &mut Flows,
     rtol: f64,
-) -> Option<LyapunovSpectrum<3>> {
+) -> Option<LyapunovSpectrum> {
     let displaced = DISPLACED * rtol.cbrt();
     let beside = beside(run, returns, flows, displaced)?;
     let mut frame = Matrix2::new(0.8, -0.6, 0.6, 0.8);
@@ -34,26 +35,26 @@ pub(super) fn stretching(
     let mut segments = Vec::with_capacity(returns.len());
     for (pair, ends) in returns.windows(2).zip(beside.chunks(BESIDE.len())) {
         let [first, second] = [(0, 1), (2, 3)].map(|(i, j)| ends[i] - ends[j]);
-        let [bent, also] =
-            [(0, 1), (2, 3)].map(|(i, j)| ends[i] + ends[j] - 2.0 * inside(&pair[1].state));
+        let middle = inside(pair[1].state.as_slice());
+        let [bent, also] = [(0, 1), (2, 3)].map(|(i, j)| ends[i] + ends[j] - 2.0 * middle);
         let derivative = Matrix2::from_columns(&[first, second]) / (2.0 * displaced);
         // A third derivative weighs by the square of what a second one does.
         let size = first.norm().max(second.norm());
         bends += (2.0 * bent.norm().max(also.norm()) / size).powi(2);
         let (q, r) = (derivative * frame).qr().unpack();
         frame = q;
-        let speed = |at: &Return<3>| run.field.f(&at.state).norm().ln();
+        let speed = |at: &Return| run.field.f(&at.state).norm().ln();
         let growth = [r[(0, 0)].abs().ln(), r[(1, 1)].abs().ln()];
         segments.push(GrowthSegment {
             time: pair[1].time - pair[0].time,
-            growth: [speed(&pair[1]) - speed(&pair[0]), growth[0], growth[1]],
+            growth: vec![speed(&pair[1]) - speed(&pair[0]), growth[0], growth[1]],
             log_determinant: growth[0] + growth[1],
         });
     }
     if !segments
         .iter()
-        .flat_map(|segment| segment.growth)
-        .all(f64::is_finite)
+        .flat_map(|segment| &segment.growth)
+        .all(|x| x.is_finite())
     {
         return None;
     }
@@ -74,7 +75,7 @@ pub(super) fn stretching(
 /// Where runs that start beside each return but the last come back, in (ln psi_1, ln psi_2).
 fn beside(
     run: &SweepRun,
-    returns: &[Return<3>],
+    returns: &[Return],
     flows: &mut Flows,
     displaced: f64,
 ) -> Option<Vec<Vector2<f64>>> {
@@ -82,12 +83,12 @@ fn beside(
     for pair in returns.windows(2) {
         let longest = (1.0 + LATE) * (pair[1].time - pair[0].time);
         for [first, second] in BESIDE {
-            let mut start = pair[0].state;
+            let mut start = pair[0].state.clone();
             start[1] += first * displaced;
             start[2] += second * displaced;
             ways.push(BatchRun {
                 loading: run.point.loading,
-                start: run.surface.nearest(&start),
+                start: State::from_column_slice(run.surface.nearest(&start).as_slice()),
                 t: (0.0, longest),
             });
         }
@@ -97,25 +98,20 @@ fn beside(
         zeros.sign = run.surface.sign_behind();
     }
     let mut ends: Vec<Option<Vector2<f64>>> = vec![None; ways.len()];
+    let section = run.surface.section();
     let mut found = Vec::new();
     let mut observer = |k: usize, step: &Step<'_, 3>| {
-        if run.surface.height(step.y0).signum() == signs[k].sign
-            && !run.surface.within(step.y0, step.reach)
-        {
+        let y0 = step.y0.as_slice();
+        if run.surface.height(y0).signum() == signs[k].sign && !run.surface.within(y0, step.reach) {
             return Ok(Control::Continue);
         }
-        let series = step.series().ok_or(crate::error::Error::NotAnalytic)?;
+        let series: &dyn StepSeries = step.series().ok_or(Error::NotAnalytic)?;
         found.clear();
-        let Surface { direction, .. } = run.surface;
-        series.crossings(
-            &run.surface.section(),
-            Some(direction),
-            &mut signs[k],
-            &mut found,
-        );
+        let direction = Some(run.surface.direction);
+        series.crossings(section, direction, &mut signs[k], &mut found);
         Ok(match found.first() {
             Some(passage) => {
-                ends[k] = Some(inside(&State::from(passage.state)));
+                ends[k] = Some(inside(passage.state.as_slice()));
                 Control::Stop
             }
             None => Control::Continue,
@@ -126,6 +122,6 @@ fn beside(
     ends.into_iter().collect()
 }
 
-fn inside(y: &State<3>) -> Vector2<f64> {
+fn inside(y: &[f64]) -> Vector2<f64> {
     Vector2::new(y[1], y[2])
 }

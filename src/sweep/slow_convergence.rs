@@ -4,10 +4,11 @@
 //! doing so: in the linear neighbourhood nothing else acts, and short of it what slows the approach, an unstable orbit or
 //! torus around, shows as an approach that is slower than it should be.
 
-use crate::field::{State, VectorField};
-use crate::integrate::Taylor;
+use super::watch::apart;
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnyIntegrator};
 use crate::section::{
-    FEWEST_RETURNS, LONGEST_PERIOD, Periodic, PeriodicSearch, Return, Surface, growth, newton_step,
+    FEWEST_RETURNS, LONGEST_PERIOD, Periodic, PeriodicSearch, Return, Surface, growth,
 };
 
 /// The distance, in every component, that Newton's method may go to an orbit, and to an equilibrium.
@@ -22,18 +23,18 @@ const AS_SAID: std::ops::Range<f64> = 0.6..1.6;
 const LEAST: f64 = 0.01;
 
 /// The stable equilibrium that these returns slow_convergence to.
-pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Option<State<3>> {
+pub(super) fn to_rest(field: &AnyField<'_>, returns: &[Return]) -> Option<Vector> {
     let last = returns.last()?;
-    let mut at = last.state;
+    let mut at = last.state.clone();
     for _ in 0..ITERATIONS {
-        let step = newton_step(field, &at)?;
-        at -= step;
-        if (at - last.state).amax() > NEAR_REST {
+        let step = field.newton_step(at.as_slice())?;
+        at -= &step;
+        if apart(&at, &last.state) > NEAR_REST {
             return None;
         }
         if step.amax() < CONVERGED {
             let (shrunk, time) = approach(returns, &at, 1)?;
-            let said = -growth(field, &at) * time;
+            let said = -growth(field, at.as_slice()) * time;
             return as_said(shrunk, said).then_some(at);
         }
     }
@@ -42,34 +43,35 @@ pub(super) fn to_rest(field: &dyn VectorField<3>, returns: &[Return<3>]) -> Opti
 
 /// The periodic point that these returns slow_convergence to.
 pub(super) fn to_orbit(
-    field: &dyn VectorField<3>,
-    surface: &Surface<3>,
-    taylor: &mut Taylor,
-    returns: &[Return<3>],
+    field: &AnyField<'_>,
+    surface: &Surface,
+    taylor: &mut AnyIntegrator,
+    returns: &[Return],
     accuracy: f64,
-) -> Option<Periodic<3>> {
+) -> Option<Periodic> {
     let n = returns.len();
     if n < FEWEST_RETURNS {
         return None;
     }
-    let last = returns[n - 1].state;
+    let last = &returns[n - 1].state;
     // Around a focus the returns go round; what they turn about is close to their mean.
     let late = &returns[n - n / 4..];
-    let mean = late.iter().map(|at| at.state).sum::<State<3>>() / late.len() as f64;
-    let apart = |q: usize, range: std::ops::Range<usize>| {
-        let of = |i: usize| (returns[i].state - returns[i - q].state).amax();
+    let none = Vector::zeros(field.dimension());
+    let mean = late.iter().fold(none, |sum, at| sum + &at.state) / late.len() as f64;
+    let moved = |q: usize, range: std::ops::Range<usize>| {
+        let of = |i: usize| apart(&returns[i].state, &returns[i - q].state);
         range.map(of).fold(0.0, f64::max)
     };
     let quarter = n / 4;
-    let now = |q: usize| apart(q, n - quarter..n);
-    let shrinks = |q: usize| now(q) < apart(q, n - 2 * quarter..n - quarter);
+    let now = |q: usize| moved(q, n - quarter..n);
+    let shrinks = |q: usize| now(q) < moved(q, n - 2 * quarter..n - quarter);
     let closest = (1..=LONGEST_PERIOD.min(quarter)).min_by(|&q, &r| now(q).total_cmp(&now(r)))?;
-    [(mean, 1), (last, 1), (last, closest)]
+    [(&mean, 1), (last, 1), (last, closest)]
         .into_iter()
         .filter(|&(_, q)| shrinks(q))
         .find_map(|(from, q)| {
             let mut search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, q));
-            (search.from, search.near, search.converged) = (from, NEAR, CONVERGED);
+            (search.from, search.near, search.converged) = (from.clone(), NEAR, CONVERGED);
             search.shrunk = 1.0;
             let found = search.point()?;
             let (shrunk, _) = approach(returns, &found.point, found.returns)?;
@@ -81,12 +83,12 @@ pub(super) fn to_orbit(
 
 /// By how much, in the logarithm, the distance of every q-th return has shrunk from the third quarter of them to the last, and
 /// the time between.
-fn approach(returns: &[Return<3>], to: &State<3>, q: usize) -> Option<(f64, f64)> {
+fn approach(returns: &[Return], to: &Vector, q: usize) -> Option<(f64, f64)> {
     let n = returns.len();
     let largest = |range: std::ops::Range<usize>| {
         let phase = range.filter(|i| (n - 1 - i).is_multiple_of(q));
         phase
-            .map(|i| (returns[i].state - to).amax())
+            .map(|i| apart(&returns[i].state, to))
             .fold(0.0, f64::max)
     };
     let quarter = n / 4;

@@ -3,16 +3,15 @@
 use super::capture::Capture;
 use super::start::SweepStart;
 use crate::error::Result;
-use crate::field::State;
+use crate::field::{State, Vector};
 use crate::friction::AnyLaw;
-use crate::integrate::{Control, Step};
-use crate::model::{Driven, two_interfaces};
+use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
+use crate::model::two_interfaces;
 use crate::number::polynomial::Crossing;
 use crate::section::{
     AT_START, Ended, LONGEST_PERIOD, Recorder, Return, Surface, Watched, Watching,
     equilibrium_near, half_driving_stress, usual_patience,
 };
-use crate::series::Expansion;
 
 /// Steps between two looks whether an equilibrium has caught the run.
 const BETWEEN_LOOKS: usize = 48;
@@ -40,10 +39,10 @@ const WORTH_WAITING: f64 = 30.0;
 /// A run of a sweep.
 pub(super) struct SweepRun {
     pub point: SweepStart,
-    pub field: Box<dyn Driven<3>>,
-    pub surface: Surface<3>,
+    pub field: AnyField<'static>,
+    pub surface: Surface,
     pub watching: Watching,
-    pub recorder: Recorder<3>,
+    pub recorder: Recorder,
     capture: Capture,
     /// The time and the state reached.
     pub time: f64,
@@ -68,11 +67,11 @@ pub(super) struct SweepRun {
 
 impl SweepRun {
     pub fn new(law: AnyLaw, point: SweepStart, watching: Watching, stage: usize) -> Self {
-        let field = two_interfaces(law, point.loading);
+        let field = AnyField::new::<3>(two_interfaces(law, point.loading));
         let tau = half_driving_stress(&law, point.loading.driving, 2);
         let mut run = SweepRun {
+            surface: Surface::stress(field.dimension(), tau, Crossing::Downwards),
             field,
-            surface: Surface::stress(tau, Crossing::Downwards),
             watching: Watching {
                 patience: PATIENCE * usual_patience(point.loading.driving, point.loading.stiffness),
                 ..watching
@@ -93,7 +92,8 @@ impl SweepRun {
             point,
         };
         run.recorder.returns.reserve(2 * stage);
-        if let Some((equilibrium, stable)) = equilibrium_near(&*run.field, &run.state, AT_START) {
+        let near = equilibrium_near(&run.field, run.state.as_slice(), AT_START);
+        if let Some((equilibrium, stable)) = near {
             run.recorder.ended = Some(Ended::Steady {
                 time: 0.0,
                 equilibrium,
@@ -114,12 +114,13 @@ impl SweepRun {
         (self.time, self.state) = (step.t1, *step.y1);
         let passed = self.recorder.passed;
         let watched = Watched {
-            field: &*self.field,
+            field: &self.field,
             surface: &self.surface,
             watching: &self.watching,
         };
-        let go_on = &mut |_: usize, _: Option<&Return<3>>| Control::Continue;
-        let told = self.recorder.step(&watched, step, go_on)?;
+        let go_on = &mut |_: usize, _: Option<&Return>| Control::Continue;
+        let recorder = &mut self.recorder;
+        let told = AnyStep::of(step, |step| recorder.step(&watched, step, go_on))?;
         self.see_stress(step);
         if told == Control::Stop {
             return Ok(told);
@@ -134,10 +135,10 @@ impl SweepRun {
         if !self.recorder.steps.is_multiple_of(BETWEEN_LOOKS) {
             return Ok(Control::Continue);
         }
-        if let Some(equilibrium) = self.capture.of(&*self.field, step.y1) {
+        if let Some(equilibrium) = self.capture.of(&self.field, step.y1) {
             self.recorder.ended = Some(Ended::Steady {
                 time: step.t1,
-                equilibrium,
+                equilibrium: Vector::from_column_slice(equilibrium.as_slice()),
                 stable: true,
             });
             return Ok(Control::Stop);
@@ -204,13 +205,13 @@ impl SweepRun {
         {
             return;
         }
-        if let Some(turn) = step.series().and_then(turn) {
+        if let Some(turn) = step.series().and_then(|series| turn(series)) {
             see(&mut self.stress, turn);
         }
     }
 
     /// The returns that tell.
-    pub fn returns(&self) -> &[Return<3>] {
+    pub fn returns(&self) -> &[Return] {
         &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
     }
 
@@ -221,14 +222,14 @@ impl SweepRun {
         if self.recorder.returns.len() < self.next_look {
             return None;
         }
-        let apart = |i: usize, q: usize| (returns[i].state - returns[i - q].state).amax();
+        let moved = |i: usize, q: usize| apart(&returns[i].state, &returns[i - q].state);
         (1..=LONGEST_PERIOD.min(n / 3)).find(|&q| {
             let window = q.max(WINDOW).max(n / 8);
-            if apart(n - 1, q) > NEAR || n < 2 * window + q {
+            if moved(n - 1, q) > NEAR || n < 2 * window + q {
                 return false;
             }
             let largest =
-                |range: std::ops::Range<usize>| range.map(|i| apart(i, q)).fold(0.0, f64::max);
+                |range: std::ops::Range<usize>| range.map(|i| moved(i, q)).fold(0.0, f64::max);
             let late = largest(n - window..n);
             let early = largest(n - 2 * window..n - window);
             if late > NEAR || late > SHRUNK * early {
@@ -241,6 +242,12 @@ impl SweepRun {
     }
 }
 
+/// The largest difference in a component, without room for the difference: returns are compared after each of them.
+pub(super) fn apart(a: &Vector, b: &Vector) -> f64 {
+    let differences = a.iter().zip(b.iter()).map(|(a, b)| (a - b).abs());
+    differences.fold(0.0, f64::max)
+}
+
 /// Widens a range.
 pub(super) fn see(range: &mut (f64, f64), x: f64) {
     *range = (range.0.min(x), range.1.max(x));
@@ -248,10 +255,10 @@ pub(super) fn see(range: &mut (f64, f64), x: f64) {
 
 /// The stress where it turns within a step, if it does once: where its rate changes sign, by halving and Newton's method on the
 /// polynomial of the step.
-pub(super) fn turn(series: &Expansion<3>) -> Option<f64> {
+pub(super) fn turn(series: &dyn StepSeries) -> Option<f64> {
     const ITERATIONS: usize = 30;
-    let stress = &series.variables[0][..=series.order];
-    let end = series.length / series.unit;
+    let stress = series.variable(0);
+    let end = series.length() / series.unit();
     let rate = |s: f64| {
         let mut sum = 0.0;
         for (k, c) in stress.iter().enumerate().skip(1).rev() {

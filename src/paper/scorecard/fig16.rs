@@ -5,8 +5,8 @@ use super::{Answer, Entry, criticality_word, missing, slab, whether};
 use crate::bifurcation::{Label, Special};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::field::State;
-use crate::integrate::{Choice, Control, MAX_STEPS, Tolerances};
+use crate::field::Vector;
+use crate::integrate::{AnyField, AnyIntegrator, Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::polynomial::Crossing;
 use crate::orbit::InitialGuess;
 use crate::paper::Pieces;
@@ -122,20 +122,21 @@ fn distances(pieces: &Pieces<'_>, torus: &Special, driving: f64, beside: f64) ->
     let (at, kind) = ((driving, STIFFNESS), Symmetry::Asymmetric);
     let orbit = orbit_at(pieces, at, kind, begin, Choice::Taylor)?;
     // Where it falls through the stress of the section.
-    let fixed = State::<3>::from_column_slice(&orbit.point);
-    let start = fixed + State::<3>::new(0.0, beside, 0.0);
+    let fixed = Vector::from_column_slice(&orbit.point);
+    let mut start = fixed.clone();
+    start[1] += beside;
     let returns = returns(pieces, driving, &start)?;
-    let all: Vec<f64> = returns.iter().map(|y| (y - fixed).norm()).collect();
+    let all: Vec<f64> = returns.iter().map(|y| (y - &fixed).norm()).collect();
     let largest = |all: &[f64]| all.iter().copied().fold(0.0, f64::max);
     Ok([largest(&all[..WINDOW]), largest(&all[RETURNS - WINDOW..])])
 }
 
 /// The returns of a run to tau = tau_ss(V_H/2).
-fn returns(pieces: &Pieces<'_>, driving: f64, start: &State<3>) -> Result<Vec<State<3>>> {
+fn returns(pieces: &Pieces<'_>, driving: f64, start: &Vector) -> Result<Vec<Vector>> {
     const TOLERANCE: f64 = 1e-15;
     let slab = slab(pieces, driving, STIFFNESS)?;
-    let field = slab.whole();
-    let surface = Surface::stress(slab.steady_stress(), Crossing::Downwards);
+    let field = AnyField::new::<3>(slab.whole());
+    let surface = Surface::stress(field.dimension(), slab.steady_stress(), Crossing::Downwards);
     let watching = Watching {
         skip: 0,
         returns: RETURNS,
@@ -144,10 +145,10 @@ fn returns(pieces: &Pieces<'_>, driving: f64, start: &State<3>) -> Result<Vec<St
         waypoints: false,
     };
     let tolerances = Tolerances::equal(TOLERANCE)?;
-    let mut taylor = Choice::Taylor.integrator::<3>(tolerances, MAX_STEPS)?;
-    let mut seen = |_: usize, _: Option<&Return<3>>| Control::Continue;
-    let run = record(&mut *taylor, &*field, start, &surface, &watching, &mut seen);
-    let all: Vec<_> = run.returns.iter().map(|at| at.state).collect();
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS)?;
+    let mut seen = |_: usize, _: Option<&Return>| Control::Continue;
+    let run = record(&mut taylor, &field, start, &surface, &watching, &mut seen);
+    let all: Vec<_> = run.returns.into_iter().map(|at| at.state).collect();
     if all.len() < RETURNS {
         return Err(missing("a run at K = 0.14 that does not come back"));
     }

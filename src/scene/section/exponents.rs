@@ -5,9 +5,8 @@ use super::super::plan::Dimension;
 use super::SectionPlan;
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::field::State;
-use crate::integrate::{Choice, Control};
-use crate::model::Driven;
+use crate::field::Vector;
+use crate::integrate::{AnyField, Choice, Control};
 use crate::number::Uncertain;
 use crate::orbit::{InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find};
 use crate::section::{
@@ -38,16 +37,16 @@ pub(super) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
 
 /// The exponents by means along a record with waypoints, or of the equilibrium that it ends at; `None` of too few returns, and
 /// if it is stopped.
-pub(super) fn of_record<const N: usize>(
-    field: &dyn Driven<N>,
-    record: &ReturnRecord<N>,
+pub(super) fn of_record(
+    field: &AnyField<'_>,
+    record: &ReturnRecord,
     see: ProgressObserver<'_>,
 ) -> Result<Option<CheckedExponents>> {
     if let Ended::Steady { equilibrium, .. } = &record.ended {
         let exponents = at_equilibrium(field, equilibrium);
         return Ok(Some(CheckedExponents {
             across_flow: exponents.first().copied(),
-            exponents: exponents.into(),
+            exponents,
             converged: true,
             along_flow: None,
             liouville_defect: None,
@@ -59,7 +58,7 @@ pub(super) fn of_record<const N: usize>(
     let found = spectrum_watched(field, record, see)?;
     Ok(found.map(|found| CheckedExponents {
         across_flow: found.across_flow(),
-        exponents: found.exponents.into(),
+        exponents: found.exponents,
         converged: found.converged,
         along_flow: Some(found.along_flow),
         liouville_defect: Some(found.liouville_defect),
@@ -68,9 +67,9 @@ pub(super) fn of_record<const N: usize>(
 
 /// ln |mu| / T of the periodic orbit through a point, with its period; `None` where that orbit or one of its multipliers is not
 /// known.
-pub(super) fn of_orbit<const N: usize>(
+pub(super) fn of_orbit(
     plan: &SectionPlan,
-    periodic: &Periodic<N>,
+    periodic: &Periodic,
 ) -> Option<(Uncertain, CheckedExponents)> {
     let slab = InterfaceSystem {
         law: plan.system.law,
@@ -79,7 +78,7 @@ pub(super) fn of_orbit<const N: usize>(
     };
     let y = &periodic.point;
     let begin = InitialGuess::At {
-        start: (y[0], [y[1], y[N - 1]]),
+        start: (y[0], [y[1], y[y.len() - 1]]),
         period: Some(periodic.period.value),
     };
     let accuracy = OrbitAccuracy::of(Choice::Taylor);
@@ -125,9 +124,9 @@ fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
 }
 
 /// A record of the symmetric subspace in all three dimensions.
-pub(super) fn embedded(record: &ReturnRecord<2>) -> ReturnRecord<3> {
-    let state = |y: &State<2>| State::<3>::new(y[0], y[1], y[1]);
-    let point = |at: &Return<2>| Return {
+pub(super) fn embedded(record: &ReturnRecord) -> ReturnRecord {
+    let state = |y: &Vector| Vector::from_vec(vec![y[0], y[1], y[1]]);
+    let point = |at: &Return| Return {
         time: at.time,
         state: state(&at.state),
     };

@@ -4,8 +4,8 @@ use super::super::column::Column;
 use super::super::run::Sink;
 use super::super::units::Quantity;
 use super::SectionPlan;
+use crate::field::Vector;
 use crate::integrate::Control;
-use crate::model::Driven;
 use crate::section::Return;
 
 /// A return to the section, dimensionless. With one interface both entries of a pair are the same.
@@ -57,21 +57,24 @@ pub fn section_columns(interfaces: usize) -> Vec<Column<SectionRow>> {
     columns
 }
 
+/// The slip rates of both interfaces at a state.
+pub(super) type SlipRates<'a> = &'a dyn Fn(&Vector) -> [f64; 2];
+
 /// Makes a row of each return and the next.
-pub(super) struct RowMaker<'a, const N: usize> {
+pub(super) struct RowMaker<'a> {
     plan: &'a SectionPlan,
-    field: &'a dyn Driven<N>,
+    slip_rates: SlipRates<'a>,
     columns: Vec<Column<SectionRow>>,
     /// The last return, whose next is not known yet.
     open: Option<SectionRow>,
     made: usize,
 }
 
-impl<'a, const N: usize> RowMaker<'a, N> {
-    pub fn new(plan: &'a SectionPlan, field: &'a dyn Driven<N>) -> Self {
+impl<'a> RowMaker<'a> {
+    pub fn new(plan: &'a SectionPlan, slip_rates: SlipRates<'a>) -> Self {
         RowMaker {
             plan,
-            field,
+            slip_rates,
             columns: section_columns(plan.system.interfaces),
             open: None,
             made: 0,
@@ -79,8 +82,8 @@ impl<'a, const N: usize> RowMaker<'a, N> {
     }
 
     /// The row of the return before is complete with this one.
-    pub fn next(&mut self, at: &Return<N>, sink: &mut dyn Sink) -> Control {
-        let slip_rate = self.field.slip_rates(&at.state);
+    pub fn next(&mut self, at: &Return, sink: &mut dyn Sink) -> Control {
+        let slip_rate = (self.slip_rates)(&at.state);
         let sum = slip_rate[..self.plan.system.interfaces].iter().sum();
         let told = self.open.take().map(|mut row| {
             row.next_slip_rate_sum = sum;
@@ -92,7 +95,7 @@ impl<'a, const N: usize> RowMaker<'a, N> {
         self.open = Some(SectionRow {
             number: self.made,
             time: at.time,
-            log_state: [at.state[1], at.state[N - 1]],
+            log_state: [at.state[1], at.state[at.state.len() - 1]],
             slip_rate,
             slip_rate_sum: sum,
             next_slip_rate_sum: f64::NAN,

@@ -4,11 +4,11 @@ use super::super::plan::Dimension;
 use super::super::run::Sink;
 use super::SectionPlan;
 use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, of_record};
-use super::row::RowMaker;
+use super::row::{RowMaker, SlipRates};
 use crate::error::{Error, Result};
-use crate::field::State;
-use crate::integrate::{Control, Work};
-use crate::model::{self, Driven};
+use crate::field::{State, Vector};
+use crate::integrate::{AnyField, AnyIntegrator, Control, Work};
+use crate::model;
 use crate::number::Uncertain;
 use crate::section::{
     Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Regime, RegimeVerdict, Return,
@@ -55,47 +55,51 @@ pub struct SectionOutcome {
 pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
     let (law, loading) = (plan.system.law, plan.loading);
     let (tau, [first, second]) = plan.start;
-    let y = State::<2>::new(tau, first);
+    let y = Vector::from_vec(vec![tau, first]);
     match plan.dimension {
         Dimension::Single => {
-            let field = model::single_interface(law, loading);
-            follow(plan, &*field, y, sink, &|record, see| {
-                of_record(&*field, record, see)
+            let slab = model::single_interface(law, loading);
+            let field = AnyField::of::<2>(&*slab);
+            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
+            follow(plan, (&field, &rates), &y, sink, &|record, see| {
+                of_record(&field, record, see)
             })
         }
         Dimension::Symmetric => {
-            let field = model::symmetric(law, loading);
+            let slab = model::symmetric(law, loading);
+            let field = AnyField::of::<2>(&*slab);
+            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
             // The third exponent is that of the perturbations across the subspace.
-            let whole = model::two_interfaces(law, loading);
-            follow(plan, &*field, y, sink, &|record, see| {
-                of_record(&*whole, &embedded(record), see)
+            let whole = AnyField::new::<3>(model::two_interfaces(law, loading));
+            follow(plan, (&field, &rates), &y, sink, &|record, see| {
+                of_record(&whole, &embedded(record), see)
             })
         }
         Dimension::Full => {
-            let field = model::two_interfaces(law, loading);
-            let y = State::<3>::new(tau, first, second);
-            follow(plan, &*field, y, sink, &|record, see| {
-                of_record(&*field, record, see)
+            let slab = model::two_interfaces(law, loading);
+            let field = AnyField::of::<3>(&*slab);
+            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
+            let y = Vector::from_vec(vec![tau, first, second]);
+            follow(plan, (&field, &rates), &y, sink, &|record, see| {
+                of_record(&field, record, see)
             })
         }
     }
 }
 
 /// The exponents by means along a record.
-type Means<'a, const N: usize> =
-    &'a dyn Fn(&ReturnRecord<N>, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
+type Means<'a> =
+    &'a dyn Fn(&ReturnRecord, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
 
-fn follow<const N: usize>(
+fn follow(
     plan: &SectionPlan,
-    field: &dyn Driven<N>,
-    start: State<N>,
+    (field, slip_rates): (&AnyField<'_>, SlipRates<'_>),
+    start: &Vector,
     sink: &mut dyn Sink,
-    means: Means<'_, N>,
+    means: Means<'_>,
 ) -> Result<SectionOutcome> {
-    let mut integrator = plan
-        .method
-        .integrator::<N>(plan.tolerances, plan.max_steps)?;
-    let surface = Surface::stress(plan.stress, plan.direction);
+    let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?;
+    let surface = Surface::stress(field.dimension(), plan.stress, plan.direction);
     // One more, for the last row's next.
     let returns = plan.returns + 1;
     let watching = Watching {
@@ -105,21 +109,14 @@ fn follow<const N: usize>(
         accuracy: plan.tolerances.rtol,
         waypoints: false,
     };
-    let mut rows = RowMaker::new(plan, field);
+    let mut rows = RowMaker::new(plan, slip_rates);
     let all = (plan.skip + returns) as f64 / if plan.lyapunov { RUN } else { 1.0 };
-    let mut see = |passed: usize, at: Option<&Return<N>>| match at {
+    let mut see = |passed: usize, at: Option<&Return>| match at {
         Some(at) if passed >= plan.skip => rows.next(at, sink),
         Some(_) => Control::Continue,
         None => sink.reached(passed as f64 / all),
     };
-    let record = record(
-        &mut *integrator,
-        field,
-        &start,
-        &surface,
-        &watching,
-        &mut see,
-    );
+    let record = record(&mut integrator, field, start, &surface, &watching, &mut see);
     let mut outcome = SectionOutcome {
         regime: Regime::Undecided,
         period_of_orbit: None,
@@ -170,12 +167,12 @@ fn follow<const N: usize>(
 /// `None` if it is stopped, and of too few returns.
 ///
 /// Means along the run itself would have the error of its tolerance as a bias: they are taken along one of their own.
-fn exponents<const N: usize>(
+fn exponents(
     plan: &SectionPlan,
-    (field, surface, watching): (&dyn Driven<N>, &Surface<N>, &Watching),
-    (record, made): (&ReturnRecord<N>, &mut RegimeVerdict<N>),
+    (field, surface, watching): (&AnyField<'_>, &Surface, &Watching),
+    (record, made): (&ReturnRecord, &mut RegimeVerdict),
     sink: &mut dyn Sink,
-    means: Means<'_, N>,
+    means: Means<'_>,
 ) -> Result<Option<CheckedExponents>> {
     if let Ended::Steady { .. } = record.ended {
         return means(record, &mut |_| Control::Continue);
@@ -187,7 +184,7 @@ fn exponents<const N: usize>(
         return Ok(None);
     };
     let all = watching.returns as f64;
-    let see = &mut |passed: usize, at: Option<&Return<N>>| match at {
+    let see = &mut |passed: usize, at: Option<&Return>| match at {
         Some(_) => Control::Continue,
         None => sink.reached(RUN + (OWN_RUN - RUN) * passed as f64 / all),
     };
@@ -210,14 +207,13 @@ fn exponents<const N: usize>(
         return Ok(None);
     };
     let many = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
-    if N == 3 && many && made.periodic.is_none() {
+    if field.dimension() == 3 && many && made.periodic.is_none() {
         let known = Exponents {
             values: &found.exponents,
             converged: found.converged,
         };
         // Either run may be the one whose returns tell.
-        let by =
-            |run: &ReturnRecord<N>| aperiodic(surface, &run.returns, run.accuracy, Some(known));
+        let by = |run: &ReturnRecord| aperiodic(surface, &run.returns, run.accuracy, Some(known));
         *made = by(record);
         if made.regime == Regime::Undecided {
             *made = by(&own);
@@ -227,10 +223,7 @@ fn exponents<const N: usize>(
 }
 
 /// The exponents of the orbit that a verdict names, with its period then.
-fn by_orbit<const N: usize>(
-    plan: &SectionPlan,
-    made: &mut RegimeVerdict<N>,
-) -> Option<CheckedExponents> {
+fn by_orbit(plan: &SectionPlan, made: &mut RegimeVerdict) -> Option<CheckedExponents> {
     let periodic = made.periodic.as_mut()?;
     let (period, found) = of_orbit(plan, periodic)?;
     periodic.period = period;
