@@ -5,20 +5,22 @@
 //! no observer nothing is stored and no dense output is evaluated, and a tangent is only carried by [`Integrator::tangent_flow`].
 
 mod any_field;
+mod any_integrator;
+mod any_step;
 mod auto;
 mod choice;
 #[cfg(feature = "sundials")]
 mod cvode;
 pub(crate) mod rosenbrock;
 pub(crate) mod singularity;
+mod static_field;
 mod tableau;
 mod taylor;
 
+pub use any_field::AnyField;
 pub(crate) use any_field::of_dimension;
-pub use any_field::{
-    AnyField, AnyIntegrator, AnyObserver, AnyPassage, AnySection, AnyStep, DerivativesAlongArcs,
-    FlowDerivatives, StepSeries,
-};
+pub use any_integrator::{AnyIntegrator, DerivativesAlongArcs, FlowDerivatives};
+pub use any_step::{AnyObserver, AnyPassage, AnySection, AnyStep, StepSeries};
 pub use auto::Auto;
 pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]

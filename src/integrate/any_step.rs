@@ -1,0 +1,162 @@
+//! The steps of a flow in any dimension, as an observer sees them.
+
+use super::static_field::vector;
+use super::{Control, Step};
+use crate::error::Result;
+use crate::field::Vector;
+use crate::number::{DoubleDouble, polynomial::Crossing};
+use crate::series::{Expansion, Section, Zeros};
+
+/// Sees every accepted step; an error from it ends the flow.
+pub type AnyObserver<'a> = &'a mut dyn FnMut(&AnyStep<'_>) -> Result<Control>;
+
+/// One accepted step in any dimension, as [`Step`].
+#[non_exhaustive]
+pub struct AnyStep<'a> {
+    /// Time at the beginning.
+    pub t0: f64,
+    /// State at `t0`.
+    pub y0: &'a [f64],
+    /// Time at the end.
+    pub t1: f64,
+    /// State at `t1`.
+    pub y1: &'a [f64],
+    /// A bound on how far the first component strays from its value at `t0`, of methods to which it costs nothing; else
+    /// infinity.
+    pub reach: f64,
+    dense: &'a dyn Fn(f64) -> Vector,
+    series: &'a dyn Fn() -> Option<&'a dyn StepSeries>,
+}
+
+impl<'a> AnyStep<'a> {
+    /// What `see` makes of a step of a field whose dimension the compiler knows.
+    pub(crate) fn of<const N: usize, T>(
+        step: &Step<'_, N>,
+        see: impl FnOnce(&AnyStep<'_>) -> T,
+    ) -> T {
+        see(&AnyStep {
+            t0: step.t0,
+            y0: step.y0.as_slice(),
+            t1: step.t1,
+            y1: step.y1.as_slice(),
+            reach: step.reach,
+            dense: &|t| vector(&(step.dense)(t)),
+            series: &|| step.series().map(|series| series as &dyn StepSeries),
+        })
+    }
+
+    /// The continuous solution at a time within the step.
+    pub fn dense(&self, t: f64) -> Vector {
+        (self.dense)(t)
+    }
+
+    /// The series at `t0`, of methods that step by one.
+    pub fn series(&self) -> Option<&'a dyn StepSeries> {
+        (self.series)()
+    }
+}
+
+/// The power series of a step in any dimension: an [`Expansion`].
+pub trait StepSeries {
+    /// The time of the beginning, in 31 digits.
+    fn begin(&self) -> DoubleDouble;
+    /// The time from the beginning of the step to its end.
+    fn length(&self) -> f64;
+    /// The unit of time.
+    fn unit(&self) -> f64;
+    /// The order to which the variables are known.
+    fn order(&self) -> usize;
+    /// The coefficients of the i-th variable, to the order.
+    fn variable(&self, i: usize) -> &[f64];
+    /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
+    fn slip_rates(&self) -> [&[f64]; 2];
+    /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
+    fn crossings(
+        &self,
+        section: AnySection<'_>,
+        direction: Option<Crossing>,
+        zeros: &mut Zeros,
+        found: &mut Vec<AnyPassage>,
+    );
+}
+
+/// A function that is watched for zeros, as [`Section`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum AnySection<'a> {
+    /// normal . x - offset.
+    Plane {
+        /// The plane's normal.
+        normal: &'a Vector,
+        /// Its distance from 0 in the length of the normal.
+        offset: f64,
+    },
+    /// The time derivative of normal . x.
+    Extremum {
+        /// What is largest or smallest.
+        normal: &'a Vector,
+    },
+}
+
+/// A zero of a section along a step.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct AnyPassage {
+    /// Time since the beginning of the step.
+    pub time: f64,
+    /// How the section's sign changes as time grows.
+    pub crossing: Crossing,
+    /// The state there.
+    pub state: Vector,
+}
+
+impl<const N: usize> StepSeries for Expansion<N> {
+    fn begin(&self) -> DoubleDouble {
+        self.begin
+    }
+
+    fn length(&self) -> f64 {
+        self.length
+    }
+
+    fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    fn order(&self) -> usize {
+        self.order
+    }
+
+    fn variable(&self, i: usize) -> &[f64] {
+        &self.variables[i][..=self.order]
+    }
+
+    fn slip_rates(&self) -> [&[f64]; 2] {
+        self.slip_rates.each_ref().map(|rates| &rates[..self.order])
+    }
+
+    fn crossings(
+        &self,
+        section: AnySection<'_>,
+        direction: Option<Crossing>,
+        zeros: &mut Zeros,
+        found: &mut Vec<AnyPassage>,
+    ) {
+        let components = |normal: &Vector| -> [f64; N] { std::array::from_fn(|i| normal[i]) };
+        let section = match section {
+            AnySection::Plane { normal, offset } => Section::Plane {
+                normal: components(normal),
+                offset,
+            },
+            AnySection::Extremum { normal } => Section::Extremum {
+                normal: components(normal),
+            },
+        };
+        let mut here = Vec::new();
+        self.crossings(&section, direction, zeros, &mut here);
+        found.extend(here.into_iter().map(|passage| AnyPassage {
+            time: passage.time,
+            crossing: passage.crossing,
+            state: Vector::from_column_slice(&passage.state),
+        }));
+    }
+}

@@ -1,0 +1,270 @@
+//! Fields of a dimension that the compiler knows behind those of any: where [`AnyField`](super::AnyField) meets the integrators.
+
+use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
+use super::any_step::{AnyObserver, AnyStep};
+use super::{Integrator, Observer, Step, Taylor, Work};
+use crate::error::{Error, Result};
+use crate::field::{Jacobian, Matrix, State, Vector, VectorField};
+use crate::series::{Jet3, Tangent};
+
+/// What a field of a dimension that the compiler knows does for one of any.
+pub(super) trait Flows: Send + Sync {
+    fn dimension(&self) -> usize;
+    fn f(&self, y: &[f64]) -> Vector;
+    fn jacobian(&self, y: &[f64]) -> Matrix;
+    fn trace(&self, y: &[f64]) -> f64;
+    fn newton_step(&self, y: &[f64]) -> Option<Vector>;
+    fn second_derivative(&self, y_u_v: [&[f64]; 3]) -> Vector;
+    fn parameter_names(&self) -> &[&'static str];
+    fn parameter_derivative(&self, y: &[f64], place: usize) -> Vector;
+    fn parameter_jacobian(&self, y: &[f64], place: usize) -> Matrix;
+    fn flow(
+        &self,
+        by: &mut AnyIntegrator,
+        t: (f64, f64),
+        y0: &[f64],
+        observer: Option<AnyObserver<'_>>,
+    ) -> Result<Vector>;
+    fn arcs<'f>(
+        &'f self,
+        by: &'f mut AnyIntegrator,
+        free: &'f [usize],
+    ) -> Result<Box<dyn ArcByArc + 'f>>;
+    fn transport_onto(
+        &self,
+        taylor: &mut Taylor,
+        span: (f64, f64),
+        start: &[Jet3],
+        plane: (&[f64], &[f64]),
+    ) -> Result<(Jet3, Vec<Jet3>)>;
+}
+
+/// The solution of A x = b by elimination with partial pivoting: runs ask for it so often that it shall not allocate.
+fn solve<const N: usize>(mut a: Jacobian<N>, mut b: State<N>) -> Option<State<N>> {
+    for k in 0..N {
+        let pivot = (k..N).max_by(|&i, &j| a[(i, k)].abs().total_cmp(&a[(j, k)].abs()))?;
+        if a[(pivot, k)] == 0.0 {
+            return None;
+        }
+        a.swap_rows(k, pivot);
+        b.swap_rows(k, pivot);
+        for i in k + 1..N {
+            let factor = a[(i, k)] / a[(k, k)];
+            for j in k..N {
+                a[(i, j)] -= factor * a[(k, j)];
+            }
+            b[i] -= factor * b[k];
+        }
+    }
+    for k in (0..N).rev() {
+        for j in k + 1..N {
+            b[k] -= a[(k, j)] * b[j];
+        }
+        b[k] /= a[(k, k)];
+    }
+    Some(b)
+}
+
+/// A field of N variables.
+pub(super) enum Static<'a, const N: usize> {
+    Owned(Box<dyn VectorField<N> + 'a>),
+    Lent(&'a dyn VectorField<N>),
+}
+
+impl<const N: usize> Static<'_, N> {
+    fn field(&self) -> &dyn VectorField<N> {
+        match self {
+            Static::Owned(field) => &**field,
+            Static::Lent(field) => *field,
+        }
+    }
+}
+
+fn state<const N: usize>(y: &[f64]) -> State<N> {
+    State::from_column_slice(y)
+}
+
+pub(super) fn vector<const N: usize>(y: &State<N>) -> Vector {
+    Vector::from_column_slice(y.as_slice())
+}
+
+fn matrix<const N: usize>(m: &Jacobian<N>) -> Matrix {
+    Matrix::from_column_slice(N, N, m.as_slice())
+}
+
+impl<const N: usize> Flows for Static<'_, N> {
+    fn dimension(&self) -> usize {
+        N
+    }
+
+    fn f(&self, y: &[f64]) -> Vector {
+        vector(&self.field().f(&state(y)))
+    }
+
+    fn jacobian(&self, y: &[f64]) -> Matrix {
+        matrix(&self.field().jacobian(&state(y)))
+    }
+
+    fn trace(&self, y: &[f64]) -> f64 {
+        self.field().jacobian(&state(y)).trace()
+    }
+
+    fn newton_step(&self, y: &[f64]) -> Option<Vector> {
+        let y = state(y);
+        let step = solve(self.field().jacobian(&y), self.field().f(&y))?;
+        step.iter().all(|x| x.is_finite()).then(|| vector(&step))
+    }
+
+    fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vector {
+        vector(
+            &self
+                .field()
+                .second_derivative(&state(y), &state(u), &state(v)),
+        )
+    }
+
+    fn parameter_names(&self) -> &[&'static str] {
+        match self.field().parametrised() {
+            Some(field) => field.names(),
+            None => &[],
+        }
+    }
+
+    fn parameter_derivative(&self, y: &[f64], place: usize) -> Vector {
+        let field = self
+            .field()
+            .parametrised()
+            .expect("a field with parameters");
+        vector(&field.parameter_derivative(&state(y), place))
+    }
+
+    fn parameter_jacobian(&self, y: &[f64], place: usize) -> Matrix {
+        let field = self
+            .field()
+            .parametrised()
+            .expect("a field with parameters");
+        matrix(&field.parameter_jacobian(&state(y), place))
+    }
+
+    fn flow(
+        &self,
+        by: &mut AnyIntegrator,
+        t: (f64, f64),
+        y0: &[f64],
+        observer: Option<AnyObserver<'_>>,
+    ) -> Result<Vector> {
+        let mut run = |observer: Option<Observer<'_, N>>| -> (Result<State<N>>, Work) {
+            match &mut by.method {
+                Method::Taylor(taylor) => {
+                    let end = taylor.flow(self.field(), t, &state(y0), observer);
+                    (end, Integrator::<N>::work(taylor))
+                }
+                Method::Other {
+                    choice,
+                    tolerances,
+                    max_steps,
+                } => match choice.integrator::<N>(*tolerances, *max_steps) {
+                    Ok(mut method) => {
+                        let end = method.flow(self.field(), t, &state(y0), observer);
+                        (end, method.work())
+                    }
+                    Err(error) => (Err(error), Work::default()),
+                },
+            }
+        };
+        let (end, work) = match observer {
+            None => run(None),
+            Some(observer) => run(Some(&mut |step: &Step<'_, N>| {
+                AnyStep::of(step, &mut *observer)
+            })),
+        };
+        by.work = work;
+        Ok(vector(&end?))
+    }
+
+    fn arcs<'f>(
+        &'f self,
+        by: &'f mut AnyIntegrator,
+        free: &'f [usize],
+    ) -> Result<Box<dyn ArcByArc + 'f>> {
+        let field = self.field();
+        let tangent = match &mut by.method {
+            Method::Taylor(taylor) => Some(taylor.tangent(field, free)?),
+            Method::Other { .. } => None,
+        };
+        Ok(Box::new(StaticArcs { field, by, tangent }))
+    }
+
+    fn transport_onto(
+        &self,
+        taylor: &mut Taylor,
+        span: (f64, f64),
+        start: &[Jet3],
+        (normal, point): (&[f64], &[f64]),
+    ) -> Result<(Jet3, Vec<Jet3>)> {
+        let start = std::array::from_fn(|i| start[i]);
+        let plane = (&state(normal), &state(point));
+        let (time, end) = taylor.transport_onto::<N>(self.field(), span, start, plane)?;
+        Ok((time, end.to_vec()))
+    }
+}
+
+/// Derivatives along arcs, one after the other.
+pub(super) trait ArcByArc {
+    fn derivatives(&mut self, t: (f64, f64), y0: &[f64]) -> Result<(Vector, FlowDerivatives)>;
+    fn work(&self) -> Work;
+}
+
+struct StaticArcs<'f, const N: usize> {
+    field: &'f dyn VectorField<N>,
+    by: &'f mut AnyIntegrator,
+    /// Of Taylor's method.
+    tangent: Option<Box<dyn Tangent<N> + 'f>>,
+}
+
+impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
+    fn derivatives(&mut self, t: (f64, f64), y0: &[f64]) -> Result<(Vector, FlowDerivatives)> {
+        let (field, start) = (self.field, state(y0));
+        match (&mut self.by.method, &mut self.tangent) {
+            (Method::Taylor(taylor), Some(tangent)) => {
+                let made = taylor.derivatives_by(&mut **tangent, field, t, &start);
+                // Also of what fails.
+                self.by.work = Integrator::<N>::work(taylor);
+                let (end, made) = made?;
+                let columns = &made.parameters;
+                let derivatives = FlowDerivatives {
+                    start: Matrix::from_column_slice(N, N, made.start.as_flattened()),
+                    parameters: Matrix::from_column_slice(N, columns.len(), columns.as_flattened()),
+                    log_determinant: Some(made.log_determinant),
+                    log_transverse: made.log_transverse,
+                };
+                Ok((vector(&end), derivatives))
+            }
+            (Method::Taylor(_), None) => Err(Error::NotAnalytic),
+            (
+                Method::Other {
+                    choice,
+                    tolerances,
+                    max_steps,
+                },
+                _,
+            ) => {
+                let mut method = choice.integrator::<N>(*tolerances, *max_steps)?;
+                let made = method.tangent_flow(field, t, &start);
+                self.by.work = method.work();
+                let (end, tangent) = made?;
+                let derivatives = FlowDerivatives {
+                    start: matrix(&tangent),
+                    parameters: Matrix::zeros(N, 0),
+                    log_determinant: None,
+                    log_transverse: None,
+                };
+                Ok((vector(&end), derivatives))
+            }
+        }
+    }
+
+    fn work(&self) -> Work {
+        self.by.work
+    }
+}
