@@ -1,6 +1,6 @@
 //! What arcs of multiple shooting err by, against 31 digits, beside what they say of it.
 
-use twinslip::field::{State, Vector, VectorField};
+use twinslip::field::{State, VectorField, vector};
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::integrate::{AnyField, Integrator, MAX_STEPS, Taylor};
 use twinslip::model::classics::{Brusselator, Langford, Lorenz, Roessler, VanDerPol};
@@ -52,7 +52,7 @@ fn errors<const N: usize>(
     let mut reference = Taylor::reference(MAX_STEPS).unwrap();
     let mut tracer = Tracer::taylor(tolerance).unwrap();
     let any = AnyField::of(field);
-    let start = Vector::from_column_slice(start.as_slice());
+    let start = vector(&start);
     let mut x = tracer.flow(&any, &start, 20.0 * duration, None).unwrap();
     let (mut sum, mut largest, mut steps) = (0.0, 0.0_f64, 0);
     for _ in 0..ARCS {

@@ -9,7 +9,7 @@ use twinslip::bifurcation::equilibria::generic_curve::{
     EquilibriumBifurcation, EquilibriumCurve, EquilibriumCurvePoint,
 };
 use twinslip::continuation::{Settings, Stop};
-use twinslip::field::{Jacobian, State, Vector, VectorField};
+use twinslip::field::{Jacobian, State, Vector, VectorField, vector};
 use twinslip::integrate::AnyField;
 use twinslip::model::classics;
 use twinslip::number::Real;
@@ -283,7 +283,7 @@ fn a_conservative_system_has_no_hopf_points() {
         let settings = Settings::new((-2.0, 2.0), longest).unwrap();
         let asinh = (-2.0_f64 / 5.0).asinh();
         let begin = Conservative::forth(&State::<2>::new(asinh, 0.0));
-        let begin = Vector::from_column_slice(begin.as_slice());
+        let begin = vector(&begin);
         let points = all(&family, &Onward::along(begin, -2.0, true), &settings);
         // along the branch u = asinh(p / (1 + p^2)) has an extremum at p = 1, which is no fold in p
         let special: Vec<_> = points.iter().filter_map(|point| point.label).collect();

@@ -55,24 +55,24 @@ fn cut(roots: &[f64], scale: f64, from: f64, to: f64) -> Expansion<1> {
     expansion
 }
 
-fn passages(roots: &[f64], scale: f64, cuts: &[f64], section: &Section<1>) -> Vec<(f64, Crossing)> {
+fn passages(roots: &[f64], scale: f64, cuts: &[f64], section: Section<'_>) -> Vec<(f64, Crossing)> {
     let mut zeros = Zeros::default();
     let mut all = Vec::new();
     for pair in cuts.windows(2) {
-        let mut found: Vec<Passage<1>> = Vec::new();
+        let mut found: Vec<Passage> = Vec::new();
         cut(roots, scale, pair[0], pair[1]).crossings(section, None, &mut zeros, &mut found);
         all.extend(found.iter().map(|p| (pair[0] + p.time, p.crossing)));
     }
     all
 }
 
-const ZERO: Section<1> = Section::Plane {
-    normal: [1.0],
+const ZERO: Section<'static> = Section::Plane {
+    normal: &[1.0],
     offset: 0.0,
 };
 
 fn assert_zeros(roots: &[f64], scale: f64, cuts: &[f64]) {
-    let found = passages(roots, scale, cuts, &ZERO);
+    let found = passages(roots, scale, cuts, ZERO);
     assert_eq!(found.len(), roots.len(), "{roots:?} {cuts:?}: {found:?}");
     let falls_first = (scale > 0.0) == roots.len().is_multiple_of(2);
     for (i, ((at, crossing), root)) in found.iter().zip(roots).enumerate() {
@@ -113,7 +113,7 @@ fn the_sides_of_a_joint_need_not_agree() {
             let mut zeros = Zeros::default();
             let mut found = Vec::new();
             for c in [[before - 1.0, 1.0], [after, 1.0], [1.0, 1.0]] {
-                step(c).crossings(&ZERO, None, &mut zeros, &mut found);
+                step(c).crossings(ZERO, None, &mut zeros, &mut found);
             }
             let crossings: Vec<Crossing> = found.iter().map(|p| p.crossing).collect();
             assert_eq!(crossings, [Crossing::Upwards], "{before:e} {after:e}");
@@ -155,7 +155,7 @@ proptest! {
 /// The slip rate exceeds V_H by little, twice in one step: four stress extrema; where it only touches V_H, none.
 #[test]
 fn four_extrema_in_one_step() {
-    let section = Section::Extremum { normal: [-1.0] };
+    let section = Section::Extremum { normal: &[-1.0] };
     // tau' = -(v - V_H), v - V_H = -prod (t - r)
     let of = |roots: [f64; 4]| {
         let rate = cut(&roots, -1.0, 0.0, 1.0);
@@ -165,7 +165,7 @@ fn four_extrema_in_one_step() {
             tau.variables[0][j + 1] = -rate.variables[0][j] / (j + 1) as f64;
         }
         let mut found = Vec::new();
-        tau.crossings(&section, None, &mut Zeros::default(), &mut found);
+        tau.crossings(section, None, &mut Zeros::default(), &mut found);
         found
     };
     let roots = [0.2, 0.2001, 0.7, 0.7001];

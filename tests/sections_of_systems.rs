@@ -3,7 +3,7 @@
 use crate::common::among::{Among, mixed};
 use crate::common::{data, number};
 use twinslip::Error;
-use twinslip::field::{Matrix, State, Vector};
+use twinslip::field::{Matrix, State, Vector, vector};
 use twinslip::integrate::{AnyField, AnyIntegrator, Choice, Control, MAX_STEPS, Tolerances};
 use twinslip::model::Smooth;
 use twinslip::model::classics::{Langford, Lorenz};
@@ -27,7 +27,7 @@ fn plane(normal: Vector, offset: f64) -> Surface {
 
 /// A point of three variables, among others.
 fn point<const N: usize>(x: [f64; 3]) -> Vector {
-    Vector::from_column_slice(mixed::<N>(&State::from(x)).as_slice())
+    vector(&mixed::<N>(&State::from(x)))
 }
 
 /// A plane of three variables, among others.

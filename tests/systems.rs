@@ -271,7 +271,7 @@ fn langford_has_its_torus() {
 fn period(mu: f64, wait: f64, tolerance: f64) -> f64 {
     let field = van_der_pol(mu);
     let section = Section::Plane {
-        normal: [1.0, 0.0],
+        normal: &[1.0, 0.0],
         offset: 0.0,
     };
     let (mut zeros, mut passages) = (Zeros::default(), Vec::new());
@@ -280,7 +280,7 @@ fn period(mu: f64, wait: f64, tolerance: f64) -> f64 {
         let series = step.series().expect("series");
         passages.clear();
         series.crossings(
-            &section,
+            section,
             Some(Crossing::Downwards),
             &mut zeros,
             &mut passages,

@@ -1,11 +1,10 @@
 //! The steps of a flow in any dimension, as an observer sees them.
 
-use super::static_field::vector;
 use super::{Control, Step};
 use crate::error::Result;
-use crate::field::Vector;
+use crate::field::{Vector, vector};
 use crate::number::{DoubleDouble, polynomial::Crossing};
-use crate::series::{Expansion, Section, Zeros};
+use crate::series::{Expansion, Passage, Section, Zeros};
 
 /// Sees every accepted step; an error from it ends the flow.
 pub type AnyObserver<'a> = &'a mut dyn FnMut(&AnyStep<'_>) -> Result<Control>;
@@ -73,40 +72,11 @@ pub trait StepSeries {
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
     fn crossings(
         &self,
-        section: AnySection<'_>,
+        section: Section<'_>,
         direction: Option<Crossing>,
         zeros: &mut Zeros,
-        found: &mut Vec<AnyPassage>,
+        found: &mut Vec<Passage>,
     );
-}
-
-/// A function that is watched for zeros, as [`Section`].
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum AnySection<'a> {
-    /// normal . x - offset.
-    Plane {
-        /// The plane's normal.
-        normal: &'a Vector,
-        /// Its distance from 0 in the length of the normal.
-        offset: f64,
-    },
-    /// The time derivative of normal . x.
-    Extremum {
-        /// What is largest or smallest.
-        normal: &'a Vector,
-    },
-}
-
-/// A zero of a section along a step.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct AnyPassage {
-    /// Time since the beginning of the step.
-    pub time: f64,
-    /// How the section's sign changes as time grows.
-    pub crossing: Crossing,
-    /// The state there.
-    pub state: Vector,
 }
 
 impl<const N: usize> StepSeries for Expansion<N> {
@@ -136,27 +106,11 @@ impl<const N: usize> StepSeries for Expansion<N> {
 
     fn crossings(
         &self,
-        section: AnySection<'_>,
+        section: Section<'_>,
         direction: Option<Crossing>,
         zeros: &mut Zeros,
-        found: &mut Vec<AnyPassage>,
+        found: &mut Vec<Passage>,
     ) {
-        let components = |normal: &Vector| -> [f64; N] { std::array::from_fn(|i| normal[i]) };
-        let section = match section {
-            AnySection::Plane { normal, offset } => Section::Plane {
-                normal: components(normal),
-                offset,
-            },
-            AnySection::Extremum { normal } => Section::Extremum {
-                normal: components(normal),
-            },
-        };
-        let mut here = Vec::new();
-        self.crossings(&section, direction, zeros, &mut here);
-        found.extend(here.into_iter().map(|passage| AnyPassage {
-            time: passage.time,
-            crossing: passage.crossing,
-            state: Vector::from_column_slice(&passage.state),
-        }));
+        self.crossings(section, direction, zeros, found);
     }
 }

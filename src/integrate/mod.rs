@@ -20,7 +20,7 @@ mod taylor;
 pub use any_field::AnyField;
 pub(crate) use any_field::of_dimension;
 pub use any_integrator::{AnyIntegrator, DerivativesAlongArcs, FlowDerivatives};
-pub use any_step::{AnyObserver, AnyPassage, AnySection, AnyStep, StepSeries};
+pub use any_step::{AnyObserver, AnyStep, StepSeries};
 pub use auto::Auto;
 pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]

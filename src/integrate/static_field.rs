@@ -4,7 +4,7 @@ use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
 use super::{Integrator, Observer, Step, Taylor, Work};
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, Matrix, State, Vector, VectorField};
+use crate::field::{Jacobian, Matrix, State, Vector, VectorField, state, vector};
 use crate::series::{Jet3, Tangent};
 
 /// What a field of a dimension that the compiler knows does for one of any.
@@ -78,14 +78,6 @@ impl<const N: usize> Static<'_, N> {
             Static::Lent(field) => *field,
         }
     }
-}
-
-fn state<const N: usize>(y: &[f64]) -> State<N> {
-    State::from_column_slice(y)
-}
-
-pub(super) fn vector<const N: usize>(y: &State<N>) -> Vector {
-    Vector::from_column_slice(y.as_slice())
 }
 
 fn matrix<const N: usize>(m: &Jacobian<N>) -> Matrix {

@@ -5,9 +5,9 @@ use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnySection, Control};
+use crate::integrate::{AnyField, Control};
 use crate::number::polynomial::{Crossing, evaluate, roots};
-use crate::series::{REFERENCE_ORDER, Zeros};
+use crate::series::{REFERENCE_ORDER, Section, Zeros};
 
 /// The extremes over one cycle, and the point where a plane is passed.
 #[derive(Debug, Clone)]
@@ -30,8 +30,8 @@ pub(super) fn extremes(
     let mut tracer = Tracer::taylor(FINE)?;
     let dimension = field.dimension();
     let axes: Vec<_> = (0..dimension).map(|i| axis(dimension, i)).collect();
-    let plane = AnySection::Plane {
-        normal: &axes[0],
+    let plane = Section::Plane {
+        normal: axes[0].as_slice(),
         offset: level,
     };
     let mut all = Extremes {
@@ -58,15 +58,20 @@ pub(super) fn extremes(
                 };
                 found.clear();
                 for (normal, zeros) in axes.iter().zip(&mut turns_of) {
-                    let section = AnySection::Extremum { normal };
+                    let section = Section::Extremum {
+                        normal: normal.as_slice(),
+                    };
                     series.crossings(section, None, zeros, &mut found);
                 }
-                found.iter().for_each(|turn| all.see(turn.state.as_slice()));
+                found.iter().for_each(|turn| all.see(&turn.state));
                 if all.passage.is_none() {
                     found.clear();
                     let down = Some(Crossing::Downwards);
                     series.crossings(plane, down, &mut through, &mut found);
-                    all.passage = found.drain(..).next().map(|passage| passage.state);
+                    all.passage = found
+                        .drain(..)
+                        .next()
+                        .map(|passage| Vector::from_vec(passage.state));
                 }
                 let end = series.length() / series.unit();
                 for rates in series.slip_rates() {

@@ -4,7 +4,7 @@ use super::continuation_point::ContinuationPoint;
 use super::interface_system::InterfaceSystem;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{Matrix, State, Vector, place};
+use crate::field::{Matrix, State, Vector, place, state, vector};
 use crate::integrate::AnyField;
 use crate::model::{Loading, Parameter, Smooth, from_difference_chart, to_difference_chart};
 use crate::series::Equations;
@@ -278,10 +278,7 @@ impl OverDifferenceChart {
     pub(crate) fn to_chart(site: &ContinuationPoint) -> Option<ContinuationPoint> {
         let nodes = |each: &dyn Fn(&State<3>) -> Option<State<3>>| {
             let nodes = site.shooting.nodes.iter();
-            let each = |x: &Vector| {
-                let node = each(&State::<3>::new(x[0], x[1], x[2]))?;
-                Some(Vector::from_column_slice(node.as_slice()))
-            };
+            let each = |x: &Vector| Some(vector(&each(&state(x.as_slice()))?));
             nodes.map(each).collect::<Option<Vec<_>>>()
         };
         let exchanged = |x: &State<3>| to_difference_chart(&State::<3>::new(x[0], x[2], x[1]));
@@ -291,10 +288,7 @@ impl OverDifferenceChart {
 
     /// The orbit in (tau, ln psi_1, ln psi_2).
     pub(crate) fn from_chart(site: &ContinuationPoint) -> ContinuationPoint {
-        let node = |x: &Vector| {
-            let node = from_difference_chart(&State::<3>::new(x[0], x[1], x[2]));
-            Vector::from_column_slice(node.as_slice())
-        };
+        let node = |x: &Vector| vector(&from_difference_chart(&state(x.as_slice())));
         site.with_nodes(site.shooting.nodes.iter().map(node).collect())
     }
 }

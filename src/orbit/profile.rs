@@ -6,9 +6,9 @@ use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::{Error, Result};
 use crate::field::State;
-use crate::integrate::{AnyField, AnySection, Control};
+use crate::integrate::{AnyField, Control};
 use crate::number::polynomial::evaluate;
-use crate::series::Zeros;
+use crate::series::{Section, Zeros};
 
 /// Along one cycle.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -78,7 +78,9 @@ impl Extent {
         tracer: &mut Tracer,
     ) -> Result<()> {
         let stress = axis(field.dimension(), 0);
-        let section = AnySection::Extremum { normal: &stress };
+        let section = Section::Extremum {
+            normal: stress.as_slice(),
+        };
         let (mut turns, mut terms) = (Vec::new(), Vec::new());
         for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
             let mut zeros = Zeros::default();
@@ -94,9 +96,7 @@ impl Extent {
                     };
                     turns.clear();
                     series.crossings(section, None, &mut zeros, &mut turns);
-                    turns
-                        .iter()
-                        .for_each(|turn| self.see(turn.state.as_slice()));
+                    turns.iter().for_each(|turn| self.see(&turn.state));
                     // tau stands first, in the variables as in the state.
                     let stress = series.variable(0).iter().enumerate();
                     terms.clear();

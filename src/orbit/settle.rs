@@ -5,9 +5,9 @@ use super::no_orbit;
 use super::shooting_nodes::ShootingNodes;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnySection, Control};
+use crate::integrate::{AnyField, Control};
 use crate::number::polynomial::Crossing;
-use crate::series::Zeros;
+use crate::series::{Section, Zeros};
 
 /// A run's passages of a plane tau = level, downwards.
 #[derive(Debug, Clone)]
@@ -30,8 +30,8 @@ pub(super) fn passages(
     most: usize,
 ) -> Result<Passages> {
     let stress = axis(start.len(), 0);
-    let section = AnySection::Plane {
-        normal: &stress,
+    let section = Section::Plane {
+        normal: stress.as_slice(),
         offset: level,
     };
     let (mut zeros, mut here) = (Zeros::default(), Vec::new());
@@ -46,7 +46,7 @@ pub(super) fn passages(
             if let Some(series) = step.series() {
                 series.crossings(section, Some(Crossing::Downwards), &mut zeros, &mut here);
                 for passage in here.drain(..) {
-                    found.push((step.t0 + passage.time, passage.state));
+                    found.push((step.t0 + passage.time, Vector::from_vec(passage.state)));
                 }
             }
             Ok(if found.len() >= most {

@@ -3,9 +3,9 @@
 use super::surface::Surface;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyPassage, AnyStep};
+use crate::integrate::{AnyField, AnyStep};
 use crate::number::bracketed_root;
-use crate::series::Zeros;
+use crate::series::{Passage, Zeros};
 
 /// Parts of a step. As the slope is looked at too, a crossing is missed only where the dense output turns three times in one
 /// of them.
@@ -18,7 +18,7 @@ pub(super) fn crossings(
     surface: &Surface,
     step: &AnyStep<'_>,
     zeros: &mut Zeros,
-    found: &mut Vec<AnyPassage>,
+    found: &mut Vec<Passage>,
 ) -> Result<()> {
     let at = |t: f64| {
         if t == step.t1 {
@@ -65,10 +65,10 @@ pub(super) fn crossings(
                     left.0
                 };
                 if zeros.sign == surface.sign_behind() {
-                    found.push(AnyPassage {
+                    found.push(Passage {
                         time: t,
                         crossing: surface.direction,
-                        state: at(t),
+                        state: at(t).as_slice().to_vec(),
                     });
                 }
             }

@@ -5,8 +5,8 @@ use super::rest::{equilibrium_near, spirals_into};
 use super::surface::Surface;
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyIntegrator, AnyPassage, AnyStep, Control, of_dimension};
-use crate::series::Zeros;
+use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Control, of_dimension};
+use crate::series::{Passage, Zeros};
 
 /// Steps between two looks for an equilibrium.
 const BETWEEN_LOOKS: usize = 32;
@@ -165,7 +165,7 @@ pub type See<'a> = &'a mut dyn FnMut(usize, Option<&Return>) -> Control;
 pub(crate) struct Recorder {
     /// Of the height over the surface; its sign is carried over steps of either kind.
     zeros: Zeros,
-    found: Vec<AnyPassage>,
+    found: Vec<Passage>,
     pub passed: usize,
     /// After those let pass.
     pub returns: Vec<Return>,
@@ -218,7 +218,8 @@ impl Recorder {
             self.cross(watched, step)?;
         }
         let mut found = std::mem::take(&mut self.found);
-        for AnyPassage { time, state, .. } in found.drain(..) {
+        for Passage { time, state, .. } in found.drain(..) {
+            let state = Vector::from_vec(state);
             self.arrive(watched, Return { time, state }, see);
             if self.ended.is_some() {
                 return Ok(Control::Stop);

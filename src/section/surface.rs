@@ -6,9 +6,9 @@
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::friction::{Law, steady_stress};
-use crate::integrate::{AnyField, AnyIntegrator, AnySection, Control, of_dimension};
+use crate::integrate::{AnyField, AnyIntegrator, Control, of_dimension};
 use crate::number::{DoubleDouble, polynomial::Crossing};
-use crate::series::Zeros;
+use crate::series::{Section, Zeros};
 
 /// From the state that a field is integrated in to the variables of its series.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,9 +112,9 @@ impl Surface {
     }
 
     /// The plane as the series know it.
-    pub fn section(&self) -> AnySection<'_> {
-        AnySection::Plane {
-            normal: &self.normal,
+    pub fn section(&self) -> Section<'_> {
+        Section::Plane {
+            normal: self.normal.as_slice(),
             offset: self.offset,
         }
     }
@@ -256,7 +256,7 @@ pub fn return_map(
     let (_, derivative) = derivative_along(field, surface, by, &points, now)?;
     Ok(Landing {
         time: now.hi(),
-        state: passage.state,
+        state: Vector::from_vec(passage.state),
         derivative,
     })
 }

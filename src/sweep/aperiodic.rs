@@ -1,10 +1,10 @@
 //! Aperiodic motion: runs that close in on nothing, which are tori, chaos, or neither yet.
 
-use super::classify::{Classified, Classifier, alike, begun, state, steady};
+use super::classify::{Classified, Classifier, alike, begun, steady};
 use super::finite_difference_exponent::stretching;
 use super::flows::Flows;
 use super::watch::{SweepRun, see};
-use crate::field::Vector;
+use crate::field::{state, vector};
 use crate::integrate::Control;
 use crate::section::{
     Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
@@ -102,10 +102,11 @@ impl Classifier {
         };
         let mut stress = run.stress;
         let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
-        let start = run.recorder.returns.last().map_or_else(
-            || Vector::from_column_slice(run.state.as_slice()),
-            |at| at.state.clone(),
-        );
+        let start = run
+            .recorder
+            .returns
+            .last()
+            .map_or_else(|| vector(&run.state), |at| at.state.clone());
         let (field, surface) = (&run.field, &run.surface);
         let max_steps = self.settings.max_steps;
         let recorded = record_finely(field, &start, surface, &watching, max_steps, see_all)
@@ -123,7 +124,7 @@ impl Classifier {
             Regime::Torus | Regime::Chaotic => {
                 let mut told = told(run, made.regime, stress);
                 told.row.returns += recorded.returns.len();
-                told.attractor = recorded.returns.last().map(|at| state(&at.state));
+                told.attractor = recorded.returns.last().map(|at| state(at.state.as_slice()));
                 told.row.lyapunov_max = found.across_flow();
                 Ok(told)
             }

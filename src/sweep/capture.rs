@@ -5,7 +5,7 @@
 //! falls wherever |P| C |x| < 1, and a level set of V within that ball holds all runs that are in it (Lyapunov). A run need not be
 //! followed into the equilibrium, where it creeps.
 
-use crate::field::{Jacobian, State, Vector};
+use crate::field::{Jacobian, State, Vector, state, vector};
 use crate::integrate::AnyField;
 use crate::section::growth;
 use nalgebra::{SMatrix, SVector};
@@ -65,11 +65,7 @@ impl Capture {
 /// The step of Newton's method to an equilibrium.
 fn newton_step(field: &AnyField<'_>, y: &State<3>) -> Option<State<3>> {
     let step = field.newton_step(y.as_slice())?;
-    Some(State::from_column_slice(step.as_slice()))
-}
-
-fn vector(y: &State<3>) -> Vector {
-    Vector::from_column_slice(y.as_slice())
+    Some(state(step.as_slice()))
 }
 
 /// The equilibrium that Newton's method leads to.

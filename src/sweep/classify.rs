@@ -5,7 +5,7 @@ use super::watch::{SweepRun, apart, see, turn};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{Matrix, State, Vector};
+use crate::field::{Matrix, State, Vector, state};
 use crate::integrate::{AnyIntegrator, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
 use crate::number::{DoubleDouble, Uncertain};
 use crate::section::{
@@ -130,7 +130,7 @@ impl Classifier {
         }
         let y = &run.returns().last()?.state;
         if apart(y, &found.point) < ON_ORBIT {
-            run.let_go(state(y));
+            run.let_go(state(y.as_slice()));
         }
         None
     }
@@ -189,7 +189,7 @@ impl Classifier {
             let rate = field.f(&end)[0];
             period -= run.surface.height(end.as_slice()) / rate;
             if told.attractor.is_none() {
-                (told.attractor, told.row.period) = (Some(state(&point)), Some(period));
+                (told.attractor, told.row.period) = (Some(state(point.as_slice())), Some(period));
             }
             points.retain(|(begin, _)| begin.hi() < period);
             let now = DoubleDouble::from(period);
@@ -207,7 +207,7 @@ impl Classifier {
                 break;
             }
             largest = Some(here);
-            (told.attractor, told.row.period) = (Some(state(&point)), Some(period));
+            (told.attractor, told.row.period) = (Some(state(point.as_slice())), Some(period));
             if changes <= error {
                 break;
             }
@@ -266,11 +266,6 @@ fn largest_multiplier(
     })
 }
 
-/// As the lanes and the rows take it.
-pub(super) fn state(y: &Vector) -> State<3> {
-    State::from_column_slice(y.as_slice())
-}
-
 pub(super) fn alike(y: &Vector) -> bool {
     (y[1] - y[2]).abs() < ALIKE
 }
@@ -296,13 +291,17 @@ pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
             note,
             ..SweepRow::new(point.number, point.loading, point.start.into(), regime)
         },
-        attractor: run.recorder.returns.last().map(|at| state(&at.state)),
+        attractor: run
+            .recorder
+            .returns
+            .last()
+            .map(|at| state(at.state.as_slice())),
     }
 }
 
 pub(super) fn steady(run: &SweepRun, equilibrium: &Vector, stable: bool) -> Classified {
     let mut told = begun(run, Regime::Steady);
-    told.attractor = Some(state(equilibrium));
+    told.attractor = Some(state(equilibrium.as_slice()));
     told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));
     told.row.stress_range = Some((equilibrium[0], equilibrium[0]));
     told.row.lyapunov_max = Some(at_equilibrium(&run.field, equilibrium)[0]);

@@ -7,7 +7,7 @@
 use super::flows::Flows;
 use super::watch::SweepRun;
 use crate::error::Error;
-use crate::field::State;
+use crate::field::state;
 use crate::integrate::{BatchRun, Control, Step, StepSeries};
 use crate::section::{ALIGNMENT, GrowthSegment, LyapunovSpectrum, Return, summary};
 use crate::series::Zeros;
@@ -88,7 +88,7 @@ fn beside(
             start[2] += second * displaced;
             ways.push(BatchRun {
                 loading: run.point.loading,
-                start: State::from_column_slice(run.surface.nearest(&start).as_slice()),
+                start: state(run.surface.nearest(&start).as_slice()),
                 t: (0.0, longest),
             });
         }
@@ -111,7 +111,7 @@ fn beside(
         series.crossings(section, direction, &mut signs[k], &mut found);
         Ok(match found.first() {
             Some(passage) => {
-                ends[k] = Some(inside(passage.state.as_slice()));
+                ends[k] = Some(inside(&passage.state));
                 Control::Stop
             }
             None => Control::Continue,

@@ -3,7 +3,7 @@
 use super::capture::Capture;
 use super::start::SweepStart;
 use crate::error::Result;
-use crate::field::{State, Vector};
+use crate::field::{State, Vector, vector};
 use crate::friction::AnyLaw;
 use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
 use crate::model::two_interfaces;
@@ -138,7 +138,7 @@ impl SweepRun {
         if let Some(equilibrium) = self.capture.of(&self.field, step.y1) {
             self.recorder.ended = Some(Ended::Steady {
                 time: step.t1,
-                equilibrium: Vector::from_column_slice(equilibrium.as_slice()),
+                equilibrium: vector(&equilibrium),
                 stable: true,
             });
             return Ok(Control::Stop);

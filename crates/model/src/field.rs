@@ -19,6 +19,19 @@ pub type Vector = DVector<f64>;
 /// The same of a matrix of derivatives.
 pub type Matrix = DMatrix<f64>;
 
+/// A state whose dimension the compiler knows, as one whose dimension it does not.
+pub fn vector<const N: usize>(y: &State<N>) -> Vector {
+    Vector::from_column_slice(y.as_slice())
+}
+
+/// The other way.
+///
+/// # Panics
+/// Where there are not N components.
+pub fn state<const N: usize>(y: &[f64]) -> State<N> {
+    State::from_column_slice(y)
+}
+
 /// An autonomous system of N ordinary differential equations.
 ///
 /// ```

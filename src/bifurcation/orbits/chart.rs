@@ -7,16 +7,13 @@ use crate::field::Vector;
 use crate::number::Uncertain;
 use crate::orbit::{
     ContinuationPoint, InterfaceSystem, OverDifferenceChart, OverLoadings, ParametrisedField,
-    Regular,
 };
 
 /// Orbits of a slab in some variables.
 #[derive(Debug, Clone, Copy)]
 pub enum Chart {
-    /// Symmetric orbits, or those of a single interface, in (tau, ln psi).
-    Plane(OverLoadings),
-    /// Orbits of two interfaces in (tau, ln psi_1, ln psi_2).
-    Whole(OverLoadings),
+    /// In (tau, ln psi) where they are symmetric or of a single interface, else in (tau, ln psi_1, ln psi_2).
+    Usual(OverLoadings),
     /// Orbits of two interfaces in the difference chart.
     Difference(OverDifferenceChart),
 }
@@ -29,64 +26,59 @@ const SYMMETRIC: f64 = -15.0;
 impl Chart {
     /// The orbits of this symmetry in the usual variables.
     pub fn new(slab: InterfaceSystem, symmetry: Symmetry) -> Self {
-        let family = OverLoadings::new(slab, symmetry);
-        match symmetry {
-            Symmetry::Symmetric => Chart::Plane(family),
-            Symmetry::Asymmetric => Chart::Whole(family),
-        }
+        Chart::Usual(OverLoadings::new(slab, symmetry))
     }
 
     /// The vector fields over the plane of parameters.
     pub fn family(&self) -> &dyn ParametrisedField {
         match self {
-            Chart::Plane(family) | Chart::Whole(family) => family,
+            Chart::Usual(family) => family,
             Chart::Difference(family) => family,
         }
-    }
-
-    /// The number of variables.
-    pub fn dimension(&self) -> usize {
-        self.family().dimension()
     }
 
     /// The slab over the plane of parameters.
     pub fn slab(&self) -> OverLoadings {
         match *self {
-            Chart::Plane(family) | Chart::Whole(family) => family,
-            Chart::Difference(OverDifferenceChart(family)) => family,
+            Chart::Usual(family) | Chart::Difference(OverDifferenceChart(family)) => family,
+        }
+    }
+
+    /// The symmetry of its orbits: asymmetric ones part from symmetric ones at a pitchfork, and only they double their period.
+    pub fn symmetry(&self) -> Symmetry {
+        self.slab().symmetry
+    }
+
+    /// The family, where it is of asymmetric orbits in the usual variables.
+    fn asymmetric(&self) -> Option<OverLoadings> {
+        match *self {
+            Chart::Usual(family) if family.symmetry == Symmetry::Asymmetric => Some(family),
+            _ => None,
         }
     }
 
     /// An orbit in (tau, ln psi) or (tau, ln psi_1, ln psi_2).
     pub fn usual(&self, site: &ContinuationPoint) -> ContinuationPoint {
         match self {
-            Chart::Plane(_) | Chart::Whole(_) => site.clone(),
+            Chart::Usual(_) => site.clone(),
             Chart::Difference(_) => OverDifferenceChart::from_chart(site),
         }
     }
 
     /// Whether the continuation from `last` to `here` has come to a symmetric orbit.
     pub fn merges(&self, here: &ContinuationPoint, last: &ContinuationPoint) -> bool {
-        match self {
-            Chart::Plane(_) => false,
-            // The difference has one sign all along an asymmetric orbit.
-            Chart::Whole(_) => asymmetry(here) * asymmetry(last) <= 0.0,
-            Chart::Difference(_) => {
-                let gaps = here.shooting.nodes.iter().map(|x| x[2]);
-                gaps.fold(f64::NEG_INFINITY, f64::max) < SYMMETRIC
-            }
+        if self.keeps_difference() {
+            let gaps = here.shooting.nodes.iter().map(|x| x[2]);
+            return gaps.fold(f64::NEG_INFINITY, f64::max) < SYMMETRIC;
         }
+        // The difference has one sign all along an asymmetric orbit.
+        self.asymmetric().is_some() && asymmetry(here) * asymmetry(last) <= 0.0
     }
 
     /// Whether the interfaces come so near each other along the orbit that these variables lose their difference.
     pub fn loses(&self, site: &ContinuationPoint) -> bool {
-        match self {
-            Chart::Whole(_) => {
-                let apart = site.shooting.nodes.iter().map(|x| (x[1] - x[2]).abs());
-                apart.fold(f64::INFINITY, f64::min) < LEAST
-            }
-            Chart::Plane(_) | Chart::Difference(_) => false,
-        }
+        let apart = || site.shooting.nodes.iter().map(|x| (x[1] - x[2]).abs());
+        self.asymmetric().is_some() && apart().fold(f64::INFINITY, f64::min) < LEAST
     }
 
     /// Whether this is the difference chart, which does not lose it.
@@ -96,33 +88,18 @@ impl Chart {
 
     /// The same orbit in the difference chart.
     pub fn keeping(&self, site: &ContinuationPoint) -> Option<(Chart, ContinuationPoint)> {
-        match *self {
-            Chart::Whole(family) => Some((
-                Chart::Difference(OverDifferenceChart(family)),
-                OverDifferenceChart::to_chart(site)?,
-            )),
-            Chart::Plane(_) | Chart::Difference(_) => None,
-        }
-    }
-
-    /// The same orbit as a symmetric one, from which asymmetric ones part at a pitchfork, where orbits have so many variables.
-    pub fn symmetric<'o>(&self, orbit: &'o Regular) -> Option<&'o Regular> {
-        matches!(self, Chart::Plane(_)).then_some(orbit)
-    }
-
-    /// The same orbit as one in all variables, where periods double, where orbits have so many.
-    pub fn whole<'o>(&self, orbit: &'o Regular) -> Option<&'o Regular> {
-        (!matches!(self, Chart::Plane(_))).then_some(orbit)
+        let chart = Chart::Difference(OverDifferenceChart(self.asymmetric()?));
+        Some((chart, OverDifferenceChart::to_chart(site)?))
     }
 
     /// The cubic coefficient of an orbit that bifurcates, in the space of all states, and which way that is.
     pub fn normal_form(&self, site: &ContinuationPoint, form: Form) -> (Uncertain, Criticality) {
-        match self {
-            Chart::Plane(family) => {
-                let whole = OverLoadings::new(family.slab, Symmetry::Asymmetric);
+        match self.symmetry() {
+            Symmetry::Symmetric => {
+                let whole = OverLoadings::new(self.slab().slab, Symmetry::Asymmetric);
                 classified(&whole, &embedded(site), form)
             }
-            Chart::Whole(_) | Chart::Difference(_) => classified(self.family(), site, form),
+            Symmetry::Asymmetric => classified(self.family(), site, form),
         }
     }
 }

@@ -190,7 +190,7 @@ pub(super) fn degenerate_pitchfork(
 ) -> Option<Special> {
     /// How far to both sides it is looked for, in ln K.
     const FAR: f64 = 0.01;
-    let chart = Chart::Plane(OverLoadings::new(family.slab, Symmetry::Symmetric));
+    let chart = Chart::new(family.slab, Symmetry::Symmetric);
     let [below, above] = [-FAR, FAR].map(|off| {
         Decided::beside(
             near,

@@ -5,7 +5,7 @@ use super::chart::{Chart, middle};
 use super::cubic_coefficient::{CubicCoefficient, Decided, degenerate_pitchfork};
 use super::locus::Locus;
 use super::refine::{rough, special};
-use super::rows::{GivenParameters, asked, symmetry};
+use super::rows::{GivenParameters, asked};
 use super::top::top;
 use crate::bifurcation::{Event, EventObserver, Label, LocusRequest, LocusRow, Special};
 use crate::continuation::{Met, Stop};
@@ -65,7 +65,6 @@ pub(super) struct HalfCurve<'r, 's> {
     number: usize,
     /// The variables that orbits are in at the moment.
     chart: Chart,
-    symmetry: Symmetry,
     /// Where both ways begin.
     begin: Pass,
     /// Who is told, or what is to be told later.
@@ -89,7 +88,6 @@ impl<'r, 's> HalfCurve<'r, 's> {
             test_function: locus.test_function,
             number,
             chart: locus.chart,
-            symmetry: symmetry(locus.chart.dimension()),
             begin,
             seen,
             events: Vec::new(),
@@ -105,7 +103,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
-        let event = event.on(self.number, self.symmetry);
+        let event = event.on(self.number, self.chart.symmetry());
         let event = event.against(self.request.tolerance);
         let Some(seen) = &mut self.seen else {
             self.events.push(event);
@@ -128,7 +126,9 @@ impl<'r, 's> HalfCurve<'r, 's> {
                     resonances.map(|r| WatchedFunction::TestFunction(TestFunction::Trace(r.1))),
                 );
             }
-            TestFunction::Doubling | TestFunction::Fold if self.chart.dimension() == 3 => {
+            TestFunction::Doubling | TestFunction::Fold
+                if self.chart.symmetry() == Symmetry::Asymmetric =>
+            {
                 watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
             }
             _ => {}
@@ -251,7 +251,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
             curve: self.number,
-            symmetry: self.symmetry,
+            symmetry: self.chart.symmetry(),
             driving,
             stiffness,
             period: Some(period),

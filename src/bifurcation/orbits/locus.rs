@@ -51,15 +51,7 @@ pub fn loci(
         };
         within(request.max_points, &mut hand_on, |seen| {
             for symmetry in own {
-                let told = match symmetry {
-                    Symmetry::Symmetric => {
-                        Locus::all(request, &mut scan.symmetric, &mut count, seen)?
-                    }
-                    Symmetry::Asymmetric => {
-                        Locus::all(request, &mut scan.asymmetric, &mut count, seen)?
-                    }
-                };
-                if told.is_break() {
+                if Locus::all(request, scan.of(*symmetry), &mut count, seen)?.is_break() {
                     break;
                 }
             }
@@ -96,13 +88,17 @@ impl Scans {
                 break;
             }
             for symmetry in symmetries {
-                match symmetry {
-                    Symmetry::Symmetric => scans.symmetric.also(of_kind(request.kind)),
-                    Symmetry::Asymmetric => scans.asymmetric.also(of_kind(request.kind)),
-                }
+                scans.of(*symmetry).also(of_kind(request.kind));
             }
         }
         scans
+    }
+
+    fn of(&mut self, symmetry: Symmetry) -> &mut Scan {
+        match symmetry {
+            Symmetry::Symmetric => &mut self.symmetric,
+            Symmetry::Asymmetric => &mut self.asymmetric,
+        }
     }
 
     /// Whether the branches of a request are these.

@@ -5,7 +5,7 @@ use super::chart::{Chart, embedded, middle};
 use super::cubic_coefficient::CubicCoefficient;
 use super::normal_form::Form;
 use super::refine::{refined, rough, special};
-use super::rows::{GivenParameters, asked, row, symmetry};
+use super::rows::{GivenParameters, asked, row};
 use super::vertical::Vertical;
 use crate::bifurcation::{Event, EventObserver, Label, Special};
 use crate::continuation::{Met, Stop};
@@ -25,7 +25,6 @@ pub(super) struct OrbitBranch<'b, 'r, 's> {
     pub number: usize,
     /// The variables that orbits are in at the moment.
     chart: Chart,
-    symmetry: Symmetry,
     /// Whether it has been in the range.
     pub inside: bool,
     /// The coordinate where it began.
@@ -60,7 +59,6 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             branches,
             number,
             chart,
-            symmetry: symmetry(chart.dimension()),
             inside,
             begin,
             times: 0,
@@ -151,7 +149,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             ..
         } = *self.branches;
         let mut watches = vec![WatchedFunction::Turn(free)];
-        if self.chart.dimension() == 3 {
+        if self.chart.symmetry() == Symmetry::Asymmetric {
             watches.push(WatchedFunction::TestFunction(TestFunction::Doubling));
             watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
         } else if request.slab.interfaces == 2 {
@@ -167,7 +165,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         if !self.branches.tells(self.number) {
             return Continue(());
         }
-        let event = event.on(self.number, self.symmetry);
+        let event = event.on(self.number, self.chart.symmetry());
         let told = (self.seen)(event.against(self.branches.request.tolerance));
         if told.is_break() {
             self.told = told;
@@ -379,25 +377,24 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     /// Which way it goes, and that branches begin here.
     fn remember(&mut self, label: Label, orbit: &Regular, special: &mut Special) {
         let chart = self.chart;
+        let symmetric = chart.symmetry() == Symmetry::Symmetric;
         let form = match label {
             Label::Pd => Form::Doubling,
             Label::Tr => Form::Torus,
-            Label::Pf => {
-                if let Some(orbit) = chart.symmetric(orbit) {
-                    self.pitchfork(special, orbit);
-                    self.branches.pitchforks.push(orbit.clone());
-                }
+            Label::Pf if symmetric => {
+                self.pitchfork(special, orbit);
+                self.branches.pitchforks.push(orbit.clone());
                 return;
             }
             _ => return,
         };
-        let Some(whole) = chart.whole(orbit) else {
+        if symmetric {
             return;
-        };
+        }
         special.goes(Some(CubicCoefficient::at(chart, &orbit.site, form)));
         if label == Label::Pd && !chart.loses(&orbit.site) {
             self.branches.doublings.push(Doubling {
-                orbit: whole.clone(),
+                orbit: orbit.clone(),
                 before: self.times,
             });
             self.branches.visited.push(false);

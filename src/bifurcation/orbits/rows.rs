@@ -2,18 +2,10 @@
 
 use super::chart::Chart;
 use crate::bifurcation::{BranchRow, Label, Special};
-use crate::equilibrium::{Symmetry, Verdict};
+use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Profile, Regular, profile};
-
-/// The symmetry of orbits in so many variables.
-pub(super) fn symmetry(dimension: usize) -> Symmetry {
-    match dimension {
-        2 => Symmetry::Symmetric,
-        _ => Symmetry::Asymmetric,
-    }
-}
 
 /// An orbit of a slab, in any of its variables.
 pub(super) fn row(
@@ -52,7 +44,7 @@ pub(super) fn row(
     let [driving, stiffness] = [here.loading.driving, here.loading.stiffness];
     Ok(BranchRow {
         branch,
-        symmetry: symmetry(spectrum.dimension),
+        symmetry: chart.symmetry(),
         driving,
         stiffness,
         stress: mean_stress,

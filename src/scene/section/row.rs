@@ -4,7 +4,7 @@ use super::super::column::Column;
 use super::super::run::Sink;
 use super::super::units::Quantity;
 use super::SectionPlan;
-use crate::field::Vector;
+use crate::friction::Formulas;
 use crate::integrate::Control;
 use crate::section::Return;
 
@@ -57,13 +57,9 @@ pub fn section_columns(interfaces: usize) -> Vec<Column<SectionRow>> {
     columns
 }
 
-/// The slip rates of both interfaces at a state.
-pub(super) type SlipRates<'a> = &'a dyn Fn(&Vector) -> [f64; 2];
-
 /// Makes a row of each return and the next.
 pub(super) struct RowMaker<'a> {
     plan: &'a SectionPlan,
-    slip_rates: SlipRates<'a>,
     columns: Vec<Column<SectionRow>>,
     /// The last return, whose next is not known yet.
     open: Option<SectionRow>,
@@ -71,10 +67,9 @@ pub(super) struct RowMaker<'a> {
 }
 
 impl<'a> RowMaker<'a> {
-    pub fn new(plan: &'a SectionPlan, slip_rates: SlipRates<'a>) -> Self {
+    pub fn new(plan: &'a SectionPlan) -> Self {
         RowMaker {
             plan,
-            slip_rates,
             columns: section_columns(plan.system.interfaces),
             open: None,
             made: 0,
@@ -83,7 +78,10 @@ impl<'a> RowMaker<'a> {
 
     /// The row of the return before is complete with this one.
     pub fn next(&mut self, at: &Return, sink: &mut dyn Sink) -> Control {
-        let slip_rate = (self.slip_rates)(&at.state);
+        let law = &self.plan.system.law;
+        let (activation, y) = (law.activation(at.state[0]), &at.state);
+        let log_state = [y[1], y[y.len() - 1]];
+        let slip_rate = log_state.map(|w| law.slip_rate(activation, w.exp()));
         let sum = slip_rate[..self.plan.system.interfaces].iter().sum();
         let told = self.open.take().map(|mut row| {
             row.next_slip_rate_sum = sum;
@@ -95,7 +93,7 @@ impl<'a> RowMaker<'a> {
         self.open = Some(SectionRow {
             number: self.made,
             time: at.time,
-            log_state: [at.state[1], at.state[at.state.len() - 1]],
+            log_state,
             slip_rate,
             slip_rate_sum: sum,
             next_slip_rate_sum: f64::NAN,

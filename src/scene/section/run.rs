@@ -4,9 +4,9 @@ use super::super::plan::Dimension;
 use super::super::run::Sink;
 use super::SectionPlan;
 use super::exponents::{CheckedExponents, ProgressObserver, embedded, of_orbit, of_record};
-use super::row::{RowMaker, SlipRates};
+use super::row::RowMaker;
 use crate::error::{Error, Result};
-use crate::field::{State, Vector};
+use crate::field::Vector;
 use crate::integrate::{AnyField, AnyIntegrator, Control, Work};
 use crate::model;
 use crate::number::Uncertain;
@@ -48,56 +48,29 @@ pub struct SectionOutcome {
     pub stopped: bool,
 }
 
+/// The exponents by means along a record.
+type Means<'a> =
+    &'a dyn Fn(&ReturnRecord, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
+
 /// Runs the plan of a return map. A row is complete, and given to the sink, when the next return is known.
 ///
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
 pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
     let (law, loading) = (plan.system.law, plan.loading);
+    let whole = || AnyField::new::<3>(model::two_interfaces(law, loading));
+    let field = &match plan.dimension {
+        Dimension::Single => AnyField::new::<2>(model::single_interface(law, loading)),
+        Dimension::Symmetric => AnyField::new::<2>(model::symmetric(law, loading)),
+        Dimension::Full => whole(),
+    };
     let (tau, [first, second]) = plan.start;
-    let y = Vector::from_vec(vec![tau, first]);
-    match plan.dimension {
-        Dimension::Single => {
-            let slab = model::single_interface(law, loading);
-            let field = AnyField::of::<2>(&*slab);
-            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
-            follow(plan, (&field, &rates), &y, sink, &|record, see| {
-                of_record(&field, record, see)
-            })
-        }
-        Dimension::Symmetric => {
-            let slab = model::symmetric(law, loading);
-            let field = AnyField::of::<2>(&*slab);
-            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
-            // The third exponent is that of the perturbations across the subspace.
-            let whole = AnyField::new::<3>(model::two_interfaces(law, loading));
-            follow(plan, (&field, &rates), &y, sink, &|record, see| {
-                of_record(&whole, &embedded(record), see)
-            })
-        }
-        Dimension::Full => {
-            let slab = model::two_interfaces(law, loading);
-            let field = AnyField::of::<3>(&*slab);
-            let rates = |y: &Vector| slab.slip_rates(&State::from_column_slice(y.as_slice()));
-            let y = Vector::from_vec(vec![tau, first, second]);
-            follow(plan, (&field, &rates), &y, sink, &|record, see| {
-                of_record(&field, record, see)
-            })
-        }
-    }
-}
-
-/// The exponents by means along a record.
-type Means<'a> =
-    &'a dyn Fn(&ReturnRecord, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
-
-fn follow(
-    plan: &SectionPlan,
-    (field, slip_rates): (&AnyField<'_>, SlipRates<'_>),
-    start: &Vector,
-    sink: &mut dyn Sink,
-    means: Means<'_>,
-) -> Result<SectionOutcome> {
+    let start = Vector::from_column_slice(&[tau, first, second][..field.dimension()]);
+    let means: Means<'_> = &|record, see| match plan.dimension {
+        // The third exponent is that of the perturbations across the subspace.
+        Dimension::Symmetric => of_record(&whole(), &embedded(record), see),
+        Dimension::Single | Dimension::Full => of_record(field, record, see),
+    };
     let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?;
     let surface = Surface::stress(field.dimension(), plan.stress, plan.direction);
     // One more, for the last row's next.
@@ -109,14 +82,21 @@ fn follow(
         accuracy: plan.tolerances.rtol,
         waypoints: false,
     };
-    let mut rows = RowMaker::new(plan, slip_rates);
+    let mut rows = RowMaker::new(plan);
     let all = (plan.skip + returns) as f64 / if plan.lyapunov { RUN } else { 1.0 };
     let mut see = |passed: usize, at: Option<&Return>| match at {
         Some(at) if passed >= plan.skip => rows.next(at, sink),
         Some(_) => Control::Continue,
         None => sink.reached(passed as f64 / all),
     };
-    let record = record(&mut integrator, field, start, &surface, &watching, &mut see);
+    let record = record(
+        &mut integrator,
+        field,
+        &start,
+        &surface,
+        &watching,
+        &mut see,
+    );
     let mut outcome = SectionOutcome {
         regime: Regime::Undecided,
         period_of_orbit: None,

@@ -10,30 +10,30 @@ use crate::number::polynomial::{Crossing, Root, roots};
 /// A function of a state that is watched for zeros, linear in the variables x of an [`Expansion`] and not in its chart: in
 /// (tau, psi) for the interfaces.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Section<const N: usize> {
+pub enum Section<'a> {
     /// normal . x - offset: the solution passes a plane.
     Plane {
         /// The plane's normal.
-        normal: [f64; N],
+        normal: &'a [f64],
         /// Its distance from 0 in the length of the normal.
         offset: f64,
     },
     /// The time derivative of normal . x: it is largest (downwards) or smallest (upwards).
     Extremum {
         /// What is largest or smallest.
-        normal: [f64; N],
+        normal: &'a [f64],
     },
 }
 
 /// A zero of a section along an expansion.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Passage<const N: usize> {
+#[derive(Debug, Clone, PartialEq)]
+pub struct Passage {
     /// Time since the beginning of the step; `Expansion::begin` is to be added.
     pub time: f64,
     /// How the section's sign changes as time grows.
     pub crossing: Crossing,
     /// The state there, by the polynomials.
-    pub state: [f64; N],
+    pub state: Vec<f64>,
 }
 
 /// The zeros of a function along consecutive steps. Every step begins with the sign that the one before ended with: what
@@ -106,12 +106,12 @@ impl<const N: usize> Expansion<N> {
     /// let field = TwoInterfaces { law, loading: Loading::new(10.0, 0.14)? };
     /// let start = State::<3>::new(10.0, 0.5_f64.ln(), 0.001_f64.ln());
     /// // tau rises through 10 once in every cycle
-    /// let section = Section::Plane { normal: [1.0, 0.0, 0.0], offset: 10.0 };
+    /// let section = Section::Plane { normal: &[1.0, 0.0, 0.0], offset: 10.0 };
     /// let (mut zeros, mut passages) = (Zeros::default(), Vec::new());
     /// let mut taylor = Taylor::new(Tolerances::equal(1e-12)?, MAX_STEPS)?;
     /// taylor.flow(&field, (0.0, 20.0), &start, Some(&mut |step| {
     ///     if let Some(series) = step.series() {
-    ///         series.crossings(&section, Some(Crossing::Upwards), &mut zeros, &mut passages);
+    ///         series.crossings(section, Some(Crossing::Upwards), &mut zeros, &mut passages);
     ///     }
     ///     Ok(Control::Continue)
     /// }))?;
@@ -122,10 +122,10 @@ impl<const N: usize> Expansion<N> {
     /// ```
     pub fn crossings(
         &self,
-        section: &Section<N>,
+        section: Section<'_>,
         direction: Option<Crossing>,
         zeros: &mut Zeros,
-        found: &mut Vec<Passage<N>>,
+        found: &mut Vec<Passage>,
     ) {
         let mut function = [0.0; REFERENCE_ORDER + 1];
         let function = self.along(section, &mut function);
@@ -134,14 +134,14 @@ impl<const N: usize> Expansion<N> {
         found.extend(wanted.map(|root| Passage {
             time: root.at * self.unit,
             crossing: root.crossing,
-            state: self.state_at(root.at),
+            state: self.state_at(root.at).to_vec(),
         }));
     }
 
     /// The section's coefficients. Those of a derivative are in the unit of the series, which changes no zero.
     fn along<'a>(
         &self,
-        section: &Section<N>,
+        section: Section<'_>,
         into: &'a mut [f64; REFERENCE_ORDER + 1],
     ) -> &'a [f64] {
         let (Section::Plane { normal, .. } | Section::Extremum { normal }) = section;
