@@ -103,6 +103,11 @@ pub trait Element:
     }
     /// Whether every lane is finite.
     fn all_finite(self) -> bool;
+    /// The four sums of [`super::program::inner_product`], where the element has a faster way to them.
+    #[inline(always)]
+    fn four_sums(_a: &[Self], _b: &[Self]) -> Option<[Self; 4]> {
+        None
+    }
     /// How many lanes there are.
     const LANES: usize;
     /// Whether series of these are worth the time that it takes to compile them order by order.
@@ -250,6 +255,10 @@ impl Element for f64 {
 
 impl Element for DoubleDouble {
     const LANES: usize = 1;
+    #[cfg(target_arch = "x86_64")]
+    fn four_sums(a: &[Self], b: &[Self]) -> Option<[Self; 4]> {
+        super::exact_products::four_sums(a, b)
+    }
     #[inline(never)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
         f.call()

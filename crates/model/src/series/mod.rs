@@ -17,6 +17,8 @@ mod dual;
 pub(crate) mod element;
 mod equations;
 mod event;
+#[cfg(target_arch = "x86_64")]
+mod exact_products;
 mod formula;
 #[cfg(target_arch = "x86_64")]
 mod functions;

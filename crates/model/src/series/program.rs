@@ -544,6 +544,11 @@ impl<T: Element> ProgramRows<T> {
 /// sum of a_j b_(n-1-j) over j < n, n being the length of both. With four sums side by side: one or two would wait for each
 /// other.
 pub(super) fn inner_product<T: Element>(a: &[T], b: &[T], zero: T) -> T {
+    let sums = T::four_sums(a, b).unwrap_or_else(|| four_sums(a, b, zero));
+    (sums[0] + sums[1]) + (sums[2] + sums[3])
+}
+
+fn four_sums<T: Element>(a: &[T], b: &[T], zero: T) -> [T; 4] {
     let mut sums = [zero; 4];
     let mut left = a.chunks_exact(4);
     let mut right = b.rchunks_exact(4);
@@ -556,5 +561,5 @@ pub(super) fn inner_product<T: Element>(a: &[T], b: &[T], zero: T) -> T {
     for (sum, (a, b)) in sums.iter_mut().zip(rest) {
         *sum = a.mul_add(*b, *sum);
     }
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
+    sums
 }

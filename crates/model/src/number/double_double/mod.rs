@@ -54,7 +54,7 @@ fn split(a: f64) -> (f64, f64) {
 #[inline(always)]
 fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
-    if cfg!(target_feature = "fma") {
+    if cfg!(any(target_feature = "fma", target_arch = "aarch64")) {
         return (product, a.mul_add(b, -product));
     }
     let ((a1, a2), (b1, b2)) = (split(a), split(b));
