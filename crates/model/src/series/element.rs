@@ -103,7 +103,8 @@ pub trait Element:
     }
     /// Whether every lane is finite.
     fn all_finite(self) -> bool;
-    /// The four sums of [`super::program::inner_product`], where the element has a faster way to them.
+    /// The sums of a_j b_(n-1-j) over the j of the same remainder by four, n being the length of both, where the element has a faster
+    /// way to them.
     #[inline(always)]
     fn four_sums(_a: &[Self], _b: &[Self]) -> Option<[Self; 4]> {
         None
