@@ -24,7 +24,7 @@ pub fn vector<const N: usize>(y: &State<N>) -> Vector {
     Vector::from_column_slice(y.as_slice())
 }
 
-/// The other way.
+/// A state whose dimension the compiler does not know, as one whose dimension it does.
 ///
 /// # Panics
 /// Where there are not N components.

@@ -16,6 +16,8 @@ mod uncertain;
 pub use constant::{Constant, Free, With};
 pub use difference::Difference;
 pub use double_double::DoubleDouble;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use double_double::two_sum;
 pub use interval::Interval;
 pub use jet::Jet;
 pub use root::{bracketed_root, enclosing_radius};

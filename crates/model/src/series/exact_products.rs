@@ -5,7 +5,7 @@
 use super::element::Element;
 use super::lanes::Four;
 use super::vectors;
-use crate::number::DoubleDouble;
+use crate::number::{DoubleDouble, two_sum};
 use pulp::x86::V3;
 
 /// Four numbers.
@@ -13,14 +13,6 @@ use pulp::x86::V3;
 struct Numbers {
     hi: Four,
     lo: Four,
-}
-
-/// a + b and the rounding error, exactly (Knuth).
-#[inline(always)]
-fn two_sum(a: Four, b: Four) -> (Four, Four) {
-    let sum = a + b;
-    let virtual_b = sum - a;
-    (sum, (a - (sum - virtual_b)) + (b - virtual_b))
 }
 
 impl Numbers {

@@ -29,9 +29,9 @@ pub struct DoubleDouble {
     lo: f64,
 }
 
-/// a + b and the rounding error, exactly (Knuth).
+/// a + b and the rounding error, exactly (Knuth): of doubles, or of many side by side.
 #[inline(always)]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(crate) fn two_sum<T: Copy + Add<Output = T> + Sub<Output = T>>(a: T, b: T) -> (T, T) {
     let sum = a + b;
     let virtual_b = sum - a;
     (sum, (a - (sum - virtual_b)) + (b - virtual_b))
