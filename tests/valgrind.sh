@@ -1,11 +1,11 @@
 #!/bin/sh
 # Runs the tests of CVODE, CVODES and KINSOL under valgrind: no invalid access, nothing lost. Needs valgrind; about a minute.
 #
-# Left out: what starts a child process (errors::nothing_is_printed) and what only repeats long runs.
+# Options go to cargo, such as --release. Left out: what starts a child process (errors::nothing_is_printed) and what only repeats long runs.
 set -eu
 cd "$(dirname "$0")/.."
 
-binary=$(cargo test --no-run --test tests --message-format=json 2>/dev/null |
+binary=$(cargo test --no-run --test tests --message-format=json "$@" 2>/dev/null |
     sed -n 's/.*"name":"tests".*"executable":"\([^"]*\)".*/\1/p')
 [ -n "$binary" ] || { echo "valgrind.sh: the test binary was not built" >&2; exit 1; }
 
