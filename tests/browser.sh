@@ -6,4 +6,4 @@ cd "$(dirname "$0")/.."
 
 ./setup chromium
 [ -z "$report" ] || export TWINSLIP_REPORT="$report"
-exec cargo test --quiet --test tests -- browser:: --ignored
+exec cargo test --release --quiet --test tests -- browser:: --ignored

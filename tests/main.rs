@@ -1,6 +1,10 @@
 //! The tests: one binary, as most of the time that tests take to build goes into binaries. `cargo test --test tests NAME::` runs
 //! the file `tests/NAME.rs`. Those that count allocations are a binary of their own, `tests/allocations`.
+//!
+//! Tests of systems of one's own are half of what there is to compile and the same with all features: builds with `parquet`, which test
+//! files, do without.
 #![allow(missing_docs)]
+#![cfg_attr(feature = "parquet", allow(dead_code))]
 
 // What tests share.
 mod command;
@@ -23,6 +27,7 @@ mod curves_orbits;
 mod cvode_integrator;
 mod derivatives;
 mod difference_chart;
+#[cfg(not(feature = "parquet"))]
 mod dimensions;
 mod double_double;
 #[cfg(unix)]
@@ -30,6 +35,7 @@ mod durability_files;
 #[cfg(unix)]
 mod durability_kills;
 mod equilibria;
+#[cfg(not(feature = "parquet"))]
 mod equilibria_generic;
 mod equilibria_random;
 mod estimates;
@@ -44,13 +50,17 @@ mod lanes;
 mod law_bifurcations;
 mod law_parameters;
 mod lyapunov;
+#[cfg(not(feature = "parquet"))]
 mod many_dimensions;
+#[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
 mod orbits;
+#[cfg(not(feature = "parquet"))]
 mod orbits_of_systems;
 mod packages;
 mod page;
+#[cfg(not(feature = "parquet"))]
 mod parameters;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -58,6 +68,7 @@ mod periodic_schur;
 mod pictures;
 mod polynomials;
 mod reproduce;
+#[cfg(not(feature = "parquet"))]
 mod resonances_of_systems;
 mod rooms;
 mod rosenbrock;
@@ -72,6 +83,7 @@ mod scorecard;
 mod section_exponents;
 mod section_landings;
 mod section_regimes;
+#[cfg(not(feature = "parquet"))]
 mod sections_of_systems;
 mod solution_curves;
 mod stress;
@@ -81,6 +93,7 @@ mod sundials;
 mod sweep;
 mod sweep_parts;
 mod sweep_rows;
+#[cfg(not(feature = "parquet"))]
 mod systems;
 mod tableaus;
 mod taylor;
