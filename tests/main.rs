@@ -1,8 +1,8 @@
 //! The tests: one binary, as most of the time that tests take to build goes into binaries. `cargo test --test tests NAME::` runs
 //! the file `tests/NAME.rs`. Those that count allocations are a binary of their own, `tests/allocations`.
 //!
-//! Tests of systems of one's own are half of what there is to compile and the same with all features: builds with `parquet`, which test
-//! files, do without.
+//! Tests of systems of one's own take a third of the time to compile and are the same with all features: builds with `parquet`, which test files,
+//! do without.
 #![allow(missing_docs)]
 #![cfg_attr(feature = "parquet", allow(dead_code))]
 
