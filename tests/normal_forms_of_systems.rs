@@ -7,13 +7,17 @@ use std::f64::consts::TAU;
 use twinslip::Error;
 use twinslip::bifurcation::Criticality;
 use twinslip::bifurcation::orbits::normal_form::{Form, normal_form};
+use twinslip::equilibrium::Symmetry;
 use twinslip::field::{Matrix, Vector};
-use twinslip::integrate::AnyField;
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::{AnyField, Choice};
+use twinslip::model::Loading;
 use twinslip::model::classics::{Langford, Roessler, VanDerPol};
 use twinslip::number::{Real, Uncertain};
 use twinslip::orbit::{
-    Condition, ContinuationPoint, Corrector, Goal, OverParameters, Palc, PalcSettings,
-    ParametrisedField, ShootingNodes, TestFunction, Tracer,
+    Condition, ContinuationPoint, Corrector, Goal, InitialGuess, InterfaceSystem, OrbitAccuracy,
+    OverLoadings, OverParameters, Palc, PalcSettings, ParametrisedField, Query, ShootingNodes,
+    TestFunction, Tracer, find,
 };
 use twinslip::series::Equations;
 
@@ -395,8 +399,50 @@ fn forms_are_refused_where_there_are_none() {
     );
     // What does not bifurcate goes no way.
     for form in [Form::Doubling, Form::Torus] {
-        let (coefficient, criticality) = normal_form(&family, &site, form).expect("a form");
-        assert_eq!(criticality, Criticality::Undecided);
-        assert!(coefficient.uncertainty.is_infinite());
+        goes_no_way(&family, &site, form);
     }
+    let family = OverParameters::<_, 3, 2>::both(Among(Roessler { b: 0.2 }));
+    let mut corrector = Corrector::new(&family, 1e-13).expect("a corrector");
+    let site = roessler(&mut corrector);
+    for form in [Form::Doubling, Form::Torus] {
+        goes_no_way(&family, &site, form);
+    }
+    let at = [10.0_f64.ln(), 0.14_f64.ln()];
+    let family = two_interfaces();
+    let slab = family.slab(at);
+    let query = Query {
+        symmetry: Symmetry::Symmetric,
+        begin: InitialGuess::Anywhere,
+    };
+    let orbit = find(&slab, &query, &OrbitAccuracy::of(Choice::Taylor)).expect("an orbit");
+    let nodes = orbit
+        .orbit
+        .nodes
+        .into_iter()
+        .map(|x| Vector::from_vec(vec![x[0], x[1], x[1]]));
+    let shooting = ShootingNodes {
+        nodes: nodes.collect(),
+        durations: orbit.orbit.durations,
+    };
+    goes_no_way(
+        &family,
+        &ContinuationPoint { shooting, at },
+        Form::Pitchfork,
+    );
+}
+
+fn goes_no_way(family: &dyn ParametrisedField, site: &ContinuationPoint, form: Form) {
+    let (coefficient, criticality) = normal_form(family, site, form).expect("a form");
+    assert_eq!(criticality, Criticality::Undecided, "{form:?}");
+    assert!(coefficient.uncertainty.is_infinite(), "{form:?}");
+}
+
+/// Over (ln V_H, ln K).
+fn two_interfaces() -> OverLoadings {
+    let slab = InterfaceSystem {
+        law: AnyLaw::Spinodal(Parameters::heslot_1994().spinodal()),
+        interfaces: 2,
+        loading: Loading::new(1.0, 1.0).expect("positive"),
+    };
+    OverLoadings::new(slab, Symmetry::Asymmetric)
 }

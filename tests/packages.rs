@@ -1,4 +1,5 @@
-//! Who uses the library alone compiles none of the packages that only the command needs.
+//! Who uses the library alone compiles none of the packages that only the command needs; and all features share one build of the
+//! models.
 
 use std::collections::BTreeSet;
 use std::process::Command;
@@ -29,11 +30,21 @@ const OF_THE_COMMAND: &[&str] = &[
 
 /// All packages that go into the library with these features.
 fn packages(features: &[&str]) -> BTreeSet<String> {
+    let lines = tree("{p}", &[&["--edges", "normal"], features].concat());
+    lines.iter().map(|line| name(line)).collect()
+}
+
+fn name(line: &str) -> String {
+    line.split_whitespace().next().unwrap_or(line).to_owned()
+}
+
+/// The packages in this format, each once.
+fn tree(format: &str, options: &[&str]) -> BTreeSet<String> {
     let tree = Command::new(env!("CARGO"))
         .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .args(["tree", "--offline", "--locked", "--edges", "normal"])
-        .args(["--prefix", "none", "--format", "{p}"])
-        .args(features)
+        .args(["tree", "--offline", "--locked"])
+        .args(["--prefix", "none", "--no-dedupe", "--format", format])
+        .args(options)
         .output()
         .expect("cargo runs");
     assert!(
@@ -42,8 +53,7 @@ fn packages(features: &[&str]) -> BTreeSet<String> {
         String::from_utf8_lossy(&tree.stderr)
     );
     let text = String::from_utf8(tree.stdout).expect("UTF-8");
-    let name = |line: &str| line.split_whitespace().next().map(str::to_owned);
-    text.lines().filter_map(name).collect()
+    text.lines().map(str::to_owned).collect()
 }
 
 fn of_the_command(found: &BTreeSet<String>) -> Vec<&str> {
@@ -68,4 +78,31 @@ fn the_library_alone_is_without_the_packages_of_the_command() {
 #[test]
 fn the_command_has_these_packages() {
     assert_eq!(of_the_command(&packages(&[])), OF_THE_COMMAND);
+}
+
+/// Where a feature of the project turns a feature on in a package that the models need, their kernels, which take the compiler longest,
+/// are compiled once more for it.
+#[test]
+fn all_features_share_one_build_of_the_models() {
+    const EDGES: &[&str] = &["--edges", "normal,build"];
+    let version = |line: &str| {
+        let words: Vec<_> = line.split_whitespace().take(2).collect();
+        words.join(" ")
+    };
+    let below = tree("{p}", &[EDGES, &["--package", "twinslip-model"]].concat());
+    let below: BTreeSet<_> = below.iter().map(|line| version(line)).collect();
+    let with = |features: &[&str]| {
+        let mut all = tree("{p} [{f}]", &[EDGES, features].concat());
+        all.retain(|line| below.contains(&version(line)));
+        all
+    };
+    let all = with(&["--features", "mpi,parquet"]);
+    assert!(
+        all.iter().any(|line| line.starts_with("nalgebra ")),
+        "{all:?}"
+    );
+    for features in [&[] as &[_], &["--no-default-features", "--features", "cli"]] {
+        let missing: Vec<_> = with(features).difference(&all).cloned().collect();
+        assert_eq!(missing, [""; 0], "with {features:?}");
+    }
 }

@@ -3,7 +3,7 @@
 use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
 use super::{Integrator, Observer, Step, Taylor, Work};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::field::{Jacobian, Matrix, State, Vector, VectorField, state, vector};
 use crate::series::{Jet3, Tangent};
 
@@ -180,11 +180,22 @@ impl<const N: usize> Flows for Static<'_, N> {
         free: &'f [usize],
     ) -> Result<Box<dyn ArcByArc + 'f>> {
         let field = self.field();
-        let tangent = match &mut by.method {
-            Method::Taylor(taylor) => Some(taylor.tangent(field, free)?),
-            Method::Other { .. } => None,
+        let tangents = match &mut by.method {
+            Method::Taylor(taylor) => {
+                let tangent = taylor.tangent(field, free)?;
+                Tangents::Series(taylor, tangent)
+            }
+            Method::Other {
+                choice,
+                tolerances,
+                max_steps,
+            } => Tangents::Other(choice.integrator(*tolerances, *max_steps)?),
         };
-        Ok(Box::new(StaticArcs { field, by, tangent }))
+        Ok(Box::new(StaticArcs {
+            field,
+            work: &mut by.work,
+            tangents,
+        }))
     }
 
     fn transport_onto(
@@ -209,19 +220,24 @@ pub(super) trait ArcByArc {
 
 struct StaticArcs<'f, const N: usize> {
     field: &'f dyn VectorField<N>,
-    by: &'f mut AnyIntegrator,
-    /// Of Taylor's method.
-    tangent: Option<Box<dyn Tangent<N> + 'f>>,
+    work: &'f mut Work,
+    tangents: Tangents<'f, N>,
+}
+
+/// What makes the derivatives, made once for all arcs: CVODES allocates a hundred vectors.
+enum Tangents<'f, const N: usize> {
+    Series(&'f mut Taylor, Box<dyn Tangent<N> + 'f>),
+    Other(Box<dyn Integrator<N>>),
 }
 
 impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
     fn derivatives(&mut self, t: (f64, f64), y0: &[f64]) -> Result<(Vector, FlowDerivatives)> {
         let (field, start) = (self.field, state(y0));
-        match (&mut self.by.method, &mut self.tangent) {
-            (Method::Taylor(taylor), Some(tangent)) => {
+        match &mut self.tangents {
+            Tangents::Series(taylor, tangent) => {
                 let made = taylor.derivatives_by(&mut **tangent, field, t, &start);
                 // Also of what fails.
-                self.by.work = Integrator::<N>::work(taylor);
+                *self.work = Integrator::<N>::work(*taylor);
                 let (end, made) = made?;
                 let columns = &made.parameters;
                 let derivatives = FlowDerivatives {
@@ -232,18 +248,9 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
                 };
                 Ok((vector(&end), derivatives))
             }
-            (Method::Taylor(_), None) => Err(Error::NotAnalytic),
-            (
-                Method::Other {
-                    choice,
-                    tolerances,
-                    max_steps,
-                },
-                _,
-            ) => {
-                let mut method = choice.integrator::<N>(*tolerances, *max_steps)?;
+            Tangents::Other(method) => {
                 let made = method.tangent_flow(field, t, &start);
-                self.by.work = method.work();
+                *self.work = method.work();
                 let (end, tangent) = made?;
                 let derivatives = FlowDerivatives {
                     start: matrix(&tangent),
@@ -257,6 +264,6 @@ impl<const N: usize> ArcByArc for StaticArcs<'_, N> {
     }
 
     fn work(&self) -> Work {
-        self.by.work
+        *self.work
     }
 }

@@ -123,14 +123,33 @@ impl Floquet {
         }
     }
 
-    /// Widens every uncertainty by what another computation differs, a few times over.
+    /// Widens every uncertainty by what another computation differs, a few times over. A single difference can be small by chance:
+    /// of many multipliers none counts as less, in units of its uncertainty, than the root mean square of all.
     pub fn widened_by(&mut self, other: &Floquet) {
         /// How many times.
         const MARGIN: f64 = 3.0;
-        for (mine, its) in self.multipliers.iter_mut().zip(&other.multipliers) {
-            if its.kind != Kind::BelowFloor {
-                mine.ln_abs.uncertainty += MARGIN * (mine.ln_abs.value - its.ln_abs.value).abs();
-            }
+        /// So many differences have a mean square.
+        const MANY: usize = 3;
+        let differences = self.multipliers.iter().zip(&other.multipliers);
+        let differences = differences.map(|(mine, its)| match its.kind {
+            Kind::BelowFloor => 0.0,
+            _ => (mine.ln_abs.value - its.ln_abs.value).abs(),
+        });
+        let differences: Vec<_> = differences.collect();
+        let known = self.multipliers.iter().zip(&differences);
+        let in_units = known
+            .filter(|(mine, difference)| mine.ln_abs.uncertainty.is_normal() && **difference > 0.0);
+        let squares =
+            in_units.map(|(mine, difference)| (difference / mine.ln_abs.uncertainty).powi(2));
+        let squares: Vec<_> = squares.collect();
+        let least = if squares.len() < MANY {
+            0.0
+        } else {
+            (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+        };
+        for (mine, difference) in self.multipliers.iter_mut().zip(differences) {
+            let uncertainty = &mut mine.ln_abs.uncertainty;
+            *uncertainty += MARGIN * difference.max(least * *uncertainty);
         }
     }
 }

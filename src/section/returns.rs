@@ -213,8 +213,7 @@ impl Recorder {
         let surface = watched.surface;
         self.steps += 1;
         self.found.clear();
-        let sign = surface.height(step.y0).signum();
-        if sign != self.zeros.sign || surface.within(step.y0, step.reach) {
+        if surface.may_be_passed(step.y0, self.zeros.sign, step.reach) {
             self.cross(watched, step)?;
         }
         let mut found = std::mem::take(&mut self.found);

@@ -86,13 +86,17 @@ impl Surface {
         sum - self.offset
     }
 
-    /// Whether a step that begins at y and in which the first component strays no farther than `reach` may pass the plane.
-    pub(crate) fn within(&self, y: &[f64], reach: f64) -> bool {
+    /// Whether a step that begins at y and in which the first component strays no farther than `reach` may pass the plane, where the
+    /// height had this sign before.
+    #[inline]
+    pub(crate) fn may_be_passed(&self, y: &[f64], sign: f64, reach: f64) -> bool {
         /// For the rounding of the bound.
         const MARGIN: f64 = 1.000_001;
+        let (height, normal) = (self.height(y), self.normal.as_slice());
         // Of the other components nothing is known.
-        self.normal.as_slice()[1..].iter().any(|x| *x != 0.0)
-            || self.height(y).abs() <= MARGIN * reach * self.normal[0].abs()
+        height.signum() != sign
+            || height.abs() <= MARGIN * reach * normal[0].abs()
+            || normal[1..].iter().any(|x| *x != 0.0)
     }
 
     /// Its derivative in the state.
@@ -104,11 +108,14 @@ impl Surface {
 
     /// How fast the height grows at a state that moves at this velocity.
     pub(crate) fn rate(&self, y: &[f64], velocity: &Vector) -> f64 {
-        // As of the height.
-        let terms = (0..self.normal.len()).filter(|&i| self.normal[i] != 0.0);
-        terms
-            .map(|i| self.normal[i] * self.chart.slope(y, i) * velocity[i])
-            .sum()
+        let mut sum = 0.0;
+        for (i, &normal) in self.normal.as_slice().iter().enumerate() {
+            // As of the height.
+            if normal != 0.0 {
+                sum += normal * self.chart.slope(y, i) * velocity[i];
+            }
+        }
+        sum
     }
 
     /// The plane as the series know it.

@@ -101,13 +101,13 @@ fn beside(
     let section = run.surface.section();
     let mut found = Vec::new();
     let mut observer = |k: usize, step: &Step<'_, 3>| {
-        let y0 = step.y0.as_slice();
-        if run.surface.height(y0).signum() == signs[k].sign && !run.surface.within(y0, step.reach) {
+        let surface = &run.surface;
+        if !surface.may_be_passed(step.y0.as_slice(), signs[k].sign, step.reach) {
             return Ok(Control::Continue);
         }
         let series: &dyn StepSeries = step.series().ok_or(Error::NotAnalytic)?;
         found.clear();
-        let direction = Some(run.surface.direction);
+        let direction = Some(surface.direction);
         series.crossings(section, direction, &mut signs[k], &mut found);
         Ok(match found.first() {
             Some(passage) => {

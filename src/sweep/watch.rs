@@ -7,7 +7,8 @@ use crate::field::{State, Vector, vector};
 use crate::friction::AnyLaw;
 use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
 use crate::model::two_interfaces;
-use crate::number::polynomial::Crossing;
+use crate::number::bracketed_root;
+use crate::number::polynomial::{Crossing, evaluate};
 use crate::section::{
     AT_START, Ended, LONGEST_PERIOD, Recorder, Return, Surface, Watched, Watching,
     equilibrium_near, half_driving_stress, usual_patience,
@@ -253,33 +254,21 @@ pub(super) fn see(range: &mut (f64, f64), x: f64) {
     *range = (range.0.min(x), range.1.max(x));
 }
 
-/// The stress where it turns within a step, if it does once: where its rate changes sign, by halving and Newton's method on the
-/// polynomial of the step.
+/// The stress where it turns within a step, if it does once: where its rate, by the polynomial of the step, changes sign.
 pub(super) fn turn(series: &dyn StepSeries) -> Option<f64> {
-    const ITERATIONS: usize = 30;
     let stress = series.variable(0);
     let end = series.length() / series.unit();
     let rate = |s: f64| {
-        let mut sum = 0.0;
-        for (k, c) in stress.iter().enumerate().skip(1).rev() {
-            sum = sum * s + k as f64 * c;
+        let (mut rate, mut slope) = (0.0, 0.0);
+        for k in (1..stress.len()).rev() {
+            slope = slope * s + rate;
+            rate = rate * s + k as f64 * stress[k];
         }
-        sum
+        (rate, slope)
     };
-    let (mut low, mut high) = (0.0, end);
-    let begin = rate(low);
-    if begin * rate(high) >= 0.0 {
+    if stress[1] * rate(end).0 >= 0.0 {
         return None;
     }
-    // The stress is flat where it turns: half the digits of the time are all it needs.
-    for _ in 0..ITERATIONS {
-        let middle = 0.5 * (low + high);
-        if rate(middle) * begin > 0.0 {
-            low = middle;
-        } else {
-            high = middle;
-        }
-    }
-    let s = 0.5 * (low + high);
-    Some(stress.iter().rev().fold(0.0, |sum, c| sum * s + c))
+    let turn = bracketed_root("the turn of the stress", 0.0, end, rate).ok()?;
+    Some(evaluate(stress, turn))
 }

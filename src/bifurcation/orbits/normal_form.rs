@@ -80,8 +80,7 @@ impl Form {
 
 /// The cubic coefficient of an orbit that bifurcates, and which way that is: b of (5.40) or Re d of (5.45) of the return map,
 /// for an eigenvector whose length across the flow, in the system's own variables as [`ParametrisedField::across`] measures it, has
-/// the mean square 1 over the period. Where it is not known its uncertainty is infinite: of more than three variables also where
-/// nothing bifurcates.
+/// the mean square 1 over the period. Where it is not known, and where nothing bifurcates, its uncertainty is infinite.
 ///
 /// # Errors
 /// [`Error::Dimension`] for forms that orbits of so many variables do not have; those of
@@ -198,7 +197,7 @@ impl Circle<'_> {
     /// b = <p, C(q,q,q) + 3 B(q, h)> / 6  (5.40)
     fn doubling(&mut self) -> Option<f64> {
         let (mu, one) = (C::from(-1.0), C::from(1.0));
-        if self.dimension() > 2 && !self.doubles() {
+        if !self.doubles() {
             return None;
         }
         let (q, p) = self.eigenvectors(mu)?;
@@ -218,6 +217,10 @@ impl Circle<'_> {
         let mut q = vec![1.0];
         for map in self.maps.linear() {
             q.push(q[q.len() - 1] * map[(0, 0)]);
+        }
+        // The multiplier across the symmetry, which is 1.
+        if q[q.len() - 1].abs().ln().abs() > NEAR {
+            return None;
         }
         let longest = q.iter().copied().fold(0.0, f64::max);
         q.iter_mut().for_each(|q| *q /= longest);
@@ -283,15 +286,16 @@ impl Circle<'_> {
         all.is_some_and(|all| all.iter().any(|one| off(one) < NEAR))
     }
 
-    /// e^(i theta): by the trace of a return map of two dimensions, else by the pair that is nearest to the unit circle.
+    /// e^(i theta): by the pair that is nearest to the unit circle; of a return map of two dimensions by its trace, to more digits.
     fn multiplier(&self) -> Option<C> {
         let maps = self.maps.linear();
+        let pair = unit_pair(&eigenvalues_of(maps)?)?;
+        let sum = (pair.off < NEAR).then_some(pair.sum)?;
         let sum = if self.dimension() == 2 {
             let start = Matrix::identity(2, 2);
             maps.iter().fold(start, |map, next| next * map).trace()
         } else {
-            let pair = unit_pair(&eigenvalues_of(maps)?)?;
-            (pair.off < NEAR).then_some(pair.sum)?
+            sum
         };
         let half = 0.5 * sum;
         (half.abs() < 1.0).then(|| C::new(half, (1.0 - half * half).sqrt()))

@@ -33,8 +33,12 @@ pub struct Root {
 /// Value of sum_k c_k t^k (Horner).
 #[inline]
 pub fn evaluate(coefficients: &[f64], t: f64) -> f64 {
-    let backwards = coefficients.iter().rev();
-    backwards.fold(0.0, |value, c| value * t + c)
+    // No fold: its closure is not always inlined, in what runs at every step.
+    let mut value = 0.0;
+    for c in coefficients.iter().rev() {
+        value = value * t + c;
+    }
+    value
 }
 
 /// The derivative of the given order, and its slope (Horner).
