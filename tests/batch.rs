@@ -50,7 +50,8 @@ fn one_by_one(law: AnyLaw, tolerance: f64, runs: &[BatchRun]) -> Vec<twinslip::R
 
 #[test]
 fn lanes_go_where_single_runs_go() {
-    for tolerance in [1e-5, 1e-9, 1e-13] {
+    // Where both have the same order, and where the tolerance is less than what they may be apart.
+    for tolerance in [1e-5, 1e-7, 1e-13] {
         for n in [64, 9, 1] {
             let runs = sweep(n);
             let lanes = batch(spinodal(), tolerance).flow(&runs, None);

@@ -85,6 +85,7 @@ mod section_landings;
 mod section_regimes;
 #[cfg(not(feature = "parquet"))]
 mod sections_of_systems;
+mod series_of_interfaces;
 mod solution_curves;
 mod stress;
 mod strong_resonance;

@@ -28,10 +28,10 @@ fn landings_are_on_the_section_and_none_is_missed() {
     let end = exact.returns.last().unwrap().time;
     let (mut before, mut falls) = (1.0, 0);
     let mut count = |step: &AnyStep<'_>| {
+        let time = |part: u32| step.t0 + (step.t1 - step.t0) * f64::from(part) / 50.0;
         for part in 1..=50 {
-            let t = step.t0 + (step.t1 - step.t0) * f64::from(part) / 50.0;
-            let height = step.dense(t)[0] - case.surface.offset;
-            falls += usize::from(before > 0.0 && height < 0.0 && t <= end + 1e-6);
+            let height = step.dense(time(part))[0] - case.surface.offset;
+            falls += usize::from(before > 0.0 && height < 0.0 && time(part - 1) <= end);
             before = height;
         }
         Ok(Control::Continue)

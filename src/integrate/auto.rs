@@ -155,9 +155,8 @@ impl<const N: usize> Auto<N> {
         relay: &mut Relay<'_, '_, N>,
     ) -> Result<State<N>> {
         self.taylor.set_max_steps(left);
-        let held_from = HELD * self.taylor.order() as f64;
         let (mut steps, mut wait) = (0, wait);
-        let mut held = |h: f64, state: &dyn Fn() -> State<N>| {
+        let mut held = |order: usize, h: f64, state: &dyn Fn() -> State<N>| {
             steps += 1;
             if steps % TAYLOR_LOOKS != FIRST_LOOK {
                 return false;
@@ -167,7 +166,7 @@ impl<const N: usize> Auto<N> {
                 return false;
             }
             let (rate, decays) = dominant_mode(&field.jacobian(&state()));
-            decays && h.abs() * rate > held_from
+            decays && h.abs() * rate > HELD * order as f64
         };
         let (end, reached) = match &relay.observer {
             None => self.taylor.flow_until(field, t, y, None, &mut held)?,

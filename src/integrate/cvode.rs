@@ -124,6 +124,7 @@ impl<const N: usize> CvodeIntegrator<N> {
                 dense: &dense,
                 reach: f64::INFINITY,
                 expansion: None,
+                slips: None,
             })?;
             if let Some(error) = objection.take() {
                 return Err(error);
@@ -210,6 +211,7 @@ impl<const N: usize> Integrator<N> for CvodeIntegrator<N> {
                 dense: &dense,
                 reach: f64::INFINITY,
                 expansion: None,
+                slips: None,
             })?;
         }
         Ok(y1)

@@ -56,6 +56,8 @@ pub struct Step<'a, const N: usize> {
     pub reach: f64,
     /// The series at `t0`, of methods that step by one; made only when asked for.
     pub(crate) expansion: Option<&'a dyn Deref<Target = &'a Expansion<N>>>,
+    /// The slips of both interfaces in the step, of methods that have them without all of the series.
+    pub(crate) slips: Option<&'a dyn Fn() -> Option<[f64; 2]>>,
 }
 
 impl<'a, const N: usize> Step<'a, N> {

@@ -27,6 +27,11 @@ pub(super) fn slips<const N: usize>(
     before: &Slips,
     t: f64,
 ) -> Slips {
+    if t == step.t1
+        && let Some(within) = step.slips.and_then(|slips| slips())
+    {
+        return sum(before, within);
+    }
     let within = match step.series() {
         // The ends of steps are known better than to the rounding of t.
         Some(series) if t == step.t1 => series.slips(series.length),

@@ -14,6 +14,9 @@ const BETWEEN_LOOKS: usize = 32;
 pub(crate) const AT_START: f64 = 1e-11;
 /// Steps between two waypoints: over so few no tangent shrinks by more than doubles can tell from its largest.
 const BETWEEN_WAYPOINTS: usize = 6;
+/// The part of the patience after which a run lingers, and into how many parts its steps are then divided to see how far it swings.
+const LINGERING: f64 = 1.0 / 64.0;
+const WITHIN: u32 = 4;
 
 /// A point of a run.
 #[derive(Debug, Clone, PartialEq)]
@@ -174,6 +177,8 @@ pub(crate) struct Recorder {
     /// The time of the last return, and the lowest and highest height since.
     since: f64,
     range: (f64, f64),
+    /// Whether that was long ago; the range is of what has been since then.
+    lingering: bool,
     /// Where the patience has been over once: when, and how far the run had swung until then.
     window: Option<(f64, f64)>,
     pub ended: Option<Ended>,
@@ -190,6 +195,7 @@ impl Recorder {
             steps: 0,
             since: 0.0,
             range: (f64::INFINITY, f64::NEG_INFINITY),
+            lingering: false,
             window: None,
             ended: None,
         }
@@ -200,6 +206,7 @@ impl Recorder {
         self.since = time;
         self.zeros.sign = 0.0;
         self.window = None;
+        self.lingering = false;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
     }
 
@@ -228,6 +235,9 @@ impl Recorder {
         self.found = found;
         if see(self.passed, None) == Control::Stop {
             self.ended = Some(Ended::Stopped);
+        }
+        if step.t1 - self.since > LINGERING * watched.watching.patience {
+            self.linger(watched.surface, step);
         }
         self.between_returns(watched, step.t1, step.y1);
         Ok(if self.ended.is_some() {
@@ -269,6 +279,7 @@ impl Recorder {
         self.passed += 1;
         self.since = here.time;
         self.window = None;
+        self.lingering = false;
         self.range = (f64::INFINITY, f64::NEG_INFINITY);
         // An equilibrium may lie on the section: then its noise returns for ever.
         self.look(watched, here.time, here.state.as_slice());
@@ -280,9 +291,25 @@ impl Recorder {
         }
     }
 
-    fn between_returns(&mut self, watched: &Watched<'_>, time: f64, y: &[f64]) {
-        let height = watched.surface.height(y);
+    /// The heights within a step of a run that has not returned for long: how far it swings may have to tell how fast it decays,
+    /// and the ends of long steps miss by how far.
+    fn linger(&mut self, surface: &Surface, step: &AnyStep<'_>) {
+        if !self.lingering {
+            self.lingering = true;
+            self.range = (f64::INFINITY, f64::NEG_INFINITY);
+        }
+        for part in 1..WITHIN {
+            let time = step.t0 + (step.t1 - step.t0) * (f64::from(part) / f64::from(WITHIN));
+            self.reaches(surface.height(step.dense(time).as_slice()));
+        }
+    }
+
+    fn reaches(&mut self, height: f64) {
         self.range = (self.range.0.min(height), self.range.1.max(height));
+    }
+
+    fn between_returns(&mut self, watched: &Watched<'_>, time: f64, y: &[f64]) {
+        self.reaches(watched.surface.height(y));
         if self.steps.is_multiple_of(BETWEEN_WAYPOINTS)
             && watched.watching.waypoints
             && !self.returns.is_empty()

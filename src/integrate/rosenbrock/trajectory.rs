@@ -91,6 +91,7 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
             dense: &dense,
             reach: f64::INFINITY,
             expansion: None,
+            slips: None,
         })
     }
 }

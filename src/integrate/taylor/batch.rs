@@ -150,6 +150,7 @@ impl Batch {
                             dense: &dense,
                             reach: batch_solution.reaches()[lane],
                             expansion: Some(&made),
+                            slips: None,
                         },
                     );
                     here.y = end;

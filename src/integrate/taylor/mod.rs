@@ -1,6 +1,6 @@
 //! The Taylor method: every step is the power series of the solution at its beginning.
 //!
-//! The order is 12, 16 or 18 by the tolerance, and every step as long as the last terms of its series allow (Jorba & Zou
+//! The order is 12 to 24 by the tolerance, and every step as long as the last terms of its series allow (Jorba & Zou
 //! 2005). The polynomial is the dense output, to the order of the method and at no cost. A step is tried but once: it is
 //! shortened, without another series, only where it would leave the domain of the law.
 //!
@@ -17,6 +17,7 @@ use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
 use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
+    usual_order,
 };
 use std::cell::LazyCell;
 
@@ -46,28 +47,14 @@ pub struct Taylor {
     work: Work,
 }
 
-/// Whether to halt after a step of this length, at the state that a call gives.
-type Halt<'a, const N: usize> = &'a mut dyn FnMut(f64, &dyn Fn() -> State<N>) -> bool;
+/// Whether to halt after a step of this order and length, at the state that a call gives.
+type Halt<'a, const N: usize> = &'a mut dyn FnMut(usize, f64, &dyn Fn() -> State<N>) -> bool;
 
 /// What the series are made in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Arithmetic {
     Double,
     DoubleDouble,
-}
-
-/// The order with which a tolerance is reached in the least time.
-fn order(rtol: f64) -> usize {
-    /// Tolerances above which lower orders win.
-    const LOW: f64 = 1e-7;
-    const MIDDLE: f64 = 1e-12;
-    if rtol > LOW {
-        12
-    } else if rtol > MIDDLE {
-        16
-    } else {
-        18
-    }
 }
 
 impl Taylor {
@@ -81,7 +68,7 @@ impl Taylor {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
         let accuracy = Accuracy {
-            order: order(rtol),
+            order: usual_order(rtol),
             tolerances: (rtol, atol),
         };
         Ok(Taylor {
@@ -151,7 +138,7 @@ impl Taylor {
         y0: &State<N>,
     ) -> Result<(State<N>, Derivatives<N>)> {
         self.work = Work::default();
-        let (end, _) = self.trajectory(field, t, y0, tangent, None, &mut |_, _| false)?;
+        let (end, _) = self.trajectory(field, t, y0, tangent, None, &mut |_, _, _| false)?;
         Ok((end, tangent.derivatives()))
     }
 
@@ -214,7 +201,7 @@ impl Taylor {
         let mut transport = transport.ok_or(Error::NotAnalytic)?;
         let start = State::from(y0.map(Jet3::value));
         let mut last = 0.0;
-        let mut halt = |h: f64, _: &dyn Fn() -> State<N>| {
+        let mut halt = |_, h: f64, _: &dyn Fn() -> State<N>| {
             last = h;
             false
         };
@@ -234,11 +221,6 @@ impl Taylor {
         self.work = Work::default();
         let mut solution = analytic(field)?.solution();
         self.trajectory(field, t, y0, &mut *solution, observer, halt)
-    }
-
-    /// The order of a step.
-    pub(super) fn order(&self) -> usize {
-        self.accuracy.order
     }
 
     /// Another bound on steps.
@@ -261,6 +243,13 @@ impl Taylor {
                 t: t.0,
             });
         }
+        let accuracy = match self.arithmetic {
+            Arithmetic::Double => Accuracy {
+                order: solution.order(self.accuracy.tolerances.0),
+                ..self.accuracy
+            },
+            Arithmetic::DoubleDouble => self.accuracy,
+        };
         solution.start(&y0.data.0[0]);
         let mut expansion = Expansion::new();
         let mut clock = Clock::new(t);
@@ -273,7 +262,7 @@ impl Taylor {
                     limit: self.max_steps,
                 });
             }
-            let h = solution.advance(&self.accuracy, remaining);
+            let h = solution.advance(&accuracy, remaining);
             let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
@@ -283,10 +272,10 @@ impl Taylor {
             }
             self.work.steps += 1;
             // One evaluation of the law for each coefficient.
-            self.work.rhs += self.accuracy.order;
+            self.work.rhs += accuracy.order;
             if let Some(observer) = &mut observer {
                 let made = LazyCell::new(|| {
-                    solution.expansion(self.accuracy.order, &mut expansion);
+                    solution.expansion(accuracy.order, &mut expansion);
                     (expansion.begin, expansion.length) = (begin, h.hi());
                     &expansion
                 });
@@ -300,13 +289,14 @@ impl Taylor {
                     dense: &dense,
                     reach: f64::INFINITY,
                     expansion: Some(&made),
+                    slips: Some(&|| solution.slips(accuracy.order, h.hi())),
                 })?;
                 y = end;
                 if control == Control::Stop {
                     break;
                 }
             }
-            if halt(h.hi(), &|| State::from(solution.state())) {
+            if halt(accuracy.order, h.hi(), &|| State::from(solution.state())) {
                 break;
             }
         }
@@ -341,7 +331,7 @@ impl<const N: usize> Integrator<N> for Taylor {
             Arithmetic::Double => analytic.solution(),
             Arithmetic::DoubleDouble => analytic.reference(),
         };
-        let end = self.trajectory(field, t, y0, &mut *solution, observer, &mut |_, _| false)?;
+        let end = self.trajectory(field, t, y0, &mut *solution, observer, &mut |_, _, _| false)?;
         Ok(end.0)
     }
 

@@ -1,7 +1,7 @@
 //! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
 //! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
 
-use super::{Formulas, Law, Parameters, Spinodal};
+use super::{AgeingForm, Formulas, Law, Parameters, Spinodal};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -103,6 +103,10 @@ impl Law for Bounded {
             Some(&mut self.r),
             None,
         ]
+    }
+
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        self.as_limit().ageing_form()
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -1,6 +1,6 @@
 //! The Dieterich-Ruina law with the ageing evolution, equations (4) and (8). Velocity weakening throughout for beta > 1.
 
-use super::{Formulas, Law, Parameters};
+use super::{AgeingForm, Formulas, Law, Parameters};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = 1 - v psi, with psi in L/V*.
@@ -85,6 +85,16 @@ impl Law for DieterichRuina {
 
     fn constants(&mut self) -> [Option<&mut f64>; 4] {
         [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
+    }
+
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        Some(AgeingForm {
+            strength: [0.0, 1.0],
+            healing: [1.0, 0.0],
+            beta: self.beta,
+            gamma0: self.gamma0,
+            exponential: true,
+        })
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -104,9 +104,49 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
         false
     }
 
+    /// The law as a power of a linear strength whose state ages, where it is that.
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        None
+    }
+
     /// V_T = V*/c, where high-velocity strengthening sets in (Weeks 1993).
     fn transition_rate(&self) -> Option<f64> {
         None
+    }
+}
+
+/// v = s(tau) (a_0 + a_1 psi)^(-beta), dpsi/dt = g_0 + g_1 psi - |v| psi.
+#[derive(Debug, Clone, Copy)]
+pub struct AgeingForm {
+    /// a_0 and a_1.
+    pub strength: [f64; 2],
+    /// g_0 and g_1.
+    pub healing: [f64; 2],
+    /// beta
+    pub beta: f64,
+    /// gamma0: s = gamma0 e^tau / 2, and the same less gamma0 e^(-tau) / 2.
+    pub gamma0: f64,
+    /// Whether s is the exponential alone.
+    pub exponential: bool,
+}
+
+#[cfg(target_arch = "x86_64")]
+impl AgeingForm {
+    /// v
+    #[inline(always)]
+    pub(crate) fn slip_rate<T: Real>(&self, tau: T, psi: T) -> T {
+        let activation = if self.exponential {
+            tau.exp() * (0.5 * self.gamma0)
+        } else {
+            tau.sinh() * self.gamma0
+        };
+        activation * (psi * self.strength[1] + self.strength[0]).powf(-self.beta)
+    }
+
+    /// dpsi/dt
+    #[inline(always)]
+    pub(crate) fn evolution<T: Real>(&self, v: T, psi: T) -> T {
+        psi * self.healing[1] + self.healing[0] - v.abs() * psi
     }
 }
 
@@ -327,6 +367,9 @@ impl Law for AnyLaw {
     }
     fn lasts(&self) -> bool {
         with_law!(self, law => law.lasts())
+    }
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        with_law!(self, law => law.ageing_form())
     }
     fn transition_rate(&self) -> Option<f64> {
         with_law!(self, law => law.transition_rate())

@@ -1,6 +1,6 @@
 //! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
 
-use super::{Formulas, Law, Parameters, direct};
+use super::{AgeingForm, Formulas, Law, Parameters, direct};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
@@ -81,6 +81,16 @@ impl Law for RegularisedAgeing {
 
     fn constants(&mut self) -> [Option<&mut f64>; 4] {
         [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
+    }
+
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        Some(AgeingForm {
+            strength: [0.0, 1.0],
+            healing: [1.0, 0.0],
+            beta: self.beta,
+            gamma0: self.gamma0,
+            exponential: false,
+        })
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -1,7 +1,7 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::{Formulas, Law, Parameters, direct};
+use super::{AgeingForm, Formulas, Law, Parameters, direct};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -100,6 +100,16 @@ impl Law for Spinodal {
 
     fn constants(&mut self) -> [Option<&mut f64>; 4] {
         [&mut self.beta, &mut self.gamma0, &mut self.r, &mut self.c].map(Some)
+    }
+
+    fn ageing_form(&self) -> Option<AgeingForm> {
+        Some(AgeingForm {
+            strength: [self.c, 1.0 + self.r],
+            healing: [1.0 / self.r, -1.0 / self.r],
+            beta: self.beta,
+            gamma0: self.gamma0,
+            exponential: false,
+        })
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

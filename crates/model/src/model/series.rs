@@ -7,11 +7,15 @@ use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::DoubleDouble;
 use crate::series::{
-    Accuracy, Both, Element, Expansion, Formula, Order, Rates, Series, Solution, Stepper, WATCHED,
-    value,
+    Accuracy, Both, Element, Expansion, Formula, ONE_OVER, Order, Rates, Series, Solution, Stepper,
+    WATCHED, usual_order, value,
 };
 #[cfg(target_arch = "x86_64")]
-use {crate::series::Pair, pulp::x86::V3};
+use {
+    super::ageing_series::AgeingSolution,
+    crate::series::{ByFormula, Pair, Recurrences},
+    pulp::x86::V3,
+};
 
 /// Both interfaces in the lanes of E, variables (tau, psi).
 #[derive(Debug, Clone, Copy)]
@@ -22,7 +26,7 @@ pub(super) struct Interfaces<E, L> {
 }
 
 impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
-    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED && cfg!(not(target_arch = "x86_64"));
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
@@ -40,17 +44,27 @@ impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
     }
 
     #[inline(always)]
-    fn units(&self, x: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
-        let [tau, psi] = *x;
-        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-        [of_tau, psi * tau.like(atol + rtol)]
+    fn units(&self, x: &[E; 2], tolerances: (f64, f64)) -> [E; 2] {
+        units(x, tolerances)
     }
 
     #[inline(always)]
-    fn allows(&self, [tau, psi]: &[E; 2]) -> E {
-        // psi, and no number where tau is not finite.
-        tau.mul_add(tau.like(0.0), *psi)
+    fn allows(&self, x: &[E; 2]) -> E {
+        allows(x)
     }
+}
+
+/// [`Formula::units`] of interfaces.
+#[inline(always)]
+pub(super) fn units<E: Element>(&[tau, psi]: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
+    let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+    [of_tau, psi * tau.like(atol + rtol)]
+}
+
+/// [`Formula::allows`] of interfaces: psi, and no number where tau is not finite.
+#[inline(always)]
+pub(super) fn allows<E: Element>([tau, psi]: &[E; 2]) -> E {
+    tau.mul_add(tau.like(0.0), *psi)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -61,6 +75,8 @@ type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
 pub(super) enum SeriesSolution<L> {
     #[cfg(target_arch = "x86_64")]
     Pair(V3, PairStepper<L>),
+    #[cfg(target_arch = "x86_64")]
+    Ageing(AgeingSolution),
     Plain(PlainStepper<L>),
 }
 
@@ -70,6 +86,8 @@ macro_rules! each {
         match $track {
             #[cfg(target_arch = "x86_64")]
             SeriesSolution::Pair(_, $s) => $body,
+            #[cfg(target_arch = "x86_64")]
+            SeriesSolution::Ageing(AgeingSolution { stepper: $s, .. }) => $body,
             SeriesSolution::Plain($s) => $body,
         }
     };
@@ -79,6 +97,9 @@ impl<L: Law> SeriesSolution<L> {
     pub fn new(law: L, loading: &Loading) -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = crate::series::avx2() {
+            if let Some(form) = law.ageing_form() {
+                return SeriesSolution::Ageing(AgeingSolution::new(form, loading, simd));
+            }
             let zero = Pair::new(simd, [0.0; 2]);
             return SeriesSolution::Pair(simd, stepper(law, loading, zero));
         }
@@ -99,30 +120,50 @@ fn stepper<E: Element, L: Law>(
     Stepper::new(formula, zero)
 }
 
-/// A step of the pair, to be compiled for the processor's vector instructions.
+/// A step of a pair, to be compiled for the processor's vector instructions.
 #[cfg(target_arch = "x86_64")]
-struct PairStep<'a, L> {
-    stepper: &'a mut PairStepper<L>,
-    accuracy: &'a Accuracy,
-    limit: f64,
+pub(super) struct PairStep<'a, F, R> {
+    pub stepper: &'a mut Stepper<Pair, F, 2>,
+    pub recurrences: &'a mut R,
+    pub accuracy: &'a Accuracy,
+    pub limit: f64,
 }
 
 #[cfg(target_arch = "x86_64")]
-impl<L: Law> pulp::NullaryFnOnce for PairStep<'_, L> {
+impl<F, R> pulp::NullaryFnOnce for PairStep<'_, F, R>
+where
+    F: Formula<Pair, 2>,
+    R: Recurrences<Pair, F, 2>,
+{
     type Output = f64;
     #[inline(always)]
     fn call(self) -> f64 {
         let limit = self.stepper.state()[0].like(self.limit);
-        self.stepper.advance(self.accuracy, limit).first()
+        let stepper = self.stepper;
+        let h = stepper.advance_with(self.recurrences, self.accuracy, limit);
+        h.first()
     }
 }
 
 impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
+    fn order(&self, rtol: f64) -> usize {
+        match self {
+            #[cfg(target_arch = "x86_64")]
+            SeriesSolution::Ageing(_) => AgeingSolution::order(rtol),
+            _ => usual_order(rtol),
+        }
+    }
+
     fn start(&mut self, y: &[f64; N]) {
         let log_states = [y[1], y[N - 1]];
         match self {
             #[cfg(target_arch = "x86_64")]
             SeriesSolution::Pair(simd, stepper) => {
+                let tau = Pair::new(*simd, [y[0]; 2]);
+                stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
+            }
+            #[cfg(target_arch = "x86_64")]
+            SeriesSolution::Ageing(AgeingSolution { simd, stepper, .. }) => {
                 let tau = Pair::new(*simd, [y[0]; 2]);
                 stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
             }
@@ -139,10 +180,15 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
                 let limit = limit.hi();
                 let step = PairStep {
                     stepper,
+                    recurrences: &mut ByFormula,
                     accuracy,
                     limit,
                 };
                 DoubleDouble::from(simd.vectorize(step))
+            }
+            #[cfg(target_arch = "x86_64")]
+            SeriesSolution::Ageing(solution) => {
+                DoubleDouble::from(solution.advance(accuracy, limit.hi()))
             }
             SeriesSolution::Plain(stepper) => {
                 DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())
@@ -155,9 +201,35 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
         chart(x[0][0], x[1].map(f64::ln))
     }
 
+    fn slips(&self, order: usize, length: f64) -> Option<[f64; 2]> {
+        each!(self, s => slips(s, order, length))
+    }
+
     fn expansion(&self, order: usize, into: &mut Expansion<N>) {
         each!(self, s => copy(s, order, into));
     }
+}
+
+/// The slip rates of the last step, what is watched first, integrated term by term; even and odd terms apart, for two short chains.
+fn slips<E: Element, F: Formula<E, 2>>(
+    stepper: &Stepper<E, F, 2>,
+    order: usize,
+    length: f64,
+) -> Option<[f64; 2]> {
+    let rates = stepper.watched_series(0)?;
+    let s = length / stepper.unit().first();
+    let (squared, mut sums) = (s * s, [[0.0; 2]; 2]);
+    for j in (0..order / 2).rev() {
+        for (part, sum) in sums.iter_mut().enumerate() {
+            let k = 2 * j + part;
+            let rates = rates[k].interfaces();
+            for (sum, rate) in sum.iter_mut().zip(rates) {
+                *sum = *sum * squared + rate * ONE_OVER[k + 1];
+            }
+        }
+    }
+    let [even, odd] = sums;
+    Some([0, 1].map(|i| (even[i] + odd[i] * s) * length))
 }
 
 /// The series of the last step, with the slip rate as what is watched first.

@@ -144,7 +144,7 @@ pub(super) fn first_level<E: Element, F: Formula<E, C>, const C: usize>(
     run_level(formula, memory, Running(0), unit);
 }
 
-/// The series, in that unit of time, of the solution whose first coefficients stand in the memory, to an order of 12, 16 or [`super::MAX_ORDER`].
+/// The series, in that unit of time, of the solution whose first coefficients stand in the memory, to an order of 12, 16 or [`super::UNROLLED_ORDER`].
 ///
 /// Every order is compiled by itself: with it a constant, all sums are unrolled and all places in the memory known.
 #[inline(always)]

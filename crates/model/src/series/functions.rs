@@ -204,6 +204,28 @@ pub(super) fn powf<E: Register>(x: E, p: f64) -> E {
     x.mend(size, EXP_LIMIT, fast, |x| x.powf(p))
 }
 
+/// x^p e^y, with every lane of x next to as many of y as `spread` makes of it: the exponential of a sum of which no rounding error is
+/// left out. `None` where a lane is not an ordinary number.
+#[inline(always)]
+pub(super) fn power_and_exponentials<E: Register, W: Register>(
+    x: E,
+    p: f64,
+    y: W,
+    spread: impl Fn(E) -> W,
+) -> Option<W> {
+    let (hi, lo) = ln_in_parts(x);
+    let power = x.like(p);
+    let log = hi * power;
+    let log_error = lo.mul_add(power, hi.mul_add(power, -log));
+    let (wide, wide_error) = (spread(log), spread(log_error));
+    let sum = wide + y;
+    let of_y = sum - wide;
+    let error = (wide - (sum - of_y)) + (y - of_y) + wide_error;
+    let (normal, limit) = (where_normal(x, x.like(0.0)), y.like(EXP_LIMIT));
+    let ordinary = normal.all_less(x.like(1.0)) & sum.magnitude().all_less(limit);
+    ordinary.then(|| exp_of_sum(sum, error))
+}
+
 /// By one exponential; sinh where that cancels by its series.
 #[inline(always)]
 pub(super) fn sinh_cosh<E: Register>(x: E) -> (E, E) {

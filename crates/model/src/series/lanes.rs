@@ -33,6 +33,75 @@ pub struct Eight {
     simd: V4,
 }
 
+impl Pair {
+    /// (x, x, y, y) of (x, y).
+    #[inline(always)]
+    pub fn twice(self) -> Four {
+        let simd = self.simd;
+        let wide = simd.avx._mm256_castpd128_pd256(self.lanes);
+        Four {
+            lanes: simd.avx2._mm256_permute4x64_pd::<0b0101_0000>(wide),
+            simd,
+        }
+    }
+
+    /// (x^p e^y, x^p e^(-y)) for both lanes, side by side; `None` where one is not an ordinary number.
+    #[inline(always)]
+    pub fn power_and_exponentials(self, p: f64, y: Pair) -> Option<Four> {
+        let y = y.twice();
+        let y = y * y.like_lanes([1.0, -1.0, 1.0, -1.0]);
+        functions::power_and_exponentials(self, p, y, Pair::twice)
+    }
+}
+
+impl Four {
+    /// (x, y) of (x, _, y, _).
+    #[inline(always)]
+    pub fn once(self) -> Pair {
+        let simd = self.simd;
+        let once = simd.avx2._mm256_permute4x64_pd::<0b1000>(self.lanes);
+        Pair {
+            lanes: simd.avx._mm256_castpd256_pd128(once),
+            simd,
+        }
+    }
+
+    /// The lanes of each half exchanged.
+    #[inline(always)]
+    pub fn swapped(self) -> Self {
+        self.with(self.simd.avx._mm256_permute_pd::<0b0101>(self.lanes))
+    }
+
+    /// The halves exchanged.
+    #[inline(always)]
+    pub fn crossed(self) -> Self {
+        let avx = self.simd.avx;
+        self.with(avx._mm256_permute2f128_pd::<1>(self.lanes, self.lanes))
+    }
+
+    /// The first lane of each half twice.
+    #[inline(always)]
+    pub fn firsts(self) -> Self {
+        self.with(self.simd.avx._mm256_movedup_pd(self.lanes))
+    }
+
+    /// The second lane of each half twice.
+    #[inline(always)]
+    pub fn seconds(self) -> Self {
+        self.with(self.simd.avx._mm256_permute_pd::<0b1111>(self.lanes))
+    }
+
+    /// The first lanes of the halves, and the second ones of the other.
+    #[inline(always)]
+    pub fn beside(self, other: Self) -> Self {
+        self.with(
+            self.simd
+                .avx
+                ._mm256_blend_pd::<0b1010>(self.lanes, other.lanes),
+        )
+    }
+}
+
 macro_rules! lanes {
     ($name:ident, $register:ty, $token:ty, $n:literal, |$s:ident| $unit:expr,
      $add:ident $sub:ident $mul:ident $div:ident, $fused:ident: |$f:ident| $fma:expr, $splat:ident $max:ident $min:ident) => {

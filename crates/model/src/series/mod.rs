@@ -2,8 +2,8 @@
 //!
 //! A differential equation is a `Formula`, written for any [`crate::number::Real`]. Evaluated once per order on
 //! `Series` it yields one coefficient after the other of its solution (`tape` says how); `Stepper` makes steps of them.
-//! No recurrence is written for a law: the laws' own formulas, the same that give values and exact derivatives, run on
-//! series. That costs 10 to 15 per cent over recurrences written by hand for one law.
+//! The laws' own formulas, the same that give values and exact derivatives, run on series. Recurrences that are written by hand for
+//! one kind of law take two thirds of the time: those of most laws stand in `model::ageing_series`, for what is run most.
 //!
 //! The coefficients are `Element`s: ordinary numbers, both interfaces in one vector register, or several trajectories at
 //! once. What the processor can do is asked when the program runs, so that a binary for any x86-64 uses AVX2 and AVX-512.
@@ -54,15 +54,34 @@ pub(crate) use lanes::{Eight, Four, Pair};
 pub(crate) use plain::Both;
 pub(crate) use recorded::Recorded;
 pub(crate) use stepper::Stepper;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use stepper::{ByFormula, Recurrences};
 pub(crate) use tape::Order;
+#[cfg(target_arch = "x86_64")]
+pub(crate) use tape::ROOM;
 pub use transport::TaylorMap;
 pub(crate) use variational::{FREE, Variational};
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use vectors::{avx2, avx512};
 
-/// The highest order of the unrolled series: with higher ones their code outgrows the cache of many processors.
-pub const MAX_ORDER: usize = 18;
+/// The highest order of series in doubles.
+pub const MAX_ORDER: usize = 24;
+
+/// The highest order of series that are compiled order by order for every formula: with higher ones their code outgrows the cache of
+/// many processors.
+pub const UNROLLED_ORDER: usize = 18;
+
+/// 1/k
+pub(crate) const ONE_OVER: [f64; MAX_ORDER + 2] = {
+    let mut one_over = [0.0; MAX_ORDER + 2];
+    let mut k = 1;
+    while k < MAX_ORDER + 2 {
+        one_over[k] = 1.0 / k as f64;
+        k += 1;
+    }
+    one_over
+};
 
 /// The order of the series in double-double arithmetic, run in loops.
 pub const REFERENCE_ORDER: usize = 32;
@@ -70,14 +89,33 @@ pub const REFERENCE_ORDER: usize = 32;
 /// The order of a step, and what it may err by.
 #[derive(Debug, Clone, Copy)]
 pub struct Accuracy {
-    /// 12, 16 or [`MAX_ORDER`]; [`REFERENCE_ORDER`] in double-double arithmetic.
+    /// An even one from 12 to [`UNROLLED_ORDER`], or to [`MAX_ORDER`] where [`Solution::order`] says so; [`REFERENCE_ORDER`] in
+    /// double-double arithmetic.
     pub order: usize,
     /// Relative and absolute tolerance.
     pub tolerances: (f64, f64),
 }
 
+/// The order with which series that are made order by order take the least time for a relative tolerance.
+pub fn usual_order(rtol: f64) -> usize {
+    /// Tolerances above which lower orders win.
+    const LOW: f64 = 1e-7;
+    const MIDDLE: f64 = 1e-12;
+    if rtol > LOW {
+        12
+    } else if rtol > MIDDLE {
+        16
+    } else {
+        UNROLLED_ORDER
+    }
+}
+
 /// A solution in N dimensions on its way, step by step.
 pub trait Solution<const N: usize> {
+    /// The order with which it takes the least time for a relative tolerance.
+    fn order(&self, rtol: f64) -> usize {
+        usual_order(rtol)
+    }
     /// Begins at y.
     fn start(&mut self, y: &[f64; N]);
     /// Goes on by the step that the accuracy asks for, at most `limit` (negative: back in time), and returns it. Not a number
@@ -85,6 +123,10 @@ pub trait Solution<const N: usize> {
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
     /// The state reached.
     fn state(&self) -> [f64; N];
+    /// The slips of both interfaces in the last step, of this length, where they are had without all of the series.
+    fn slips(&self, _order: usize, _length: f64) -> Option<[f64; 2]> {
+        None
+    }
     /// The series at the beginning of the last step.
     fn expansion(&self, order: usize, into: &mut Expansion<N>);
 }

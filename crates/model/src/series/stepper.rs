@@ -3,7 +3,7 @@
 use super::element::Element;
 use super::formula::{Formula, Memory, WATCHED, expand, expand_running, first_level};
 use super::tape::ROWS;
-use super::{Accuracy, MAX_ORDER};
+use super::{Accuracy, MAX_ORDER, UNROLLED_ORDER};
 use std::cell::Cell;
 
 /// Part of the estimated step that is taken.
@@ -32,6 +32,39 @@ pub struct Stepper<E, F, const C: usize> {
     /// step.
     unit: E,
     next_unit: E,
+}
+
+/// How the coefficients of a series are made from the first ones.
+pub trait Recurrences<E: Element, F: Formula<E, C>, const C: usize> {
+    /// To an order, in a unit of time, into rows of [`super::ROOM`] coefficients, those of the variables first. Returns the rows of what is
+    /// watched.
+    fn make(
+        &mut self,
+        formula: &F,
+        memory: &[Cell<E>],
+        order: usize,
+        unit: E,
+    ) -> [Option<usize>; WATCHED];
+}
+
+/// By the formula itself, on series.
+pub struct ByFormula;
+
+impl<E: Element, F: Formula<E, C>, const C: usize> Recurrences<E, F, C> for ByFormula {
+    #[inline(always)]
+    fn make(
+        &mut self,
+        formula: &F,
+        memory: &[Cell<E>],
+        order: usize,
+        unit: E,
+    ) -> [Option<usize>; WATCHED] {
+        if F::UNROLLED && order <= UNROLLED_ORDER {
+            expand(formula, memory, order, unit)
+        } else {
+            expand_running(formula, memory, order, unit)
+        }
+    }
 }
 
 impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
@@ -118,7 +151,18 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     /// in a lane where that is not a number: there is no step then.
     #[inline(always)]
     pub fn advance(&mut self, accuracy: &Accuracy, limit: E) -> E {
-        self.expand(accuracy);
+        self.advance_with(&mut ByFormula, accuracy, limit)
+    }
+
+    /// The same with coefficients that are made so.
+    #[inline(always)]
+    pub fn advance_with(
+        &mut self,
+        recurrences: &mut impl Recurrences<E, F, C>,
+        accuracy: &Accuracy,
+        limit: E,
+    ) -> E {
+        self.expand_with(recurrences, accuracy);
         let h = self.longest(accuracy);
         self.advance_by(accuracy, h, limit)
     }
@@ -140,6 +184,11 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     /// Makes the series at the state reached.
     #[inline(always)]
     pub fn expand(&mut self, accuracy: &Accuracy) {
+        self.expand_with(&mut ByFormula, accuracy);
+    }
+
+    #[inline(always)]
+    fn expand_with(&mut self, recurrences: &mut impl Recurrences<E, F, C>, accuracy: &Accuracy) {
         self.unit = self.next_unit;
         self.load();
         // A copy, which the compiler sees that no coefficient written changes.
@@ -147,11 +196,7 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         let mut tried = 0;
         loop {
             let memory = cells(&mut self.memory);
-            self.watched = if F::UNROLLED {
-                expand(&formula, memory, accuracy.order, self.unit)
-            } else {
-                expand_running(&formula, memory, accuracy.order, self.unit)
-            };
+            self.watched = recurrences.make(&formula, memory, accuracy.order, self.unit);
             // Zero where all coefficients are finite. Close to a steady state the state changes by its own size in no time
             // that is near the step; in a shorter unit the coefficients do not overflow.
             let zero = self.unit.like(0.0);

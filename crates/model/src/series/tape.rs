@@ -11,7 +11,7 @@ use super::handle::{Series, row};
 use std::cell::Cell;
 
 /// Coefficients that a row has room for.
-pub(super) const ROOM: usize = super::MAX_ORDER + 1;
+pub const ROOM: usize = super::MAX_ORDER + 1;
 
 /// Rows that a compiled formula may take, its variables included.
 pub(super) const ROWS: usize = 64;
