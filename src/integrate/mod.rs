@@ -65,6 +65,11 @@ impl<'a, const N: usize> Step<'a, N> {
     pub fn series(&self) -> Option<&'a Expansion<N>> {
         self.expansion.map(|made| **made)
     }
+
+    /// The slips of both interfaces in the step, of methods that have them without all of the series.
+    pub fn slips(&self) -> Option<[f64; 2]> {
+        self.slips.and_then(|slips| slips())
+    }
 }
 
 /// Whether to go on after a step.

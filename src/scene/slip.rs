@@ -28,7 +28,7 @@ pub(super) fn slips<const N: usize>(
     t: f64,
 ) -> Slips {
     if t == step.t1
-        && let Some(within) = step.slips.and_then(|slips| slips())
+        && let Some(within) = step.slips()
     {
         return sum(before, within);
     }
