@@ -15,7 +15,7 @@ pub(crate) const AT_START: f64 = 1e-11;
 /// Steps between two waypoints: over so few no tangent shrinks by more than doubles can tell from its largest.
 const BETWEEN_WAYPOINTS: usize = 6;
 /// The part of the patience after which a run lingers, and into how many parts its steps are then divided to see how far it swings.
-const LINGERING: f64 = 1.0 / 64.0;
+const LINGERING: f64 = 1.0 / 8.0;
 const WITHIN: u32 = 4;
 
 /// A point of a run.
