@@ -12,16 +12,22 @@
 //!   k b_k = g_1 b_(k-1) - sum of b_j |v|_(k-1-j), and g_0 a_1 / a(0) for k = 1,
 //!   P_k = beta (k+1) b_(k+1) - sum over j > 0 of b_j P_(k-j).
 //!
+//! For the linearised equations of (tau, psi/psi(0)) two more come with them, z psi and u = v a(0)/a:
+//!
+//!   y_k = sum of b_j z_(k-j),   u_k = v_k - sum over j > 0 of b_j u_(k-j).
+//!
 //! No order waits for the newest terms of these: k v_k = z_0 T_(k-1) - v_0 P_(k-1) + T_0 z_(k-1) - P_0 v_(k-1) + older ones, where T
 //! and P are linear in the newest v. So the sums of four orders are made at once, out of pairs of rows side by side: what is read of
 //! memory is what limits them.
 
 use super::series::{PairStep, allows, units};
+use super::tangent::{Linearised, jacobian_of_rows, with_derivatives};
 use super::{Loading, stress_rate};
 use crate::friction::AgeingForm;
+use crate::number::Jet;
 use crate::series::{
-    Accuracy, ByFormula, Element, Formula, Four, MAX_ORDER, ONE_OVER, Order, Pair, ROOM, Rates,
-    Recurrences, Series, Stepper, WATCHED, avx512, value,
+    Accuracy, ByFormula, Element, Formula, Four, JacobianTerm, MAX_ORDER, ONE_OVER, Order, Pair,
+    ROOM, Rates, Recurrences, Series, Stepper, WATCHED, avx512, value,
 };
 use pulp::x86::{V3, V4};
 use std::cell::Cell;
@@ -72,33 +78,49 @@ impl Formula<Pair, 2> for AgeingInterfaces {
     }
 }
 
+/// The vector instructions of this processor.
+#[derive(Clone, Copy)]
+pub(super) struct Best {
+    simd: V3,
+    /// Twice as many registers, where the processor has them.
+    wide: Option<V4>,
+}
+
+impl Best {
+    pub fn new(simd: V3) -> Self {
+        let wide = avx512();
+        Best { simd, wide }
+    }
+
+    pub fn wide(self) -> Option<V4> {
+        self.wide
+    }
+
+    #[inline(always)]
+    pub fn vectorize<F: pulp::NullaryFnOnce>(self, f: F) -> F::Output {
+        match self.wide {
+            Some(wide) => wide.vectorize(f),
+            None => self.simd.vectorize(f),
+        }
+    }
+}
+
 /// A solution by them.
 pub(super) struct AgeingSolution {
     pub simd: V3,
-    /// Twice as many registers, where the processor has them.
-    wide: Option<V4>,
+    best: Best,
     pub stepper: Stepper<Pair, AgeingInterfaces, 2>,
-    recurrences: Box<AgeingRecurrences>,
+    recurrences: Box<AgeingRecurrences<false>>,
 }
 
 impl AgeingSolution {
     /// To be started.
     pub fn new(form: AgeingForm, loading: &Loading, simd: V3) -> Self {
-        let zero = Pair::new(simd, [0.0; 2]);
-        let formula = AgeingInterfaces {
-            form,
-            driving: zero.like(loading.driving),
-            stiffness: zero.like(loading.stiffness),
-        };
-        let nothing = [[zero.twice(); 2]; ROOM];
         AgeingSolution {
             simd,
-            wide: avx512(),
-            stepper: Stepper::new(formula, zero),
-            recurrences: Box::new(AgeingRecurrences {
-                left: nothing,
-                right: nothing,
-            }),
+            best: Best::new(simd),
+            stepper: stepper(form, loading, simd),
+            recurrences: Box::new(AgeingRecurrences::new(simd)),
         }
     }
 
@@ -118,22 +140,90 @@ impl AgeingSolution {
             accuracy,
             limit,
         };
-        match self.wide {
-            Some(wide) => wide.vectorize(step),
-            None => self.simd.vectorize(step),
+        self.best.vectorize(step)
+    }
+}
+
+/// To be started.
+pub(super) fn stepper(
+    form: AgeingForm,
+    loading: &Loading,
+    simd: V3,
+) -> Stepper<Pair, AgeingInterfaces, 2> {
+    let zero = Pair::new(simd, [0.0; 2]);
+    let formula = AgeingInterfaces {
+        form,
+        driving: zero.like(loading.driving),
+        stiffness: zero.like(loading.stiffness),
+    };
+    Stepper::new(formula, zero)
+}
+
+/// The series that the sums are made of. In a register stand both interfaces, each with two lanes.
+pub(super) struct AgeingRecurrences<const LINEARISED: bool> {
+    /// e_j, and b_(j+1): (e+, e-), (b, b).
+    left: [[Four; 2]; ROOM],
+    /// q_j, v_j with P_j, and z_j with u_j: (q+, q-), (-|v|, -P) in the unit of time, (z, u). The first ones are 0, their products are
+    /// not in the sums.
+    right: [Right; ROOM],
+    /// The Jacobian along the series made last.
+    jacobian: [JacobianTerm; ROOM],
+}
+
+type Right = [Four; 3];
+
+impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
+    pub fn new(simd: V3) -> Self {
+        let zero = Four::new(simd, [0.0; 4]);
+        AgeingRecurrences {
+            left: [[zero; 2]; ROOM],
+            right: [[zero; 3]; ROOM],
+            jacobian: [JacobianTerm::ZERO; ROOM],
         }
     }
 }
 
-/// The series that the sums are made of. In a register stand both interfaces, each with two lanes.
-struct AgeingRecurrences {
-    /// e_j, and b_(j+1): (e+, e-), (b, b).
-    left: [[Four; 2]; ROOM],
-    /// q_j, and v_j with P_j: (q+, q-), (-|v|, -P) in the unit of time. The first ones are 0, their products are not in the sums.
-    right: [[Four; 2]; ROOM],
+impl Linearised for AgeingRecurrences<true> {
+    fn order(rtol: f64) -> usize {
+        AgeingSolution::order(rtol)
+    }
+
+    fn jacobian(&self) -> &[JacobianTerm] {
+        &self.jacobian
+    }
 }
 
-impl Recurrences<Pair, AgeingInterfaces, 2> for AgeingRecurrences {
+/// The formula with its derivatives.
+#[derive(Clone, Copy)]
+struct LinearisedAgeing(AgeingInterfaces);
+
+impl Formula<Pair, 2> for LinearisedAgeing {
+    #[inline(always)]
+    fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, Pair, O>; 2]) -> Rates<'t, Pair, O, 2> {
+        let AgeingInterfaces {
+            form,
+            driving,
+            stiffness,
+        } = &self.0;
+        let (tau, psi) = (Jet::variable(tau, 0), Jet::variable(psi, 1));
+        let v = form.slip_rate(tau, psi);
+        with_derivatives(v, form.evolution(v, psi), (*driving, *stiffness))
+    }
+
+    #[inline(always)]
+    fn units(&self, x: &[Pair; 2], tolerances: (f64, f64)) -> [Pair; 2] {
+        units(x, tolerances)
+    }
+
+    #[inline(always)]
+    fn allows(&self, x: &[Pair; 2]) -> Pair {
+        allows(x)
+    }
+}
+
+impl<const LINEARISED: bool> Recurrences<Pair, AgeingInterfaces, 2>
+    for AgeingRecurrences<LINEARISED>
+{
     #[inline(always)]
     fn make(
         &mut self,
@@ -147,24 +237,33 @@ impl Recurrences<Pair, AgeingInterfaces, 2> for AgeingRecurrences {
         if far && order.is_multiple_of(BLOCK) && self.expand(formula, memory, order, unit) {
             return [Some(SLIP_RATE); WATCHED];
         }
-        ByFormula.make(formula, memory, order, unit)
+        if !LINEARISED {
+            return ByFormula.make(formula, memory, order, unit);
+        }
+        let watched = ByFormula.make(&LinearisedAgeing(*formula), memory, order, unit);
+        let jacobian = &mut self.jacobian[..order];
+        jacobian_of_rows(jacobian, memory, &watched, formula.stiffness, unit);
+        watched
     }
 }
 
 /// a + b
 #[inline(always)]
-fn plus(a: [Four; 2], b: [Four; 2]) -> [Four; 2] {
-    [a[0] + b[0], a[1] + b[1]]
+fn plus(a: Right, b: Right) -> Right {
+    [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// sum + a b
-#[inline(always)]
-fn add(sum: &mut [Four; 2], a: [Four; 2], b: [Four; 2]) {
-    sum[0] = a[0].mul_add(b[0], sum[0]);
-    sum[1] = a[1].mul_add(b[1], sum[1]);
-}
+impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
+    /// sum + a b
+    #[inline(always)]
+    fn add(sum: &mut Right, a: [Four; 2], b: Right) {
+        sum[0] = a[0].mul_add(b[0], sum[0]);
+        sum[1] = a[1].mul_add(b[1], sum[1]);
+        if LINEARISED {
+            sum[2] = a[1].mul_add(b[2], sum[2]);
+        }
+    }
 
-impl AgeingRecurrences {
     /// The series to this order, a multiple of four; false where the first coefficients are no ordinary numbers.
     #[inline(always)]
     fn expand(
@@ -174,7 +273,6 @@ impl AgeingRecurrences {
         order: usize,
         unit: Pair,
     ) -> bool {
-        let AgeingRecurrences { left, right } = self;
         let AgeingInterfaces {
             form,
             driving,
@@ -225,13 +323,12 @@ impl AgeingRecurrences {
             scales: sliding.beside(number(-1.0)),
             psi_per_b: (a / a.like(form.strength[1])).twice(),
         };
-        // In memory, and so the stack is aligned, and no register is spilled across lines of the cache.
-        let level = std::hint::black_box(&level);
         memory[SLIP_RATE * ROOM].set(v.once());
         memory[TAU * ROOM + 1].set(t.once());
         memory[PSI * ROOM + 1].set((rate * level.psi_per_b).once());
-        left[0][1] = rate;
+        self.left[0][1] = rate;
         let first = Newest {
+            u: v,
             v,
             z,
             sum,
@@ -240,48 +337,148 @@ impl AgeingRecurrences {
             e,
             b: rate,
         };
-        let nothing = [number(0.0); 2];
-        let last = level.next::<true>(left, right, memory, 1, &first, nothing);
-        let last = level.next::<false>(left, right, memory, 2, &last, nothing);
+        let nothing = [number(0.0); 3];
+        let slopes = if LINEARISED {
+            let over_b = number(1.0) / b;
+            let kept = (a.like(form.strength[0]) / a).twice();
+            let slopes = Slopes {
+                by_state: -(beta * b) * pull,
+                by_stress: sliding * over_b,
+                by_v: sliding * (number(1.0) - beta),
+                by_u: sliding * beta * kept,
+                b,
+            };
+            let healed = number(form.healing[1]) * unit;
+            self.jacobian[0] = slopes.term(pull, (v, z), b * z, v, healed);
+            slopes
+        } else {
+            Slopes::of(number(0.0))
+        };
+        // In memory, and so the stack is aligned, and no register is spilled across lines of the cache.
+        let level = std::hint::black_box(&level);
+        let known = (level, &slopes);
+        let last = self.next::<true>(known, memory, 1, &first, nothing);
+        let last = self.next::<false>(known, memory, 2, &last, nothing);
         let mut sums = nothing;
-        add(&mut sums, left[1], right[1]);
-        let mut last = level.next::<false>(left, right, memory, 3, &last, sums);
+        Self::add(&mut sums, self.left[1], self.right[1]);
+        let mut last = self.next::<false>(known, memory, 3, &last, sums);
         let mut k = BLOCK;
         while k < order {
             let mut sums = [nothing; BLOCK];
-            let windows = right[..k].windows(BLOCK).rev();
-            for (left, right) in left[3..k].iter().zip(windows) {
+            let windows = self.right[..k].windows(BLOCK).rev();
+            for (left, right) in self.left[3..k].iter().zip(windows) {
                 for (sum, right) in sums.iter_mut().zip(right) {
-                    add(sum, *left, *right);
+                    Self::add(sum, *left, *right);
                 }
             }
             // With the newest of before.
-            let (near, next) = (left[1], left[2]);
-            add(&mut sums[2], next, right[k - 1]);
-            add(&mut sums[1], next, right[k - 2]);
-            add(&mut sums[0], next, right[k - 3]);
-            add(&mut sums[1], near, right[k - 1]);
-            add(&mut sums[0], near, right[k - 2]);
-            last = level.next::<false>(left, right, memory, k, &last, sums[0]);
-            last = level.next::<false>(left, right, memory, k + 1, &last, sums[1]);
-            add(&mut sums[2], near, right[k]);
-            add(&mut sums[2], left[k], right[1]);
-            last = level.next::<false>(left, right, memory, k + 2, &last, sums[2]);
+            let (near, next) = (self.left[1], self.left[2]);
+            Self::add(&mut sums[2], next, self.right[k - 1]);
+            Self::add(&mut sums[1], next, self.right[k - 2]);
+            Self::add(&mut sums[0], next, self.right[k - 3]);
+            Self::add(&mut sums[1], near, self.right[k - 1]);
+            Self::add(&mut sums[0], near, self.right[k - 2]);
+            last = self.next::<false>(known, memory, k, &last, sums[0]);
+            last = self.next::<false>(known, memory, k + 1, &last, sums[1]);
+            Self::add(&mut sums[2], near, self.right[k]);
+            Self::add(&mut sums[2], self.left[k], self.right[1]);
+            last = self.next::<false>(known, memory, k + 2, &last, sums[2]);
             let mut newest = nothing;
-            add(&mut newest, next, right[k]);
-            add(&mut newest, left[k], right[2]);
-            add(&mut sums[3], near, right[k + 1]);
-            add(&mut sums[3], left[k + 1], right[1]);
-            last = level.next::<false>(left, right, memory, k + 3, &last, plus(sums[3], newest));
+            Self::add(&mut newest, next, self.right[k]);
+            Self::add(&mut newest, self.left[k], self.right[2]);
+            Self::add(&mut sums[3], near, self.right[k + 1]);
+            Self::add(&mut sums[3], self.left[k + 1], self.right[1]);
+            last = self.next::<false>(known, memory, k + 3, &last, plus(sums[3], newest));
             k += BLOCK;
         }
         true
+    }
+
+    /// The coefficients of order k, from those before. What comes last is multiplied last.
+    #[inline(always)]
+    fn next<const FIRST: bool>(
+        &mut self,
+        (level, slopes): (&Level, &Slopes),
+        memory: &[Cell<Pair>],
+        k: usize,
+        last: &Newest,
+        sums: Right,
+    ) -> Newest {
+        let over = level.e.like(ONE_OVER[k]);
+        let over_next = level.e.like(ONE_OVER[k + 1]);
+        let by_p = -last.p;
+        let (v_by_sum, z_by_sum) = (level.v_by_sum * over, level.z_by_sum * over);
+        let (v_0, z_0) = (level.v * over, level.z * over);
+        let (v, z, e) = if FIRST {
+            let v = last.sum.mul_add(v_by_sum, by_p * v_0);
+            let z = last.sum.mul_add(z_by_sum, by_p * z_0);
+            (v, z, level.e * last.q)
+        } else {
+            let (t_0, p_0) = (level.t * over, level.p * over);
+            let swapped = sums[0].swapped();
+            let (less, more) = (sums[0] - swapped, sums[0] + swapped);
+            let v_known = less.mul_add(level.opposite * over, last.z * t_0);
+            let z_known = more.mul_add(over, last.v * t_0);
+            let v_known = by_p.mul_add(v_0, v_known);
+            let z_known = by_p.mul_add(z_0, z_known);
+            let v_new = last.sum.mul_add(v_by_sum, -(last.v * p_0));
+            let z_new = last.sum.mul_add(z_by_sum, -(last.z * p_0));
+            let e = level.e.mul_add(last.q, last.e.mul_add(level.q, sums[0]));
+            (v_new + v_known, z_new + z_known, e)
+        };
+        let e = e * over;
+        let sum = v + v.crossed();
+        let t = sum * level.pull;
+        let (rate_known, p_known) = if FIRST {
+            (last.b * level.by_state, last.b * level.p_by_state)
+        } else {
+            let slip = last.v.mul_add(level.slip_1, sums[1].firsts());
+            let p_known = slip.mul_add(level.beta, sums[1].seconds());
+            let p_known = last.b.mul_add(level.p_by_state, p_known);
+            (
+                last.b.mul_add(level.by_state, slip),
+                by_p.mul_add(level.b_1, p_known),
+            )
+        };
+        let p = v.mul_add(level.p_by_slip, p_known);
+        let rate = v.mul_add(level.by_slip, rate_known);
+        let q = t.mul_add(level.opposite, -p);
+        let b = rate * over_next;
+        self.right[k][0] = q;
+        self.right[k][1] = v.beside(p) * level.scales;
+        self.left[k] = [e, b];
+        memory[SLIP_RATE * ROOM + k].set(v.once());
+        memory[TAU * ROOM + k + 1].set((t * over_next).once());
+        memory[PSI * ROOM + k + 1].set((b * level.psi_per_b).once());
+        let mut u = v;
+        if LINEARISED {
+            // b_k z_0 and b_1 z_(k-1) are one for k = 1, and so of u.
+            let mut y = last.b.mul_add(level.z, slopes.b * z);
+            u = v - last.b * level.v;
+            if !FIRST {
+                y = y + last.z.mul_add(level.b_1, sums[2].firsts());
+                u = u - last.u.mul_add(level.b_1, sums[2].seconds());
+            }
+            self.right[k][2] = z.beside(u);
+            self.jacobian[k] = slopes.term(level.pull, (v, z), y, u, e.like(0.0));
+        }
+        Newest {
+            u,
+            v,
+            z,
+            sum,
+            p,
+            q,
+            e,
+            b,
+        }
     }
 }
 
 /// The newest coefficients.
 #[derive(Clone, Copy)]
 struct Newest {
+    u: Four,
     v: Four,
     z: Four,
     /// Of the slip rates of both interfaces, less V_H.
@@ -319,71 +516,51 @@ struct Level {
     psi_per_b: Four,
 }
 
-impl Level {
-    /// The coefficients of order k, from those before. What comes last is multiplied last.
+/// The first coefficients that the Jacobian takes.
+#[repr(align(64))]
+struct Slopes {
+    /// Of tau' in psi/psi(0), by u.
+    by_state: Four,
+    /// Of psi'/psi(0): in tau by y, in psi/psi(0) by v and by u.
+    by_stress: Four,
+    by_v: Four,
+    by_u: Four,
+    b: Four,
+}
+
+impl Slopes {
     #[inline(always)]
-    fn next<const FIRST: bool>(
-        &self,
-        left: &mut [[Four; 2]; ROOM],
-        right: &mut [[Four; 2]; ROOM],
-        memory: &[Cell<Pair>],
-        k: usize,
-        last: &Newest,
-        sums: [Four; 2],
-    ) -> Newest {
-        let over = self.e.like(ONE_OVER[k]);
-        let over_next = self.e.like(ONE_OVER[k + 1]);
-        let by_p = -last.p;
-        let (v_by_sum, z_by_sum) = (self.v_by_sum * over, self.z_by_sum * over);
-        let (v_0, z_0) = (self.v * over, self.z * over);
-        let (v, z, e) = if FIRST {
-            let v = last.sum.mul_add(v_by_sum, by_p * v_0);
-            let z = last.sum.mul_add(z_by_sum, by_p * z_0);
-            (v, z, self.e * last.q)
-        } else {
-            let (t_0, p_0) = (self.t * over, self.p * over);
-            let swapped = sums[0].swapped();
-            let (less, more) = (sums[0] - swapped, sums[0] + swapped);
-            let v_known = less.mul_add(self.opposite * over, last.z * t_0);
-            let z_known = more.mul_add(over, last.v * t_0);
-            let v_known = by_p.mul_add(v_0, v_known);
-            let z_known = by_p.mul_add(z_0, z_known);
-            let v_new = last.sum.mul_add(v_by_sum, -(last.v * p_0));
-            let z_new = last.sum.mul_add(z_by_sum, -(last.z * p_0));
-            let e = self.e.mul_add(last.q, last.e.mul_add(self.q, sums[0]));
-            (v_new + v_known, z_new + z_known, e)
-        };
-        let e = e * over;
-        let sum = v + v.crossed();
-        let t = sum * self.pull;
-        let (rate_known, p_known) = if FIRST {
-            (last.b * self.by_state, last.b * self.p_by_state)
-        } else {
-            let slip = last.v.mul_add(self.slip_1, sums[1].firsts());
-            let p_known = slip.mul_add(self.beta, sums[1].seconds());
-            let p_known = last.b.mul_add(self.p_by_state, p_known);
-            (
-                last.b.mul_add(self.by_state, slip),
-                by_p.mul_add(self.b_1, p_known),
-            )
-        };
-        let p = v.mul_add(self.p_by_slip, p_known);
-        let rate = v.mul_add(self.by_slip, rate_known);
-        let q = t.mul_add(self.opposite, -p);
-        let b = rate * over_next;
-        right[k] = [q, v.beside(p) * self.scales];
-        left[k] = [e, b];
-        memory[SLIP_RATE * ROOM + k].set(v.once());
-        memory[TAU * ROOM + k + 1].set((t * over_next).once());
-        memory[PSI * ROOM + k + 1].set((b * self.psi_per_b).once());
-        Newest {
-            v,
-            z,
-            sum,
-            p,
-            q,
-            e,
-            b,
+    fn of(x: Four) -> Self {
+        Slopes {
+            by_state: x,
+            by_stress: x,
+            by_v: x,
+            by_u: x,
+            b: x,
         }
     }
+
+    /// A coefficient of the Jacobian.
+    #[inline(always)]
+    fn term(
+        &self,
+        pull: Four,
+        (v, z): (Four, Four),
+        y: Four,
+        u: Four,
+        healed: Four,
+    ) -> JacobianTerm {
+        let by_stress = (z + z.crossed()) * pull;
+        let by_state = u.mul_add(self.by_u, v.mul_add(self.by_v, healed));
+        JacobianTerm {
+            stress: halves(by_stress.beside(u * self.by_state)),
+            states: halves((y * self.by_stress).beside(by_state)),
+        }
+    }
+}
+
+#[inline(always)]
+fn halves(x: Four) -> [[f64; 2]; 2] {
+    let [a, b, c, d] = x.lanes();
+    [[a, b], [c, d]]
 }

@@ -1,30 +1,55 @@
 //! The interfaces with their tangents in power series.
 //!
-//! The laws' formulas run on jets of series: the Jacobian's entries along the solution, for both interfaces at once. The
-//! linearised equations of all columns are then sums of products with them, see [`VariationalEquations`]. In doubles: it takes a quarter of
-//! the time of [`crate::series::Recorded`], which serves for 31 digits and for other systems.
+//! The Jacobian's entries along the solution come with its series, for both interfaces at once: by the recurrences that laws have of
+//! their own, or by the laws' formulas on jets of series. The linearised equations of all columns are then sums of products with them,
+//! see [`VariationalEquations`].
 
-use super::series::{Interfaces, chart, copy};
+#[cfg(target_arch = "x86_64")]
+use super::ageing_series::{self, AgeingRecurrences, Best};
+use super::series::{Interfaces, allows, chart, copy, units};
 use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::{DoubleDouble, Jet};
+#[cfg(not(target_arch = "x86_64"))]
+use crate::series::Both;
 use crate::series::{
-    Accuracy, Both, Derivatives, Element, Expansion, Formula, JacobianSeries, MAX_ORDER, Order,
-    Rates, Series, Solution, Spread, Stepper, Tangent, VariationalEquations, value,
+    Accuracy, Along, ByFormula, Derivatives, Element, Expansion, Formula, JacobianTerm, ONE_OVER,
+    Order, ROOM, Rates, Recurrences, Series, Solution, Stepper, Tangent, VariationalEquations,
+    WATCHED, longest_of_terms, usual_order, value,
 };
 use pulp::NullaryFnOnce;
+use std::cell::Cell;
 #[cfg(target_arch = "x86_64")]
 use {
-    crate::series::{Four, Pair},
+    crate::series::{Eight, Four, Pair},
     pulp::x86::V3,
 };
 
-/// The interfaces, with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
+/// The rates with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
+#[inline(always)]
+pub(super) fn with_derivatives<'t, E: Element, O: Order>(
+    v: Jet<Series<'t, E, O>, 2>,
+    g: Jet<Series<'t, E, O>, 2>,
+    (driving, stiffness): (E, E),
+) -> Rates<'t, E, O, 2> {
+    let loading = (value(driving), value(stiffness));
+    Rates {
+        variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
+        watched: [
+            v.value,
+            v.gradient[0],
+            v.gradient[1],
+            g.gradient[0],
+            g.gradient[1],
+        ],
+    }
+}
+
+/// The interfaces with these derivatives.
 #[derive(Clone, Copy)]
 struct LinearisedInterfaces<E, L>(Interfaces<E, L>);
 
 impl<E: Element, L: Law> Formula<E, 2> for LinearisedInterfaces<E, L> {
-    const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
     const KINK: Option<usize> = <Interfaces<E, L> as Formula<E, 2>>::KINK;
 
     #[inline(always)]
@@ -34,30 +59,93 @@ impl<E: Element, L: Law> Formula<E, 2> for LinearisedInterfaces<E, L> {
             driving,
             stiffness,
         } = &self.0;
-        let (tau, psi) = (Jet::<_, 2>::variable(tau, 0), Jet::<_, 2>::variable(psi, 1));
+        let (tau, psi) = (Jet::variable(tau, 0), Jet::variable(psi, 1));
         let v = law.slip_rate(law.activation(tau), psi);
-        let g = law.evolution(v, psi);
-        let loading = (value(*driving), value(*stiffness));
-        Rates {
-            variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
-            watched: [
-                v.value,
-                v.gradient[0],
-                v.gradient[1],
-                g.gradient[0],
-                g.gradient[1],
-            ],
-        }
+        with_derivatives(v, law.evolution(v, psi), (*driving, *stiffness))
     }
 
     #[inline(always)]
     fn units(&self, x: &[E; 2], tolerances: (f64, f64)) -> [E; 2] {
-        self.0.units(x, tolerances)
+        units(x, tolerances)
     }
 
     #[inline(always)]
     fn allows(&self, x: &[E; 2]) -> E {
-        self.0.allows(x)
+        allows(x)
+    }
+}
+
+/// Coefficients that come with the Jacobian's along them.
+pub(super) trait Linearised {
+    /// The order with which they take the least time for a relative tolerance.
+    fn order(rtol: f64) -> usize;
+    /// That of those made last.
+    fn jacobian(&self) -> &[JacobianTerm];
+}
+
+/// By the formula with its derivatives.
+struct ByJets {
+    jacobian: [JacobianTerm; ROOM],
+}
+
+impl Linearised for ByJets {
+    fn order(rtol: f64) -> usize {
+        usual_order(rtol)
+    }
+
+    fn jacobian(&self) -> &[JacobianTerm] {
+        &self.jacobian
+    }
+}
+
+impl<E: Element, L: Law> Recurrences<E, LinearisedInterfaces<E, L>, 2> for ByJets {
+    #[inline(always)]
+    fn make(
+        &mut self,
+        formula: &LinearisedInterfaces<E, L>,
+        memory: &[Cell<E>],
+        order: usize,
+        unit: E,
+    ) -> [Option<usize>; WATCHED] {
+        let watched = ByFormula.make(formula, memory, order, unit);
+        let jacobian = &mut self.jacobian[..order];
+        jacobian_of_rows(jacobian, memory, &watched, formula.0.stiffness, unit);
+        watched
+    }
+}
+
+/// The Jacobian from the rows of [`with_derivatives`]. What has no row does not change along solutions, and is zero.
+#[inline(always)]
+pub(super) fn jacobian_of_rows<E: Element>(
+    jacobian: &mut [JacobianTerm],
+    memory: &[Cell<E>],
+    watched: &[Option<usize>; WATCHED],
+    stiffness: E,
+    unit: E,
+) {
+    let psi = memory[ROOM].get();
+    let pull = -(stiffness * unit);
+    let (of_psi, per_psi) = (pull * psi, unit / psi);
+    let mut k = 0;
+    while k < jacobian.len() {
+        let mut entries = [unit.like(0.0); WATCHED];
+        let mut i = 0;
+        while i < WATCHED {
+            if let Some(row) = watched[i] {
+                entries[i] = memory[row * ROOM + k].get();
+            }
+            i += 1;
+        }
+        let [_, v_tau, v_psi, g_tau, g_psi] = entries;
+        let stress = (v_tau.over_interfaces() * pull).first();
+        let by_state = (v_psi * of_psi).interfaces();
+        let by_stress = (g_tau * per_psi).interfaces();
+        let growth = (g_psi * unit).interfaces();
+        jacobian[k] = JacobianTerm {
+            stress: [[stress, by_state[0]], [stress, by_state[1]]],
+            states: [[by_stress[0], growth[0]], [by_stress[1], growth[1]]],
+        };
+        k += 1;
     }
 }
 
@@ -86,218 +174,278 @@ impl Shell for V3 {
     }
 }
 
-/// A solution with the columns that are the derivatives in its start, in V_H and in K, as many as X has lanes.
-struct TangentSolution<S, E, X, L> {
+#[cfg(target_arch = "x86_64")]
+impl Shell for Best {
+    #[inline(always)]
+    fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {
+        self.vectorize(f)
+    }
+}
+
+/// A solution with the columns that are the derivatives in its start, and in V_H and K where those are asked for.
+struct TangentSolution<S, E, F, R, X> {
     shell: S,
     /// V_H and K of the pair that moves as the system does, per those of the system.
     weights: [f64; 2],
     /// The places of the parameters in which derivatives are asked for.
     free: Vec<usize>,
-    stepper: Stepper<E, LinearisedInterfaces<E, L>, 2>,
-    columns: VariationalEquations<X>,
-    stiffness: E,
-    /// Zero for a quantity that does not change along solutions.
-    constant: [E; MAX_ORDER + 1],
-    log_determinant: E,
+    stepper: Stepper<E, F, 2>,
+    recurrences: R,
+    /// The derivatives in the start, then those in parameters, as many in each as X has lanes.
+    columns: Vec<VariationalEquations<X>>,
+    stiffness: f64,
+    log_determinant: f64,
     /// The integral of dg/dpsi of the first interface.
-    log_transverse: E,
+    log_transverse: f64,
     /// Half the number of states that are variables of the system.
-    states: E,
+    states: f64,
     /// ln psi at the start.
     start: [f64; 2],
 }
 
-/// A solution with its derivatives in its start and in the parameters of these places, compiled for this processor; without
-/// parameters it takes less. `None` on an x86-64
-/// without AVX2, of which there are few: each kernel takes minutes to compile, and one for each processor is enough.
+/// A solution with its derivatives in its start and in the parameters of these places, compiled for this processor. `None` on an x86-64
+/// without AVX2, of which there are few.
 pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     law: L,
     loading: Loading,
     weights: [f64; 2],
     free: &[usize],
 ) -> Option<Box<dyn Tangent<N> + 'a>> {
+    let asked = Asked {
+        loading,
+        weights,
+        free,
+    };
     #[cfg(target_arch = "x86_64")]
-    let (shell, pair, four) = {
+    let (shell, zero, any) = {
         let simd = crate::series::avx2()?;
-        (simd, Pair::new(simd, [0.0; 2]), Four::new(simd, [0.0; 4]))
+        let any = Four::new(simd, [0.0; 4]);
+        if let Some(form) = law.ageing_form() {
+            let stepper = ageing_series::stepper(form, &loading, simd);
+            let recurrences = AgeingRecurrences::<true>::new(simd);
+            let best = Best::new(simd);
+            return Some(match best.wide() {
+                Some(wide) if N + free.len() > Four::LANES => {
+                    let any = Eight::new(wide, [0.0; 8]);
+                    Box::new(asked.solution::<_, _, _, _, _, N>(best, stepper, recurrences, any))
+                }
+                _ => Box::new(asked.solution::<_, _, _, _, _, N>(best, stepper, recurrences, any)),
+            });
+        }
+        (simd, Pair::new(simd, [0.0; 2]), any)
     };
     #[cfg(not(target_arch = "x86_64"))]
-    let (shell, pair, four) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
-    let eight = Both([four; 2]);
-    Some(if free.is_empty() {
-        Box::new(TangentSolution::new(
-            shell, law, loading, weights, free, pair, four,
-        ))
-    } else {
-        Box::new(TangentSolution::new(
-            shell, law, loading, weights, free, pair, eight,
-        ))
-    })
+    let (shell, zero, any) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
+    let formula = LinearisedInterfaces(Interfaces {
+        law,
+        driving: zero.like(loading.driving),
+        stiffness: zero.like(loading.stiffness),
+    });
+    let jacobian = [JacobianTerm::ZERO; ROOM];
+    let stepper = Stepper::new(formula, zero);
+    Some(Box::new(asked.solution::<_, _, _, _, _, N>(
+        shell,
+        stepper,
+        ByJets { jacobian },
+        any,
+    )))
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law> TangentSolution<S, E, X, L> {
-    fn new(
+/// What a tangent is asked for.
+struct Asked<'a> {
+    loading: Loading,
+    weights: [f64; 2],
+    free: &'a [usize],
+}
+
+impl Asked<'_> {
+    /// A solution of a system of N variables, made by these; the columns are as `any`.
+    fn solution<S, E, F, R, X: Element, const N: usize>(
+        self,
         shell: S,
-        law: L,
-        loading: Loading,
-        weights: [f64; 2],
-        free: &[usize],
-        zero: E,
+        stepper: Stepper<E, F, 2>,
+        recurrences: R,
         any: X,
-    ) -> Self {
-        let formula = LinearisedInterfaces(Interfaces {
-            law,
-            driving: zero.like(loading.driving),
-            stiffness: zero.like(loading.stiffness),
-        });
+    ) -> TangentSolution<S, E, F, R, X> {
+        let directions = N + self.free.len();
+        let columns = (0..directions.div_ceil(X::LANES))
+            .map(|_| VariationalEquations::new([any; 3], any, any))
+            .collect();
         TangentSolution {
             shell,
-            weights,
-            free: free.to_vec(),
-            stepper: Stepper::new(formula, zero),
-            columns: VariationalEquations::new([any; 3], any, any),
-            stiffness: zero.like(loading.stiffness),
-            constant: [zero; MAX_ORDER + 1],
-            log_determinant: zero,
-            log_transverse: zero,
-            states: zero,
+            weights: self.weights,
+            free: self.free.to_vec(),
+            stepper,
+            recurrences,
+            columns,
+            stiffness: self.loading.stiffness,
+            log_determinant: 0.0,
+            log_transverse: 0.0,
+            states: 0.5 * (N - 1) as f64,
             start: [0.0; 2],
         }
     }
+}
 
+impl<S, E, F, R, X> TangentSolution<S, E, F, R, X>
+where
+    S: Shell,
+    E: Element,
+    F: Formula<E, 2>,
+    R: Recurrences<E, F, 2> + Linearised,
+    X: Element,
+{
     #[inline(always)]
-    fn step(&mut self, accuracy: &Accuracy, limit: E) -> E {
-        let longest_of_solution = self.stepper.longest(accuracy);
-        let along = JacobianSeries {
-            entries: entries(&self.stepper, &self.constant),
-            stress: self.stepper.series(0),
+    fn step(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
+        let order = accuracy.order;
+        let unit = self.stepper.unit().first();
+        let along = Along {
+            jacobian: &self.recurrences.jacobian()[..order],
+            stress: &self.stepper.series(0)[..=order],
             stiffness: self.stiffness,
-            unit: self.stepper.unit(),
+            unit,
         };
-        self.columns.expand(accuracy.order, &along);
-        let most = Element::min(longest_of_solution, (limit / self.stepper.unit()).abs());
-        let psi = self.stepper.state()[1];
-        let longest = self.columns.longest(accuracy, psi, most.first());
-        let h = Element::min(most, limit.like(longest));
-        let taken = self.stepper.advance_by(accuracy, h, limit);
-        let h = taken / self.stepper.unit();
-        self.columns.advance_by(accuracy.order, h);
-        let (trace, across) = self.mean_traces(accuracy.order, h);
-        self.log_determinant = trace.mul_add(taken, self.log_determinant);
-        self.log_transverse = across.mul_add(taken, self.log_transverse);
+        let longest_of_solution = self.stepper.longest(accuracy).first();
+        let most = longest_of_solution.min((limit / unit).abs());
+        let mut terms = [0.0; 2];
+        for columns in &mut self.columns {
+            columns.expand(order, &along);
+            let [before, last] = columns.last_terms(accuracy, most);
+            terms = [larger(terms[0], before), larger(terms[1], last)];
+        }
+        let h = most.min(longest_of_terms(order, terms));
+        let any = self.stepper.state()[0];
+        let before = self.stepper.state()[1];
+        let taken = self
+            .stepper
+            .advance_by(accuracy, any.like(h), any.like(limit))
+            .first();
+        let h = taken / unit;
+        let growth = (self.stepper.state()[1] / before).interfaces();
+        for columns in &mut self.columns {
+            columns.advance_by(order, h, growth);
+        }
+        let (trace, across) = self.mean_traces(order, h);
+        self.log_determinant += h * trace;
+        self.log_transverse += h * across;
         taken
     }
 
-    /// The mean over the last step of -K (dv_1/dtau + dv_2/dtau) + dg_1/dpsi_1 + dg_2/dpsi_2, where the interfaces are one the
-    /// last term once; and of dg/dpsi.
+    /// The mean over h units of the trace of the Jacobian, and of the growth of a difference between equal interfaces.
     #[inline(always)]
-    fn mean_traces(&self, order: usize, h: E) -> (E, E) {
-        let [v_tau, _, _, g_psi] = entries(&self.stepper, &self.constant);
-        let (mut mean, mut across) = (h.like(0.0), h.like(0.0));
-        let mut j = order;
-        while j > 0 {
-            j -= 1;
-            let states = g_psi[j].over_interfaces() * self.states;
-            let term = states - self.stiffness * v_tau[j].over_interfaces();
-            let one_over = h.like(1.0) / h.like((j + 1) as f64);
-            mean = mean.mul_add(h, term * one_over);
-            across = across.mul_add(h, g_psi[j] * one_over);
+    fn mean_traces(&self, order: usize, h: f64) -> (f64, f64) {
+        let jacobian = &self.recurrences.jacobian()[..order];
+        let squared = h * h;
+        // Even and odd terms apart.
+        let mut sums = [(0.0, 0.0); 2];
+        let mut k = order;
+        while k > 0 {
+            k -= 1;
+            let JacobianTerm { stress, states } = &jacobian[k];
+            let (across, over) = (states[0][1], ONE_OVER[k + 1]);
+            let trace = stress[0][0] + self.states * (across + states[1][1]);
+            let sum = &mut sums[k % 2];
+            *sum = (
+                sum.0 * squared + trace * over,
+                sum.1 * squared + across * over,
+            );
         }
-        (mean, across)
+        let [even, odd] = sums;
+        (even.0 + h * odd.0, even.1 + h * odd.1)
     }
 }
 
-/// The Jacobian's entries along the last step.
+/// The larger one, or the one that is no number.
 #[inline(always)]
-fn entries<'a, E: Element, F: Formula<E, 2>>(
-    stepper: &'a Stepper<E, F, 2>,
-    constant: &'a [E],
-) -> [&'a [E]; 4] {
-    let mut entries = [constant; 4];
-    let mut i = 0;
-    while i < 4 {
-        if let Some(series) = stepper.watched_series(1 + i) {
-            entries[i] = series;
-        }
-        i += 1;
-    }
-    entries
+fn larger(a: f64, b: f64) -> f64 {
+    if a > b { a } else { b }
 }
 
-/// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code, and
-/// the same whatever the columns.
-struct Expand<'a, E, L> {
-    stepper: &'a mut Stepper<E, LinearisedInterfaces<E, L>, 2>,
+/// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code.
+struct Expand<'a, E, F, R> {
+    stepper: &'a mut Stepper<E, F, 2>,
+    recurrences: &'a mut R,
     accuracy: &'a Accuracy,
 }
 
-impl<E: Element, L: Law> NullaryFnOnce for Expand<'_, E, L> {
+impl<E: Element, F: Formula<E, 2>, R: Recurrences<E, F, 2>> NullaryFnOnce for Expand<'_, E, F, R> {
     type Output = ();
     #[inline(always)]
     fn call(self) {
-        self.stepper.expand(self.accuracy);
+        self.stepper.expand_with(self.recurrences, self.accuracy);
     }
 }
 
 /// A step whose series are made, to be compiled for the processor.
-struct TangentStep<'a, T, E> {
+struct TangentStep<'a, T> {
     track: &'a mut T,
     accuracy: &'a Accuracy,
-    limit: E,
+    limit: f64,
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law> NullaryFnOnce
-    for TangentStep<'_, TangentSolution<S, E, X, L>, E>
+impl<S, E, F, R, X> NullaryFnOnce for TangentStep<'_, TangentSolution<S, E, F, R, X>>
+where
+    S: Shell,
+    E: Element,
+    F: Formula<E, 2>,
+    R: Recurrences<E, F, 2> + Linearised,
+    X: Element,
 {
-    type Output = E;
+    type Output = f64;
     #[inline(always)]
-    fn call(self) -> E {
+    fn call(self) -> f64 {
         self.track.step(self.accuracy, self.limit)
     }
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N>
-    for TangentSolution<S, E, X, L>
+impl<S, E, F, R, X, const N: usize> Solution<N> for TangentSolution<S, E, F, R, X>
+where
+    S: Shell,
+    E: Element,
+    F: Formula<E, 2>,
+    R: Recurrences<E, F, 2> + Linearised,
+    X: Element,
 {
+    fn order(&self, rtol: f64) -> usize {
+        R::order(rtol)
+    }
+
     fn start(&mut self, y: &[f64; N]) {
-        let zero = self.stiffness.like(0.0);
+        let zero = self.stepper.state()[0].like(0.0);
         self.start = [y[1], y[N - 1]];
         let psi = zero.with_lane(0, y[1]).with_lane(1, y[N - 1]).exp();
         self.stepper.start([zero.like(y[0]), psi]);
-        // The derivatives in ln psi; where the interfaces are one, both move.
-        let any = self.columns.state()[0].like(0.0);
-        let [psi1, psi2] = psi.interfaces();
-        let x = [
-            any.with_lane(0, 1.0),
-            any.with_lane(1, psi1),
-            any.with_lane(N - 1, psi2),
-        ];
-        let lane = |i: usize| {
-            if i < X::LANES {
-                any.with_lane(i, 1.0)
-            } else {
-                any
-            }
-        };
-        self.columns.restart(x, lane(N), lane(N + 1));
-        self.states = zero.like(0.5 * (N - 1) as f64);
-        self.log_determinant = zero;
-        self.log_transverse = zero;
+        for (chunk, columns) in self.columns.iter_mut().enumerate() {
+            let nothing = columns.state()[0].like(0.0);
+            let unit = |direction: usize| match direction.checked_sub(chunk * X::LANES) {
+                Some(lane) if lane < X::LANES => nothing.with_lane(lane, 1.0),
+                _ => nothing,
+            };
+            // Where the interfaces are one, both move.
+            let x = [unit(0), unit(1), unit(N - 1)];
+            let of = |place: usize| match self.free.iter().position(|&free| free == place) {
+                Some(at) => unit(N + at),
+                None => nothing,
+            };
+            columns.restart(x, of(0), of(1));
+        }
+        self.log_determinant = 0.0;
+        self.log_transverse = 0.0;
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
-        let limit = self.stiffness.like_exact(limit);
         let shell = self.shell;
         shell.run(Expand {
             stepper: &mut self.stepper,
+            recurrences: &mut self.recurrences,
             accuracy,
         });
         let step = TangentStep {
             track: self,
             accuracy,
-            limit,
+            limit: limit.hi(),
         };
-        shell.run(step).to_exact()
+        DoubleDouble::from(shell.run(step))
     }
 
     fn state(&self) -> [f64; N] {
@@ -310,25 +458,30 @@ impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Solution<N>
     }
 }
 
-impl<S: Shell, E: Spread<X>, X: Element, L: Law, const N: usize> Tangent<N>
-    for TangentSolution<S, E, X, L>
+impl<S, E, F, R, X, const N: usize> Tangent<N> for TangentSolution<S, E, F, R, X>
+where
+    S: Shell,
+    E: Element,
+    F: Formula<E, 2>,
+    R: Recurrences<E, F, 2> + Linearised,
+    X: Element,
 {
     fn derivatives(&self) -> Derivatives<N> {
-        let psi = self.stepper.state()[1].interfaces();
-        let [tau, psi1, psi2] = self.columns.state();
-        let column = |lane: usize| {
-            let states = [psi1.lane(lane) / psi[0], psi2.lane(lane) / psi[1]];
-            chart::<N>(tau.lane(lane), states)
+        let column = |direction: usize| {
+            let columns = &self.columns[direction / X::LANES];
+            let [tau, first, second] = columns.state().map(|x| x.lane(direction % X::LANES));
+            chart::<N>(tau, [first, second])
         };
-        let parameter = |&place: &usize| column(N + place).map(|x| x * self.weights[place]);
+        let parameter =
+            |(at, &place): (usize, &usize)| column(N + at).map(|x| x * self.weights[place]);
         // The trace in ln psi is less by the growth of ln psi.
         let end: [f64; 2] = self.stepper.state()[1].ln().interfaces();
         let growth: f64 = (0..N - 1).map(|i| end[i] - self.start[i]).sum();
         Derivatives {
             start: std::array::from_fn(column),
-            parameters: self.free.iter().map(parameter).collect(),
-            log_determinant: self.log_determinant.first() - growth,
-            log_transverse: (N == 2).then(|| self.log_transverse.first() - growth),
+            parameters: self.free.iter().enumerate().map(parameter).collect(),
+            log_determinant: self.log_determinant - growth,
+            log_transverse: (N == 2).then(|| self.log_transverse - growth),
         }
     }
 }

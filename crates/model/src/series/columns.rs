@@ -1,52 +1,49 @@
 //! Variational equations: solutions of the equations linearised along a solution, in power series.
 //!
 //! With the Jacobian's entries as series along the solution the linearised equations need one product of series for each
-//! entry, and their solutions, the columns, share it: they stand in lanes. The sums run in loops, as there the work is in the
-//! lanes.
+//! entry, and their solutions, the columns, share it: they stand in lanes.
 
 use super::element::{Element, rough_exp2, rough_log2};
-use super::plain::Both;
-use super::{Accuracy, REFERENCE_ORDER};
+use super::{Accuracy, MAX_ORDER, ONE_OVER};
 
-/// What one interface's coefficients give to all lanes of X.
-pub trait Spread<X>: Element {
-    /// The coefficient of an interface, in every lane.
-    fn spread(self, interface: usize, any: X) -> X;
+/// Orders whose sums are made at once, out of one read of the columns.
+const BLOCK: usize = 4;
+
+/// One coefficient of the Jacobian's entries along a solution of (tau, psi_1, psi_2) in the unit of time, the states counted in their
+/// sizes at the beginning of the step, x_i = psi_i/psi_i(0).
+#[derive(Debug, Clone, Copy)]
+#[repr(C, align(64))]
+pub struct JacobianTerm {
+    /// Of tau', for each interface: in tau, the same for both, and in x_i.
+    pub stress: [[f64; 2]; 2],
+    /// Of x_i': in tau, and in x_i.
+    pub states: [[f64; 2]; 2],
 }
 
-impl<T: Element> Spread<Both<Both<T>>> for Both<T> {
-    #[inline(always)]
-    fn spread(self, interface: usize, _: Both<Both<T>>) -> Both<Both<T>> {
-        let x = self.0[interface];
-        Both([Both([x, x]); 2])
-    }
+impl JacobianTerm {
+    pub const ZERO: JacobianTerm = JacobianTerm {
+        stress: [[0.0; 2]; 2],
+        states: [[0.0; 2]; 2],
+    };
 }
 
-impl<T: Element> Spread<Both<Both<Both<T>>>> for Both<T> {
-    #[inline(always)]
-    fn spread(self, interface: usize, any: Both<Both<Both<T>>>) -> Both<Both<Both<T>>> {
-        Both([self.spread(interface, any.0[0]); 2])
-    }
-}
-
-/// The series along a solution that its linearised equations need; the lanes of E are the interfaces.
-pub struct JacobianSeries<'a, E> {
-    /// dv/dtau, dv/dpsi, dg/dtau, dg/dpsi of v and dpsi/dt = g.
-    pub entries: [&'a [E]; 4],
+/// The series along a solution that its linearised equations need.
+pub struct Along<'a, E> {
+    pub jacobian: &'a [JacobianTerm],
     /// tau itself.
     pub stress: &'a [E],
     /// K.
-    pub stiffness: E,
+    pub stiffness: f64,
     /// The unit of time.
-    pub unit: E,
+    pub unit: f64,
 }
 
-/// The columns, in the lanes of X, each a perturbation of (tau, psi_1, psi_2).
+/// Columns in the lanes of X, each a perturbation of (tau, ln psi_1, ln psi_2).
 pub struct VariationalEquations<X> {
     /// At the beginning of the next step.
     x: [X; 3],
     /// The series, in the order of the powers.
-    series: Box<[[X; 3]; REFERENCE_ORDER + 1]>,
+    series: Box<[[X; 3]; MAX_ORDER + 1]>,
     /// One in the lane of the derivative in V_H, and in that in K; zero elsewhere.
     driving: X,
     stiffness: X,
@@ -57,7 +54,7 @@ impl<X: Element> VariationalEquations<X> {
     pub fn new(x: [X; 3], driving: X, stiffness: X) -> Self {
         VariationalEquations {
             x,
-            series: Box::new([x; REFERENCE_ORDER + 1]),
+            series: Box::new([x; MAX_ORDER + 1]),
             driving,
             stiffness,
         }
@@ -75,94 +72,142 @@ impl<X: Element> VariationalEquations<X> {
 
     /// Makes the series from those of the solution:
     ///
-    ///   dtau' = K (dV_H - dv_1 - dv_2) + dK tau'/K,  dpsi_i' = dg_i.
+    ///   dtau' = K (dV_H - dv_1 - dv_2) + dK tau'/K,  dx_i' = dg_i/psi_i(0).
     #[inline(always)]
-    pub fn expand<E: Spread<X>>(&mut self, order: usize, along: &JacobianSeries<'_, E>) {
+    pub fn expand<E: Element>(&mut self, order: usize, along: &Along<'_, E>) {
         let any = self.x[0];
-        let zero = any.like(0.0);
-        let [v_tau, v_psi, g_tau, g_psi] = along.entries.map(|entry| &entry[..order]);
-        let (stiffness, unit) = (along.stiffness.spread(0, any), along.unit.spread(0, any));
-        let of_stiffness = self.stiffness / stiffness;
-        let pull = -(stiffness * unit);
+        let nothing = [any.like(0.0); 3];
+        let jacobian = along.jacobian;
+        // The series of tau holds tau' = K (V_H - v_1 - v_2) already.
+        let of_stiffness = self.stiffness / any.like(along.stiffness);
+        let driven = self.driving * any.like(along.stiffness * along.unit);
         self.series[0] = self.x;
         let mut k = 0;
-        while k < order {
-            // One sum for each entry of the Jacobian: they do not wait for each other.
-            let mut sums = [zero; 7];
-            let mut j = 0;
-            let columns = &self.series[..=k];
-            while j <= k {
-                let [tau, psi1, psi2] = columns[k - j];
-                let both = v_tau[j].over_interfaces();
-                sums[0] = both.spread(0, any).mul_add(tau, sums[0]);
-                sums[1] = v_psi[j].spread(0, any).mul_add(psi1, sums[1]);
-                sums[2] = v_psi[j].spread(1, any).mul_add(psi2, sums[2]);
-                sums[3] = g_tau[j].spread(0, any).mul_add(tau, sums[3]);
-                sums[4] = g_psi[j].spread(0, any).mul_add(psi1, sums[4]);
-                sums[5] = g_tau[j].spread(1, any).mul_add(tau, sums[5]);
-                sums[6] = g_psi[j].spread(1, any).mul_add(psi2, sums[6]);
-                j += 1;
+        while k < order % BLOCK {
+            let mut sum = nothing;
+            let terms = jacobian[..=k].iter().rev();
+            for (x, term) in self.series[..=k].iter().zip(terms) {
+                add(&mut sum, term, x);
             }
-            let one_over = any.like(1.0) / any.like((k + 1) as f64);
-            let mut slip_rate = sums[0] + (sums[1] + sums[2]);
             if k == 0 {
-                slip_rate = slip_rate - self.driving;
+                sum[0] = sum[0] + driven;
             }
-            // The series of tau holds tau' = K (V_H - v_1 - v_2) already.
-            let stress = along.stress[k + 1].spread(0, any) * of_stiffness;
-            let share = unit * one_over;
-            self.series[k + 1] = [
-                slip_rate.mul_add(pull * one_over, stress),
-                (sums[3] + sums[4]) * share,
-                (sums[5] + sums[6]) * share,
-            ];
+            self.series[k + 1] = next(k, sum, along.stress, of_stiffness);
             k += 1;
+        }
+        while k < order {
+            let mut sums = [nothing; BLOCK];
+            let windows = jacobian[..k + BLOCK].windows(BLOCK).rev();
+            for (x, terms) in self.series[..=k].iter().zip(windows) {
+                for (sum, term) in sums.iter_mut().zip(terms) {
+                    add(sum, term, x);
+                }
+            }
+            if k == 0 {
+                sums[0][0] = sums[0][0] + driven;
+            }
+            let mut m = 0;
+            while m < BLOCK {
+                let x = next(k + m, sums[m], along.stress, of_stiffness);
+                self.series[k + m + 1] = x;
+                let mut later = m + 1;
+                while later < BLOCK {
+                    add(&mut sums[later], &jacobian[later - m - 1], &x);
+                    later += 1;
+                }
+                m += 1;
+            }
+            k += BLOCK;
         }
     }
 
-    /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the
-    /// tolerance, relative to the column at the step's beginning; psi counts by its logarithm.
+    /// The largest last two terms of the columns at one unit, and their own sizes, each in what may err relative to the column at the step's
+    /// beginning.
     #[inline(always)]
-    pub fn longest<E: Spread<X>>(&self, accuracy: &Accuracy, psi: E, most: f64) -> f64 {
+    pub fn last_terms(&self, accuracy: &Accuracy, most: f64) -> [f64; 2] {
         /// Columns are not as small.
         const NOTHING: f64 = 1e-250;
         let order = accuracy.order;
         let any = self.x[0];
-        let one = any.like(1.0);
-        let of_psi = [one / psi.spread(0, any), one / psi.spread(1, any)];
         // Derivatives in parameters begin at zero.
-        let begins = size(&self.series[0], of_psi);
-        let grows = size(&self.series[1], of_psi) * any.like(most);
+        let begins = size(&self.series[0]);
+        let grows = size(&self.series[1]) * any.like(most);
         let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
-        let per_tolerable = one / (largest * any.like(accuracy.tolerances.0));
-        let before = size(&self.series[order - 1], of_psi) * per_tolerable;
-        let last = size(&self.series[order], of_psi) * per_tolerable;
-        let before = -rough_log2(before.largest_lane()) / (order - 1) as f64;
-        let last = -rough_log2(last.largest_lane()) / order as f64;
-        rough_exp2(before.min(last))
+        let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
+        [
+            (size(&self.series[order - 1]) * per_tolerable).largest_lane(),
+            (size(&self.series[order]) * per_tolerable).largest_lane(),
+        ]
     }
 
-    /// Goes on by h, counted in units of the series.
+    /// Goes on by h, counted in units of the series, where the states are as many times what they were.
     #[inline(always)]
-    pub fn advance_by<E: Spread<X>>(&mut self, order: usize, h: E) {
-        let h = h.spread(0, self.x[0]);
-        let mut sum = self.series[order];
-        let mut k = order;
+    pub fn advance_by(&mut self, order: usize, h: f64, growth: [f64; 2]) {
+        let any = self.x[0];
+        let (h, squared) = (any.like(h), any.like(h * h));
+        // Even and odd terms apart: two short chains instead of a long one. All orders are even.
+        let (mut even, mut odd) = (self.series[order], self.series[order - 1]);
+        let mut k = order - 2;
         while k > 0 {
-            k -= 1;
-            let mut i = 0;
-            while i < 3 {
-                sum[i] = sum[i].mul_add(h, self.series[k][i]);
-                i += 1;
-            }
+            add_to(&mut even, squared, &self.series[k]);
+            add_to(&mut odd, squared, &self.series[k - 1]);
+            k -= 2;
         }
-        self.x = sum;
+        add_to(&mut even, squared, &self.series[0]);
+        add_to(&mut odd, h, &even);
+        let [tau, first, second] = odd;
+        self.x = [
+            tau,
+            first / any.like(growth[0]),
+            second / any.like(growth[1]),
+        ];
     }
 }
 
-/// The largest of a column: of tau, and of psi by its logarithm.
+/// The step, in units of the series, at which the last two terms are below what may err.
 #[inline(always)]
-fn size<X: Element>(x: &[X; 3], per_psi: [X; 2]) -> X {
-    let states = Element::max((x[1] * per_psi[0]).abs(), (x[2] * per_psi[1]).abs());
-    Element::max(x[0].abs(), states)
+pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
+    let before = -rough_log2(before) / (order - 1) as f64;
+    let last = -rough_log2(last) / order as f64;
+    rough_exp2(before.min(last))
+}
+
+/// sum h + x, in place of the sum.
+#[inline(always)]
+fn add_to<X: Element>(sum: &mut [X; 3], h: X, x: &[X; 3]) {
+    sum[0] = sum[0].mul_add(h, x[0]);
+    sum[1] = sum[1].mul_add(h, x[1]);
+    sum[2] = sum[2].mul_add(h, x[2]);
+}
+
+/// Adds a term's product with a column.
+#[inline(always)]
+fn add<X: Element>(sum: &mut [X; 3], term: &JacobianTerm, &[tau, first, second]: &[X; 3]) {
+    let [[by_stress, by_first], [_, by_second]] = term.stress;
+    let states = term.states;
+    sum[0] = tau.mul_add(tau.like(by_stress), sum[0]);
+    sum[1] = tau.mul_add(tau.like(states[0][0]), sum[1]);
+    sum[2] = tau.mul_add(tau.like(states[1][0]), sum[2]);
+    sum[0] = first.mul_add(tau.like(by_first), sum[0]);
+    sum[1] = first.mul_add(tau.like(states[0][1]), sum[1]);
+    sum[2] = second.mul_add(tau.like(states[1][1]), sum[2]);
+    sum[0] = second.mul_add(tau.like(by_second), sum[0]);
+}
+
+/// The coefficients after those of order k, of whose rates this is the sum.
+#[inline(always)]
+fn next<E: Element, X: Element>(k: usize, sum: [X; 3], stress: &[E], of_stiffness: X) -> [X; 3] {
+    let one_over = sum[0].like(ONE_OVER[k + 1]);
+    let pulled = of_stiffness * one_over.like(stress[k + 1].first());
+    [
+        sum[0].mul_add(one_over, pulled),
+        sum[1] * one_over,
+        sum[2] * one_over,
+    ]
+}
+
+/// The largest of a column.
+#[inline(always)]
+fn size<X: Element>(x: &[X; 3]) -> X {
+    Element::max(x[0].abs(), Element::max(x[1].abs(), x[2].abs()))
 }

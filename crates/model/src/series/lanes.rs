@@ -2,10 +2,8 @@
 //!
 //! The types hold a token of what the processor can do, which cannot be had without asking it: their arithmetic is safe.
 
-use super::columns::Spread;
 use super::element::Element;
 use super::functions::{self, Register};
-use super::plain::Both;
 use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
 use std::arch::x86_64::{__m128d, __m256d, __m512d, _CMP_LT_OQ};
@@ -399,17 +397,3 @@ register!(Four, |s| s.avx2, _mm256_add_epi64 _mm256_sub_epi64 _mm256_slli_epi64 
 register!(Eight, |s| s.avx512f, _mm512_add_epi64 _mm512_sub_epi64 _mm512_slli_epi64 _mm512_srli_epi64, s.avx512dq, _mm512_and_pd _mm512_or_pd _mm512_xor_pd,
     |x, y, a, b| s.avx512f._mm512_mask_blend_pd(s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y), b, a),
     s.avx512f._mm512_cmp_pd_mask::<_CMP_LT_OQ>(x, y) == 255);
-
-impl Spread<Four> for Pair {
-    #[inline(always)]
-    fn spread(self, interface: usize, any: Four) -> Four {
-        any.like(self.lanes()[interface])
-    }
-}
-
-impl Spread<Both<Four>> for Pair {
-    #[inline(always)]
-    fn spread(self, interface: usize, any: Both<Four>) -> Both<Four> {
-        any.like(self.lanes()[interface])
-    }
-}

@@ -41,7 +41,7 @@ mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
-pub(crate) use columns::{JacobianSeries, Spread, VariationalEquations};
+pub(crate) use columns::{Along, JacobianTerm, VariationalEquations, longest_of_terms};
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
@@ -53,12 +53,8 @@ pub(crate) use handle::{Series, value};
 pub(crate) use lanes::{Eight, Four, Pair};
 pub(crate) use plain::Both;
 pub(crate) use recorded::Recorded;
-pub(crate) use stepper::Stepper;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use stepper::{ByFormula, Recurrences};
-pub(crate) use tape::Order;
-#[cfg(target_arch = "x86_64")]
-pub(crate) use tape::ROOM;
+pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
+pub(crate) use tape::{Order, ROOM};
 pub use transport::TaylorMap;
 pub(crate) use variational::{FREE, Variational};
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};

@@ -188,7 +188,11 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     #[inline(always)]
-    fn expand_with(&mut self, recurrences: &mut impl Recurrences<E, F, C>, accuracy: &Accuracy) {
+    pub fn expand_with(
+        &mut self,
+        recurrences: &mut impl Recurrences<E, F, C>,
+        accuracy: &Accuracy,
+    ) {
         self.unit = self.next_unit;
         self.load();
         // A copy, which the compiler sees that no coefficient written changes.
