@@ -2,10 +2,11 @@
 //! several trajectories side by side are made.
 
 use proptest::prelude::*;
+use twinslip::field::VectorField;
 use twinslip::friction::{AnyLaw, Parameters};
 use twinslip::model::{Loading, MAX_LANES, batch_solution, two_interfaces};
 use twinslip::number::DoubleDouble;
-use twinslip::series::{Accuracy, Expansion, MAX_ORDER};
+use twinslip::series::{Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER};
 
 /// The coefficients of one series, and its unit of time.
 type Terms<'a> = (&'a [f64], f64);
@@ -81,5 +82,115 @@ proptest! {
             let size = size.max(of_rates * h.abs());
             prop_assert!(off <= BOUND * size, "variable {i}: {off:e} of {size:e}");
         }
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    /// One step of the columns, against 31 digits and the law's formulas.
+    #[test]
+    fn every_column_is_that_of_the_formula(
+        law in 0..AnyLaw::NAMES.len(),
+        beta in 0.3..3.0,
+        gamma0 in 1e-6..1e-2,
+        residual_strength in prop_oneof![Just(0.0), 1e-6..0.1],
+        (driving, stiffness) in (-4.0..6.0, -4.0..1.0),
+        tau in prop_oneof![0.1..1.0_f64, 1.0..12.0],
+        pulled: bool,
+        psi in prop::array::uniform2(-7.0..0.0),
+        symmetric: bool,
+        order in prop_oneof![Just(12), Just(16), Just(18), Just(20), Just(MAX_ORDER)],
+        free in prop_oneof![Just(vec![]), Just(vec![1]), Just(vec![0, 1]), Just(vec![1, 0])],
+    ) {
+        let constants = Parameters { beta, gamma0, healing_time: 100.0, residual_strength };
+        let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("known");
+        let one_sign = ["dieterich-ruina", "slip"].contains(&law.name());
+        let tau: f64 = if pulled && !one_sign { -tau } else { tau };
+        let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
+        let step = Step { order, free };
+        if symmetric {
+            step.compare(&*twinslip::model::symmetric(law, loading), [tau, psi[0]])?;
+        } else {
+            step.compare(&*two_interfaces(law, loading), [tau, psi[0], psi[1]])?;
+        }
+    }
+}
+
+/// A step of a tangent.
+struct Step {
+    order: usize,
+    free: Vec<usize>,
+}
+
+impl Step {
+    fn compare<const N: usize>(
+        &self,
+        field: &dyn VectorField<N>,
+        start: [f64; N],
+    ) -> Result<(), TestCaseError> {
+        /// A step at this tolerance, with which truncation does not count.
+        const TOLERANCE: f64 = 1e-15;
+        const BOUND: f64 = 2e-11;
+        let analytic = field.analytic().expect("series");
+        let accuracy = Accuracy {
+            order: self.order,
+            tolerances: (TOLERANCE, TOLERANCE),
+        };
+        let mut tangent = analytic.tangent(&self.free);
+        tangent.start(&start);
+        let h = tangent.advance(&accuracy, DoubleDouble::from(1e3));
+        let made = tangent.derivatives();
+
+        let mut reference = analytic.reference_tangent(&self.free);
+        reference.start(&start);
+        let fine = Accuracy {
+            order: REFERENCE_ORDER,
+            tolerances: (1e-25, 1e-25),
+        };
+        let mut remaining = h;
+        while remaining.hi() > 0.0 {
+            let taken = reference.advance(&fine, remaining);
+            prop_assert!(taken.is_finite() && taken.hi() > 0.0, "no step after {h:?}");
+            remaining = remaining - taken;
+        }
+        let exact = reference.derivatives();
+
+        // Each column to a part of its largest component.
+        let columns = |all: &Derivatives<N>| {
+            let mut columns = all.start.to_vec();
+            columns.extend(&all.parameters);
+            columns
+        };
+        let (made_columns, exact_columns) = (columns(&made), columns(&exact));
+        prop_assert_eq!(made_columns.len(), N + self.free.len());
+        for (j, (a, b)) in made_columns.iter().zip(&exact_columns).enumerate() {
+            let size = b
+                .iter()
+                .fold(f64::MIN_POSITIVE, |size, x| size.max(x.abs()));
+            let off = a
+                .iter()
+                .zip(b)
+                .map(|(a, b)| (a - b).abs())
+                .fold(0.0, f64::max);
+            prop_assert!(
+                off <= BOUND * size,
+                "column {j}: {off:e} of {size:e}, {h:?}"
+            );
+        }
+        let off = (made.log_determinant - exact.log_determinant).abs();
+        prop_assert!(
+            off <= BOUND * (1.0 + exact.log_determinant.abs()),
+            "trace: {off:e}"
+        );
+        let across = made.log_transverse.zip(exact.log_transverse);
+        prop_assert_eq!(across.is_some(), N == 2);
+        if let Some((a, b)) = across {
+            prop_assert!(
+                (a - b).abs() <= BOUND * (1.0 + b.abs()),
+                "across: {a} and {b}"
+            );
+        }
+        Ok(())
     }
 }

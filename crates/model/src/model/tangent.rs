@@ -481,7 +481,7 @@ where
             start: std::array::from_fn(column),
             parameters: self.free.iter().enumerate().map(parameter).collect(),
             log_determinant: self.log_determinant - growth,
-            log_transverse: (N == 2).then(|| self.log_transverse - growth),
+            log_transverse: (N == 2).then_some(self.log_transverse - growth),
         }
     }
 }
