@@ -11,6 +11,12 @@ use twinslip::series::{Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_OR
 /// The coefficients of one series, and its unit of time.
 type Terms<'a> = (&'a [f64], f64);
 
+/// The stress, or its opposite where the law has a slip rate there.
+fn signed(law: AnyLaw, tau: f64, pulled: bool) -> f64 {
+    let one_sign = ["dieterich-ruina", "slip"].contains(&law.name());
+    if pulled && !one_sign { -tau } else { tau }
+}
+
 /// The largest difference of terms of two series after a time, and the largest term of the second.
 fn apart(a: Terms<'_>, b: Terms<'_>, time: f64) -> (f64, f64) {
     let term = |(series, unit): Terms<'_>, j: usize| series[j] * (time / unit).powi(j as i32);
@@ -40,9 +46,7 @@ proptest! {
         const BOUND: f64 = 5e-12;
         let constants = Parameters { beta, gamma0, healing_time, residual_strength };
         let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("known");
-        // The slip rate of some laws has but one sign.
-        let one_sign = ["dieterich-ruina", "slip"].contains(&law.name());
-        let tau: f64 = if pulled && !one_sign { -tau } else { tau };
+        let tau = signed(law, tau, pulled);
         let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
         let start = [tau, psi[0], psi[1]];
         let limit = if backwards { -1e3 } else { 1e3 };
@@ -105,8 +109,7 @@ proptest! {
     ) {
         let constants = Parameters { beta, gamma0, healing_time: 100.0, residual_strength };
         let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("known");
-        let one_sign = ["dieterich-ruina", "slip"].contains(&law.name());
-        let tau: f64 = if pulled && !one_sign { -tau } else { tau };
+        let tau = signed(law, tau, pulled);
         let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
         let step = Step { order, free };
         if symmetric {

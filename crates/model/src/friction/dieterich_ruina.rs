@@ -89,11 +89,8 @@ impl Law for DieterichRuina {
 
     fn ageing_form(&self) -> Option<AgeingForm> {
         Some(AgeingForm {
-            strength: [0.0, 1.0],
-            healing: [1.0, 0.0],
-            beta: self.beta,
-            gamma0: self.gamma0,
             exponential: true,
+            ..AgeingForm::of_ageing(self.beta, self.gamma0)
         })
     }
 

@@ -130,6 +130,19 @@ pub struct AgeingForm {
     pub exponential: bool,
 }
 
+impl AgeingForm {
+    /// v = gamma0 sinh(tau) psi^(-beta), dpsi/dt = 1 - |v| psi.
+    fn of_ageing(beta: f64, gamma0: f64) -> Self {
+        AgeingForm {
+            strength: [0.0, 1.0],
+            healing: [1.0, 0.0],
+            beta,
+            gamma0,
+            exponential: false,
+        }
+    }
+}
+
 #[cfg(target_arch = "x86_64")]
 impl AgeingForm {
     /// v

@@ -84,13 +84,7 @@ impl Law for RegularisedAgeing {
     }
 
     fn ageing_form(&self) -> Option<AgeingForm> {
-        Some(AgeingForm {
-            strength: [0.0, 1.0],
-            healing: [1.0, 0.0],
-            beta: self.beta,
-            gamma0: self.gamma0,
-            exponential: false,
-        })
+        Some(AgeingForm::of_ageing(self.beta, self.gamma0))
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -20,14 +20,14 @@
 //! and P are linear in the newest v. So the sums of four orders are made at once, out of pairs of rows side by side: what is read of
 //! memory is what limits them.
 
-use super::series::{PairStep, allows, units};
-use super::tangent::{Linearised, jacobian_of_rows, with_derivatives};
-use super::{Loading, stress_rate};
+use super::Loading;
+use super::series::{Interfaces, Motion, PairStep, stepper};
+use super::tangent::{Linearised, LinearisedInterfaces, jacobian_of_rows};
 use crate::friction::AgeingForm;
-use crate::number::Jet;
+use crate::number::Real;
 use crate::series::{
-    Accuracy, ByFormula, Element, Formula, Four, JacobianTerm, MAX_ORDER, ONE_OVER, Order, Pair,
-    ROOM, Rates, Recurrences, Series, Stepper, WATCHED, avx512, value,
+    Accuracy, ByFormula, Element, Four, JacobianTerm, MAX_ORDER, ONE_OVER, Pair, ROOM, Recurrences,
+    Stepper, WATCHED, avx512,
 };
 use pulp::x86::{V3, V4};
 use std::cell::Cell;
@@ -42,41 +42,18 @@ const TAU: usize = 0;
 const PSI: usize = 1;
 const SLIP_RATE: usize = 2;
 
+impl Motion for AgeingForm {
+    const UNROLLED: bool = false;
+
+    #[inline(always)]
+    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T) {
+        let v = self.slip_rate(tau, psi);
+        (v, self.evolution(v, psi))
+    }
+}
+
 /// Two interfaces of such a law.
-#[derive(Clone, Copy)]
-pub(super) struct AgeingInterfaces {
-    form: AgeingForm,
-    driving: Pair,
-    stiffness: Pair,
-}
-
-impl Formula<Pair, 2> for AgeingInterfaces {
-    // |v| has a kink where v = 0, which is where tau = 0.
-    const KINK: Option<usize> = Some(0);
-
-    #[inline(always)]
-    fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, Pair, O>; 2]) -> Rates<'t, Pair, O, 2> {
-        let v = self.form.slip_rate(tau, psi);
-        let loading = (value(self.driving), value(self.stiffness));
-        Rates {
-            variables: [
-                stress_rate(loading, v.over_interfaces()),
-                self.form.evolution(v, psi),
-            ],
-            watched: [v; WATCHED],
-        }
-    }
-
-    #[inline(always)]
-    fn units(&self, x: &[Pair; 2], tolerances: (f64, f64)) -> [Pair; 2] {
-        units(x, tolerances)
-    }
-
-    #[inline(always)]
-    fn allows(&self, x: &[Pair; 2]) -> Pair {
-        allows(x)
-    }
-}
+type AgeingInterfaces = Interfaces<Pair, AgeingForm>;
 
 /// The vector instructions of this processor.
 #[derive(Clone, Copy)]
@@ -119,7 +96,7 @@ impl AgeingSolution {
         AgeingSolution {
             simd,
             best: Best::new(simd),
-            stepper: stepper(form, loading, simd),
+            stepper: stepper(form, loading, Pair::new(simd, [0.0; 2])),
             recurrences: Box::new(AgeingRecurrences::new(simd)),
         }
     }
@@ -142,21 +119,6 @@ impl AgeingSolution {
         };
         self.best.vectorize(step)
     }
-}
-
-/// To be started.
-pub(super) fn stepper(
-    form: AgeingForm,
-    loading: &Loading,
-    simd: V3,
-) -> Stepper<Pair, AgeingInterfaces, 2> {
-    let zero = Pair::new(simd, [0.0; 2]);
-    let formula = AgeingInterfaces {
-        form,
-        driving: zero.like(loading.driving),
-        stiffness: zero.like(loading.stiffness),
-    };
-    Stepper::new(formula, zero)
 }
 
 /// The series that the sums are made of. In a register stand both interfaces, each with two lanes.
@@ -183,41 +145,13 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
     }
 }
 
-impl Linearised for AgeingRecurrences<true> {
+impl Linearised<Pair, AgeingInterfaces> for AgeingRecurrences<true> {
     fn order(rtol: f64) -> usize {
         AgeingSolution::order(rtol)
     }
 
     fn jacobian(&self) -> &[JacobianTerm] {
         &self.jacobian
-    }
-}
-
-/// The formula with its derivatives.
-#[derive(Clone, Copy)]
-struct LinearisedAgeing(AgeingInterfaces);
-
-impl Formula<Pair, 2> for LinearisedAgeing {
-    #[inline(always)]
-    fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, Pair, O>; 2]) -> Rates<'t, Pair, O, 2> {
-        let AgeingInterfaces {
-            form,
-            driving,
-            stiffness,
-        } = &self.0;
-        let (tau, psi) = (Jet::variable(tau, 0), Jet::variable(psi, 1));
-        let v = form.slip_rate(tau, psi);
-        with_derivatives(v, form.evolution(v, psi), (*driving, *stiffness))
-    }
-
-    #[inline(always)]
-    fn units(&self, x: &[Pair; 2], tolerances: (f64, f64)) -> [Pair; 2] {
-        units(x, tolerances)
-    }
-
-    #[inline(always)]
-    fn allows(&self, x: &[Pair; 2]) -> Pair {
-        allows(x)
     }
 }
 
@@ -240,7 +174,7 @@ impl<const LINEARISED: bool> Recurrences<Pair, AgeingInterfaces, 2>
         if !LINEARISED {
             return ByFormula.make(formula, memory, order, unit);
         }
-        let watched = ByFormula.make(&LinearisedAgeing(*formula), memory, order, unit);
+        let watched = ByFormula.make(&LinearisedInterfaces(*formula), memory, order, unit);
         let jacobian = &mut self.jacobian[..order];
         jacobian_of_rows(jacobian, memory, &watched, formula.stiffness, unit);
         watched
@@ -274,7 +208,7 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
         unit: Pair,
     ) -> bool {
         let AgeingInterfaces {
-            form,
+            law: form,
             driving,
             stiffness,
         } = formula;

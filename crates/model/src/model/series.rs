@@ -5,7 +5,7 @@
 
 use super::{Loading, stress_rate};
 use crate::friction::Law;
-use crate::number::DoubleDouble;
+use crate::number::{DoubleDouble, Real};
 use crate::series::{
     Accuracy, Both, Element, Expansion, Formula, ONE_OVER, Order, Rates, Series, Solution, Stepper,
     WATCHED, usual_order, value,
@@ -17,6 +17,24 @@ use {
     pulp::x86::V3,
 };
 
+/// What an interface does under a stress: all that series take of a law.
+pub(super) trait Motion: Copy {
+    /// As [`Law::UNROLLED`].
+    const UNROLLED: bool;
+    /// v and dpsi/dt.
+    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T);
+}
+
+impl<L: Law> Motion for L {
+    const UNROLLED: bool = L::UNROLLED;
+
+    #[inline(always)]
+    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T) {
+        let v = self.slip_rate(self.activation(tau), psi);
+        (v, self.evolution(v, psi))
+    }
+}
+
 /// Both interfaces in the lanes of E, variables (tau, psi).
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Interfaces<E, L> {
@@ -25,46 +43,32 @@ pub(super) struct Interfaces<E, L> {
     pub stiffness: E,
 }
 
-impl<E: Element, L: Law> Formula<E, 2> for Interfaces<E, L> {
+impl<E: Element, L: Motion> Formula<E, 2> for Interfaces<E, L> {
     const UNROLLED: bool = E::UNROLLED && L::UNROLLED && cfg!(not(target_arch = "x86_64"));
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
     #[inline(always)]
     fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, E, O>; 2]) -> Rates<'t, E, O, 2> {
-        let v = self.law.slip_rate(self.law.activation(tau), psi);
+        let (v, g) = self.law.motion(tau, psi);
         let loading = (value(self.driving), value(self.stiffness));
         Rates {
-            variables: [
-                stress_rate(loading, v.over_interfaces()),
-                self.law.evolution(v, psi),
-            ],
+            variables: [stress_rate(loading, v.over_interfaces()), g],
             watched: [v; WATCHED],
         }
     }
 
     #[inline(always)]
-    fn units(&self, x: &[E; 2], tolerances: (f64, f64)) -> [E; 2] {
-        units(x, tolerances)
+    fn units(&self, &[tau, psi]: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
+        let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
+        [of_tau, psi * tau.like(atol + rtol)]
     }
 
     #[inline(always)]
-    fn allows(&self, x: &[E; 2]) -> E {
-        allows(x)
+    fn allows(&self, [tau, psi]: &[E; 2]) -> E {
+        // psi, and no number where tau is not finite.
+        tau.mul_add(tau.like(0.0), *psi)
     }
-}
-
-/// [`Formula::units`] of interfaces.
-#[inline(always)]
-pub(super) fn units<E: Element>(&[tau, psi]: &[E; 2], (rtol, atol): (f64, f64)) -> [E; 2] {
-    let of_tau = tau.abs().mul_add(tau.like(rtol), tau.like(atol));
-    [of_tau, psi * tau.like(atol + rtol)]
-}
-
-/// [`Formula::allows`] of interfaces: psi, and no number where tau is not finite.
-#[inline(always)]
-pub(super) fn allows<E: Element>([tau, psi]: &[E; 2]) -> E {
-    tau.mul_add(tau.like(0.0), *psi)
 }
 
 #[cfg(target_arch = "x86_64")]
@@ -107,17 +111,22 @@ impl<L: Law> SeriesSolution<L> {
     }
 }
 
-fn stepper<E: Element, L: Law>(
+/// The interfaces in elements as `zero`.
+pub(super) fn interfaces<E: Element, L>(law: L, loading: &Loading, zero: E) -> Interfaces<E, L> {
+    Interfaces {
+        law,
+        driving: zero.like(loading.driving),
+        stiffness: zero.like(loading.stiffness),
+    }
+}
+
+/// A stepper of them, to be started.
+pub(super) fn stepper<E: Element, L: Motion>(
     law: L,
     loading: &Loading,
     zero: E,
 ) -> Stepper<E, Interfaces<E, L>, 2> {
-    let formula = Interfaces {
-        law,
-        driving: zero.like(loading.driving),
-        stiffness: zero.like(loading.stiffness),
-    };
-    Stepper::new(formula, zero)
+    Stepper::new(interfaces(law, loading, zero), zero)
 }
 
 /// A step of a pair, to be compiled for the processor's vector instructions.

@@ -5,8 +5,10 @@
 //! see [`VariationalEquations`].
 
 #[cfg(target_arch = "x86_64")]
-use super::ageing_series::{self, AgeingRecurrences, Best};
-use super::series::{Interfaces, allows, chart, copy, units};
+use super::ageing_series::{AgeingRecurrences, Best};
+#[cfg(target_arch = "x86_64")]
+use super::series::stepper;
+use super::series::{Interfaces, Motion, chart, copy, interfaces};
 use super::{Loading, stress_rate};
 use crate::friction::Law;
 use crate::number::{DoubleDouble, Jet};
@@ -25,31 +27,11 @@ use {
     pulp::x86::V3,
 };
 
-/// The rates with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
-#[inline(always)]
-pub(super) fn with_derivatives<'t, E: Element, O: Order>(
-    v: Jet<Series<'t, E, O>, 2>,
-    g: Jet<Series<'t, E, O>, 2>,
-    (driving, stiffness): (E, E),
-) -> Rates<'t, E, O, 2> {
-    let loading = (value(driving), value(stiffness));
-    Rates {
-        variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
-        watched: [
-            v.value,
-            v.gradient[0],
-            v.gradient[1],
-            g.gradient[0],
-            g.gradient[1],
-        ],
-    }
-}
-
-/// The interfaces with these derivatives.
+/// The interfaces, with v and dv/dtau, dv/dpsi, dg/dtau, dg/dpsi watched, g = dpsi/dt.
 #[derive(Clone, Copy)]
-struct LinearisedInterfaces<E, L>(Interfaces<E, L>);
+pub(super) struct LinearisedInterfaces<E, L>(pub Interfaces<E, L>);
 
-impl<E: Element, L: Law> Formula<E, 2> for LinearisedInterfaces<E, L> {
+impl<E: Element, L: Motion> Formula<E, 2> for LinearisedInterfaces<E, L> {
     const KINK: Option<usize> = <Interfaces<E, L> as Formula<E, 2>>::KINK;
 
     #[inline(always)]
@@ -59,24 +41,34 @@ impl<E: Element, L: Law> Formula<E, 2> for LinearisedInterfaces<E, L> {
             driving,
             stiffness,
         } = &self.0;
-        let (tau, psi) = (Jet::variable(tau, 0), Jet::variable(psi, 1));
-        let v = law.slip_rate(law.activation(tau), psi);
-        with_derivatives(v, law.evolution(v, psi), (*driving, *stiffness))
+        let (tau, psi) = (Jet::<_, 2>::variable(tau, 0), Jet::variable(psi, 1));
+        let (v, g) = law.motion(tau, psi);
+        let loading = (value(*driving), value(*stiffness));
+        Rates {
+            variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
+            watched: [
+                v.value,
+                v.gradient[0],
+                v.gradient[1],
+                g.gradient[0],
+                g.gradient[1],
+            ],
+        }
     }
 
     #[inline(always)]
     fn units(&self, x: &[E; 2], tolerances: (f64, f64)) -> [E; 2] {
-        units(x, tolerances)
+        self.0.units(x, tolerances)
     }
 
     #[inline(always)]
     fn allows(&self, x: &[E; 2]) -> E {
-        allows(x)
+        self.0.allows(x)
     }
 }
 
 /// Coefficients that come with the Jacobian's along them.
-pub(super) trait Linearised {
+pub(super) trait Linearised<E: Element, F: Formula<E, 2>>: Recurrences<E, F, 2> {
     /// The order with which they take the least time for a relative tolerance.
     fn order(rtol: f64) -> usize;
     /// That of those made last.
@@ -88,7 +80,7 @@ struct ByJets {
     jacobian: [JacobianTerm; ROOM],
 }
 
-impl Linearised for ByJets {
+impl<E: Element, L: Motion> Linearised<E, LinearisedInterfaces<E, L>> for ByJets {
     fn order(rtol: f64) -> usize {
         usual_order(rtol)
     }
@@ -98,7 +90,7 @@ impl Linearised for ByJets {
     }
 }
 
-impl<E: Element, L: Law> Recurrences<E, LinearisedInterfaces<E, L>, 2> for ByJets {
+impl<E: Element, L: Motion> Recurrences<E, LinearisedInterfaces<E, L>, 2> for ByJets {
     #[inline(always)]
     fn make(
         &mut self,
@@ -114,7 +106,7 @@ impl<E: Element, L: Law> Recurrences<E, LinearisedInterfaces<E, L>, 2> for ByJet
     }
 }
 
-/// The Jacobian from the rows of [`with_derivatives`]. What has no row does not change along solutions, and is zero.
+/// The Jacobian from the rows of [`LinearisedInterfaces`]. What has no row does not change along solutions, and is zero.
 #[inline(always)]
 pub(super) fn jacobian_of_rows<E: Element>(
     jacobian: &mut [JacobianTerm],
@@ -219,9 +211,9 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     #[cfg(target_arch = "x86_64")]
     let (shell, zero, any) = {
         let simd = crate::series::avx2()?;
-        let any = Four::new(simd, [0.0; 4]);
+        let (zero, any) = (Pair::new(simd, [0.0; 2]), Four::new(simd, [0.0; 4]));
         if let Some(form) = law.ageing_form() {
-            let stepper = ageing_series::stepper(form, &loading, simd);
+            let stepper = stepper(form, &loading, zero);
             let recurrences = AgeingRecurrences::<true>::new(simd);
             let best = Best::new(simd);
             return Some(match best.wide() {
@@ -232,15 +224,11 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
                 _ => Box::new(asked.solution::<_, _, _, _, _, N>(best, stepper, recurrences, any)),
             });
         }
-        (simd, Pair::new(simd, [0.0; 2]), any)
+        (simd, zero, any)
     };
     #[cfg(not(target_arch = "x86_64"))]
     let (shell, zero, any) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
-    let formula = LinearisedInterfaces(Interfaces {
-        law,
-        driving: zero.like(loading.driving),
-        stiffness: zero.like(loading.stiffness),
-    });
+    let formula = LinearisedInterfaces(interfaces(law, &loading, zero));
     let jacobian = [JacobianTerm::ZERO; ROOM];
     let stepper = Stepper::new(formula, zero);
     Some(Box::new(asked.solution::<_, _, _, _, _, N>(
@@ -287,13 +275,8 @@ impl Asked<'_> {
     }
 }
 
-impl<S, E, F, R, X> TangentSolution<S, E, F, R, X>
-where
-    S: Shell,
-    E: Element,
-    F: Formula<E, 2>,
-    R: Recurrences<E, F, 2> + Linearised,
-    X: Element,
+impl<S: Shell, E: Element, F: Formula<E, 2>, R: Linearised<E, F>, X: Element>
+    TangentSolution<S, E, F, R, X>
 {
     #[inline(always)]
     fn step(&mut self, accuracy: &Accuracy, limit: f64) -> f64 {
@@ -383,13 +366,8 @@ struct TangentStep<'a, T> {
     limit: f64,
 }
 
-impl<S, E, F, R, X> NullaryFnOnce for TangentStep<'_, TangentSolution<S, E, F, R, X>>
-where
-    S: Shell,
-    E: Element,
-    F: Formula<E, 2>,
-    R: Recurrences<E, F, 2> + Linearised,
-    X: Element,
+impl<S: Shell, E: Element, F: Formula<E, 2>, R: Linearised<E, F>, X: Element> NullaryFnOnce
+    for TangentStep<'_, TangentSolution<S, E, F, R, X>>
 {
     type Output = f64;
     #[inline(always)]
@@ -398,13 +376,8 @@ where
     }
 }
 
-impl<S, E, F, R, X, const N: usize> Solution<N> for TangentSolution<S, E, F, R, X>
-where
-    S: Shell,
-    E: Element,
-    F: Formula<E, 2>,
-    R: Recurrences<E, F, 2> + Linearised,
-    X: Element,
+impl<S: Shell, E: Element, F: Formula<E, 2>, R: Linearised<E, F>, X: Element, const N: usize>
+    Solution<N> for TangentSolution<S, E, F, R, X>
 {
     fn order(&self, rtol: f64) -> usize {
         R::order(rtol)
@@ -458,13 +431,8 @@ where
     }
 }
 
-impl<S, E, F, R, X, const N: usize> Tangent<N> for TangentSolution<S, E, F, R, X>
-where
-    S: Shell,
-    E: Element,
-    F: Formula<E, 2>,
-    R: Recurrences<E, F, 2> + Linearised,
-    X: Element,
+impl<S: Shell, E: Element, F: Formula<E, 2>, R: Linearised<E, F>, X: Element, const N: usize>
+    Tangent<N> for TangentSolution<S, E, F, R, X>
 {
     fn derivatives(&self) -> Derivatives<N> {
         let column = |direction: usize| {

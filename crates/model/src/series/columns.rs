@@ -3,7 +3,8 @@
 //! With the Jacobian's entries as series along the solution the linearised equations need one product of series for each
 //! entry, and their solutions, the columns, share it: they stand in lanes.
 
-use super::element::{Element, rough_exp2, rough_log2};
+use super::element::Element;
+use super::linearised::last_terms;
 use super::{Accuracy, MAX_ORDER, ONE_OVER};
 
 /// Orders whose sums are made at once, out of one read of the columns.
@@ -78,9 +79,11 @@ impl<X: Element> VariationalEquations<X> {
         let any = self.x[0];
         let nothing = [any.like(0.0); 3];
         let jacobian = along.jacobian;
-        // The series of tau holds tau' = K (V_H - v_1 - v_2) already.
-        let of_stiffness = self.stiffness / any.like(along.stiffness);
-        let driven = self.driving * any.like(along.stiffness * along.unit);
+        // In V_H: in the first rate alone. In K: the series of tau holds tau' = K (V_H - v_1 - v_2) already.
+        let loading = (
+            self.driving * any.like(along.stiffness * along.unit),
+            self.stiffness / any.like(along.stiffness),
+        );
         self.series[0] = self.x;
         let mut k = 0;
         while k < order % BLOCK {
@@ -89,10 +92,7 @@ impl<X: Element> VariationalEquations<X> {
             for (x, term) in self.series[..=k].iter().zip(terms) {
                 add(&mut sum, term, x);
             }
-            if k == 0 {
-                sum[0] = sum[0] + driven;
-            }
-            self.series[k + 1] = next(k, sum, along.stress, of_stiffness);
+            self.series[k + 1] = next(k, sum, along.stress, loading);
             k += 1;
         }
         while k < order {
@@ -103,12 +103,9 @@ impl<X: Element> VariationalEquations<X> {
                     add(sum, term, x);
                 }
             }
-            if k == 0 {
-                sums[0][0] = sums[0][0] + driven;
-            }
             let mut m = 0;
             while m < BLOCK {
-                let x = next(k + m, sums[m], along.stress, of_stiffness);
+                let x = next(k + m, sums[m], along.stress, loading);
                 self.series[k + m + 1] = x;
                 let mut later = m + 1;
                 while later < BLOCK {
@@ -121,23 +118,17 @@ impl<X: Element> VariationalEquations<X> {
         }
     }
 
-    /// The largest last two terms of the columns at one unit, and their own sizes, each in what may err relative to the column at the step's
-    /// beginning.
+    /// The largest of the last two terms, in what may err relative to the column at the step's beginning.
     #[inline(always)]
     pub fn last_terms(&self, accuracy: &Accuracy, most: f64) -> [f64; 2] {
-        /// Columns are not as small.
-        const NOTHING: f64 = 1e-250;
         let order = accuracy.order;
-        let any = self.x[0];
-        // Derivatives in parameters begin at zero.
-        let begins = size(&self.series[0]);
-        let grows = size(&self.series[1]) * any.like(most);
-        let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
-        let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
-        [
-            (size(&self.series[order - 1]) * per_tolerable).largest_lane(),
-            (size(&self.series[order]) * per_tolerable).largest_lane(),
-        ]
+        let sizes = [
+            size(&self.series[0]),
+            size(&self.series[1]),
+            size(&self.series[order - 1]),
+            size(&self.series[order]),
+        ];
+        last_terms(accuracy, most, sizes)
     }
 
     /// Goes on by h, counted in units of the series, where the states are as many times what they were.
@@ -164,14 +155,6 @@ impl<X: Element> VariationalEquations<X> {
     }
 }
 
-/// The step, in units of the series, at which the last two terms are below what may err.
-#[inline(always)]
-pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
-    let before = -rough_log2(before) / (order - 1) as f64;
-    let last = -rough_log2(last) / order as f64;
-    rough_exp2(before.min(last))
-}
-
 /// sum h + x, in place of the sum.
 #[inline(always)]
 fn add_to<X: Element>(sum: &mut [X; 3], h: X, x: &[X; 3]) {
@@ -194,9 +177,17 @@ fn add<X: Element>(sum: &mut [X; 3], term: &JacobianTerm, &[tau, first, second]:
     sum[0] = second.mul_add(tau.like(by_second), sum[0]);
 }
 
-/// The coefficients after those of order k, of whose rates this is the sum.
+/// The coefficients after those of order k, of whose rates this is the sum, but for what comes by a change of the loading.
 #[inline(always)]
-fn next<E: Element, X: Element>(k: usize, sum: [X; 3], stress: &[E], of_stiffness: X) -> [X; 3] {
+fn next<E: Element, X: Element>(
+    k: usize,
+    mut sum: [X; 3],
+    stress: &[E],
+    (driven, of_stiffness): (X, X),
+) -> [X; 3] {
+    if k == 0 {
+        sum[0] = sum[0] + driven;
+    }
     let one_over = sum[0].like(ONE_OVER[k + 1]);
     let pulled = of_stiffness * one_over.like(stress[k + 1].first());
     [

@@ -151,21 +151,33 @@ fn product<T: Element, X: Element>(a: &[T], column: &[X], width: usize, any: X) 
 /// The step, in units of the series and at most `most`, at which the last two terms of every column are below the tolerance,
 /// from the sizes of the columns' first two coefficients and of these last two.
 #[inline(always)]
-pub(super) fn longest_of_columns<X: Element>(
+pub(super) fn longest_of_columns<X: Element>(accuracy: &Accuracy, most: f64, sizes: [X; 4]) -> f64 {
+    longest_of_terms(accuracy.order, last_terms(accuracy, most, sizes))
+}
+
+/// The largest of the last two terms of columns, in what may err in each.
+#[inline(always)]
+pub(super) fn last_terms<X: Element>(
     accuracy: &Accuracy,
     most: f64,
     [begins, grows, before, last]: [X; 4],
-) -> f64 {
+) -> [f64; 2] {
     /// Columns are not as small.
     const NOTHING: f64 = 1e-250;
-    let order = accuracy.order;
     let any = begins;
     // Derivatives in parameters begin at zero.
     let grows = grows * any.like(most);
     let largest = Element::max(begins.if_zero(grows, begins), any.like(NOTHING));
     let per_tolerable = any.like(1.0) / (largest * any.like(accuracy.tolerances.0));
-    let before = (before * per_tolerable).largest_lane();
-    let last = (last * per_tolerable).largest_lane();
+    [
+        (before * per_tolerable).largest_lane(),
+        (last * per_tolerable).largest_lane(),
+    ]
+}
+
+/// The step, in units of the series, at which these last two terms may be left out.
+#[inline(always)]
+pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
     let before = -rough_log2(before) / (order - 1) as f64;
     let last = -rough_log2(last) / order as f64;
     rough_exp2(before.min(last))

@@ -41,7 +41,7 @@ mod vectors;
 
 use crate::number::DoubleDouble;
 use crate::number::polynomial::evaluate;
-pub(crate) use columns::{Along, JacobianTerm, VariationalEquations, longest_of_terms};
+pub(crate) use columns::{Along, JacobianTerm, VariationalEquations};
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
@@ -51,6 +51,7 @@ pub(crate) use formula::{Formula, Rates, WATCHED};
 pub(crate) use handle::{Series, value};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use lanes::{Eight, Four, Pair};
+pub(crate) use linearised::longest_of_terms;
 pub(crate) use plain::Both;
 pub(crate) use recorded::Recorded;
 pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
