@@ -70,7 +70,11 @@ fn lanes_go_where_single_runs_go() {
 /// To the bit: in any order, with any neighbours, alone, and a second time.
 #[test]
 fn a_run_does_not_depend_on_its_neighbours() {
-    let runs = sweep(37);
+    let mut runs = sweep(37);
+    // Some near tau = 0, where series are made in another way.
+    for (i, run) in runs.iter_mut().enumerate().step_by(6) {
+        run.start[0] = 0.05 * i as f64 - 0.7;
+    }
     let mut batch = batch(spinodal(), 1e-9);
     let ends = batch.flow(&runs, None);
     assert_eq!(batch.flow(&runs, None), ends);

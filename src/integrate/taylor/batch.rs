@@ -28,8 +28,8 @@ pub type BatchObserver<'a> = &'a mut dyn FnMut(usize, &Step<'_, 3>) -> Result<Co
 /// The Taylor method on many runs with one law, such as a sweep over V_H and K: every lane of the processor's vectors goes
 /// its own way, with its own steps, and takes the next run when it has done one.
 ///
-/// Where the processor has no AVX2 the runs are done one after the other. The steps, and the results, are those of
-/// [`Taylor`] on the same processor to rounding, and do not depend on which runs share a batch, to the bit.
+/// Where the processor has no AVX2 the runs are done one after the other. The results are those of [`Taylor`] within the tolerance
+/// (at some tolerances the order is another), and do not depend on which runs share a batch, to the bit.
 ///
 /// ```
 /// use twinslip::field::State;

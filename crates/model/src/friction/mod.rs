@@ -66,9 +66,6 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
     /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
     const UNROLLED: bool = false;
 
-    /// Whether those of several trajectories at once are too, which takes a minute.
-    const UNROLLED_IN_LANES: bool = false;
-
     /// This law as one of those.
     fn core(&self) -> Self::Core;
 
@@ -145,14 +142,19 @@ impl AgeingForm {
 
 #[cfg(target_arch = "x86_64")]
 impl AgeingForm {
-    /// v
+    /// s(tau)
     #[inline(always)]
-    pub(crate) fn slip_rate<T: Real>(&self, tau: T, psi: T) -> T {
-        let activation = if self.exponential {
+    pub(crate) fn activation<T: Real>(&self, tau: T) -> T {
+        if self.exponential {
             tau.exp() * (0.5 * self.gamma0)
         } else {
             tau.sinh() * self.gamma0
-        };
+        }
+    }
+
+    /// v
+    #[inline(always)]
+    pub(crate) fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
         activation * (psi * self.strength[1] + self.strength[0]).powf(-self.beta)
     }
 

@@ -84,7 +84,6 @@ impl Law for Spinodal {
     type Core = Spinodal;
     type Freed<T: Real> = Spinodal<Free<T>>;
     const UNROLLED: bool = true;
-    const UNROLLED_IN_LANES: bool = true;
 
     fn core(&self) -> Spinodal {
         *self

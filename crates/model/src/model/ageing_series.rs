@@ -33,7 +33,7 @@ use pulp::x86::{V3, V4};
 use std::cell::Cell;
 
 /// Where |tau| is less, e+ and e- cancel, and series are made by the formula.
-const NEAR: f64 = 0.5;
+pub(super) const NEAR: f64 = 0.5;
 /// Orders whose sums are made at once.
 const BLOCK: usize = 4;
 
@@ -46,8 +46,13 @@ impl Motion for AgeingForm {
     const UNROLLED: bool = false;
 
     #[inline(always)]
-    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T) {
-        let v = self.slip_rate(tau, psi);
+    fn activation<T: Real>(&self, tau: T) -> T {
+        AgeingForm::activation(self, tau)
+    }
+
+    #[inline(always)]
+    fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T) {
+        let v = self.slip_rate(activation, psi);
         (v, self.evolution(v, psi))
     }
 }

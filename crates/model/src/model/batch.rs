@@ -1,14 +1,15 @@
 //! Several trajectories of two interfaces at once, one in every lane, each with its own loading.
 
 use super::Loading;
-#[cfg(target_arch = "x86_64")]
-use super::lanes::Lanes;
 use crate::friction::AnyLaw;
-#[cfg(target_arch = "x86_64")]
-use crate::friction::{Law, with_law};
 use crate::series::{Accuracy, Expansion};
 #[cfg(target_arch = "x86_64")]
-use crate::series::{Eight, Four};
+use {
+    super::ageing_lanes::AgeingLanes,
+    super::lanes::{Lanes, Wide},
+    crate::friction::{AgeingForm, Law, with_law},
+    crate::series::{ByFormula, Eight, Four},
+};
 
 /// The most lanes that there are.
 #[doc(hidden)]
@@ -40,13 +41,26 @@ pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     {
         if let Some(simd) = crate::series::avx512() {
             let zero = Eight::new(simd, [0.0; 8]);
-            return Some(with_law!(law, law => Box::new(Lanes::new(simd, law.core(), zero))));
+            return Some(with_law!(law, law => lanes(simd, law.core(), zero)));
         }
         if let Some(simd) = crate::series::avx2() {
             let zero = Four::new(simd, [0.0; 4]);
-            return Some(with_law!(law, law => Box::new(Lanes::new(simd, law.core(), zero))));
+            return Some(with_law!(law, law => lanes(simd, law.core(), zero)));
         }
     }
     let _ = law;
     None
+}
+
+/// By the recurrences that the law has of its own, or by its formula.
+#[cfg(target_arch = "x86_64")]
+fn lanes<S, E: Wide, L: Law>(simd: S, law: L, zero: E) -> Box<dyn BatchSolution>
+where
+    Lanes<S, E, AgeingForm, AgeingLanes<E>>: BatchSolution + 'static,
+    Lanes<S, E, L, ByFormula>: BatchSolution + 'static,
+{
+    match law.ageing_form() {
+        Some(form) => Box::new(Lanes::new(simd, form, zero, AgeingLanes::new(zero))),
+        None => Box::new(Lanes::new(simd, law, zero, ByFormula)),
+    }
 }

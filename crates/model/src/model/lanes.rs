@@ -1,41 +1,36 @@
 //! The vector registers of an x86-64 processor with a trajectory of two interfaces in every lane.
 
 use super::batch::{BatchSolution, MAX_LANES};
+use super::series::Motion;
 use super::series::logarithms;
 use super::{Loading, stress_rate};
-use crate::friction::Law;
 use crate::series::{
-    Accuracy, Eight, Element, Expansion, Formula, Four, Order, Rates, Series, Stepper, WATCHED,
-    value,
+    Accuracy, Eight, Element, Expansion, Formula, Four, Order, Rates, Recurrences, Series, Stepper,
+    WATCHED, value,
 };
 
 /// Both interfaces of a trajectory in every lane of E, variables (tau, psi_1, psi_2).
 #[derive(Debug, Clone, Copy)]
-struct Trajectories<E, L> {
-    law: L,
-    driving: E,
-    stiffness: E,
+pub(super) struct Trajectories<E, L> {
+    pub law: L,
+    pub driving: E,
+    pub stiffness: E,
 }
 
-impl<E: Element, L: Law> Formula<E, 3> for Trajectories<E, L> {
-    const UNROLLED: bool = E::UNROLLED && L::UNROLLED_IN_LANES;
+impl<E: Element, L: Motion> Formula<E, 3> for Trajectories<E, L> {
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
     #[inline(always)]
     fn rates<'t, O: Order>(&self, [tau, p, q]: [Series<'t, E, O>; 3]) -> Rates<'t, E, O, 3> {
         let activation = self.law.activation(tau);
-        let first = self.law.slip_rate(activation, p);
-        let second = self.law.slip_rate(activation, q);
+        let (first, of_first) = self.law.motion(activation, p);
+        let (second, of_second) = self.law.motion(activation, q);
         let loading = (value(self.driving), value(self.stiffness));
         let mut watched = [first; WATCHED];
         watched[1] = second;
         Rates {
-            variables: [
-                stress_rate(loading, first + second),
-                self.law.evolution(first, p),
-                self.law.evolution(second, q),
-            ],
+            variables: [stress_rate(loading, first + second), of_first, of_second],
             watched,
         }
     }
@@ -85,8 +80,10 @@ macro_rules! wide {
 wide!(Four 4);
 wide!(Eight 8);
 
-pub(super) struct Lanes<S, E, L> {
+/// R makes the coefficients.
+pub(super) struct Lanes<S, E, L, R> {
     simd: S,
+    recurrences: R,
     stepper: Stepper<E, Trajectories<E, L>, 3>,
     /// What begins with the next step: the lanes are negative here.
     new: [f64; MAX_LANES],
@@ -96,8 +93,8 @@ pub(super) struct Lanes<S, E, L> {
     reaches: [f64; MAX_LANES],
 }
 
-impl<S, E: Wide, L: Law> Lanes<S, E, L> {
-    pub fn new(simd: S, law: L, zero: E) -> Self {
+impl<S, E: Wide, L: Motion, R> Lanes<S, E, L, R> {
+    pub fn new(simd: S, law: L, zero: E, recurrences: R) -> Self {
         let formula = Trajectories {
             law,
             driving: zero,
@@ -105,6 +102,7 @@ impl<S, E: Wide, L: Law> Lanes<S, E, L> {
         };
         let mut lanes = Lanes {
             simd,
+            recurrences,
             stepper: Stepper::new(formula, zero),
             new: [1.0; MAX_LANES],
             starts: [[1.0; MAX_LANES]; 3],
@@ -127,13 +125,18 @@ impl<S, E: Wide, L: Law> Lanes<S, E, L> {
 }
 
 /// A step, to be compiled for the processor's vector instructions.
-struct Advance<'a, S, E, L> {
-    lanes: &'a mut Lanes<S, E, L>,
+struct Advance<'a, S, E, L, R> {
+    lanes: &'a mut Lanes<S, E, L, R>,
     accuracy: &'a Accuracy,
     limits: &'a [f64; MAX_LANES],
 }
 
-impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
+impl<S, E, L, R> pulp::NullaryFnOnce for Advance<'_, S, E, L, R>
+where
+    E: Wide,
+    L: Motion,
+    R: Recurrences<E, Trajectories<E, L>, 3>,
+{
     type Output = [f64; MAX_LANES];
     #[inline(always)]
     fn call(self) -> [f64; MAX_LANES] {
@@ -150,7 +153,8 @@ impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
             lanes.new = [1.0; MAX_LANES];
         }
         let limit = any.filled(self.limits);
-        let steps = lanes.stepper.advance(self.accuracy, limit);
+        let recurrences = &mut lanes.recurrences;
+        let steps = (lanes.stepper).advance_with(recurrences, self.accuracy, limit);
         lanes.reaches = lanes.stepper.reach(0, self.accuracy.order, steps).spilled();
         steps.spilled()
     }
@@ -158,7 +162,11 @@ impl<S, E: Wide, L: Law> pulp::NullaryFnOnce for Advance<'_, S, E, L> {
 
 macro_rules! convoys {
     ($($token:ident $element:ident)*) => { $(
-        impl<L: Law> BatchSolution for Lanes<pulp::x86::$token, $element, L> {
+        impl<L, R> BatchSolution for Lanes<pulp::x86::$token, $element, L, R>
+        where
+            L: Motion + Send,
+            R: Recurrences<$element, Trajectories<$element, L>, 3> + Send,
+        {
             fn lanes(&self) -> usize {
                 $element::LANES
             }

@@ -4,6 +4,8 @@
 //! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
 
 #[cfg(target_arch = "x86_64")]
+mod ageing_lanes;
+#[cfg(target_arch = "x86_64")]
 mod ageing_series;
 mod batch;
 pub mod classics;

@@ -4,7 +4,7 @@
 //! subspace, and one interface is two equal ones driven twice as fast by a spring half as stiff, so one code serves all.
 
 use super::{Loading, stress_rate};
-use crate::friction::Law;
+use crate::friction::{Formulas, Law};
 use crate::number::{DoubleDouble, Real};
 use crate::series::{
     Accuracy, Both, Element, Expansion, Formula, ONE_OVER, Order, Rates, Series, Solution, Stepper,
@@ -21,16 +21,23 @@ use {
 pub(super) trait Motion: Copy {
     /// As [`Law::UNROLLED`].
     const UNROLLED: bool;
+    /// s(tau), which all interfaces under this stress share.
+    fn activation<T: Real>(&self, tau: T) -> T;
     /// v and dpsi/dt.
-    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T);
+    fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T);
 }
 
 impl<L: Law> Motion for L {
     const UNROLLED: bool = L::UNROLLED;
 
     #[inline(always)]
-    fn motion<T: Real>(&self, tau: T, psi: T) -> (T, T) {
-        let v = self.slip_rate(self.activation(tau), psi);
+    fn activation<T: Real>(&self, tau: T) -> T {
+        Formulas::activation(self, tau)
+    }
+
+    #[inline(always)]
+    fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T) {
+        let v = self.slip_rate(activation, psi);
         (v, self.evolution(v, psi))
     }
 }
@@ -50,7 +57,7 @@ impl<E: Element, L: Motion> Formula<E, 2> for Interfaces<E, L> {
 
     #[inline(always)]
     fn rates<'t, O: Order>(&self, [tau, psi]: [Series<'t, E, O>; 2]) -> Rates<'t, E, O, 2> {
-        let (v, g) = self.law.motion(tau, psi);
+        let (v, g) = self.law.motion(self.law.activation(tau), psi);
         let loading = (value(self.driving), value(self.stiffness));
         Rates {
             variables: [stress_rate(loading, v.over_interfaces()), g],

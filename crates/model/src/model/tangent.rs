@@ -42,7 +42,7 @@ impl<E: Element, L: Motion> Formula<E, 2> for LinearisedInterfaces<E, L> {
             stiffness,
         } = &self.0;
         let (tau, psi) = (Jet::<_, 2>::variable(tau, 0), Jet::variable(psi, 1));
-        let (v, g) = law.motion(tau, psi);
+        let (v, g) = law.motion(law.activation(tau), psi);
         let loading = (value(*driving), value(*stiffness));
         Rates {
             variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
