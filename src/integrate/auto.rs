@@ -17,6 +17,9 @@ use crate::field::{Jacobian, State, VectorField};
 /// Steps of Taylor before the first look at the Jacobian, and from one look to the next.
 const FIRST_LOOK: usize = 6;
 const TAYLOR_LOOKS: usize = 16;
+/// Steps before a look from which on they must not have changed by more than this factor: held ones are of one length.
+const STEADY_STEPS: usize = 4;
+const STEADY: f64 = 2.0;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
 const RODAS_LOOKS: usize = 4;
 /// h |lambda| over the order from which on Taylor's step counts as held by stability, which does so at 0.45.
@@ -39,13 +42,6 @@ fn implicit(rtol: f64) -> RosenbrockMethod {
     } else {
         RosenbrockMethod::Rodas5P
     }
-}
-
-/// A stretch of a run.
-#[derive(Debug, Clone, Copy)]
-struct Stretch {
-    implicit: bool,
-    t: (f64, f64),
 }
 
 /// An integrator that switches between Taylor and Rodas5P along the run.
@@ -87,14 +83,14 @@ impl<const N: usize> Auto<N> {
         })
     }
 
-    /// The flow, stretch by stretch, each handed to `finished`.
+    /// The flow, stretch by stretch, and with it its tangent where that is asked for.
     fn stretches(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
         mut observer: Option<Observer<'_, N>>,
-        finished: &mut dyn FnMut(Stretch),
+        mut tangent: Option<&mut Jacobian<N>>,
     ) -> Result<State<N>> {
         self.work = Work::default();
         let (mut now, mut y) = (t.0, *y0);
@@ -106,9 +102,11 @@ impl<const N: usize> Auto<N> {
                 observer: observer.as_deref_mut(),
                 reached: &mut reached,
                 stopped: &mut stopped,
+                tangent: tangent.as_deref_mut(),
             };
             let steps = self.work.steps;
             let left = self.max_steps - steps;
+            let begin = y;
             let end = if implicit {
                 let fixed = field.analytic().is_none();
                 self.implicit(field, (now, t.1), &y, left, fixed, &mut relay)
@@ -117,10 +115,15 @@ impl<const N: usize> Auto<N> {
             };
             self.work += self.last_work(implicit);
             y = end.map_err(|error| self.whole(error, t.1))?;
-            finished(Stretch {
-                implicit,
-                t: (now, reached),
-            });
+            if let (true, Some(tangent)) = (implicit, &mut tangent) {
+                // The run of the state has found where its stretch ends.
+                self.rodas.set_max_steps(self.max_steps);
+                let along = self.rodas.tangent_flow(field, (now, reached), &begin);
+                self.work += self.last_work(implicit);
+                let (end, part) = along.map_err(|error| self.whole(error, t.1))?;
+                y = end;
+                **tangent = part * **tangent;
+            }
             now = reached;
             if stopped || now == t.1 {
                 return Ok(y);
@@ -154,11 +157,21 @@ impl<const N: usize> Auto<N> {
         wait: usize,
         relay: &mut Relay<'_, '_, N>,
     ) -> Result<State<N>> {
+        const BEFORE_LOOK: usize = FIRST_LOOK - STEADY_STEPS;
         self.taylor.set_max_steps(left);
-        let (mut steps, mut wait) = (0, wait);
+        let (mut steps, mut wait, mut earlier) = (0, wait, 0.0);
         let mut held = |order: usize, h: f64, state: &dyn Fn() -> State<N>| {
             steps += 1;
-            if steps % TAYLOR_LOOKS != FIRST_LOOK {
+            match steps % TAYLOR_LOOKS {
+                FIRST_LOOK => {}
+                BEFORE_LOOK => {
+                    earlier = h;
+                    return false;
+                }
+                _ => return false,
+            }
+            let change = h / earlier;
+            if !(1.0 / STEADY..=STEADY).contains(&change) {
                 return false;
             }
             if wait > 0 {
@@ -168,9 +181,14 @@ impl<const N: usize> Auto<N> {
             let (rate, decays) = dominant_mode(&field.jacobian(&state()));
             decays && h.abs() * rate > HELD * order as f64
         };
-        let (end, reached) = match &relay.observer {
-            None => self.taylor.flow_until(field, t, y, None, &mut held)?,
-            Some(_) => {
+        let (end, reached) = match (&mut relay.tangent, &relay.observer) {
+            (Some(tangent), _) => {
+                let (end, part) = self.taylor.tangent_until(field, t, y, &mut held)?;
+                **tangent = part * **tangent;
+                end
+            }
+            (None, None) => self.taylor.flow_until(field, t, y, None, &mut held)?,
+            (None, Some(_)) => {
                 let mut observer = |step: &Step<'_, N>| relay.see(step);
                 self.taylor
                     .flow_until(field, t, y, Some(&mut observer), &mut held)?
@@ -233,11 +251,12 @@ impl<const N: usize> Auto<N> {
 
 type StepObserver<'o, const N: usize> = dyn FnMut(&Step<'_, N>) -> Result<Control> + 'o;
 
-/// Hands steps on to the observer, and keeps how far the run has come.
+/// Hands steps on to the observer, and keeps how far the run has come, and its tangent so far.
 struct Relay<'a, 'o, const N: usize> {
     observer: Option<&'a mut StepObserver<'o, N>>,
     reached: &'a mut f64,
     stopped: &'a mut bool,
+    tangent: Option<&'a mut Jacobian<N>>,
 }
 
 impl<const N: usize> Relay<'_, '_, N> {
@@ -264,34 +283,18 @@ impl<const N: usize> Integrator<N> for Auto<N> {
         y0: &State<N>,
         observer: Option<Observer<'_, N>>,
     ) -> Result<State<N>> {
-        self.stretches(field, t, y0, observer, &mut |_| ())
+        self.stretches(field, t, y0, observer, None)
     }
 
-    /// The state's run finds the stretches; the tangents of each follow, and are multiplied.
     fn tangent_flow(
         &mut self,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        let mut stretches = Vec::new();
-        self.stretches(field, t, y0, None, &mut |stretch| stretches.push(stretch))?;
-        let mut work = self.work;
-        let (mut y, mut tangent) = (*y0, Jacobian::identity());
-        self.taylor.set_max_steps(self.max_steps);
-        self.rodas.set_max_steps(self.max_steps);
-        for stretch in stretches {
-            let (end, part) = if stretch.implicit {
-                self.rodas.tangent_flow(field, stretch.t, &y)?
-            } else {
-                self.taylor.tangent_flow(field, stretch.t, &y)?
-            };
-            work += self.last_work(stretch.implicit);
-            y = end;
-            tangent = part * tangent;
-        }
-        self.work = work;
-        Ok((y, tangent))
+        let mut tangent = Jacobian::identity();
+        let end = self.stretches(field, t, y0, None, Some(&mut tangent))?;
+        Ok((end, tangent))
     }
 
     fn work(&self) -> Work {

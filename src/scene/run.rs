@@ -116,6 +116,7 @@ struct RunObserver<'a, const N: usize> {
     field: &'a dyn Driven<N>,
     sink: &'a mut dyn Sink,
     detector: Option<Detector<'a, N>>,
+    needs_slip: bool,
     /// The end of the last step seen.
     here: Instant,
     /// The slips there, in all digits.
@@ -141,6 +142,7 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             detector: plan
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
+            needs_slip: plan.needs_slip(),
             here: Instant::new(plan.system.law, 0.0, y0, [0.0; 2]),
             slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
@@ -168,7 +170,7 @@ impl<'a, const N: usize> RunObserver<'a, N> {
         if let Some(detector) = &mut self.detector {
             detector.see(step, &before)?;
         }
-        let needs_slip = self.plan.needs_slip();
+        let needs_slip = self.needs_slip;
         let slip = |t: f64| {
             if needs_slip {
                 slips(field, step, &before, t)

@@ -223,6 +223,19 @@ impl Taylor {
         self.trajectory(field, t, y0, &mut *solution, observer, halt)
     }
 
+    /// The same with the tangent flow.
+    pub(super) fn tangent_until<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        t: (f64, f64),
+        y0: &State<N>,
+        halt: Halt<'_, N>,
+    ) -> Result<((State<N>, f64), Jacobian<N>)> {
+        let mut tangent = self.tangent(field, &[])?;
+        let end = self.trajectory(field, t, y0, &mut *tangent, None, halt)?;
+        Ok((end, Jacobian::from(tangent.derivatives().start)))
+    }
+
     /// Another bound on steps.
     pub(super) fn set_max_steps(&mut self, max_steps: usize) {
         self.max_steps = max_steps;
@@ -341,8 +354,8 @@ impl<const N: usize> Integrator<N> for Taylor {
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
-        let (end, derivatives) = self.derivatives(field, t, y0, &[])?;
-        Ok((end, Jacobian::from(derivatives.start)))
+        let ((end, _), tangent) = self.tangent_until(field, t, y0, &mut |_, _, _| false)?;
+        Ok((end, tangent))
     }
 
     fn work(&self) -> Work {

@@ -226,26 +226,44 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
     }
 }
 
-/// The slip rates of the last step, what is watched first, integrated term by term; even and odd terms apart, for two short chains.
+/// The slip rates of the last step, what is watched first, integrated.
 fn slips<E: Element, F: Formula<E, 2>>(
     stepper: &Stepper<E, F, 2>,
     order: usize,
     length: f64,
 ) -> Option<[f64; 2]> {
     let rates = stepper.watched_series(0)?;
-    let s = length / stepper.unit().first();
-    let (squared, mut sums) = (s * s, [[0.0; 2]; 2]);
-    for j in (0..order / 2).rev() {
-        for (part, sum) in sums.iter_mut().enumerate() {
-            let k = 2 * j + part;
-            let rates = rates[k].interfaces();
-            for (sum, rate) in sum.iter_mut().zip(rates) {
-                *sum = *sum * squared + rate * ONE_OVER[k + 1];
-            }
+    let time = stepper.unit().like(length);
+    let slips = time.run(Integral {
+        rates: &rates[..order],
+        time,
+        unit: stepper.unit(),
+    });
+    Some(slips.interfaces())
+}
+
+/// The integral of a series of even length over a time, term by term; even and odd terms apart, for two short chains.
+struct Integral<'a, E> {
+    rates: &'a [E],
+    time: E,
+    unit: E,
+}
+
+impl<E: Element> pulp::NullaryFnOnce for Integral<'_, E> {
+    type Output = E;
+    #[inline(always)]
+    fn call(self) -> E {
+        let s = self.time / self.unit;
+        let (squared, zero) = (s * s, s.like(0.0));
+        let (mut even, mut odd) = (zero, zero);
+        let mut k = self.rates.len();
+        while k >= 2 {
+            k -= 2;
+            even = even.mul_add(squared, self.rates[k] * s.like(ONE_OVER[k + 1]));
+            odd = odd.mul_add(squared, self.rates[k + 1] * s.like(ONE_OVER[k + 2]));
         }
+        odd.mul_add(s, even) * self.time
     }
-    let [even, odd] = sums;
-    Some([0, 1].map(|i| (even[i] + odd[i] * s) * length))
 }
 
 /// The series of the last step, with the slip rate as what is watched first.
