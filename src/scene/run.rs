@@ -117,6 +117,8 @@ struct RunObserver<'a, const N: usize> {
     sink: &'a mut dyn Sink,
     detector: Option<Detector<'a, N>>,
     needs_slip: bool,
+    /// Whether nothing but the end is shown.
+    only_end: bool,
     /// The end of the last step seen.
     here: Instant,
     /// The slips there, in all digits.
@@ -143,6 +145,9 @@ impl<'a, const N: usize> RunObserver<'a, N> {
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
             needs_slip: plan.needs_slip(),
+            only_end: plan.sampling == Sampling::FinalOnly
+                && plan.events.is_none()
+                && !plan.picture,
             here: Instant::new(plan.system.law, 0.0, y0, [0.0; 2]),
             slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
@@ -167,6 +172,12 @@ impl<'a, const N: usize> RunObserver<'a, N> {
     fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
         let field = self.field;
         let before = self.slips;
+        if self.only_end {
+            if self.needs_slip {
+                self.slips = slips(field, step, &before, step.t1);
+            }
+            return Ok(self.reached(step));
+        }
         if let Some(detector) = &mut self.detector {
             detector.see(step, &before)?;
         }
@@ -191,19 +202,27 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             }
         }
         self.slips = slip(step.t1);
-        self.here = Instant::new(law, step.t1, step.y1, self.slips.map(DoubleDouble::hi));
         if self.plan.sampling == Sampling::EveryStep {
-            let here = self.here;
+            let here = Instant::new(law, step.t1, step.y1, self.slips.map(DoubleDouble::hi));
             self.emit(&here);
         }
+        Ok(self.reached(step))
+    }
+
+    /// The run has come to the end of this step.
+    fn reached(&mut self, step: &Step<'_, N>) -> Control {
+        self.here.time = step.t1;
+        self.here.stress = step.y1[0];
+        self.here.log_state = [step.y1[1], step.y1[N - 1]];
+        self.here.slip = self.slips.map(DoubleDouble::hi);
         if self.sink.reached(step.t1 / self.plan.until) == Control::Stop {
             self.stopped = true;
         }
-        Ok(if self.stopped {
+        if self.stopped {
             Control::Stop
         } else {
             Control::Continue
-        })
+        }
     }
 
     /// The next fixed time of a row.

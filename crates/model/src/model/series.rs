@@ -213,8 +213,8 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
     }
 
     fn state(&self) -> [f64; N] {
-        let x = each!(self, s => s.state().map(Element::interfaces));
-        chart(x[0][0], x[1].map(f64::ln))
+        let [tau, log_states] = each!(self, s => in_logarithms(s.state()));
+        chart(tau[0], log_states)
     }
 
     fn slips(&self, order: usize, length: f64) -> Option<[f64; 2]> {
@@ -223,6 +223,21 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
 
     fn expansion(&self, order: usize, into: &mut Expansion<N>) {
         each!(self, s => copy(s, order, into));
+    }
+}
+
+/// (tau, ln psi) of both interfaces.
+fn in_logarithms<E: Element>(&[tau, psi]: &[E; 2]) -> [[f64; 2]; 2] {
+    [tau.interfaces(), psi.run(Logarithm(psi)).interfaces()]
+}
+
+struct Logarithm<E>(E);
+
+impl<E: Element> pulp::NullaryFnOnce for Logarithm<E> {
+    type Output = E;
+    #[inline(always)]
+    fn call(self) -> E {
+        self.0.ln()
     }
 }
 
@@ -242,7 +257,7 @@ fn slips<E: Element, F: Formula<E, 2>>(
     Some(slips.interfaces())
 }
 
-/// The integral of a series of even length over a time, term by term; even and odd terms apart, for two short chains.
+/// The integral of a series over a time.
 struct Integral<'a, E> {
     rates: &'a [E],
     time: E,
@@ -251,16 +266,32 @@ struct Integral<'a, E> {
 
 impl<E: Element> pulp::NullaryFnOnce for Integral<'_, E> {
     type Output = E;
+    /// With the order a constant the sums are unrolled.
     #[inline(always)]
     fn call(self) -> E {
+        match self.rates.len() {
+            12 => self.sum(12),
+            16 => self.sum(16),
+            20 => self.sum(20),
+            24 => self.sum(24),
+            order => self.sum(order),
+        }
+    }
+}
+
+impl<E: Element> Integral<'_, E> {
+    /// To an even order; even and odd terms apart, for two short chains.
+    #[inline(always)]
+    fn sum(&self, order: usize) -> E {
+        let rates = &self.rates[..order];
         let s = self.time / self.unit;
         let (squared, zero) = (s * s, s.like(0.0));
         let (mut even, mut odd) = (zero, zero);
-        let mut k = self.rates.len();
-        while k >= 2 {
+        let mut k = order;
+        while k > 0 {
             k -= 2;
-            even = even.mul_add(squared, self.rates[k] * s.like(ONE_OVER[k + 1]));
-            odd = odd.mul_add(squared, self.rates[k + 1] * s.like(ONE_OVER[k + 2]));
+            even = even.mul_add(squared, rates[k] * s.like(ONE_OVER[k + 1]));
+            odd = odd.mul_add(squared, rates[k + 1] * s.like(ONE_OVER[k + 2]));
         }
         odd.mul_add(s, even) * self.time
     }

@@ -366,6 +366,8 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
             12 => self.sum(12, h),
             16 => self.sum(16, h),
             18 => self.sum(18, h),
+            20 => self.sum(20, h),
+            24 => self.sum(24, h),
             _ => self.sum(order, h),
         }
     }
