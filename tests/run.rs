@@ -106,6 +106,23 @@ fn the_end_does_not_depend_on_what_is_asked() {
     );
 }
 
+/// Where only the end is shown most steps pass unseen, but none is missing from what is kept of a run that fails.
+#[test]
+fn a_run_that_fails_keeps_where_it_has_come_to() {
+    for method in ["taylor", "auto", "rodas5p"] {
+        let failing = |rows: &str| {
+            let told = twinslip(&format!(
+                "{CYCLES} --method {method} --max-steps 150 --format json {rows}"
+            ));
+            assert_eq!(told.code, 1, "{}", told.err);
+            serde_json::from_str::<Value>(&told.out).expect("JSON")
+        };
+        let (all, only) = (failing(""), failing("--final-only"));
+        assert_eq!(only["result"]["final"], all["result"]["final"], "{method}");
+        assert!(number(&only, "/result/final/slip_1") > 0.0);
+    }
+}
+
 #[test]
 fn rows_come_at_the_times_asked_for() {
     let points = column(&object(&format!("{CYCLES} --points 5")), "time");

@@ -33,6 +33,7 @@ pub use taylor::{Batch, BatchObserver, BatchRun, Taylor};
 pub use crate::contract::{MAX_STEPS, Tolerances, Work};
 use crate::error::Result;
 use crate::field::{Jacobian, State, VectorField};
+use crate::number::DoubleDouble;
 use crate::series::Expansion;
 pub use crate::series::{VECTORS, Vectors, allowed_vectors, used_vectors};
 pub(crate) use singularity::step_underflow;
@@ -56,8 +57,8 @@ pub struct Step<'a, const N: usize> {
     pub reach: f64,
     /// The series at `t0`, of methods that step by one; made only when asked for.
     pub(crate) expansion: Option<&'a dyn Deref<Target = &'a Expansion<N>>>,
-    /// The slips of both interfaces in the step, of methods that have them without all of the series.
-    pub(crate) slips: Option<&'a dyn Fn() -> Option<[f64; 2]>>,
+    /// [`Step::slips`]
+    pub(crate) slips: Option<&'a dyn Fn() -> Option<[DoubleDouble; 2]>>,
 }
 
 impl<'a, const N: usize> Step<'a, N> {
@@ -66,8 +67,8 @@ impl<'a, const N: usize> Step<'a, N> {
         self.expansion.map(|made| **made)
     }
 
-    /// The slips of both interfaces in the step, of methods that have them without all of the series.
-    pub fn slips(&self) -> Option<[f64; 2]> {
+    /// The slips of both interfaces since the step that was seen before, of methods that have them without all of the series.
+    pub fn slips(&self) -> Option<[DoubleDouble; 2]> {
         self.slips.and_then(|slips| slips())
     }
 }
@@ -79,6 +80,9 @@ pub enum Control {
     Continue,
     /// Stop here: the flow returns the state at the end of this step.
     Stop,
+    /// Go on; so many steps need not be seen, as long as the last one is and none of their slips is lost. A method may show them all
+    /// the same.
+    Rest(u32),
 }
 
 /// Sees every accepted step; an error from it ends the flow.

@@ -15,6 +15,9 @@ use crate::number::DoubleDouble;
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
 const PICTURED: usize = 4;
 
+/// Steps that pass unseen where only the end is shown: some microseconds.
+const RESTS: u32 = 63;
+
 /// Takes what a run yields, as it comes.
 pub trait Sink {
     /// A row, in the plan's columns and the user's units.
@@ -176,7 +179,11 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             if self.needs_slip {
                 self.slips = slips(field, step, &before, step.t1);
             }
-            return Ok(self.reached(step));
+            let control = self.reached(step);
+            return Ok(match control {
+                Control::Continue => Control::Rest(RESTS),
+                other => other,
+            });
         }
         if let Some(detector) = &mut self.detector {
             detector.see(step, &before)?;

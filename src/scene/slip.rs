@@ -30,7 +30,7 @@ pub(super) fn slips<const N: usize>(
     if t == step.t1
         && let Some(within) = step.slips()
     {
-        return sum(before, within);
+        return [0, 1].map(|i| before[i] + within[i]);
     }
     let within = match step.series() {
         // The ends of steps are known better than to the rounding of t.

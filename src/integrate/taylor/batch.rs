@@ -1,7 +1,8 @@
 //! Many runs at once, one in every lane of the processor's vectors.
 
 use super::super::{Control, Step, Tolerances, Work, step_underflow};
-use super::{Clock, Taylor};
+use super::Taylor;
+use super::way::Clock;
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::friction::AnyLaw;
@@ -155,7 +156,7 @@ impl Batch {
                     );
                     here.y = end;
                     match control {
-                        Ok(Control::Continue) => (),
+                        Ok(Control::Continue | Control::Rest(_)) => (),
                         Ok(Control::Stop) => fate = Fate::Done,
                         Err(error) => fate = Fate::Failed(error),
                     }

@@ -8,18 +8,19 @@
 //! 5 to 8 over the fastest rate by the order, whatever the tolerance: an implicit method is better there.
 
 mod batch;
+mod way;
 
 pub use batch::{Batch, BatchObserver, BatchRun};
 
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
-use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
     usual_order,
 };
 use std::cell::LazyCell;
+use way::{Clock, Unseen, Way};
 
 /// A Taylor integrator. A step may err by `atol + rtol |tau|` in tau, and in psi by `atol + rtol` of itself.
 ///
@@ -264,18 +265,45 @@ impl Taylor {
             Arithmetic::DoubleDouble => self.accuracy,
         };
         solution.start(&y0.data.0[0]);
+        let mut way = Way {
+            clock: Clock::new(t),
+            y: *y0,
+            unseen: Unseen::default(),
+        };
+        let on_the_way = self.steps(field, &accuracy, solution, &mut way, &mut observer, halt);
+        if let (Err(_), Some(observer), true) = (&on_the_way, &mut observer, way.unseen.passed) {
+            way.show_unseen(&State::from(solution.state()), observer)?;
+        }
+        on_the_way?;
+        // Without a step not even the logarithm of an exponential shall come between.
+        let end = if self.work.steps == 0 {
+            *y0
+        } else {
+            State::from(solution.state())
+        };
+        Ok((end, way.clock.now.hi()))
+    }
+
+    /// One step after the other, to the end or where it is to stop.
+    fn steps<const N: usize>(
+        &mut self,
+        field: &dyn VectorField<N>,
+        accuracy: &Accuracy,
+        solution: &mut dyn Solution<N>,
+        Way { clock, y, unseen }: &mut Way<N>,
+        observer: &mut Option<Observer<'_, N>>,
+        halt: Halt<'_, N>,
+    ) -> Result<()> {
         let mut expansion = Expansion::new();
-        let mut clock = Clock::new(t);
-        let mut y = *y0;
         while let Some(remaining) = clock.remaining() {
             if self.work.steps == self.max_steps {
                 return Err(Error::TooManySteps {
                     t: clock.now.hi(),
-                    end: t.1,
+                    end: clock.end,
                     limit: self.max_steps,
                 });
             }
-            let h = solution.advance(&accuracy, remaining);
+            let h = solution.advance(accuracy, remaining);
             let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
@@ -286,40 +314,46 @@ impl Taylor {
             self.work.steps += 1;
             // One evaluation of the law for each coefficient.
             self.work.rhs += accuracy.order;
-            if let Some(observer) = &mut observer {
+            let halted = halt(accuracy.order, h.hi(), &|| State::from(solution.state()));
+            if let Some(observer) = observer {
+                let last = halted || clock.remaining().is_none();
+                if unseen.passes(last, before, || solution.slips(accuracy.order, h.hi())) {
+                    continue;
+                }
                 let made = LazyCell::new(|| {
                     solution.expansion(accuracy.order, &mut expansion);
                     (expansion.begin, expansion.length) = (begin, h.hi());
                     &expansion
                 });
+                if unseen.passed {
+                    *y = State::from(made.state(0.0));
+                }
                 let end = State::from(solution.state());
                 let dense = |time: f64| State::from(made.state(made.since_begin(time)));
+                let slips = || solution.slips(accuracy.order, h.hi());
                 let control = observer(&Step {
                     t0: before,
-                    y0: &y,
+                    y0: y,
                     t1: clock.now.hi(),
                     y1: &end,
                     dense: &dense,
                     reach: f64::INFINITY,
                     expansion: Some(&made),
-                    slips: Some(&|| solution.slips(accuracy.order, h.hi())),
+                    slips: Some(&|| slips().map(|slips| unseen.and(slips))),
                 })?;
-                y = end;
-                if control == Control::Stop {
-                    break;
+                *y = end;
+                *unseen = Unseen::default();
+                match control {
+                    Control::Continue => {}
+                    Control::Stop => break,
+                    Control::Rest(steps) => unseen.steps = steps,
                 }
             }
-            if halt(accuracy.order, h.hi(), &|| State::from(solution.state())) {
+            if halted {
                 break;
             }
         }
-        // Without a step not even the logarithm of an exponential shall come between.
-        let end = if self.work.steps == 0 {
-            *y0
-        } else {
-            State::from(solution.state())
-        };
-        Ok((end, clock.now.hi()))
+        Ok(())
     }
 }
 
@@ -366,44 +400,4 @@ impl<const N: usize> Integrator<N> for Taylor {
 /// The field in power series, or the reason why this method can't.
 fn analytic<const N: usize>(field: &dyn VectorField<N>) -> Result<&dyn Analytic<N>> {
     field.analytic().ok_or(Error::NotAnalytic)
-}
-
-/// Time in 31 digits: stress and state can change ten thousand times faster than time.
-#[derive(Debug, Clone, Copy)]
-struct Clock {
-    now: DoubleDouble,
-    end: f64,
-}
-
-impl Clock {
-    fn new((now, end): (f64, f64)) -> Self {
-        let now = DoubleDouble::from(now);
-        Clock { now, end }
-    }
-
-    /// The time to the end; `None` there.
-    fn remaining(&self) -> Option<DoubleDouble> {
-        let remaining = -(self.now - self.end);
-        (remaining.hi() != 0.0).then_some(remaining)
-    }
-
-    /// Goes on by h, or says that time can't.
-    fn tick(&mut self, h: DoubleDouble, remaining: DoubleDouble) -> bool {
-        if h.hi() == remaining.hi() {
-            self.now = DoubleDouble::from(self.end);
-            return true;
-        }
-        // Runs in doubles take many a step: the short sum is as exact.
-        let next = if h.lo() == 0.0 {
-            self.now + h.hi()
-        } else {
-            self.now + h
-        };
-        // Nor is a step that is no number any progress.
-        if !next.is_finite() || next.hi() == self.now.hi() {
-            return false;
-        }
-        self.now = next;
-        true
-    }
 }
