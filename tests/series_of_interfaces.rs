@@ -55,10 +55,10 @@ proptest! {
         let analytic = field.analytic().expect("series");
         let mut reference = analytic.reference();
         reference.start(&start);
-        reference.advance(&accuracy, DoubleDouble::from(limit));
+        let near = reference.advance(&accuracy, DoubleDouble::from(limit)).hi();
         let mut exact = Expansion::new();
         reference.expansion(order, &mut exact);
-        // The reference is in ln psi.
+        // The reference is in ln psi, whose series do not reach as far: beyond, rounding of theirs is all that there is to see.
         for log_state in &mut exact.variables[1..] {
             *log_state = exponential(log_state);
         }
@@ -67,9 +67,10 @@ proptest! {
         let mut solution = analytic.solution();
         solution.start(&start);
         let h = solution.advance(&accuracy, DoubleDouble::from(limit)).hi();
-        let mut made = Expansion::new();
-        solution.expansion(order, &mut made);
-        bound.check("one", &made, &exact, h)?;
+        let time = if near.abs() < h.abs() { near } else { h };
+        let mut one = Expansion::new();
+        solution.expansion(order, &mut one);
+        bound.check("one", &one, &exact, time)?;
 
         let Some(mut lanes) = batch_solution(law) else {
             // This processor has one alone.
@@ -80,8 +81,10 @@ proptest! {
             lanes.start(1, &loading, &[0.1, -1.0, -2.0]);
         }
         let steps = lanes.advance(&accuracy, &[limit; MAX_LANES]);
-        lanes.expansion(0, order, &mut made);
-        bound.check("lanes", &made, &exact, h)?;
+        let mut lane = Expansion::new();
+        lanes.expansion(0, order, &mut lane);
+        bound.check("lanes", &lane, &exact, time)?;
+        bound.check("lanes beside one", &lane, &one, h)?;
         prop_assert!((steps[0] / h - 1.0).abs() < 1e-3, "{h} and {}", steps[0]);
     }
 }
