@@ -17,7 +17,7 @@ use crate::field::{Jacobian, State, VectorField};
 /// Steps of Taylor before the first look at the Jacobian, and from one look to the next.
 const FIRST_LOOK: usize = 6;
 const TAYLOR_LOOKS: usize = 16;
-/// Steps before a look from which on they must not have changed by more than this factor: held ones are of one length.
+/// Steps before a look, but the first, from which on they must not have changed by more than this factor: held ones are of one length.
 const STEADY_STEPS: usize = 4;
 const STEADY: f64 = 2.0;
 /// Steps of Rodas5P from one look at the Jacobian to the next.
@@ -170,8 +170,8 @@ impl<const N: usize> Auto<N> {
                 }
                 _ => return false,
             }
-            let change = h / earlier;
-            if !(1.0 / STEADY..=STEADY).contains(&change) {
+            let steady = (1.0 / STEADY..=STEADY).contains(&(h / earlier));
+            if !(steady || steps == FIRST_LOOK) {
                 return false;
             }
             if wait > 0 {
