@@ -119,7 +119,6 @@ struct RunObserver<'a, const N: usize> {
     field: &'a dyn Driven<N>,
     sink: &'a mut dyn Sink,
     detector: Option<Detector<'a, N>>,
-    needs_slip: bool,
     /// Whether nothing but the end is shown.
     only_end: bool,
     /// The end of the last step seen.
@@ -147,7 +146,6 @@ impl<'a, const N: usize> RunObserver<'a, N> {
             detector: plan
                 .events
                 .map(|threshold| Detector::new(field, plan, threshold)),
-            needs_slip: plan.needs_slip(),
             only_end: plan.sampling == Sampling::FinalOnly
                 && plan.events.is_none()
                 && !plan.picture,
@@ -175,20 +173,10 @@ impl<'a, const N: usize> RunObserver<'a, N> {
     fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
         let field = self.field;
         let before = self.slips;
-        if self.only_end {
-            if self.needs_slip {
-                self.slips = slips(field, step, &before, step.t1);
-            }
-            let control = self.reached(step);
-            return Ok(match control {
-                Control::Continue => Control::Rest(RESTS),
-                other => other,
-            });
-        }
         if let Some(detector) = &mut self.detector {
             detector.see(step, &before)?;
         }
-        let needs_slip = self.needs_slip;
+        let needs_slip = self.plan.needs_slip();
         let slip = |t: f64| {
             if needs_slip {
                 slips(field, step, &before, t)
@@ -225,10 +213,10 @@ impl<'a, const N: usize> RunObserver<'a, N> {
         if self.sink.reached(step.t1 / self.plan.until) == Control::Stop {
             self.stopped = true;
         }
-        if self.stopped {
-            Control::Stop
-        } else {
-            Control::Continue
+        match (self.stopped, self.only_end) {
+            (true, _) => Control::Stop,
+            (false, true) => Control::Rest(RESTS),
+            (false, false) => Control::Continue,
         }
     }
 

@@ -4,7 +4,7 @@
 //! orders at once.
 
 use super::ageing_series::NEAR;
-use super::lanes::{Trajectories, Wide};
+use super::lanes::Trajectories;
 use crate::friction::AgeingForm;
 use crate::series::{ByFormula, Element, ONE_OVER, ROOM, Recurrences, WATCHED};
 use std::cell::Cell;
@@ -58,7 +58,7 @@ impl<E: Element> AgeingLanes<E> {
     }
 }
 
-impl<E: Wide> Recurrences<E, Trajectories<E, AgeingForm>, 3> for AgeingLanes<E> {
+impl<E: Element> Recurrences<E, Trajectories<E, AgeingForm>, 3> for AgeingLanes<E> {
     #[inline(always)]
     fn make(
         &mut self,
@@ -77,9 +77,6 @@ impl<E: Wide> Recurrences<E, Trajectories<E, AgeingForm>, 3> for AgeingLanes<E> 
                 Some(first),
             ]
         };
-        if !order.is_multiple_of(2) {
-            return ByFormula.make(formula, memory, order, unit);
-        }
         let tau = memory[TAU * ROOM].get();
         let far = tau.abs() - tau.like(NEAR);
         if far.none_negative() {
@@ -202,7 +199,7 @@ impl<E: Element> Interface<E> {
 }
 
 impl<E: Element> AgeingLanes<E> {
-    /// The series to this order, which is even.
+    /// The series to this order, which is even, as all are.
     #[inline(always)]
     fn expand(
         &mut self,
@@ -230,17 +227,10 @@ impl<E: Element> AgeingLanes<E> {
             },
             [first, second],
         );
-        // What stands for the sums at first.
         let begun = (rising, falling, healing);
         let sums = [first.begun(begun), second.begun(begun)];
-        let mut last = self.next(
-            &known,
-            memory,
-            0,
-            sums,
-            [first.b, second.b],
-            -formula.driving,
-        );
+        let b = [first.b, second.b];
+        let mut last = self.next(&known, memory, 0, sums, b, -formula.driving);
         let mut k = 1;
         let mut sums = [[zero; 4]; 2];
         loop {
@@ -254,7 +244,7 @@ impl<E: Element> AgeingLanes<E> {
             }
             last = self.next(&known, memory, k, sums, newest_b(&last), zero);
             k += 1;
-            if k == order {
+            if k >= order {
                 break;
             }
             let [first, second] = &self.0;

@@ -213,8 +213,8 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
     }
 
     fn state(&self) -> [f64; N] {
-        let [tau, log_states] = each!(self, s => in_logarithms(s.state()));
-        chart(tau[0], log_states)
+        let x = each!(self, s => s.state().map(Element::interfaces));
+        chart(x[0][0], x[1].map(f64::ln))
     }
 
     fn slips(&self, order: usize, length: f64) -> Option<[f64; 2]> {
@@ -223,21 +223,6 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
 
     fn expansion(&self, order: usize, into: &mut Expansion<N>) {
         each!(self, s => copy(s, order, into));
-    }
-}
-
-/// (tau, ln psi) of both interfaces.
-fn in_logarithms<E: Element>(&[tau, psi]: &[E; 2]) -> [[f64; 2]; 2] {
-    [tau.interfaces(), psi.run(Logarithm(psi)).interfaces()]
-}
-
-struct Logarithm<E>(E);
-
-impl<E: Element> pulp::NullaryFnOnce for Logarithm<E> {
-    type Output = E;
-    #[inline(always)]
-    fn call(self) -> E {
-        self.0.ln()
     }
 }
 
