@@ -4,7 +4,9 @@
 use proptest::prelude::*;
 use twinslip::field::VectorField;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::model::{Loading, MAX_LANES, batch_solution, two_interfaces};
+use twinslip::model::{
+    Loading, MAX_LANES, batch_solution, interfaces_in_difference_chart, two_interfaces,
+};
 use twinslip::number::DoubleDouble;
 use twinslip::series::{Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER};
 
@@ -169,6 +171,32 @@ proptest! {
             step.compare(&*two_interfaces(law, loading), [tau, psi[0], psi[1]])?;
         }
     }
+
+    /// The same in (tau, ln psi_2, ln D), however small D is, for laws whose state ages. What a change of ln D does to tau is as small
+    /// as D, and right to a part of itself.
+    #[test]
+    fn every_column_of_the_difference_chart_is_that_of_the_formula(
+        law in prop_oneof![Just("spinodal"), Just("bounded"), Just("regularised-ageing"), Just("dieterich-ruina")],
+        beta in 0.3..3.0,
+        residual_strength in prop_oneof![Just(0.0), 1e-6..0.1],
+        (driving, stiffness) in (-4.0..6.0, -7.0..1.0),
+        tau in prop_oneof![0.1..1.0_f64, 1.0..12.0],
+        pulled: bool,
+        log_second in -9.0..0.0,
+        log_gap in prop_oneof![-300.0..-20.0, -20.0..1.0],
+        order in prop_oneof![Just(12), Just(16), Just(18), Just(20), Just(MAX_ORDER)],
+        free in prop_oneof![Just(vec![]), Just(vec![1]), Just(vec![0, 1]), Just(vec![1, 0])],
+    ) {
+        let constants = Parameters { beta, gamma0: 1e-4, healing_time: 100.0, residual_strength };
+        let law = AnyLaw::named(law, constants).expect("known");
+        let tau = signed(law, tau, pulled);
+        let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
+        let field = interfaces_in_difference_chart(law, loading);
+        let step = Step { order, free };
+        let [made, exact] = step.compare(&*field, [tau, log_second, log_gap])?;
+        let (of_stress, exact) = (made.start[2][0], exact.start[2][0]);
+        prop_assert!((of_stress / exact - 1.0).abs() < 1e-8, "{of_stress} {exact}");
+    }
 }
 
 /// A step of a tangent.
@@ -182,7 +210,7 @@ impl Step {
         &self,
         field: &dyn VectorField<N>,
         start: [f64; N],
-    ) -> Result<(), TestCaseError> {
+    ) -> Result<[Derivatives<N>; 2], TestCaseError> {
         /// A step at this tolerance, with which truncation does not count.
         const TOLERANCE: f64 = 1e-15;
         const BOUND: f64 = 2e-11;
@@ -245,6 +273,6 @@ impl Step {
                 "across: {a} and {b}"
             );
         }
-        Ok(())
+        Ok([made, exact])
     }
 }

@@ -133,8 +133,22 @@ pub(super) struct AgeingRecurrences<const LINEARISED: bool> {
     /// q_j, v_j with P_j, and z_j with u_j: (q+, q-), (-|v|, -P) in the unit of time, (z, u). The first ones are 0, their products are
     /// not in the sums.
     right: [Right; ROOM],
+    /// The first ones of the last two.
+    first: [Four; 2],
     /// The Jacobian along the series made last.
     jacobian: [JacobianTerm; ROOM],
+}
+
+/// Coefficients of one interface.
+pub(super) struct InterfaceTerm {
+    /// |v| in the unit of time.
+    pub slip_rate: f64,
+    /// P
+    pub strengthening: f64,
+    /// z, with the sign of v: d|v|/dtau.
+    pub by_stress: f64,
+    /// |u|
+    pub over_strength: f64,
 }
 
 type Right = [Four; 3];
@@ -145,7 +159,27 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
         AgeingRecurrences {
             left: [[zero; 2]; ROOM],
             right: [[zero; 3]; ROOM],
+            first: [zero; 2],
             jacobian: [JacobianTerm::ZERO; ROOM],
+        }
+    }
+}
+
+impl AgeingRecurrences<true> {
+    /// The k-th coefficients of the i-th interface.
+    #[inline(always)]
+    pub fn interface(&self, i: usize, k: usize) -> InterfaceTerm {
+        let [rates, slopes] = match k {
+            0 => self.first,
+            _ => [self.right[k][1], self.right[k][2]],
+        };
+        let (rates, slopes) = (rates.lanes(), slopes.lanes());
+        let sign = 1_f64.copysign(self.first[1].lane(2 * i + 1));
+        InterfaceTerm {
+            slip_rate: -rates[2 * i],
+            strengthening: -rates[2 * i + 1],
+            by_stress: sign * slopes[2 * i],
+            over_strength: sign * slopes[2 * i + 1],
         }
     }
 }
@@ -182,6 +216,7 @@ impl<const LINEARISED: bool> Recurrences<Pair, AgeingInterfaces, 2>
         let watched = ByFormula.make(&LinearisedInterfaces(*formula), memory, order, unit);
         let jacobian = &mut self.jacobian[..order];
         jacobian_of_rows(jacobian, memory, &watched, formula.stiffness, unit);
+        self.take(formula, memory, &watched, order, unit);
         watched
     }
 }
@@ -193,6 +228,43 @@ fn plus(a: Right, b: Right) -> Right {
 }
 
 impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
+    /// The series that [`Self::interface`] tells of, from those of the formula.
+    fn take(
+        &mut self,
+        formula: &AgeingInterfaces,
+        memory: &[Cell<Pair>],
+        watched: &[Option<usize>; WATCHED],
+        order: usize,
+        unit: Pair,
+    ) {
+        let form = &formula.law;
+        let (psi, any) = (&memory[PSI * ROOM..][..ROOM], unit);
+        let row = |i: usize, k: usize| match watched[i] {
+            Some(row) => memory[row * ROOM + k].get(),
+            None => any.like(0.0),
+        };
+        let strength = |k: usize| psi[k].get() * any.like(form.strength[1]);
+        let first = strength(0) + any.like(form.strength[0]);
+        let sliding = -(row(0, 0).sign() * unit);
+        let mut p = [any.like(0.0); ROOM];
+        for k in 0..order {
+            // P a = beta a'
+            let mut sum = strength(k + 1) * any.like(form.beta * (k + 1) as f64);
+            for j in 1..=k {
+                sum = sum - strength(j) * p[k - j];
+            }
+            p[k] = sum / first;
+            let rates = (row(0, k) * sliding).twice().beside((-p[k]).twice());
+            // dv/dpsi = -beta a_1 v/a
+            let u = row(2, k) * first / any.like(-form.beta * form.strength[1]);
+            let slopes = row(1, k).twice().beside(u.twice());
+            match k {
+                0 => self.first = [rates, slopes],
+                _ => [self.right[k][1], self.right[k][2]] = [rates, slopes],
+            }
+        }
+    }
+
     /// sum + a b
     #[inline(always)]
     fn add(sum: &mut Right, a: [Four; 2], b: Right) {
@@ -288,6 +360,7 @@ impl<const LINEARISED: bool> AgeingRecurrences<LINEARISED> {
                 b,
             };
             let healed = number(form.healing[1]) * unit;
+            self.first = [v.beside(p) * level.scales, z.beside(v)];
             self.jacobian[0] = slopes.term(pull, (v, z), b * z, v, healed);
             slopes
         } else {

@@ -12,6 +12,8 @@ use crate::field::State;
 use crate::friction::Law;
 use crate::number::{Difference, Real};
 use crate::series::Equations;
+#[cfg(target_arch = "x86_64")]
+use crate::series::Tangent;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_2/dt = g(v_2, w_2), d(ln D)/dt = (dpsi_1/dt - dpsi_2/dt) / D, in the parameters
 /// (V_H, K), from (19).
@@ -55,6 +57,16 @@ impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
             rate.second / second,
             rate.gap / gap,
         ]
+    }
+
+    #[cfg(target_arch = "x86_64")]
+    fn own_tangent(
+        &self,
+        [driving, stiffness]: [f64; 2],
+        free: &[usize],
+    ) -> Option<Box<dyn Tangent<3>>> {
+        let loading = Loading { driving, stiffness };
+        super::difference_tangent::tangent(self.law.ageing_form()?, loading, free)
     }
 
     fn lasting(&self) -> Option<&'static str> {

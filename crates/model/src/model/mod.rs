@@ -11,6 +11,8 @@ mod batch;
 pub mod classics;
 mod difference_chart;
 #[cfg(target_arch = "x86_64")]
+mod difference_tangent;
+#[cfg(target_arch = "x86_64")]
 mod lanes;
 mod logarithmic;
 pub mod normal_form;

@@ -141,6 +141,9 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<
     }
 
     fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
+        if let Some(own) = self.equations.own_tangent(self.parameters, free) {
+            return own;
+        }
         if const { N <= COMPILED } && free.len() <= FREE && self.is_small() {
             #[cfg(target_arch = "x86_64")]
             let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));

@@ -308,47 +308,48 @@ impl<S: Shell, E: Element, F: Formula<E, 2>, R: Linearised<E, F>, X: Element>
         for columns in &mut self.columns {
             columns.advance_by(order, h, growth);
         }
-        let (trace, across) = self.mean_traces(order, h);
+        let jacobian = &self.recurrences.jacobian()[..order];
+        let (trace, across) = mean_traces(jacobian, self.states, h);
         self.log_determinant += h * trace;
         self.log_transverse += h * across;
         taken
     }
+}
 
-    /// The mean over h units of the trace of the Jacobian, and of the growth of a difference between equal interfaces.
-    #[inline(always)]
-    fn mean_traces(&self, order: usize, h: f64) -> (f64, f64) {
-        let jacobian = &self.recurrences.jacobian()[..order];
-        let squared = h * h;
-        // Even and odd terms apart.
-        let mut sums = [(0.0, 0.0); 2];
-        let mut k = order;
-        while k > 0 {
-            k -= 1;
-            let JacobianTerm { stress, states } = &jacobian[k];
-            let (across, over) = (states[0][1], ONE_OVER[k + 1]);
-            let trace = stress[0][0] + self.states * (across + states[1][1]);
-            let sum = &mut sums[k % 2];
-            *sum = (
-                sum.0 * squared + trace * over,
-                sum.1 * squared + across * over,
-            );
-        }
-        let [even, odd] = sums;
-        (even.0 + h * odd.0, even.1 + h * odd.1)
+/// The mean over h units of the trace of the Jacobian, its states counted `all` times, and of the growth of a difference between equal
+/// interfaces.
+#[inline(always)]
+pub(super) fn mean_traces(jacobian: &[JacobianTerm], all: f64, h: f64) -> (f64, f64) {
+    let squared = h * h;
+    // Even and odd terms apart.
+    let mut sums = [(0.0, 0.0); 2];
+    let mut k = jacobian.len();
+    while k > 0 {
+        k -= 1;
+        let JacobianTerm { stress, states } = &jacobian[k];
+        let (across, over) = (states[0][1], ONE_OVER[k + 1]);
+        let trace = stress[0][0] + all * (across + states[1][1]);
+        let sum = &mut sums[k % 2];
+        *sum = (
+            sum.0 * squared + trace * over,
+            sum.1 * squared + across * over,
+        );
     }
+    let [even, odd] = sums;
+    (even.0 + h * odd.0, even.1 + h * odd.1)
 }
 
 /// The larger one, or the one that is no number.
 #[inline(always)]
-fn larger(a: f64, b: f64) -> f64 {
+pub(super) fn larger(a: f64, b: f64) -> f64 {
     if a > b { a } else { b }
 }
 
 /// The series of the solution, to be compiled for the processor. Apart from the rest of a step: it is by far the most code.
-struct Expand<'a, E, F, R> {
-    stepper: &'a mut Stepper<E, F, 2>,
-    recurrences: &'a mut R,
-    accuracy: &'a Accuracy,
+pub(super) struct Expand<'a, E, F, R> {
+    pub stepper: &'a mut Stepper<E, F, 2>,
+    pub recurrences: &'a mut R,
+    pub accuracy: &'a Accuracy,
 }
 
 impl<E: Element, F: Formula<E, 2>, R: Recurrences<E, F, 2>> NullaryFnOnce for Expand<'_, E, F, R> {

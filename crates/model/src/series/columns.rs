@@ -11,11 +11,13 @@ use super::{Accuracy, MAX_ORDER, ONE_OVER};
 const BLOCK: usize = 4;
 
 /// One coefficient of the Jacobian's entries along a solution of (tau, psi_1, psi_2) in the unit of time, the states counted in their
-/// sizes at the beginning of the step, x_i = psi_i/psi_i(0).
+/// sizes at the beginning of the step, x_i = psi_i/psi_i(0); or of three variables in general, of which the rate of the last does
+/// not depend on the one before it.
 #[derive(Debug, Clone, Copy)]
 #[repr(C, align(64))]
 pub struct JacobianTerm {
-    /// Of tau', for each interface: in tau, the same for both, and in x_i.
+    /// Of tau', for each interface: in tau, the same for both, and in x_i. Where x_1' depends on x_2, that stands in the place of the
+    /// second of what is the same.
     pub stress: [[f64; 2]; 2],
     /// Of x_i': in tau, and in x_i.
     pub states: [[f64; 2]; 2],
@@ -39,8 +41,9 @@ pub struct Along<'a, E> {
     pub unit: f64,
 }
 
-/// Columns in the lanes of X, each a perturbation of (tau, ln psi_1, ln psi_2).
-pub struct VariationalEquations<X> {
+/// Columns in the lanes of X, each a perturbation of (tau, ln psi_1, ln psi_2); or of others, where COUPLED: then the rate of the
+/// second depends on the third too.
+pub struct VariationalEquations<X, const COUPLED: bool = false> {
     /// At the beginning of the next step.
     x: [X; 3],
     /// The series, in the order of the powers.
@@ -50,7 +53,7 @@ pub struct VariationalEquations<X> {
     stiffness: X,
 }
 
-impl<X: Element> VariationalEquations<X> {
+impl<X: Element, const COUPLED: bool> VariationalEquations<X, COUPLED> {
     /// Beginning at x, of which one lane each may be the derivative in V_H and in K.
     pub fn new(x: [X; 3], driving: X, stiffness: X) -> Self {
         VariationalEquations {
@@ -90,7 +93,7 @@ impl<X: Element> VariationalEquations<X> {
             let mut sum = nothing;
             let terms = jacobian[..=k].iter().rev();
             for (x, term) in self.series[..=k].iter().zip(terms) {
-                add(&mut sum, term, x);
+                add::<X, COUPLED>(&mut sum, term, x);
             }
             self.series[k + 1] = next(k, sum, along.stress, loading);
             k += 1;
@@ -100,7 +103,7 @@ impl<X: Element> VariationalEquations<X> {
             let windows = jacobian[..k + BLOCK].windows(BLOCK).rev();
             for (x, terms) in self.series[..=k].iter().zip(windows) {
                 for (sum, term) in sums.iter_mut().zip(terms) {
-                    add(sum, term, x);
+                    add::<X, COUPLED>(sum, term, x);
                 }
             }
             let mut m = 0;
@@ -109,7 +112,7 @@ impl<X: Element> VariationalEquations<X> {
                 self.series[k + m + 1] = x;
                 let mut later = m + 1;
                 while later < BLOCK {
-                    add(&mut sums[later], &jacobian[later - m - 1], &x);
+                    add::<X, COUPLED>(&mut sums[later], &jacobian[later - m - 1], &x);
                     later += 1;
                 }
                 m += 1;
@@ -165,8 +168,12 @@ fn add_to<X: Element>(sum: &mut [X; 3], h: X, x: &[X; 3]) {
 
 /// Adds a term's product with a column.
 #[inline(always)]
-fn add<X: Element>(sum: &mut [X; 3], term: &JacobianTerm, &[tau, first, second]: &[X; 3]) {
-    let [[by_stress, by_first], [_, by_second]] = term.stress;
+fn add<X: Element, const COUPLED: bool>(
+    sum: &mut [X; 3],
+    term: &JacobianTerm,
+    &[tau, first, second]: &[X; 3],
+) {
+    let [[by_stress, by_first], [first_by_second, by_second]] = term.stress;
     let states = term.states;
     sum[0] = tau.mul_add(tau.like(by_stress), sum[0]);
     sum[1] = tau.mul_add(tau.like(states[0][0]), sum[1]);
@@ -175,6 +182,9 @@ fn add<X: Element>(sum: &mut [X; 3], term: &JacobianTerm, &[tau, first, second]:
     sum[1] = first.mul_add(tau.like(states[0][1]), sum[1]);
     sum[2] = second.mul_add(tau.like(states[1][1]), sum[2]);
     sum[0] = second.mul_add(tau.like(by_second), sum[0]);
+    if COUPLED {
+        sum[1] = second.mul_add(tau.like(first_by_second), sum[1]);
+    }
 }
 
 /// The coefficients after those of order k, of whose rates this is the sum, but for what comes by a change of the loading.

@@ -4,7 +4,7 @@ use super::formula::{Formula, Rates, WATCHED};
 use super::handle::{Series, value};
 use super::stepper::Stepper;
 use super::tape::{Counting, Order, ROOM, ROWS, Tape};
-use super::{Accuracy, Expansion, Solution};
+use super::{Accuracy, Expansion, Solution, Tangent};
 use crate::number::{DoubleDouble, Real};
 use std::cell::Cell;
 use std::fmt::Debug;
@@ -25,6 +25,12 @@ pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync 
     /// Slip rates along the solution, of one interface or two, for fields that have any.
     fn slip_rates<T: Real>(&self, _x: [T; N], _parameters: [T; P]) -> [Option<T>; 2] {
         [None; 2]
+    }
+
+    /// The solution with its derivatives in the parameters of these places, where the equations have a faster way to it than their
+    /// formula.
+    fn own_tangent(&self, _parameters: [f64; P], _free: &[usize]) -> Option<Box<dyn Tangent<N>>> {
+        None
     }
 
     /// The name of a law by which every solution, forwards in time, is known to exist for all time.

@@ -125,6 +125,13 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         &self.x
     }
 
+    /// Puts this in the place of the i-th variable, where it is known better.
+    #[cfg(target_arch = "x86_64")]
+    #[inline(always)]
+    pub fn replace(&mut self, i: usize, x: E) {
+        self.x[i] = x;
+    }
+
     /// The unit of time of the last step's series.
     pub fn unit(&self) -> E {
         self.unit
