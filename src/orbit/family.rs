@@ -28,9 +28,9 @@ pub trait ParametrisedField: Sync {
     /// Of each parameter, its derivative in its coordinate.
     fn scale(&self, at: [f64; 2]) -> [f64; 2];
 
-    /// The normal of the plane in which a node may move where the flow is `flow`: the flow itself, unless some variables had
-    /// better stay out of it.
-    fn normal(&self, flow: Vector) -> Vector {
+    /// The normal of the plane in which a node at x may move where the flow is `flow`: the flow itself, unless some variables
+    /// had better stay out of it.
+    fn normal(&self, _x: &Vector, flow: Vector) -> Vector {
         flow
     }
 
@@ -256,10 +256,17 @@ impl ParametrisedField for OverDifferenceChart {
         at.map(f64::exp)
     }
 
-    /// Without ln D. Where D is small, tau and psi_2 know nothing of it, and a shift of ln D stays as it is all along the
-    /// orbit. A plane that leans towards ln D would mix that shift with what grows by e^(0.5 / K) along the canard.
-    fn normal(&self, mut flow: Vector) -> Vector {
-        flow[2] = 0.0;
+    /// Without ln D where D is small: tau and psi_2 know nothing of it there, and a shift of ln D stays as it is all along the
+    /// orbit. A plane that leans towards ln D would mix that shift with what grows by e^(0.5 / K) along the canard. Where the
+    /// interfaces part, nodes go with them.
+    fn normal(&self, x: &Vector, mut flow: Vector) -> Vector {
+        let ratio = (x[2] - x[1]).exp();
+        let squared = ratio * ratio;
+        flow[2] *= if squared.is_finite() {
+            squared / (1.0 + squared)
+        } else {
+            1.0
+        };
         flow
     }
 

@@ -58,7 +58,7 @@ impl<'a> PoincareMaps<'a> {
         tolerance: f64,
     ) -> Option<Self> {
         let field = family.field(site.at);
-        let frame = |x: &Vector| plane(family, field.f(x), axes);
+        let frame = |x: &Vector| plane(family, x, field.f(x), axes);
         let frames: Vec<_> = site.shooting.nodes.iter().map(frame).collect();
         let mut maps = PoincareMaps {
             field,
@@ -197,7 +197,7 @@ pub fn squares(
         (0.966_234_757_101_576, 0.085_662_246_189_585_17),
     ];
     /// Into so many parts every arc is cut.
-    const PARTS: usize = 4;
+    const PARTS: usize = 8;
     let field = family.field(site.at);
     let mut tracer = Tracer::taylor(FINE).ok()?;
     let points: Vec<(f64, f64)> = (0..PARTS)
@@ -206,7 +206,7 @@ pub fn squares(
         .collect();
     let mut arcs = tracer.arcs(&field, &[]).ok()?;
     let mut arc = |(node, &duration): (&Vector, &f64)| {
-        let mut moved = plane(family, field.f(node), axes).remove_column(0);
+        let mut moved = plane(family, node, field.f(node), axes).remove_column(0);
         let (mut x, mut at) = (node.clone(), 0.0);
         let mut sum = Matrix::zeros(moved.ncols(), moved.ncols());
         for &(point, weight) in &points {
@@ -228,8 +228,8 @@ pub fn squares(
 }
 
 /// The plane's coordinates: its normal, and the directions in it.
-fn plane(family: &dyn ParametrisedField, flow: Vector, axes: Axes) -> Matrix {
-    let normal = family.normal(flow);
+fn plane(family: &dyn ParametrisedField, x: &Vector, flow: Vector, axes: Axes) -> Matrix {
+    let normal = family.normal(x, flow);
     match axes {
         Axes::Any => frame(&normal),
         Axes::Symmetry => symmetric_frame(&normal),

@@ -57,7 +57,7 @@ impl Linear {
         field: &AnyField<'_>,
         shooting: &ShootingNodes,
     ) -> Result<Self> {
-        let normal = |x: &Vector| frame(&family.normal(field.f(x)));
+        let normal = |x: &Vector| frame(&family.normal(x, field.f(x)));
         let frames = shooting.nodes.iter().map(normal).collect();
         Self::in_frames(
             tracer,

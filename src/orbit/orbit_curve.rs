@@ -8,6 +8,7 @@ use super::shooting_nodes::ShootingMesh;
 use super::test_function::TestFunction;
 use crate::continuation::{self, Continuation, CurveStep, SolutionCurve, StepControl, Stop};
 use crate::error::{Error, Result};
+use crate::field::Vector;
 use crate::model::STIFFNESS;
 use std::sync::Arc as Shared;
 
@@ -66,6 +67,8 @@ const OFF: f64 = 0.03;
 const TURN: f64 = 0.8;
 /// Progress of the last steps, as a part of the way.
 const PROGRESS: f64 = 1e-3;
+/// An arc of which a step would leave less than this vanishes.
+const SHRUNK: f64 = 0.08;
 /// A slope along a parameter that is small enough where it has no condition of its own.
 const FLAT: f64 = 1e-3;
 
@@ -143,13 +146,17 @@ impl<'c, 'f> Palc<'c, 'f> {
         Ok(Continuation::new(curve, first))
     }
 
-    /// Going on where another continuation stands, after a change of variables to those of this orbit.
+    /// Going on where another continuation stands, after a change of variables to those of this orbit, with steps up to `longest`.
     pub(crate) fn resumed(
         corrector: &'c mut Corrector<'f>,
         other: &Palc<'_, '_>,
         site: ContinuationPoint,
+        longest: f64,
     ) -> Option<Self> {
-        let settings = other.curve.settings.clone();
+        let settings = PalcSettings {
+            longest,
+            ..other.curve.settings.clone()
+        };
         let DirectedPoint { here, direction } = &other.now;
         let afar = direction.seen_from_afar(&here.site.shooting);
         // Closed in the new variables, with the parameter in which it moves most held.
@@ -167,7 +174,9 @@ impl<'c, 'f> Palc<'c, 'f> {
             settings,
         };
         let linear = Shared::unwrap_or_clone(here.linear);
-        let now = curve.arrived(here.site, linear, afar)?;
+        let now = curve.arrived(here.site, linear, |site, new| {
+            product(&afar, &new.seen_from_afar(&site.shooting))
+        })?;
         let now = curve.cut(&now)?;
         Some(Continuation::new(curve, now).resuming(other))
     }
@@ -195,6 +204,16 @@ impl SolutionCurve for OrbitCurve<'_, '_> {
         distance: f64,
     ) -> Result<(DirectedPoint, f64)> {
         let predicted = here.site.moved(direction, distance);
+        let durations = here.site.shooting.durations.iter();
+        let mut durations = durations.zip(&predicted.shooting.durations);
+        if durations.any(|(now, then)| then / now < SHRUNK) {
+            return Err(Error::NotConverged {
+                what: "a step along which an arc of the orbit vanishes",
+                iterations: 0,
+                residual: f64::INFINITY,
+                tolerance: Goal::STEP.done,
+            });
+        }
         let conditions = self.settings.and(Condition::Plane(direction, &predicted));
         // The gradients there, and not those of the orbit here: the direction depends on them.
         let free = &self.settings.free;
@@ -322,13 +341,13 @@ impl OrbitCurve<'_, '_> {
     /// The orbit with its arcs cut anew.
     fn cut(&mut self, DirectedPoint { here, direction }: &DirectedPoint) -> Option<DirectedPoint> {
         let site = &here.site;
+        let old = (site, direction);
         let field = self.corrector.family.field(site.at);
         let shooting = site
             .shooting
             .cut(&mut self.corrector.tracer, &field, &ShootingMesh::FINE)
             .ok()?;
         drop(field);
-        let old = direction.seen_from_afar(&site.shooting);
         let mut site = ContinuationPoint {
             shooting,
             at: site.at,
@@ -349,15 +368,17 @@ impl OrbitCurve<'_, '_> {
         let (_, along) = linear.solutions(&self.settings.free, scale)?;
         let first = most_moved(&along);
         site.shooting = site.shooting.beginning_at(first);
-        self.arrived(site, linear.beginning_at(first), old)
+        self.arrived(site, linear.beginning_at(first), |site, new| {
+            alike(old, (site, new))
+        })
     }
 
-    /// At an orbit that has other nodes than those before, going on in the direction that looked so from afar.
+    /// At an orbit that has other nodes than those before, going on in the direction whose product with the one so far is positive.
     fn arrived(
         &mut self,
         site: ContinuationPoint,
         linear: Linear,
-        old: [f64; 3],
+        with_old: impl FnOnce(&ContinuationPoint, &TangentVector) -> f64,
     ) -> Option<DirectedPoint> {
         let own = self.settings.own();
         let here = self
@@ -365,13 +386,33 @@ impl OrbitCurve<'_, '_> {
             .look_with(site, linear, &self.settings.free, &own)?;
         let any = here.along.first()?.clone();
         let mut direction = self.settings.direction(&here, &any)?;
-        let new = direction.seen_from_afar(&here.site.shooting);
-        let along: f64 = old.iter().zip(&new).map(|(a, b)| a * b).sum();
-        if along < 0.0 {
+        if with_old(&here.site, &direction) < 0.0 {
             direction = direction.scaled(-1.0);
         }
         Some(DirectedPoint { here, direction })
     }
+}
+
+fn product(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// The product of two tangent vectors of one orbit with other nodes: of what does not depend on these, and of the nodes that both
+/// have. Where the interfaces come near each other, ln D alone may change.
+fn alike(
+    (old, before): (&ContinuationPoint, &TangentVector),
+    (new, after): (&ContinuationPoint, &TangentVector),
+) -> f64 {
+    let nodes = old.shooting.nodes.iter().zip(&before.nodes);
+    let of_nodes = |(node, moved): (&Vector, &Vector)| {
+        let mut others = new.shooting.nodes.iter();
+        let same = others.position(|other| other == node);
+        same.map_or(0.0, |same| moved.dot(&after.nodes[same]))
+    };
+    let common: f64 = nodes.map(of_nodes).sum();
+    let afar =
+        [(old, before), (new, after)].map(|(at, tangent)| tangent.seen_from_afar(&at.shooting));
+    common / old.shooting.nodes.len() as f64 + product(&afar[0], &afar[1])
 }
 
 fn no_nodes() -> Stop {

@@ -44,6 +44,40 @@ impl ShootingMesh {
     };
 }
 
+/// A step along a closed curve that is cut into arcs.
+struct TracedStep {
+    begin: f64,
+    from: Vector,
+    length: f64,
+    /// The integral of |trace|.
+    volume: f64,
+    /// Whether it is as long as the method makes it: not cut short by the end of an arc.
+    whole: bool,
+}
+
+/// What part each step is of one that is not cut short. Where old arcs have become short they would be taken for much work, and
+/// come back as many short ones.
+fn parts(steps: &[TracedStep]) -> Vec<f64> {
+    let last_whole = |longest: &mut Option<f64>, step: &TracedStep| {
+        if step.whole {
+            *longest = Some(step.length);
+        }
+        Some(*longest)
+    };
+    let before: Vec<_> = steps.iter().scan(None, last_whole).collect();
+    let mut after: Vec<_> = steps.iter().rev().scan(None, last_whole).collect();
+    after.reverse();
+    let part = |((step, before), after): ((&TracedStep, &Option<f64>), &Option<f64>)| {
+        let whole = match (before, after) {
+            (Some(a), Some(b)) => a.min(*b),
+            (Some(one), None) | (None, Some(one)) => *one,
+            (None, None) => return 1.0,
+        };
+        (step.length / whole).min(1.0)
+    };
+    steps.iter().zip(&before).zip(&after).map(part).collect()
+}
+
 /// The largest loss on a refined arc, some four digits, and how often one is halved for it.
 const LARGEST_LOSS: f64 = 10.0;
 const DEPTH: usize = 10;
@@ -117,44 +151,54 @@ impl ShootingNodes {
         field: &AnyField<'_>,
         mesh: &ShootingMesh,
     ) -> Result<Self> {
-        // Time, state and measure at every step's end; no cut but at these.
-        let (mut way, mut begin, mut measure) = (Vec::new(), 0.0, 0.0);
+        // No cut but at the ends of steps.
+        let (mut steps, mut begin) = (Vec::new(), 0.0);
         for (start, &duration) in self.nodes.iter().zip(&self.durations) {
             let mut trace = field.trace(start.as_slice()).abs();
-            way.push((begin, start.clone(), measure));
+            let mut from = start.clone();
             tracer.flow(
                 field,
                 start,
                 duration,
                 Some(&mut |step| {
                     let next = field.trace(step.y1).abs();
-                    let volume = 0.5 * (trace + next) * (step.t1 - step.t0).abs();
+                    let length = (step.t1 - step.t0).abs();
+                    let to = Vector::from_column_slice(step.y1);
+                    steps.push(TracedStep {
+                        begin: begin + step.t0,
+                        from: std::mem::replace(&mut from, to),
+                        length,
+                        volume: 0.5 * (trace + next) * length,
+                        whole: true,
+                    });
                     trace = next;
-                    measure += 1.0 / mesh.steps + volume / mesh.volume;
-                    let end = Vector::from_column_slice(step.y1);
-                    way.push((begin + step.t1, end, measure));
                     Ok(Control::Continue)
                 }),
             )?;
+            if let Some(last) = steps.last_mut() {
+                last.whole = false;
+            }
             // The next arc begins here: at its own node.
-            way.pop();
             begin += duration;
         }
-        let count = (measure.ceil() as usize).clamp(mesh.nodes.0, mesh.nodes.1);
+        let measures = steps.iter().zip(parts(&steps));
+        let measures = measures.map(|(step, part)| part / mesh.steps + step.volume / mesh.volume);
+        let measures: Vec<f64> = measures.collect();
+        let all: f64 = measures.iter().sum();
+        let count = (all.ceil() as usize).clamp(mesh.nodes.0, mesh.nodes.1);
         let (mut nodes, mut times) = (Vec::new(), Vec::new());
-        let mut at = 0;
-        for k in 0..count {
-            let from = measure * k as f64 / count as f64;
-            let Some(next) = way[at..].iter().position(|p| p.2 >= from) else {
-                break;
-            };
-            at += next;
-            nodes.push(way[at].1.clone());
-            times.push(way[at].0);
-            at += 1;
-            if at == way.len() {
-                break;
+        let each = all / count as f64;
+        let (mut before, mut next) = (0.0, 0.0);
+        for (step, measure) in steps.into_iter().zip(measures) {
+            // The last arc is no short one either.
+            let last = all - before < 0.5 * each && !nodes.is_empty();
+            if before + 0.5 * measure >= next && !last {
+                nodes.push(step.from);
+                times.push(step.begin);
+                // A step of much measure takes the place of several arcs: what follows it is not cut the finer for that.
+                next = f64::max(next + each, before + 0.5 * each);
             }
+            before += measure;
         }
         times.push(begin);
         let durations = times.windows(2).map(|t| t[1] - t[0]).collect();

@@ -21,6 +21,9 @@ use std::ops::ControlFlow::{self, Break, Continue};
 /// The most steps on a curve, each way.
 const STEPS: usize = 3000;
 
+/// How much longer steps are where the difference of the interfaces is a variable: its logarithm changes by tens along the curve.
+const LONGER: f64 = 10.0;
+
 /// R1 to R4 and the value of tr there.
 const RESONANCES: [(Label, f64); 4] = [
     (Label::R1, 2.0),
@@ -209,7 +212,8 @@ impl<'r, 's> HalfCurve<'r, 's> {
         let site = &palc.now.here.site;
         if let Some((chart, there)) = self.chart.keeping(site) {
             let mut corrector = new_corrector(chart.family())?;
-            if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
+            let longest = LONGER * palc.curve.settings.longest;
+            if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there, longest) {
                 self.chart = chart;
                 return self.go(&mut palc);
             }

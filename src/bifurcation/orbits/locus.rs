@@ -154,14 +154,19 @@ const LOWEST: f64 = 0.03;
 const HIGHEST: f64 = 1e3;
 /// From one such branch to the next K is divided by this.
 const APART: f64 = 2.0;
+/// Unless the least one, by which the range ends, is as near as this.
+const CLOSE: f64 = 1.2;
 
 /// The values of K at which bifurcations are looked for.
 fn scanned((from, to): (f64, f64)) -> Vec<f64> {
     let to = to.min(HIGHEST);
     let least = from.min(to).max(LOWEST.min(to));
     let halves = std::iter::successors(Some(to), |k| Some(k / APART));
-    // The least one too: a curve whose top is below the last but one would not be met.
-    halves.take_while(|&k| k > least).chain([least]).collect()
+    // The least one too: a curve whose top is below the last but one would not be met. No two stand close together.
+    halves
+        .take_while(|&k| k > CLOSE * least)
+        .chain([least])
+        .collect()
 }
 
 /// The curves of one kind and symmetry.

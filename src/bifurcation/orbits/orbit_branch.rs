@@ -82,7 +82,9 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         let site = &palc.now.here.site;
         if let Some((chart, there)) = self.chart.keeping(site) {
             let mut corrector = new_corrector(chart.family())?;
-            if let Some(mut palc) = Palc::resumed(&mut corrector, palc, there) {
+            if let Some(mut palc) =
+                Palc::resumed(&mut corrector, palc, there, palc.curve.settings.longest)
+            {
                 self.chart = chart;
                 return self.go(&mut palc);
             }
