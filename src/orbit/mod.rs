@@ -37,6 +37,7 @@ pub use family::{
 };
 pub use find::{FoundOrbit, InitialGuess, Query, find};
 pub use floquet::{Floquet, Kind, Multiplier, floquet};
+pub(crate) use hopf::EquilibriaAlong;
 pub use hopf::{HopfPoint, hopf_points};
 pub use interface_system::InterfaceSystem;
 pub(crate) use jet::{Axes, CVector, PoincareMaps, cut_into, finely_cut, squares};

@@ -7,8 +7,8 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::model::{DRIVING, Parameter};
 use crate::orbit::{
-    ContinuationPoint, Corrector, DirectedPoint, HopfPoint, InterfaceSystem, Palc, PalcSettings,
-    TestFunction, Tracer, WatchedFunction, hopf_points,
+    ContinuationPoint, Corrector, DirectedPoint, EquilibriaAlong, HopfPoint, InterfaceSystem, Palc,
+    PalcSettings, TestFunction, Tracer, WatchedFunction,
 };
 use std::ops::ControlFlow::{Break, Continue};
 
@@ -26,6 +26,8 @@ pub(super) struct Scan {
     slab: InterfaceSystem,
     driving: (f64, f64),
     pub symmetry: Symmetry,
+    /// Where Hopf points are looked for.
+    equilibria: Option<EquilibriaAlong>,
     /// What is looked for.
     watches: Vec<WatchedFunction>,
     /// What has been found, at these K.
@@ -38,6 +40,7 @@ impl Scan {
             slab,
             driving,
             symmetry,
+            equilibria: None,
             watches: Vec::new(),
             found: Vec::new(),
         }
@@ -68,10 +71,14 @@ impl Scan {
         Ok(of_kind.map(|one| one.1.clone()).collect())
     }
 
-    fn all_at(&self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint)>> {
+    fn all_at(&mut self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint)>> {
         let slab = self.slab.of_stiffness(stiffness);
         let (mut found, mut reached) = (Vec::new(), Vec::new());
-        let hopfs = hopf_points(&slab, self.symmetry, Parameter::Driving)?;
+        let equilibria = match self.equilibria.take() {
+            Some(known) => known,
+            None => EquilibriaAlong::new(&slab, self.symmetry, Parameter::Driving)?,
+        };
+        let hopfs = self.equilibria.insert(equilibria).hopf_points(&slab)?;
         for i in 0..hopfs.len() {
             if !reached.contains(&i) {
                 self.branch(&slab, (i, &hopfs), &mut reached, &mut found)?;
