@@ -6,7 +6,7 @@ use twinslip::integrate::{AnyField, Integrator, MAX_STEPS, Taylor};
 use twinslip::model::classics::{Brusselator, Langford, Lorenz, Roessler, VanDerPol};
 use twinslip::model::{Loading, Smooth, interfaces_in_difference_chart, symmetric, two_interfaces};
 use twinslip::number::Real;
-use twinslip::orbit::Tracer;
+use twinslip::orbit::{Arc, ShootingNodes, Tracer};
 use twinslip::series::Equations;
 
 /// A ring: x_i' = (x_{i+1} - x_{i-2}) x_{i-1} - x_i + F (Lorenz 1996).
@@ -198,5 +198,50 @@ fn the_ends_of_arcs_err_by_what_they_say() {
     }
     for (name, (rms, ..)) in all {
         assert!(rms < 1.0 && rms > 0.02, "{name}: {rms}");
+    }
+}
+
+/// Steps of much contraction take the place of several arcs; what follows them, and what is left of arcs whose nodes have come near each
+/// other, is not cut the finer for that.
+#[test]
+fn no_arc_is_much_shorter_than_it_should_be() {
+    /// What the mesh makes equal, of an arc: its steps and what its volume shrinks by, in units of what one arc may.
+    const STEPS: f64 = 12.0;
+    const VOLUME: f64 = 3.0;
+    /// The least part of it.
+    const LEAST: f64 = 0.3;
+    let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
+    for (driving, stiffness) in [(0.2, 0.01), (0.06, 0.0025), (1.0, 0.001)] {
+        let loading = Loading::new(driving, stiffness).unwrap();
+        let field = symmetric(law, loading);
+        let any = AnyField::of(&*field);
+        let mut tracer = Tracer::taylor(1e-12).unwrap();
+        let start = vector(&State::<2>::new(9.0, -1.0));
+        let (before, period) = (40.0 / (driving * stiffness), 2.5 / (driving * stiffness));
+        let start = tracer.flow(&any, &start, before, None).unwrap();
+        let mesh = ShootingNodes::along(&mut tracer, &any, &start, period).unwrap();
+        // Nodes near the ends of their arcs, and at their beginnings: short arcs between long ones.
+        let count = mesh.nodes.len();
+        let late = mesh.shifted(&mut tracer, &any, 0.99).unwrap();
+        let mut mixed = ShootingNodes {
+            nodes: Vec::new(),
+            durations: Vec::new(),
+        };
+        for k in 0..count {
+            let parts = [0.99, 0.01].map(|part| part * mesh.durations[k]);
+            mixed
+                .nodes
+                .extend([mesh.nodes[k].clone(), late.nodes[k].clone()]);
+            mixed.durations.extend(parts);
+        }
+        let again = mixed.meshed(&mut tracer, &any).unwrap();
+        for mesh in [mesh, again] {
+            let arcs = mesh.nodes.iter().zip(&mesh.durations);
+            let arcs = arcs.map(|(x, &t)| tracer.arc(&any, x, t, &[]).unwrap());
+            let measure = |arc: Arc| arc.steps as f64 / STEPS + arc.volume().abs() / VOLUME;
+            let measures: Vec<f64> = arcs.map(measure).collect();
+            let least = measures.iter().fold(f64::INFINITY, |a, &b| a.min(b));
+            assert!(least > LEAST, "{driving} {stiffness}: {measures:?}");
+        }
     }
 }

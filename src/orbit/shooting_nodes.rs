@@ -187,16 +187,17 @@ impl ShootingNodes {
         let all: f64 = measures.iter().sum();
         let count = (all.ceil() as usize).clamp(mesh.nodes.0, mesh.nodes.1);
         let (mut nodes, mut times) = (Vec::new(), Vec::new());
-        let each = all / count as f64;
+        let (each, mut last) = (all / count as f64, 0.0);
         let (mut before, mut next) = (0.0, 0.0);
         for (step, measure) in steps.into_iter().zip(measures) {
-            // The last arc is no short one either.
-            let last = all - before < 0.5 * each && !nodes.is_empty();
-            if before + 0.5 * measure >= next && !last {
+            // No arc is a short one, the last one neither.
+            let short = !times.is_empty() && f64::min(before - last, all - before) < 0.5 * each;
+            if before + 0.5 * measure >= next && !short {
                 nodes.push(step.from);
                 times.push(step.begin);
                 // A step of much measure takes the place of several arcs: what follows it is not cut the finer for that.
                 next = f64::max(next + each, before + 0.5 * each);
+                last = before;
             }
             before += measure;
         }

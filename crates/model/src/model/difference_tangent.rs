@@ -105,12 +105,13 @@ struct DifferenceSeries {
 /// is newest in the right comes last.
 #[inline(always)]
 fn product(left: &[Four], right: &[Four]) -> Four {
-    let nothing = left[0].like(0.0);
-    let mut sums = [nothing; 2];
-    let mut i = 0;
-    while i < right.len() {
-        sums[i % 2] = left[left.len() - 1 - i].mul_add(right[i], sums[i % 2]);
-        i += 1;
+    let mut sums = [left[0].like(0.0); 2];
+    let mut pairs = left.iter().rev().zip(right);
+    loop {
+        let Some((a, b)) = pairs.next() else { break };
+        sums[0] = a.mul_add(*b, sums[0]);
+        let Some((a, b)) = pairs.next() else { break };
+        sums[1] = a.mul_add(*b, sums[1]);
     }
     sums[0] + sums[1]
 }
@@ -143,6 +144,7 @@ impl DifferenceSeries {
     ) {
         let Start { psi, gap, unit } = start;
         let beta = form.beta;
+        let per_beta = 1.0 / beta;
         let [a_0, a_1] = form.strength;
         let [a_first, a_second] = psi.map(|psi| a_0 + a_1 * psi);
         let any = self.rates[0];
@@ -155,8 +157,9 @@ impl DifferenceSeries {
         let mut f = (-(beta + 1.0) * log).exp();
         let (mut grown, mut w) = (1.0, 1.0);
         let healed = a_0 / a_second;
-        // dtau'/dl from that in psi_1/psi_1(0), and |v_1| a_1 D/a(psi_1).
-        let of_gap = gap / psi[0];
+        // dtau'/dl and |v_1| a_1 D/a(psi_1) are as |u_1| D, by these factors; dtau'/dpsi_1 is as |u_1| too.
+        let u_start = pair.interface(0, 0).over_strength * unit;
+        let tau_by_gap = pair.jacobian()[0].stress[0][1] / u_start * gap / psi[0];
         let weakening = a_1 * gap / a_first;
         let per_strength = [a_1 * psi[1] / a_first, a_1 * psi[1] / a_second];
         let of_second = psi[1] / psi[0];
@@ -177,7 +180,7 @@ impl DifferenceSeries {
             let healing = if k == 0 { form.healing[1] * unit } else { 0.0 };
             let log_rate = healing - first.slip_rate - v_cm;
             let p = second.strengthening;
-            let s = log_rate - p / beta;
+            let s = log_rate - p * per_beta;
             self.rates[k] = any.like_lanes([s, log_rate, first.strengthening - p, p]);
             self.values[k] = any.like_lanes([m + beta * f, grown, f, w]);
             self.slips[k] = any.like_lanes([v, u, u, u]);
@@ -194,11 +197,9 @@ impl DifferenceSeries {
             }
             let of_pair = pair.jacobian()[k];
             let by_first = of_pair.stress[0][1];
-            // In psi_1/psi_1(0) it is as |u_1|, by this factor.
-            let per_u = pair.jacobian()[0].stress[0][1] / self.over_strength[0];
             self.jacobian[k] = JacobianTerm {
                 stress: [
-                    [of_pair.stress[0][0], of_gap * per_u * u_gap],
+                    [of_pair.stress[0][0], tau_by_gap * u_gap],
                     [
                         beta * per_strength[0] * u_first
                             - per_strength[1] * (um - beta * (u_cm - u_cf)),
@@ -219,8 +220,8 @@ impl DifferenceSeries {
             self.log_gap[k] = log_rate * over;
             m = -of_m * over;
             grown = of_gap * over;
-            f = -(1.0 + 1.0 / beta) * of_f * over;
-            w = -of_w * over / beta;
+            f = of_f * over * -(1.0 + per_beta);
+            w = of_w * over * -per_beta;
         }
     }
 
