@@ -107,8 +107,7 @@ struct DifferenceSeries {
 fn product(left: &[Four], right: &[Four]) -> Four {
     let mut sums = [left[0].like(0.0); 2];
     let mut pairs = left.iter().rev().zip(right);
-    loop {
-        let Some((a, b)) = pairs.next() else { break };
+    while let Some((a, b)) = pairs.next() {
         sums[0] = a.mul_add(*b, sums[0]);
         let Some((a, b)) = pairs.next() else { break };
         sums[1] = a.mul_add(*b, sums[1]);
