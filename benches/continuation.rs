@@ -2,7 +2,7 @@
 //!
 //! `figure-7`: both branches of orbits at K = 0.14 with all special points. `figure-12/...`: the curves of torus bifurcations
 //! and period doublings with their resonances, K from 0.05 to the top, every point to 1e-9 or better; then the same with the
-//! pitchforks and folds of orbits, down to K = 0.01. `pitchforks`: from the top to K = 0.005, at slow driving.
+//! pitchforks and folds of orbits, down to K = 0.01 and to 0.001. `pitchforks`: from the top to K = 0.005, at slow driving.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, criterion_group, criterion_main};
@@ -59,9 +59,11 @@ fn figures(criterion: &mut Criterion) {
     });
     let pitchforks = LocusKind::OrbitPitchfork;
     let all = [both[0], both[1], pitchforks, LocusKind::OrbitSaddleNode];
-    group.bench_function("figure-12/all-to-0.01", |b| {
-        b.iter(|| curves(&all, ALL, black_box((0.01, 0.4))));
-    });
+    for (name, least) in [("all-to-0.01", 0.01), ("all-to-0.001", 0.001)] {
+        group.bench_function(format!("figure-12/{name}"), |b| {
+            b.iter(|| curves(&all, ALL, black_box((least, 0.4))));
+        });
+    }
     group.bench_function("pitchforks", |b| {
         b.iter(|| curves(&[pitchforks], black_box((1e-3, 1.25)), (0.005, 0.4)));
     });
