@@ -4,9 +4,10 @@ use crate::command;
 use std::ops::ControlFlow;
 use std::sync::atomic::AtomicBool;
 use twinslip::equilibrium::{Symmetry, Verdict};
+use twinslip::field::State;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::integrate::Choice;
-use twinslip::model::Loading;
+use twinslip::integrate::{Choice, Integrator, Taylor, Tolerances};
+use twinslip::model::{Loading, two_interfaces};
 use twinslip::orbit::{InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, find};
 use twinslip::section::Regime;
 use twinslip::sweep::{Grid, Range, SweepRow, SweepSettings, Sweeper, UnitShare, run};
@@ -186,6 +187,89 @@ fn slow_runs_are_neither_tori_nor_chaos() {
     }
     settled.dedup();
     assert!(settled.len() >= 3, "{settled:?}");
+}
+
+/// Canards along which the multipliers of the symmetric cycle become exp(-39): below what rounding leaves of a derivative.
+#[test]
+fn cycles_that_forget_everything_are_periodic() {
+    let (driving, stiffness) = (0.082_448_979_591_836_74, 0.029_387_755_102_040_815);
+    let row = at(driving, stiffness, 0);
+    let found = (row.regime, row.symmetry, row.returns_per_period);
+    let expected = (Regime::Periodic, Some(Symmetry::Symmetric), Some(1));
+    assert_eq!(found, expected, "{row:?}");
+    let orbit = orbit(driving, stiffness, Symmetry::Symmetric);
+    assert!(orbit.floquet.multipliers[0].ln_abs.value < -30.0);
+    let off = row.period.unwrap() / orbit.period.value - 1.0;
+    assert!(off.abs() < 1e-8, "{off:e}");
+    assert!(row.lyapunov_max.is_none(), "{row:?}");
+}
+
+/// Runs whose interface that sticks comes to its end over thousands of cycles leap there. Multiple shooting says where that is and
+/// how slowly it is come to; the returns of a run that does not leap, followed to the end, say that they come there.
+#[test]
+fn slow_runs_leap_to_where_they_come_in_the_end() {
+    for (driving, stiffness) in [(95.9, 0.2727), (80.0, 0.29), (30.0, 0.1), (12.25, 0.3737)] {
+        let row = at(driving, stiffness, 0);
+        assert_eq!(row.regime, Regime::Periodic, "{row:?}");
+        assert!(row.returns < 400, "{row:?}");
+        let orbit = orbit(driving, stiffness, Symmetry::Asymmetric);
+        let (period, slowest) = (
+            orbit.period.value,
+            orbit.floquet.multipliers[0].ln_abs.value,
+        );
+        let off = row.period.unwrap() / period - 1.0;
+        assert!(off.abs() < 3e-7, "{row:?}: {period}");
+        let exponent = row.lyapunov_max.unwrap();
+        let off = (exponent.value - slowest / period).abs();
+        assert!(
+            off < exponent.uncertainty,
+            "{exponent:?}: {}",
+            slowest / period
+        );
+        // So long that what is left is a part of 1e-5.
+        let returns = (11.5 / -slowest) as usize;
+        let all = command::object(&format!(
+            "section --driving {driving} --stiffness {stiffness} --start {},{},{} --skip {returns} --returns 20 --method taylor",
+            row.start[0],
+            row.start[1].exp(),
+            row.start[2].exp()
+        ));
+        let time = |n: usize| command::number(&all, &format!("/result/rows/{n}/time"));
+        let off = (time(19) - time(18)) / period - 1.0;
+        assert!(off.abs() < 1e-6, "{driving} {stiffness}: {off:e}");
+    }
+}
+
+/// A run is at rest as soon as a neighbourhood of the steady state holds it. Followed on, it comes there.
+#[test]
+fn runs_that_are_held_come_to_rest() {
+    let mut held = 0;
+    for (drivings, stiffnesses) in [
+        ("5:100:4", "0.4:1:3"),
+        ("0.045:0.062:4", "0.03:0.2:4"),
+        // Where cycles coexist with the steady state.
+        ("0.0625:0.0640:4", "0.12:0.15:4"),
+    ] {
+        for row in rows(&settings(drivings, stiffnesses, 2)) {
+            // Those let go from where rounding held them start elsewhere.
+            if row.regime != Regime::Steady || row.note.is_some() {
+                continue;
+            }
+            held += 1;
+            let loading = Loading::new(row.driving, row.stiffness).unwrap();
+            let field = two_interfaces(law(), loading);
+            let slowest = -row.lyapunov_max.unwrap().value;
+            assert!(slowest > 0.0, "{row:?}");
+            let mut taylor = Taylor::new(Tolerances::equal(1e-10).unwrap(), 10_000_000).unwrap();
+            let start = State::<3>::from(row.start);
+            let end = taylor
+                .flow(&*field, (0.0, 25.0 / slowest), &start, None)
+                .unwrap();
+            let (tau, _) = row.stress_range.unwrap();
+            assert!((end[0] - tau).abs() < 1e-5, "{row:?}: {end}");
+        }
+    }
+    assert!(held > 30, "{held}");
 }
 
 /// Along a cycle of stick-slip tangents grow by nine orders and shrink again: what the multipliers of the return map keep of that

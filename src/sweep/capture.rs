@@ -1,16 +1,17 @@
 //! Runs that a stable equilibrium has caught: states in its neighbourhood from which no run leaves.
 //!
-//! With A = J(x_0) and A^T P + P A = -1, V = x^T P x of the distance x from the equilibrium changes by
-//! dV/dt = -|x|^2 + 2 x^T P N(x), where the rest N of the field is at most C |x|^2 / 2, C a bound on its second derivative. So V
-//! falls wherever |P| C |x| < 1, and a level set of V within that ball holds all runs that are in it (Lyapunov). A run need not be
-//! followed into the equilibrium, where it creeps.
+//! In the coordinates z = W^-1 x of the eigenvectors of J(x_0), x the distance from the equilibrium, each mode has
+//! d|z_i|/dt <= -s_i |z_i| + H_ijk |z_j| |z_k| / 2, -s_i the real part of its eigenvalue and H_ijk a bound on the second derivative of
+//! its rate along two modes. Where the last sum is less than s_i r_i for all i, no run leaves the box |z_i| <= r_i, nor any smaller
+//! one of its shape: all runs in it end at the equilibrium. A run need not be followed there, where it creeps; and a slow mode is
+//! held to its own rate, not to that of the fast ones.
 
 use crate::field::{Jacobian, State, Vector, state, vector};
 use crate::integrate::AnyField;
 use crate::section::growth;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Complex, Matrix3, Vector3};
 
-/// Distance, in every component, at which an equilibrium is looked for.
+/// Distance, in every component, at which an equilibrium is looked for, and within which second derivatives are bounded.
 const NEAR: f64 = 0.3;
 /// At an equilibrium, for what rounding may hold there.
 const AT_REST: f64 = 1e-5;
@@ -19,8 +20,11 @@ const MOST: usize = 8;
 /// Newton's method ends at this step, or fails.
 const CONVERGED: f64 = 1e-11;
 const ITERATIONS: usize = 12;
-/// By how much the second derivative may be larger in the neighbourhood than at the equilibrium.
-const MARGIN: f64 = 2.0;
+/// By how much a second derivative may be larger somewhere in the neighbourhood than at its corners.
+const MARGIN: f64 = 1.5;
+/// A box is widened so often, each time by this more than it must be.
+const WIDENED: usize = 16;
+const MORE: f64 = 1.1;
 
 /// The equilibria that a run came near, and which of its states they hold.
 #[derive(Debug, Default)]
@@ -32,8 +36,21 @@ pub(super) struct Capture {
 #[derive(Debug)]
 struct Neighbourhood {
     equilibrium: State<3>,
-    /// P, and the largest V; `None` of an unstable equilibrium.
-    holds: Option<(Jacobian<3>, f64)>,
+    /// `None` of an unstable equilibrium, and where eigenvectors coincide.
+    modes: Option<Modes>,
+    stable: bool,
+}
+
+/// The eigenvectors of an equilibrium, and what the field does along them.
+#[derive(Debug)]
+struct Modes {
+    /// W, each column of modulus 1, and W^-1.
+    vectors: Matrix3<Complex<f64>>,
+    inverse: Matrix3<Complex<f64>>,
+    /// s.
+    decay: [f64; 3],
+    /// H.
+    curvature: [[[f64; 3]; 3]; 3],
 }
 
 impl Capture {
@@ -56,9 +73,7 @@ impl Capture {
     /// Whether y is at an unstable equilibrium that it was found near before.
     pub fn rests_unstably(&self, y: &State<3>) -> bool {
         let at = |here: &Neighbourhood| (y - here.equilibrium).amax() < AT_REST;
-        self.known
-            .iter()
-            .any(|here| here.holds.is_none() && at(here))
+        self.known.iter().any(|here| !here.stable && at(here))
     }
 }
 
@@ -87,57 +102,111 @@ fn equilibrium(field: &AnyField<'_>, near: State<3>) -> Option<State<3>> {
 impl Neighbourhood {
     fn of(field: &AnyField<'_>, equilibrium: State<3>) -> Self {
         let stable = growth(field, equilibrium.as_slice()) < 0.0;
-        let jacobian = field.jacobian(&vector(&equilibrium));
-        let jacobian = Jacobian::<3>::from_column_slice(jacobian.as_slice());
-        let matrix = lyapunov_matrix(&jacobian).filter(|_| stable);
-        let holds = matrix.map(|p| {
-            let sizes = p.symmetric_eigenvalues();
-            let curvature = MARGIN * curvature(field, &equilibrium);
-            (p, sizes.min() / (sizes.max() * curvature).powi(2))
-        });
-        Neighbourhood { equilibrium, holds }
+        let modes = stable.then(|| Modes::of(field, &equilibrium)).flatten();
+        Neighbourhood {
+            equilibrium,
+            modes,
+            stable,
+        }
     }
 
     fn around(&self, y: &State<3>) -> Option<State<3>> {
-        let (p, level) = self.holds?;
-        let x = y - self.equilibrium;
-        (x.dot(&(p * x)) < level).then_some(self.equilibrium)
+        let modes = self.modes.as_ref()?;
+        modes
+            .hold(&(y - self.equilibrium))
+            .then_some(self.equilibrium)
     }
 }
 
-/// A bound on |D2f(y)\[u, v\]| for |u| = |v| = 1.
-fn curvature(field: &AnyField<'_>, y: &State<3>) -> f64 {
-    let y = vector(y);
+impl Modes {
+    fn of(field: &AnyField<'_>, equilibrium: &State<3>) -> Option<Self> {
+        let jacobian = field.jacobian(&vector(equilibrium));
+        let jacobian = Jacobian::<3>::from_column_slice(jacobian.as_slice());
+        let values = jacobian.complex_eigenvalues();
+        let vectors = Matrix3::from_columns(&[0, 1, 2].map(|i| eigenvector(&jacobian, values[i])));
+        let inverse = vectors.try_inverse()?;
+        let mut curvature = [[[0.0_f64; 3]; 3]; 3];
+        for corner in 0..8 {
+            let side = |i: usize| if corner >> i & 1 == 0 { NEAR } else { -NEAR };
+            let here = vector(&(equilibrium + State::<3>::from_fn(|i, _| side(i))));
+            let second = second_derivatives(field, &here);
+            for j in 0..3 {
+                for k in 0..3 {
+                    let mut along = Vector3::<Complex<f64>>::zeros();
+                    for a in 0..3 {
+                        for b in 0..3 {
+                            along += &second[a][b] * (vectors[(a, j)] * vectors[(b, k)]);
+                        }
+                    }
+                    let along = inverse * along;
+                    for i in 0..3 {
+                        let largest = &mut curvature[i][j][k];
+                        *largest = largest.max(MARGIN * along[i].norm());
+                    }
+                }
+            }
+        }
+        let known = curvature.iter().flatten().flatten().all(|h| h.is_finite());
+        known.then_some(Modes {
+            vectors,
+            inverse,
+            decay: [0, 1, 2].map(|i| -values[i].re),
+            curvature,
+        })
+    }
+
+    /// Whether no run from this distance leaves: whether there is a box around it.
+    fn hold(&self, x: &State<3>) -> bool {
+        let mut r = (self.inverse * complex(x)).map(|z| z.norm());
+        for _ in 0..WIDENED {
+            let reach = self.vectors.map(|w| w.norm()) * r;
+            let inside = reach.amax() < NEAR;
+            if !inside {
+                return false;
+            }
+            let mut holds = true;
+            for (i, curvature) in self.curvature.iter().enumerate() {
+                let along = |j: usize| (0..3).map(|k| curvature[j][k] * r[k]).sum::<f64>();
+                let least = 0.5 * (0..3).map(|j| r[j] * along(j)).sum::<f64>() / self.decay[i];
+                if least >= r[i] {
+                    r[i] = MORE * least;
+                    holds = false;
+                }
+            }
+            if holds {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+fn complex(x: &State<3>) -> Vector3<Complex<f64>> {
+    x.map(|x| Complex::new(x, 0.0))
+}
+
+/// d2f/dy_a dy_b.
+fn second_derivatives(field: &AnyField<'_>, y: &Vector) -> [[Vector3<Complex<f64>>; 3]; 3] {
     let axis = |i: usize| Vector::from_fn(3, |j, _| f64::from(u8::from(i == j)));
-    let mut squares = 0.0;
-    for i in 0..3 {
-        for j in 0..3 {
-            squares += field
-                .second_derivative(&y, &axis(i), &axis(j))
-                .norm_squared();
-        }
-    }
-    squares.sqrt()
+    let along = |a: usize, b: usize| {
+        let second = field.second_derivative(y, &axis(a), &axis(b));
+        complex(&state(second.as_slice()))
+    };
+    [0, 1, 2].map(|a| [0, 1, 2].map(|b| along(a, b)))
 }
 
-/// P of A^T P + P A = -1; `None` where there is none.
-fn lyapunov_matrix(a: &Jacobian<3>) -> Option<Jacobian<3>> {
-    /// Where the entries of a symmetric matrix stand.
-    const ENTRIES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
-    let mut system = SMatrix::<f64, 6, 6>::zeros();
-    for (column, (i, j)) in ENTRIES.into_iter().enumerate() {
-        let mut unit = Jacobian::<3>::zeros();
-        (unit[(i, j)], unit[(j, i)]) = (1.0, 1.0);
-        let image = a.transpose() * unit + unit * a;
-        for (row, entry) in ENTRIES.into_iter().enumerate() {
-            system[(row, column)] = image[entry];
+/// The eigenvector to an eigenvalue, of modulus 1: orthogonal to all rows of A - lambda, so along the largest of their products.
+fn eigenvector(a: &Jacobian<3>, value: Complex<f64>) -> Vector3<Complex<f64>> {
+    let shifted = a.map(|x| Complex::new(x, 0.0)) - Matrix3::from_diagonal_element(value);
+    let row = |i: usize| shifted.row(i).transpose();
+    let products = [(0, 1), (1, 2), (2, 0)].map(|(i, j)| row(i).cross(&row(j)));
+    let [first, second, third] = products;
+    let larger = |a: Vector3<Complex<f64>>, b: Vector3<Complex<f64>>| {
+        if b.norm_squared() > a.norm_squared() {
+            b
+        } else {
+            a
         }
-    }
-    let right = SVector::<f64, 6>::from_fn(|i, _| if i < 3 { -1.0 } else { 0.0 });
-    let entries = system.lu().solve(&right)?;
-    let mut p = Jacobian::<3>::zeros();
-    for (k, (i, j)) in ENTRIES.into_iter().enumerate() {
-        (p[(i, j)], p[(j, i)]) = (entries[k], entries[k]);
-    }
-    p.iter().all(|x| x.is_finite()).then_some(p)
+    };
+    larger(larger(first, second), third).normalize()
 }

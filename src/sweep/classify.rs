@@ -1,6 +1,7 @@
 //! Classifies what a run has settled on, from its returns.
 
 use super::flows::Flows;
+use super::slow_convergence::Leap;
 use super::watch::{SweepRun, apart, see, turn};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
@@ -49,6 +50,13 @@ pub(super) struct Classified {
     pub attractor: Option<State<3>>,
 }
 
+/// Whether a run that is not there yet shows where it comes to.
+enum Creeping {
+    To(Box<Classified>),
+    Leapt,
+    No,
+}
+
 impl Classifier {
     pub fn new(settings: &SweepSettings) -> Result<Self> {
         let taylor = |tolerance: f64, max_steps: usize| {
@@ -63,6 +71,15 @@ impl Classifier {
 
     /// What the run has settled on, or `None` if it shall go on.
     pub fn classify(&mut self, run: &mut SweepRun, flows: &mut Flows) -> Option<Classified> {
+        let told = self.judge(run, flows)?;
+        // What is found after a leap, other than where it led to, is not what the run comes to.
+        if run.leaps_back() {
+            return None;
+        }
+        Some(told)
+    }
+
+    fn judge(&mut self, run: &mut SweepRun, flows: &mut Flows) -> Option<Classified> {
         match run.recorder.ended.take() {
             Some(Ended::Steady {
                 equilibrium,
@@ -104,8 +121,14 @@ impl Classifier {
         if n < run.next_stage {
             return None;
         }
-        if let Some(told) = self.creeping(run) {
-            return Some(told);
+        match self.creeping(run) {
+            Creeping::To(told) => return Some(*told),
+            Creeping::Leapt => {
+                run.next_stage = n + FIRST_STAGE;
+                return None;
+            }
+            Creeping::No if run.leaps_back() => return None,
+            Creeping::No => (),
         }
         let told = self.wandering(run, flows);
         let last = n >= self.settings.max_returns;
@@ -126,7 +149,11 @@ impl Classifier {
         search.converged = CONVERGED;
         let found = search.point()?;
         if self.attracts(&found) {
-            return self.orbit(run, &found);
+            let told = self.orbit(run, &found)?;
+            // A leap is confirmed where it led to.
+            let same = |leap: &mut Leap| apart(&leap.to.point, &found.point) < CONVERGED;
+            run.leap.take_if(same);
+            return Some(told);
         }
         let y = &run.returns().last()?.state;
         if apart(y, &found.point) < ON_ORBIT {
@@ -136,21 +163,53 @@ impl Classifier {
     }
 
     /// What the run creeps to.
-    fn creeping(&mut self, run: &SweepRun) -> Option<Classified> {
+    fn creeping(&mut self, run: &mut SweepRun) -> Creeping {
         let (field, returns) = (&run.field, run.returns());
-        if returns.len() < FEWEST_TO_CREEP {
-            return None;
+        let (surface, fine, rtol) = (&run.surface, &mut self.fine, self.settings.rtol);
+        if returns.len() < FIRST_STAGE {
+            return Creeping::No;
         }
-        if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
-            return Some(steady(run, &equilibrium, true));
+        let found = if let Some(leap) = &run.leap {
+            if !leap.is_confirmed_by(returns) {
+                return Creeping::No;
+            }
+            if !leap.is_near(returns) {
+                return self.leap(run, leap.to.clone());
+            }
+            Some(leap.to.clone())
+        } else if let Some(far) = slow_convergence::ahead(field, surface, fine, returns, rtol) {
+            return self.leap(run, far);
+        } else if returns.len() < FEWEST_TO_CREEP {
+            return Creeping::No;
+        } else if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
+            return Creeping::To(Box::new(steady(run, &equilibrium, true)));
+        } else {
+            // Where little is between the map and the identity, the point is off by much more than the map.
+            slow_convergence::to_orbit(field, surface, fine, returns, rtol)
+        };
+        let Some(found) = found.filter(|found| self.attracts(found)) else {
+            return Creeping::No;
+        };
+        match self.orbit(run, &found) {
+            Some(told) => {
+                run.leap = None;
+                Creeping::To(Box::new(told))
+            }
+            None => Creeping::No,
         }
-        // Where little is between the map and the identity, the point is off by much more than the map.
-        let rtol = self.settings.rtol;
-        let found = slow_convergence::to_orbit(field, &run.surface, &mut self.fine, returns, rtol)?;
-        if !self.attracts(&found) {
-            return None;
+    }
+
+    /// Leaps on the way to a point that attracts, if returns are left to see where that leads.
+    fn leap(&self, run: &mut SweepRun, to: Periodic) -> Creeping {
+        let left = self
+            .settings
+            .max_returns
+            .checked_sub(run.recorder.returns.len());
+        if self.attracts(&to) && left >= Some(FIRST_STAGE) && run.leaps(to) {
+            Creeping::Leapt
+        } else {
+            Creeping::No
         }
-        self.orbit(run, &found)
     }
 
     /// Whether the point attracts, beyond the error of its multiplier.
@@ -188,7 +247,7 @@ impl Classifier {
             // The point is known better than the time: to the first order it ends on the section.
             let rate = field.f(&end)[0];
             period -= run.surface.height(end.as_slice()) / rate;
-            if told.attractor.is_none() {
+            if told.row.period.is_none() {
                 (told.attractor, told.row.period) = (Some(state(point.as_slice())), Some(period));
             }
             points.retain(|(begin, _)| begin.hi() < period);

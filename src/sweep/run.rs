@@ -4,11 +4,13 @@ use super::{SweepRow, SweepSettings, Sweeper};
 use crate::error::{Error, Result};
 use std::collections::BTreeMap;
 use std::num::NonZero;
-use std::ops::ControlFlow;
+use std::ops::{ControlFlow, Range};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, mpsc};
 
-/// Points of a chunk: so many that lanes are seldom empty, so few that they are shared out evenly and flushed often.
+/// Points of the first chunk, which are soon there, and of later ones: so many that lanes are seldom empty, so few that they are
+/// flushed often.
+const FIRST_CHUNK: usize = 16;
 const CHUNK: usize = 512;
 /// Chunks that may be done before one that they must wait for, for each thread.
 const AHEAD: usize = 8;
@@ -85,19 +87,17 @@ pub fn run(
         .build()
         .map_err(|error| Error::Input(format!("no threads to compute with: {error}")))?;
     let threads = pool.current_num_threads();
-    let size = chunk(settings, all, threads);
-    let chunks = all.div_ceil(size);
+    let mut chunks = chunks(settings, all, threads).enumerate().fuse().peekable();
     // One for each thread that is at work at the same time.
     let idle: Mutex<Vec<Sweeper>> = Mutex::default();
-    let compute = |index: usize| -> Result<Vec<SweepRow>> {
+    let compute = |chunk: Range<usize>| -> Result<Vec<SweepRow>> {
         let mut rows = Vec::new();
         if stop.load(Ordering::Relaxed) {
             return Ok(rows);
         }
         let spare = idle.lock().expect("no thread panicked").pop();
         let mut sweeper = spare.map_or_else(|| Sweeper::new(settings), Ok)?;
-        let of_chunk = index * size..((index + 1) * size).min(all);
-        sweeper.rows(of_chunk.map(|n| units.first + n * units.every), &mut rows);
+        sweeper.rows(chunk.map(|n| units.first + n * units.every), &mut rows);
         idle.lock().expect("no thread panicked").push(sweeper);
         Ok(rows)
     };
@@ -106,12 +106,15 @@ pub fn run(
         let (done, results) = mpsc::channel();
         let mut waiting = BTreeMap::new();
         let mut begun = 0;
-        for next in 0..chunks {
-            while begun < chunks.min(next + AHEAD * threads) {
-                let (index, done) = (begun, done.clone());
+        for next in 0.. {
+            while let Some((index, chunk)) = chunks.next_if(|(i, _)| *i < next + AHEAD * threads) {
+                let done = done.clone();
+                begun = index + 1;
                 // Nobody listens any more to what comes after the end.
-                scope.spawn(move |_| drop(done.send((index, compute(index)))));
-                begun += 1;
+                scope.spawn(move |_| drop(done.send((index, compute(chunk)))));
+            }
+            if next == begun {
+                break;
             }
             let rows = loop {
                 if let Some(rows) = waiting.remove(&next) {
@@ -132,10 +135,23 @@ pub fn run(
     })
 }
 
-/// Units of a chunk: fewer where there are few, so that no thread is without.
-fn chunk(settings: &SweepSettings, all: usize, threads: usize) -> usize {
-    /// Chunks for each thread, where there are not enough for full ones.
+/// The chunks of so many units, one after the other: small ones first, so that the first rows are soon there, and last, so that no
+/// thread waits long for another.
+fn chunks(
+    settings: &SweepSettings,
+    all: usize,
+    threads: usize,
+) -> impl Iterator<Item = Range<usize>> {
+    /// Chunks for each thread, of what is left.
     const SHARES: usize = 4;
-    let full = CHUNK.div_ceil(settings.points_per_unit());
-    full.min(all.div_ceil(SHARES * threads)).max(1)
+    let each = settings.points_per_unit();
+    let (first, full) = (FIRST_CHUNK.div_ceil(each), CHUNK.div_ceil(each));
+    let mut begin = 0;
+    std::iter::from_fn(move || {
+        let left = all - begin;
+        let share = left.div_ceil(SHARES * threads).max(first);
+        let size = share.min(begin.max(first)).min(full).min(left);
+        begin += size;
+        (size > 0).then(|| begin - size..begin)
+    })
 }

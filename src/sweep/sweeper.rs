@@ -146,6 +146,7 @@ impl Sweeper {
             let failed = self.advance(&mut runs, &active);
             for (&i, failed) in active.iter().zip(failed) {
                 told[i] = match failed {
+                    Some(_) if runs[i].leaps_back() => None,
                     Some(why) => Some(undecided(&runs[i], why)),
                     None => self.classify.classify(&mut runs[i], &mut self.flows),
                 };

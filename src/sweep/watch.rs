@@ -1,16 +1,17 @@
 //! A run on its way: its returns, and whether they tell yet what it settles on.
 
 use super::capture::Capture;
+use super::slow_convergence::Leap;
 use super::start::SweepStart;
 use crate::error::Result;
-use crate::field::{State, Vector, vector};
+use crate::field::{State, Vector, state, vector};
 use crate::friction::AnyLaw;
 use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
 use crate::model::two_interfaces;
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate};
 use crate::section::{
-    AT_START, Ended, LONGEST_PERIOD, Recorder, Return, Surface, Watched, Watching,
+    AT_START, Ended, LONGEST_PERIOD, Periodic, Recorder, Return, Surface, Watched, Watching,
     equilibrium_near, half_driving_stress, usual_patience,
 };
 
@@ -61,6 +62,10 @@ pub(super) struct SweepRun {
     pub pushes: usize,
     /// Whether it rests where it would not but for rounding.
     pub held: bool,
+    /// A leap that is yet to be confirmed.
+    pub leap: Option<Leap>,
+    /// Whether one was taken back: there is none any more.
+    earthbound: bool,
     /// Whether the section was moved, and a return waited for as long as it is usual.
     moved: bool,
     waited: bool,
@@ -88,6 +93,8 @@ impl SweepRun {
             stress: (f64::INFINITY, f64::NEG_INFINITY),
             pushes: 0,
             held: false,
+            leap: None,
+            earthbound: false,
             moved: false,
             waited: false,
             point,
@@ -187,12 +194,39 @@ impl SweepRun {
         let held = self.is_held(&y);
         if held {
             self.pushes += 1;
-            self.state = y;
-            self.state[2] += PUSH;
-            self.fresh = self.recorder.returns.len();
-            self.recorder.resume(self.time);
+            self.go_on_from(y + State::<3>::new(0.0, 0.0, PUSH));
         }
         held
+    }
+
+    /// Leaps most of the way to this point, unless a leap was taken back before; whether it did.
+    pub fn leaps(&mut self, to: Periodic) -> bool {
+        let Some(last) = self.returns().last().filter(|_| !self.earthbound) else {
+            return false;
+        };
+        let last = state(last.state.as_slice());
+        let landing = Leap::landing(&last, &to.point, &self.surface);
+        // Back is to where the first of several began.
+        let from = self.leap.take().map_or(last, |before| before.from);
+        self.leap = Some(Leap { from, to });
+        self.go_on_from(landing);
+        true
+    }
+
+    /// Takes back what has leapt; whether there was anything.
+    pub fn leaps_back(&mut self) -> bool {
+        let Some(leap) = self.leap.take() else {
+            return false;
+        };
+        self.earthbound = true;
+        self.go_on_from(leap.from);
+        true
+    }
+
+    fn go_on_from(&mut self, y: State<3>) {
+        self.state = y;
+        self.fresh = self.recorder.returns.len();
+        self.recorder.resume(self.time);
     }
 
     fn see_stress(&mut self, step: &Step<'_, 3>) {
