@@ -6,7 +6,7 @@ use crate::common::returns;
 use common::{data, number};
 use heard::{Heard, assert_known, assert_sharp_claims, two};
 use returns::returns;
-use std::ops::ControlFlow::Continue;
+use std::ops::ControlFlow::{Break, Continue};
 use twinslip::bifurcation::{Criticality, Event, Label, LocusKind, LocusRequest, Special, orbits};
 use twinslip::equilibrium::Symmetry;
 use twinslip::integrate::Choice;
@@ -64,6 +64,35 @@ fn resonances_and_tops_are_where_they_are_known_to_be() {
     let top = pitchforks.nearest(Label::Top, 1.25);
     assert!((top.driving.value / 1.250228463 - 1.0).abs() < 1e-9);
     assert!((top.stiffness.value / 0.134253359245 - 1.0).abs() < 1e-11);
+}
+
+/// On the threads of several cores, and on the one of a pool that has one.
+#[test]
+fn what_is_found_does_not_depend_on_threads() {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let pool = pool.build().expect("a thread");
+    for kind in [LocusKind::OrbitSaddleNode, LocusKind::Torus] {
+        let request = curve(kind, (0.06, 0.4));
+        let follow = |most: usize| {
+            let mut events = Vec::new();
+            let mut seen = |event| {
+                events.push(event);
+                match events.len() < most {
+                    true => Continue(()),
+                    false => Break(()),
+                }
+            };
+            orbits::locus(&request, &mut seen).expect("curves");
+            events
+        };
+        let all = follow(usize::MAX);
+        assert!(all.len() > 10, "{}", all.len());
+        assert_eq!(pool.install(|| follow(usize::MAX)), all);
+        // Whoever has had enough in the midst of a second half is told no more.
+        let most = all.len() - 3;
+        assert_eq!(follow(most), all[..most]);
+        assert_eq!(pool.install(|| follow(most)), all[..most]);
+    }
 }
 
 #[test]

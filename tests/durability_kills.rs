@@ -258,10 +258,7 @@ fn an_interrupt_says_what_is_kept() {
             "what was finished is in",
         ),
         (
-            format!(
-                "locus torus --stiffness-range 0.02,0.3 -o {}",
-                rows.display()
-            ),
+            format!("locus torus --step-limit 1e-3 -o {}", rows.display()),
             "go on with --resume",
         ),
         (

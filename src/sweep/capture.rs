@@ -135,7 +135,7 @@ impl Modes {
                     let mut along = Vector3::<Complex<f64>>::zeros();
                     for a in 0..3 {
                         for b in 0..3 {
-                            along += &second[a][b] * (vectors[(a, j)] * vectors[(b, k)]);
+                            along += second[a][b] * (vectors[(a, j)] * vectors[(b, k)]);
                         }
                     }
                     let along = inverse * along;

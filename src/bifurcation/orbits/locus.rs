@@ -16,6 +16,9 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Follows all curves of the kind that is asked for, and hands on what is found.
 ///
+/// Where there are several cores, branches on which curves begin and the two halves of a curve are followed side by side; from
+/// a thread of a rayon pool all is done on that thread. What is found, and its order, do not depend on this.
+///
 /// # Errors
 /// [`Error::Input`] for kinds of equilibria, and for bifurcations that orbits of the symmetry don't have; those of
 /// [`LocusRequest::checked`], of the equilibria and of the flow; [`Error::TooManyPoints`].
@@ -188,6 +191,8 @@ impl<'r> Locus<'r> {
         seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
         let scan = scanned(request.stiffness);
+        branches.along(&scan);
+        let branches = &*branches;
         let mut locus = Locus {
             scan: &scan.iter().map(|k| k.ln()).collect::<Vec<_>>(),
             request,
@@ -195,18 +200,28 @@ impl<'r> Locus<'r> {
             test_function: of_kind(request.kind),
             known: Vec::new(),
         };
-        for stiffness in scan {
-            for seed in branches.at(stiffness, locus.test_function)? {
-                if locus.is_known(&seed) {
+        branches.beside(|| locus.follow(branches, &scan, count, seen))
+    }
+
+    fn follow(
+        &mut self,
+        branches: &Scan,
+        scan: &[f64],
+        count: &mut usize,
+        seen: EventObserver<'_>,
+    ) -> Result<ControlFlow<()>> {
+        for &stiffness in scan {
+            for seed in branches.at(stiffness, self.test_function)? {
+                if self.is_known(&seed) {
                     continue;
                 }
                 let number = *count;
                 *count += 1;
                 // A curve that is not to be told of is followed all the same: what lies on it would be taken for another one.
-                let found = if request.skip.contains(&number) {
-                    through(&locus, number, seed, &mut |_| Continue(()))?
+                let found = if self.request.skip.contains(&number) {
+                    through(self, number, seed, &mut |_| Continue(()))?
                 } else {
-                    through(&locus, number, seed, seen)?
+                    through(self, number, seed, seen)?
                 };
                 let Some(curve) = found else {
                     *count -= 1;
@@ -215,7 +230,7 @@ impl<'r> Locus<'r> {
                 if curve.told.is_break() {
                     return Ok(Break(()));
                 }
-                locus.known.extend(curve.passes);
+                self.known.extend(curve.passes);
             }
         }
         Ok(Continue(()))

@@ -4,13 +4,15 @@
 use super::chart::Chart;
 use crate::continuation::Met;
 use crate::equilibrium::Symmetry;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::model::{DRIVING, Parameter};
 use crate::orbit::{
     ContinuationPoint, Corrector, DirectedPoint, EquilibriaAlong, HopfPoint, InterfaceSystem, Palc,
     PalcSettings, TestFunction, Tracer, WatchedFunction,
 };
 use std::ops::ControlFlow::{Break, Continue};
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 /// The longest step along a branch.
 const LONGEST: f64 = 0.7;
@@ -27,12 +29,23 @@ pub(super) struct Scan {
     driving: (f64, f64),
     pub symmetry: Symmetry,
     /// Where Hopf points are looked for.
-    equilibria: Option<EquilibriaAlong>,
+    equilibria: OnceLock<Result<EquilibriaAlong>>,
     /// What is looked for.
     watches: Vec<WatchedFunction>,
-    /// What has been found, at these K.
-    found: Vec<(f64, Vec<(WatchedFunction, ContinuationPoint)>)>,
+    /// What is found, at these K.
+    found: Vec<AtStiffness>,
 }
+
+/// What is found at one K.
+struct AtStiffness {
+    stiffness: f64,
+    /// Whether a thread is at it, or was.
+    begun: AtomicBool,
+    found: OnceLock<Result<Vec<Bifurcation>>>,
+}
+
+/// What is zero at a point of a branch, and the point.
+type Bifurcation = (WatchedFunction, ContinuationPoint);
 
 impl Scan {
     pub fn new(slab: InterfaceSystem, driving: (f64, f64), symmetry: Symmetry) -> Self {
@@ -40,7 +53,7 @@ impl Scan {
             slab,
             driving,
             symmetry,
-            equilibria: None,
+            equilibria: OnceLock::new(),
             watches: Vec::new(),
             found: Vec::new(),
         }
@@ -54,31 +67,79 @@ impl Scan {
         }
     }
 
-    /// The bifurcations of one kind at this K.
+    /// Looks at these K too, in this order.
+    pub fn along(&mut self, stiffnesses: &[f64]) {
+        for &stiffness in stiffnesses {
+            if !self.found.iter().any(|there| there.stiffness == stiffness) {
+                self.found.push(AtStiffness {
+                    stiffness,
+                    begun: AtomicBool::new(false),
+                    found: OnceLock::new(),
+                });
+            }
+        }
+    }
+
+    /// Does `work` while the branches that it is going to ask for are followed beside it, if there is a core to do so.
+    pub fn beside<R>(&self, work: impl FnOnce() -> R) -> R {
+        let ended = AtomicBool::new(false);
+        std::thread::scope(|scope| {
+            if core_to_spare() {
+                scope.spawn(|| {
+                    let mut more = true;
+                    while more && !ended.load(Ordering::Relaxed) {
+                        more = self.one_more();
+                    }
+                });
+            }
+            let done = work();
+            ended.store(true, Ordering::Relaxed);
+            done
+        })
+    }
+
+    /// The bifurcations of one kind at one of the K.
+    ///
+    /// # Panics
+    /// At another one.
     pub fn at(
-        &mut self,
+        &self,
         stiffness: f64,
         test_function: TestFunction,
     ) -> Result<Vec<ContinuationPoint>> {
-        if !self.found.iter().any(|found| found.0 == stiffness) {
-            let here = self.all_at(stiffness)?;
-            self.found.push((stiffness, here));
+        let is_it = |there: &&AtStiffness| there.stiffness == stiffness;
+        let there = self.found.iter().find(is_it).expect("one of the K");
+        // Where another thread is at this one, this thread does not wait for it idly.
+        if there.begun.swap(true, Ordering::Relaxed) {
+            while there.found.get().is_none() && self.one_more() {}
         }
-        let here = self.found.iter().filter(|found| found.0 == stiffness);
-        let of_kind = here
-            .flat_map(|found| &found.1)
-            .filter(|one| one.0 == watch(test_function));
+        let found = self.all_at(there).as_ref().map_err(Error::clone)?;
+        let of_kind = found.iter().filter(|one| one.0 == watch(test_function));
         Ok(of_kind.map(|one| one.1.clone()).collect())
     }
 
-    fn all_at(&mut self, stiffness: f64) -> Result<Vec<(WatchedFunction, ContinuationPoint)>> {
+    /// Looks at the first K at which no thread has; whether there was one.
+    fn one_more(&self) -> bool {
+        let new = |there: &&AtStiffness| !there.begun.swap(true, Ordering::Relaxed);
+        let next = self.found.iter().find(new);
+        next.is_some_and(|there| {
+            self.all_at(there);
+            true
+        })
+    }
+
+    fn all_at<'s>(&self, there: &'s AtStiffness) -> &'s Result<Vec<Bifurcation>> {
+        there.found.get_or_init(|| self.look_at(there.stiffness))
+    }
+
+    fn look_at(&self, stiffness: f64) -> Result<Vec<Bifurcation>> {
         let slab = self.slab.of_stiffness(stiffness);
         let (mut found, mut reached) = (Vec::new(), Vec::new());
-        let equilibria = match self.equilibria.take() {
-            Some(known) => known,
-            None => EquilibriaAlong::new(&slab, self.symmetry, Parameter::Driving)?,
-        };
-        let hopfs = self.equilibria.insert(equilibria).hopf_points(&slab)?;
+        let equilibria = self
+            .equilibria
+            .get_or_init(|| EquilibriaAlong::new(&slab, self.symmetry, Parameter::Driving));
+        let equilibria = equilibria.as_ref().map_err(Error::clone)?;
+        let hopfs = equilibria.hopf_points(&slab)?;
         for i in 0..hopfs.len() {
             if !reached.contains(&i) {
                 self.branch(&slab, (i, &hopfs), &mut reached, &mut found)?;
@@ -93,7 +154,7 @@ impl Scan {
         slab: &InterfaceSystem,
         (i, hopfs): (usize, &[HopfPoint]),
         reached: &mut Vec<usize>,
-        found: &mut Vec<(WatchedFunction, ContinuationPoint)>,
+        found: &mut Vec<Bifurcation>,
     ) -> Result<()> {
         let chart = Chart::new(*slab, self.symmetry);
         let (from, to) = (self.driving.0.ln(), self.driving.1.ln());
@@ -138,6 +199,12 @@ impl Scan {
         })?;
         Ok(())
     }
+}
+
+/// Whether there is a core for work beside this. In a pool of threads there is not: it has work for all of them.
+pub(super) fn core_to_spare() -> bool {
+    let several = || std::thread::available_parallelism().is_ok_and(|cores| cores.get() > 1);
+    rayon::current_thread_index().is_none() && several()
 }
 
 /// Along a branch a fold is a turn of V_H.
