@@ -1,4 +1,5 @@
-//! Branches and curves of periodic orbits: what the paper's figures take, on one core, without drawing.
+//! Branches and curves of periodic orbits: what the paper's figures take, on one core, without drawing; the last of them with all
+//! cores too.
 //!
 //! `figure-7`: both branches of orbits at K = 0.14 with all special points. `figure-12/...`: the curves of torus bifurcations
 //! and period doublings with their resonances, K from 0.05 to the top, every point to 1e-9 or better; then the same with the
@@ -48,6 +49,12 @@ fn curves(kinds: &[LocusKind], driving: (f64, f64), stiffness: (f64, f64)) -> us
 const ALL: (f64, f64) = (1e-3, 1e4);
 
 fn figures(criterion: &mut Criterion) {
+    // In a pool of threads all is done on one.
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(1);
+    let pool = pool.build().expect("a thread");
+    let one_core = |kinds: &[LocusKind], driving, stiffness| {
+        pool.install(|| curves(kinds, black_box(driving), black_box(stiffness)))
+    };
     let mut group = criterion.benchmark_group("continuation");
     group
         .sample_size(10)
@@ -55,17 +62,20 @@ fn figures(criterion: &mut Criterion) {
     group.bench_function("figure-7", |b| b.iter(|| branches(black_box(0.14))));
     let both = [LocusKind::Torus, LocusKind::PeriodDoubling];
     group.bench_function("figure-12/torus+doubling", |b| {
-        b.iter(|| curves(&both, ALL, black_box((0.05, 0.4))));
+        b.iter(|| one_core(&both, ALL, (0.05, 0.4)));
     });
     let pitchforks = LocusKind::OrbitPitchfork;
     let all = [both[0], both[1], pitchforks, LocusKind::OrbitSaddleNode];
     for (name, least) in [("all-to-0.01", 0.01), ("all-to-0.001", 0.001)] {
         group.bench_function(format!("figure-12/{name}"), |b| {
-            b.iter(|| curves(&all, ALL, black_box((least, 0.4))));
+            b.iter(|| one_core(&all, ALL, (least, 0.4)));
         });
     }
     group.bench_function("pitchforks", |b| {
-        b.iter(|| curves(&[pitchforks], black_box((1e-3, 1.25)), (0.005, 0.4)));
+        b.iter(|| one_core(&[pitchforks], (1e-3, 1.25), (0.005, 0.4)));
+    });
+    group.bench_function("figure-12/all-to-0.001/all-cores", |b| {
+        b.iter(|| curves(&all, ALL, black_box((0.001, 0.4))));
     });
     group.finish();
 }

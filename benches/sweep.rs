@@ -36,6 +36,11 @@ fn whole(n: usize) -> SweepSettings {
     map(n, (0.04, 0.2), (0.02, 0.25))
 }
 
+/// Where interfaces that stick come to their ends over thousands of cycles, or to rest.
+fn slow(n: usize) -> SweepSettings {
+    map(n, (0.01, 100.0), (0.01, 1.0))
+}
+
 /// Where all runs settle on stick-slip cycles.
 fn cycles(n: usize) -> SweepSettings {
     map(n, (0.125, 0.2), (0.08, 0.25))
@@ -46,7 +51,11 @@ fn sweeps(criterion: &mut Criterion) {
     group
         .sample_size(10)
         .measurement_time(Duration::from_secs(5));
-    for (name, settings) in [("whole", whole(12)), ("cycles", cycles(24))] {
+    for (name, settings) in [
+        ("whole", whole(12)),
+        ("slow", slow(12)),
+        ("cycles", cycles(24)),
+    ] {
         let points = settings.points();
         group.throughput(Throughput::Elements(points as u64));
         let mut lanes = Sweeper::new(&settings).expect("checked");

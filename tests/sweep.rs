@@ -240,6 +240,28 @@ fn slow_runs_leap_to_where_they_come_in_the_end() {
     }
 }
 
+/// Left of the pitchfork: the section goes through the steady state, which a run comes to along one slow direction and so few steps
+/// that its returns repeat themselves before anything else is seen.
+#[test]
+fn returns_beside_a_steady_state_are_no_orbit() {
+    let at_rest = (Regime::Steady, Some(Symmetry::Symmetric));
+    for (driving, stiffness) in [
+        (0.046_530_612_244_897_96, 0.226_530_612_244_897_96),
+        (0.046_5, 0.3),
+        (0.046_5, 0.34),
+    ] {
+        let row = at(driving, stiffness, 0);
+        assert_eq!((row.regime, row.symmetry), at_rest, "{row:?}");
+    }
+    let settings = settings("0.04:0.0495:20", "0.15:0.4:20", 1);
+    for row in rows(&SweepSettings {
+        rtol: 1e-8,
+        ..settings
+    }) {
+        assert_eq!((row.regime, row.symmetry), at_rest, "{row:?}");
+    }
+}
+
 /// A run is at rest as soon as a neighbourhood of the steady state holds it. Followed on, it comes there.
 #[test]
 fn runs_that_are_held_come_to_rest() {

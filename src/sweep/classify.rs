@@ -2,7 +2,7 @@
 
 use super::flows::Flows;
 use super::slow_convergence::Leap;
-use super::watch::{SweepRun, apart, see, turn};
+use super::watch::{SWING, SweepRun, apart, see, turn};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
@@ -272,6 +272,10 @@ impl Classifier {
             }
             point = run.surface.nearest(&(point + &left));
             (before, step) = (mu, left.amax());
+        }
+        // Returns beside a steady state on the section repeat themselves too.
+        if stress.1 - stress.0 < SWING {
+            return None;
         }
         told.row.symmetry = Some(symmetry(unlike));
         told.row.returns_per_period = Some(found.returns);

@@ -20,7 +20,7 @@ const BETWEEN_LOOKS: usize = 48;
 /// Part of the usual patience: some 20 periods of stick-slip.
 const PATIENCE: f64 = 0.1;
 /// A run that swings by less is at rest.
-const SWING: f64 = 1e-7;
+pub(super) const SWING: f64 = 1e-7;
 /// Returns that have come this close to each other after q, and come closer, make q a candidate; those closer than the second at
 /// once.
 const NEAR: f64 = 1e-3;
