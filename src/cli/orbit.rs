@@ -20,6 +20,12 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     }
     let FoundOrbit { orbit, others } =
         progress::during(report.quiet, "looking for the orbit", || plan.find())?;
+    // Only the object tells of the second opinion: rows need not wait for it.
+    let in_rows = report.format != Format::Json;
+    let mut ending = Ending::Done;
+    if in_rows {
+        ending = write(&plan, &report, &orbit, &others, None)?;
+    }
     let second = plan.second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(report.quiet, &words, || plan.crosscheck(&orbit));
@@ -27,7 +33,9 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
         report.say(format!("the crosscheck by {second} failed: {error}"));
         None
     });
-    let ending = write(&plan, &report, &orbit, &others, checked.as_ref())?;
+    if !in_rows {
+        ending = write(&plan, &report, &orbit, &others, checked.as_ref())?;
+    }
     report.say(summary(&orbit, checked.as_ref(), &plan.system));
     if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
         return Ok(Ending::Undecided);
