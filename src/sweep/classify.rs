@@ -177,15 +177,20 @@ impl Classifier {
                 return self.leap(run, leap.to.clone());
             }
             Some(leap.to.clone())
-        } else if let Some(far) = slow_convergence::ahead(field, surface, fine, returns, rtol) {
-            return self.leap(run, far);
-        } else if returns.len() < FEWEST_TO_CREEP {
-            return Creeping::No;
-        } else if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
-            return Creeping::To(Box::new(steady(run, &equilibrium, true)));
         } else {
+            let far = slow_convergence::ahead(field, surface, fine, returns, rtol);
+            if let Some(Creeping::Leapt) = far.map(|far| self.leap(run, far)) {
+                return Creeping::Leapt;
+            }
+            let (field, surface, returns) = (&run.field, &run.surface, run.returns());
+            if returns.len() < FEWEST_TO_CREEP {
+                return Creeping::No;
+            }
+            if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
+                return Creeping::To(Box::new(steady(run, &equilibrium, true)));
+            }
             // Where little is between the map and the identity, the point is off by much more than the map.
-            slow_convergence::to_orbit(field, surface, fine, returns, rtol)
+            slow_convergence::to_orbit(field, surface, &mut self.fine, returns, rtol)
         };
         let Some(found) = found.filter(|found| self.attracts(found)) else {
             return Creeping::No;

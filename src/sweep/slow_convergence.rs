@@ -110,11 +110,8 @@ pub(super) fn to_orbit(
         .into_iter()
         .filter(|&(_, q)| shrinks(q))
         .find_map(|(from, q)| {
-            let mut search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, q));
-            (search.from, search.near, search.converged) = (from.clone(), NEAR, CONVERGED);
-            search.shrunk = 1.0;
-            let found = search.point()?;
-            comes_as_said(returns, &found).then_some(found)
+            let search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, q));
+            come_to(returns, search, (from.clone(), NEAR))
         })
 }
 
@@ -127,9 +124,18 @@ pub(super) fn ahead(
     accuracy: f64,
 ) -> Option<Periodic> {
     let from = steady_end(returns)?;
-    let mut search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, 1));
-    (search.from, search.near, search.converged) = (from, FROM_END, CONVERGED);
-    search.shrunk = 1.0;
+    let search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, 1));
+    come_to(returns, search, (from, FROM_END))
+}
+
+/// The point so near to where Newton's method begins, if the returns come to it as they should.
+fn come_to(
+    returns: &[Return],
+    mut search: PeriodicSearch<'_>,
+    (from, near): (Vector, f64),
+) -> Option<Periodic> {
+    (search.from, search.near) = (from, near);
+    (search.converged, search.shrunk) = (CONVERGED, 1.0);
     let found = search.point()?;
     comes_as_said(returns, &found).then_some(found)
 }
