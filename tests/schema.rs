@@ -202,7 +202,7 @@ fn orbit() {
     }
     let second = &orbit["crosscheck"];
     let method = if cfg!(feature = "sundials") {
-        "cvode-bdf"
+        "cvode-adams"
     } else {
         "rodas5p"
     };

@@ -5,13 +5,8 @@ use super::following::SYMMETRIES;
 use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use crate::bifurcation::MAX_POINTS;
-use crate::integrate::Choice;
+use crate::integrate::{Choice, SECOND_METHOD};
 use std::path::PathBuf;
-
-#[cfg(feature = "sundials")]
-const SECOND_METHOD: &str = "cvode-bdf";
-#[cfg(not(feature = "sundials"))]
-const SECOND_METHOD: &str = "rodas5p";
 
 /// How branches and curves are followed.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
@@ -26,7 +21,7 @@ pub struct ContinuationOptions {
     /// Relative accuracy of special points, and of all points of a curve
     #[arg(long, value_name = "X", default_value = "1e-11", value_parser = number, allow_negative_numbers = true)]
     pub tolerance: f64,
-    /// Compute each special point of orbits once more with a second method and report the difference [METHOD: cvode-bdf
+    /// Compute each special point of orbits once more with a second method and report the difference [METHOD: cvode-adams
     /// unless given; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", num_args = 0..=1, default_missing_value = SECOND_METHOD, value_parser = Names::of(Choice::names()), hide_possible_values = true)]
     pub crosscheck: Option<String>,

@@ -300,7 +300,7 @@ pub struct OrbitOptions {
     /// The period, roughly; with it no shorter cycle is taken instead
     #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
-    /// A second method that computes the orbit again, or none [default: cvode-bdf; rodas5p in a build without SUNDIALS]
+    /// A second method that computes the orbit again, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
     pub crosscheck: Option<String>,
     /// The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-adams, rodas5p, rodas4 or rosenbrock23

@@ -7,7 +7,7 @@ use super::units::Quantity;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::positive;
-use crate::integrate::Choice;
+use crate::integrate::{Choice, SECOND_METHOD};
 use crate::orbit::{
     Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
     find,
@@ -164,15 +164,11 @@ fn method_name(choice: Choice) -> &'static str {
 
 /// The method of the crosscheck: another one than the first.
 fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
-    #[cfg(feature = "sundials")]
-    const DEFAULT: &str = "cvode-bdf";
-    #[cfg(not(feature = "sundials"))]
-    const DEFAULT: &str = "rodas5p";
     let name = match name {
         Some("none") => return Ok(None),
         Some(name) => name,
-        None if method_name(first) == DEFAULT => Choice::Taylor.name(),
-        None => DEFAULT,
+        None if method_name(first) == SECOND_METHOD => Choice::Taylor.name(),
+        None => SECOND_METHOD,
     };
     let method = Choice::named_by("crosscheck", name)?;
     if method_name(method) == method_name(first) {

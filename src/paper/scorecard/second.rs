@@ -4,37 +4,32 @@ use super::{missing, slab};
 use crate::bifurcation::{Special, orbits::crosscheck};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::integrate::Choice;
+use crate::integrate::{Choice, SECOND_METHOD};
 use crate::number::Uncertain;
 use crate::orbit::{InitialGuess, Orbit, OrbitAccuracy, Query, find};
 use crate::paper::Pieces;
 
-#[cfg(feature = "sundials")]
-const NAME: &str = "cvode-bdf";
-#[cfg(not(feature = "sundials"))]
-const NAME: &str = "rodas5p";
-
 /// The words of a special orbit found again.
 #[cfg(feature = "sundials")]
-pub const BY_SECOND: &str = "CVODE's BDF, from nodes cut to a few digits";
+pub const BY_SECOND: &str = "CVODE's Adams method, from nodes cut to a few digits";
 #[cfg(not(feature = "sundials"))]
 pub const BY_SECOND: &str = "Rodas5P, from nodes cut to a few digits";
 
 /// The words of the largest K of a curve found again.
 #[cfg(feature = "sundials")]
-pub const AT_THE_TOP: &str = "where |mu| = 1 at that V_H, by CVODE's BDF";
+pub const AT_THE_TOP: &str = "where |mu| = 1 at that V_H, by CVODE's Adams method";
 #[cfg(not(feature = "sundials"))]
 pub const AT_THE_TOP: &str = "where |mu| = 1 at that V_H, by Rodas5P";
 
 /// The words of the multipliers of an orbit found again.
 #[cfg(feature = "sundials")]
-pub const MULTIPLIERS: &str = "multipliers by CVODE's BDF";
+pub const MULTIPLIERS: &str = "multipliers by CVODE's Adams method";
 #[cfg(not(feature = "sundials"))]
 pub const MULTIPLIERS: &str = "multipliers by Rodas5P";
 
 /// The second integrator.
 pub fn second_method() -> Result<Choice> {
-    Choice::named(NAME)
+    Choice::named(SECOND_METHOD)
 }
 
 /// The orbit of a symmetry at V_H and K.

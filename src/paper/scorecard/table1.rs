@@ -179,8 +179,8 @@ pub fn table1(pieces: &Pieces<'_>) -> Result<Made> {
         drawing: None,
         method: "resonances along the torus curve of fig12: orbits by multiple shooting with \
          Taylor series at 1e-16, in three solutions; second_method: the same conditions from \
-         nodes cut to a few digits, by CVODE's BDF at 1e-12 (Rodas5P in a build without \
-         SUNDIALS); relative_difference is that of the printed V_H or K from the computed \
+         nodes cut to a few digits, by CVODE's Adams method at 1e-12 (Rodas5P in a \
+         build without SUNDIALS); relative_difference is that of the printed V_H or K from the computed \
          one, also where the logarithm is printed"
             .into(),
     })
