@@ -33,13 +33,6 @@ pub enum HasSeries {
     Never,
 }
 
-/// The method of second opinions. Along orbits Adams takes three fifths of the time of BDF, and is five times nearer at the same
-/// tolerance.
-#[cfg(feature = "sundials")]
-pub(crate) const SECOND_METHOD: &str = "cvode-adams";
-#[cfg(not(feature = "sundials"))]
-pub(crate) const SECOND_METHOD: &str = "rodas5p";
-
 /// The names of the CVODES methods, in any build.
 const CVODE: [&str; 2] = ["cvode-bdf", "cvode-adams"];
 

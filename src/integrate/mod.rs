@@ -22,7 +22,6 @@ pub(crate) use any_field::of_dimension;
 pub use any_integrator::{AnyIntegrator, DerivativesAlongArcs, FlowDerivatives};
 pub use any_step::{AnyObserver, AnyStep, StepSeries};
 pub use auto::Auto;
-pub(crate) use choice::SECOND_METHOD;
 pub use choice::{Choice, HasSeries};
 #[cfg(feature = "sundials")]
 pub use cvode::CvodeIntegrator;

@@ -4,8 +4,9 @@ use super::branch::{BranchKind, BranchParameter};
 use super::following::SYMMETRIES;
 use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
+use super::orbit::SECOND_METHOD;
 use crate::bifurcation::MAX_POINTS;
-use crate::integrate::{Choice, SECOND_METHOD};
+use crate::integrate::Choice;
 use std::path::PathBuf;
 
 /// How branches and curves are followed.

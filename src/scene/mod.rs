@@ -66,6 +66,7 @@ pub use options::{
     OutputOptions, SectionOptions, SlabOptions,
 };
 pub use orbit::OrbitPlan;
+pub(crate) use orbit::SECOND_METHOD;
 pub use plan::{Dimension, Plan, Sampling, start, tolerances};
 pub use run::{RunOutcome, Sink, run};
 pub use section::{

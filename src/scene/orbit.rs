@@ -7,7 +7,7 @@ use super::units::Quantity;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::positive;
-use crate::integrate::{Choice, SECOND_METHOD};
+use crate::integrate::Choice;
 use crate::orbit::{
     Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
     find,
@@ -161,6 +161,13 @@ fn method_name(choice: Choice) -> &'static str {
         other => other.name(),
     }
 }
+
+/// The method of second opinions. Along orbits Adams takes three fifths of the time of BDF, and is five times nearer at the same
+/// tolerance.
+#[cfg(feature = "sundials")]
+pub(crate) const SECOND_METHOD: &str = "cvode-adams";
+#[cfg(not(feature = "sundials"))]
+pub(crate) const SECOND_METHOD: &str = "rodas5p";
 
 /// The method of the crosscheck: another one than the first.
 fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {

@@ -4,10 +4,11 @@ use super::{missing, slab};
 use crate::bifurcation::{Special, orbits::crosscheck};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
-use crate::integrate::{Choice, SECOND_METHOD};
+use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{InitialGuess, Orbit, OrbitAccuracy, Query, find};
 use crate::paper::Pieces;
+use crate::scene::SECOND_METHOD;
 
 /// The words of a special orbit found again.
 #[cfg(feature = "sundials")]
