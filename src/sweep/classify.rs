@@ -1,7 +1,7 @@
 //! Classifies what a run has settled on, from its returns.
 
 use super::flows::Flows;
-use super::slow_convergence::Leap;
+use super::slow_convergence::{Leap, SlowReturns};
 use super::watch::{SWING, SweepRun, apart, see, turn};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
@@ -164,8 +164,7 @@ impl Classifier {
 
     /// What the run creeps to.
     fn creeping(&mut self, run: &mut SweepRun) -> Creeping {
-        let (field, returns) = (&run.field, run.returns());
-        let (surface, fine, rtol) = (&run.surface, &mut self.fine, self.settings.rtol);
+        let returns = run.returns();
         if returns.len() < FIRST_STAGE {
             return Creeping::No;
         }
@@ -178,19 +177,18 @@ impl Classifier {
             }
             Some(leap.to.clone())
         } else {
-            let far = slow_convergence::ahead(field, surface, fine, returns, rtol);
+            let far = self.slow(run).ahead();
             if let Some(Creeping::Leapt) = far.map(|far| self.leap(run, far)) {
                 return Creeping::Leapt;
             }
-            let (field, surface, returns) = (&run.field, &run.surface, run.returns());
-            if returns.len() < FEWEST_TO_CREEP {
+            if run.returns().len() < FEWEST_TO_CREEP {
                 return Creeping::No;
             }
-            if let Some(equilibrium) = slow_convergence::to_rest(field, returns) {
+            if let Some(equilibrium) = slow_convergence::to_rest(&run.field, run.returns()) {
                 return Creeping::To(Box::new(steady(run, &equilibrium, true)));
             }
             // Where little is between the map and the identity, the point is off by much more than the map.
-            slow_convergence::to_orbit(field, surface, &mut self.fine, returns, rtol)
+            self.slow(run).nearby()
         };
         let Some(found) = found.filter(|found| self.attracts(found)) else {
             return Creeping::No;
@@ -201,6 +199,16 @@ impl Classifier {
                 Creeping::To(Box::new(told))
             }
             None => Creeping::No,
+        }
+    }
+
+    fn slow<'a>(&'a mut self, run: &'a SweepRun) -> SlowReturns<'a> {
+        SlowReturns {
+            field: &run.field,
+            surface: &run.surface,
+            taylor: &mut self.fine,
+            returns: run.returns(),
+            accuracy: self.settings.rtol,
         }
     }
 

@@ -65,7 +65,7 @@ impl Leap {
     }
 }
 
-/// The stable equilibrium that these returns slow_convergence to.
+/// The stable equilibrium that these returns come to.
 pub(super) fn to_rest(field: &AnyField<'_>, returns: &[Return]) -> Option<Vector> {
     let last = returns.last()?;
     let mut at = last.state.clone();
@@ -84,60 +84,55 @@ pub(super) fn to_rest(field: &AnyField<'_>, returns: &[Return]) -> Option<Vector
     None
 }
 
-/// The periodic point that these returns slow_convergence to.
-pub(super) fn to_orbit(
-    field: &AnyField<'_>,
-    surface: &Surface,
-    taylor: &mut AnyIntegrator,
-    returns: &[Return],
-    accuracy: f64,
-) -> Option<Periodic> {
-    let n = returns.len();
-    let last = &returns[n - 1].state;
-    // Around a focus the returns go round; what they turn about is close to their mean.
-    let late = &returns[n - n / 4..];
-    let none = Vector::zeros(field.dimension());
-    let mean = late.iter().fold(none, |sum, at| sum + &at.state) / late.len() as f64;
-    let moved = |q: usize, range: std::ops::Range<usize>| {
-        let of = |i: usize| apart(&returns[i].state, &returns[i - q].state);
-        range.map(of).fold(0.0, f64::max)
-    };
-    let quarter = n / 4;
-    let now = |q: usize| moved(q, n - quarter..n);
-    let shrinks = |q: usize| now(q) < moved(q, n - 2 * quarter..n - quarter);
-    let closest = (1..=LONGEST_PERIOD.min(quarter)).min_by(|&q, &r| now(q).total_cmp(&now(r)))?;
-    [(&mean, 1), (last, 1), (last, closest)]
-        .into_iter()
-        .filter(|&(_, q)| shrinks(q))
-        .find_map(|(from, q)| {
-            let search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, q));
-            come_to(returns, search, (from.clone(), NEAR))
-        })
+/// The returns of a run, good to an accuracy, and what another one is computed by.
+pub(super) struct SlowReturns<'a> {
+    pub field: &'a AnyField<'a>,
+    pub surface: &'a Surface,
+    pub taylor: &'a mut AnyIntegrator,
+    pub returns: &'a [Return],
+    pub accuracy: f64,
 }
 
-/// The periodic point, still far, that these returns creep to steadily: ever slower, along a line.
-pub(super) fn ahead(
-    field: &AnyField<'_>,
-    surface: &Surface,
-    taylor: &mut AnyIntegrator,
-    returns: &[Return],
-    accuracy: f64,
-) -> Option<Periodic> {
-    let from = steady_end(returns)?;
-    let search = PeriodicSearch::new(field, surface, taylor, returns, (accuracy, 1));
-    come_to(returns, search, (from, FROM_END))
-}
+impl SlowReturns<'_> {
+    /// The periodic point that they come to.
+    pub fn nearby(&mut self) -> Option<Periodic> {
+        let returns = self.returns;
+        let n = returns.len();
+        let last = &returns[n - 1].state;
+        // Around a focus the returns go round; what they turn about is close to their mean.
+        let late = &returns[n - n / 4..];
+        let none = Vector::zeros(self.field.dimension());
+        let mean = late.iter().fold(none, |sum, at| sum + &at.state) / late.len() as f64;
+        let moved = |q: usize, range: std::ops::Range<usize>| {
+            let of = |i: usize| apart(&returns[i].state, &returns[i - q].state);
+            range.map(of).fold(0.0, f64::max)
+        };
+        let quarter = n / 4;
+        let now = |q: usize| moved(q, n - quarter..n);
+        let shrinks = |q: usize| now(q) < moved(q, n - 2 * quarter..n - quarter);
+        let closest =
+            (1..=LONGEST_PERIOD.min(quarter)).min_by(|&q, &r| now(q).total_cmp(&now(r)))?;
+        [(&mean, 1), (last, 1), (last, closest)]
+            .into_iter()
+            .filter(|&(_, q)| shrinks(q))
+            .find_map(|(from, q)| self.search(from.clone(), NEAR, q))
+    }
 
-/// The point so near to where Newton's method begins, if the returns come to it as they should.
-fn come_to(
-    returns: &[Return],
-    mut search: PeriodicSearch<'_>,
-    (from, near): (Vector, f64),
-) -> Option<Periodic> {
-    (search.from, search.near) = (from, near);
-    (search.converged, search.shrunk) = (CONVERGED, 1.0);
-    let found = search.point()?;
-    comes_as_said(returns, &found).then_some(found)
+    /// The periodic point, still far, that they creep to steadily: ever slower, along a line.
+    pub fn ahead(&mut self) -> Option<Periodic> {
+        self.search(steady_end(self.returns)?, FROM_END, 1)
+    }
+
+    /// The q-periodic point so near to where Newton's method begins, if they come to it as they should.
+    fn search(&mut self, from: Vector, near: f64, q: usize) -> Option<Periodic> {
+        let returns = self.returns;
+        let asked = (self.accuracy, q);
+        let mut search = PeriodicSearch::new(self.field, self.surface, self.taylor, returns, asked);
+        (search.from, search.near) = (from, near);
+        (search.converged, search.shrunk) = (CONVERGED, 1.0);
+        let found = search.point()?;
+        comes_as_said(returns, &found).then_some(found)
+    }
 }
 
 /// Where the returns seem to end, by Aitken's extrapolation of every component; `None` unless that which moves most has moved less

@@ -64,8 +64,8 @@ pub(super) struct SweepRun {
     pub held: bool,
     /// A leap that is yet to be confirmed.
     pub leap: Option<Leap>,
-    /// Whether one was taken back: there is none any more.
-    earthbound: bool,
+    /// Whether one was taken back: there is no other.
+    taken_back: bool,
     /// Whether the section was moved, and a return waited for as long as it is usual.
     moved: bool,
     waited: bool,
@@ -94,7 +94,7 @@ impl SweepRun {
             pushes: 0,
             held: false,
             leap: None,
-            earthbound: false,
+            taken_back: false,
             moved: false,
             waited: false,
             point,
@@ -201,7 +201,7 @@ impl SweepRun {
 
     /// Leaps most of the way to this point, unless a leap was taken back before; whether it did.
     pub fn leaps(&mut self, to: Periodic) -> bool {
-        let Some(last) = self.returns().last().filter(|_| !self.earthbound) else {
+        let Some(last) = self.returns().last().filter(|_| !self.taken_back) else {
             return false;
         };
         let last = state(last.state.as_slice());
@@ -218,7 +218,7 @@ impl SweepRun {
         let Some(leap) = self.leap.take() else {
             return false;
         };
-        self.earthbound = true;
+        self.taken_back = true;
         self.go_on_from(leap.from);
         true
     }
