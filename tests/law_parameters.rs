@@ -6,7 +6,7 @@ use twinslip::field::{State, VectorField, place};
 use twinslip::friction::{AnyLaw, Law, Parameters, steady_stress};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Driven, Loading, Parameter};
-use twinslip::number::Jet;
+use twinslip::number::{Jet, Real};
 use twinslip::orbit::{InterfaceSystem, OverLogarithms};
 
 fn slab(law: &str, interfaces: usize) -> InterfaceSystem {
@@ -26,6 +26,7 @@ fn a_law_has_its_own_constants_and_no_others() {
         "gamma0",
         "healing_time",
         "residual_strength",
+        "damping",
     ];
     assert_eq!(Parameter::NAMES, all);
     for (law, count) in [
@@ -171,7 +172,9 @@ fn steady_stresses_are_differentiated_in_the_constants() {
     for [v, stress, of_v, of_c, of_r, of_b, of_a, of_a_v] in KNOWN {
         let [v, beta, gamma0, r, c] =
             Jet::<f64, 5>::variables([v, constants[0], constants[1], constants[2], constants[3]]);
-        let law = p.spinodal().freed(Parameters::from([beta, gamma0, r, c]));
+        let law = p
+            .spinodal()
+            .freed(Parameters::from([beta, gamma0, r, c, Real::constant(0.0)]));
         let made = steady_stress(&law, v);
         let [in_v, in_beta, in_gamma0, in_r, in_c] = made.gradient;
         let in_a = in_beta * -b / (a * a) + in_gamma0 * p.gamma0 * a_v / (a * a);

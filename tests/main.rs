@@ -25,6 +25,7 @@ mod curves_equilibria;
 mod curves_orbits;
 #[cfg(feature = "sundials")]
 mod cvode_integrator;
+mod damping;
 mod derivatives;
 mod difference_chart;
 #[cfg(not(feature = "parquet"))]

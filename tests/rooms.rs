@@ -401,6 +401,10 @@ fn a_law_is_one_file_and_one_entry() {
         } else if let Some((_, rest)) = text.split_once("\nimpl Law for ") {
             assert_eq!(room, "friction");
             let stem = file.file_stem().and_then(|s| s.to_str()).expect("ASCII");
+            if stem == "damped" {
+                // Any of the laws with one term more.
+                continue;
+            }
             let name = rest.split(|c| !word(c)).next().expect("a type");
             laws.push((name.to_owned(), stem.to_owned()));
         } else if room != "paper" {

@@ -46,7 +46,7 @@ proptest! {
         backwards: bool,
         beside_rest: bool,
     ) {
-        let constants = Parameters { beta, gamma0, healing_time, residual_strength };
+        let constants = Parameters { beta, gamma0, healing_time, residual_strength, damping: 0.0 };
         let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("known");
         let tau = signed(law, tau, pulled);
         let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
@@ -160,7 +160,7 @@ proptest! {
         order in prop_oneof![Just(12), Just(16), Just(18), Just(20), Just(MAX_ORDER)],
         free in prop_oneof![Just(vec![]), Just(vec![1]), Just(vec![0, 1]), Just(vec![1, 0])],
     ) {
-        let constants = Parameters { beta, gamma0, healing_time: 100.0, residual_strength };
+        let constants = Parameters { beta, gamma0, healing_time: 100.0, residual_strength, damping: 0.0 };
         let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("known");
         let tau = signed(law, tau, pulled);
         let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");
@@ -187,7 +187,7 @@ proptest! {
         order in prop_oneof![Just(12), Just(16), Just(18), Just(20), Just(MAX_ORDER)],
         free in prop_oneof![Just(vec![]), Just(vec![1]), Just(vec![0, 1]), Just(vec![1, 0])],
     ) {
-        let constants = Parameters { beta, gamma0: 1e-4, healing_time: 100.0, residual_strength };
+        let constants = Parameters { beta, gamma0: 1e-4, healing_time: 100.0, residual_strength, damping: 0.0 };
         let law = AnyLaw::named(law, constants).expect("known");
         let tau = signed(law, tau, pulled);
         let loading = Loading::new(f64::exp(driving), f64::exp(stiffness)).expect("positive");

@@ -1,6 +1,6 @@
 //! One interface's part of the linearised system, in the paper's letters: what (14), (26) and (30) are made of.
 
-use crate::friction::Law;
+use crate::friction::{Law, steady_log_slope};
 use crate::number::{Jet, Real};
 
 /// An interface that slides steadily.
@@ -31,11 +31,19 @@ impl<T: Real> Interface<T> {
         let compliance = law.compliance(v, strength.value);
         let [rate, state] = Jet::<T, 2>::variables([v, psi]);
         let [minus_g_v, minus_g_psi] = law.evolution(rate, state).gradient;
+        let a_s = -(v * steepness * minus_g_v * compliance);
+        // F_psi is that of the friction alone, and F_V/(F_V + eta) is one less eta times the compliance
+        let (slope, friction_alone) = if law.damping() == 0.0 {
+            (steepness * steady.gradient[0] + 1.0, a_s)
+        } else {
+            let radiated = compliance * law.damping();
+            (steady_log_slope(law, v), a_s * (-radiated + 1.0))
+        };
         Interface {
             compliance,
             g_psi: -minus_g_psi,
-            s: minus_g_psi * (steepness * steady.gradient[0] + 1.0),
-            a_s: -(v * steepness * minus_g_v * compliance),
+            s: minus_g_psi * slope,
+            a_s: friction_alone,
         }
     }
 }

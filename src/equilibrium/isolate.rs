@@ -68,7 +68,9 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
             certain,
         });
     }
-    cuts.insert(0, below_all(law, driving, cuts[0]));
+    // Of tau_ss(V_H - s) less tau_ss(s) for s -> 0: tau_ss rises from 0, or falls from infinity.
+    let at_rest = if law.weakens_from_rest() { -1.0 } else { 1.0 };
+    cuts.insert(0, below_all(law, driving, cuts[0], at_rest));
     cuts.push(half);
     let mut ends = Vec::new();
     for piece in cuts.windows(2) {
@@ -87,8 +89,7 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
     };
     let mut found = Isolation {
         brackets: Vec::new(),
-        // tau_ss rises from 0, so that phi falls from infinity
-        at_rest: sign(ends[0]) == Some(-1.0),
+        at_rest: sign(ends[0]) == Some(-at_rest),
         certain: true,
     };
     let mut last: Option<(f64, f64)> = None;
@@ -107,11 +108,12 @@ pub(super) fn asymmetric(law: &impl Law, driving: f64) -> Result<Isolation> {
     Ok(found)
 }
 
-/// A rate so small that tau_ss there is below tau_ss(V_H) and nothing lies further down: the first piece rises from 0. The
-/// smallest normal double where no rate is so small.
-fn below_all(law: &impl Law, driving: f64, first: f64) -> f64 {
+/// A rate so small that nothing lies further down, as phi has the sign there that it has at rest: the first piece of tau_ss is monotonic.
+/// The smallest normal double where no rate is so small.
+fn below_all(law: &impl Law, driving: f64, first: f64, at_rest: f64) -> f64 {
     let mut s = 0.5 * first;
-    while s > f64::MIN_POSITIVE && quotient(law, driving, Interval::constant(s)).sign() != Some(1.0)
+    while s > f64::MIN_POSITIVE
+        && quotient(law, driving, Interval::constant(s)).sign() != Some(at_rest)
     {
         s = (0.125 * s).max(f64::MIN_POSITIVE);
     }

@@ -151,14 +151,20 @@ impl Equilibrium {
     /// The largest residual of (19): of the balance of the rates, relative to V_H, and of each evolution, relative to the rate
     /// G_psi at which its state is renewed. Both then are relative errors, of a rate and of a state.
     pub fn residual(&self, law: &impl Law, driving: f64) -> f64 {
+        let tau = self.stress.value;
         // v = s(tau) / h(psi), neither of which need have a double
-        let activation = if self.stress.value.is_normal() {
-            law.log_activation(self.stress.value)
+        let activation = if tau.is_normal() {
+            law.log_activation(tau)
         } else {
             let fast = self.slip_rate[self.slip_rate.len() - 1];
             steady_log_activation(law, fast)
         };
-        let rate = |psi: f64| (activation - law.log_strength(psi)).exp();
+        let rate = |psi: f64| {
+            if law.damping() != 0.0 {
+                return law.slip_rate(law.activation(tau), psi);
+            }
+            (activation - law.log_strength(psi)).exp()
+        };
         let rates: Vec<f64> = self.state().into_iter().map(rate).collect();
         let balance = (driving - rates.iter().sum::<f64>()).abs() / driving;
         let evolutions = rates.iter().zip(self.state()).map(|(&v, psi)| {

@@ -29,11 +29,7 @@ impl Pitchfork {
             let x = Jet::<_, 1>::variable(Jet::<f64, 1>::variable(v, 0), 0);
             let slope = steady_slope(law, x);
             Pitchfork {
-                kind: if i % 2 == 0 {
-                    ExtremumKind::Maximum
-                } else {
-                    ExtremumKind::Minimum
-                },
+                kind: ExtremumKind::of(law, i),
                 slip_rate: v,
                 curvature: slope.value.gradient[0],
                 third: slope.gradient[0].gradient[0],

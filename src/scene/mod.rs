@@ -76,4 +76,4 @@ pub use section::{
 pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};
 pub use system::System;
-pub use units::{Quantity, Units};
+pub use units::{Quantity, TimeUnit, Units};

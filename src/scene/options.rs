@@ -1,6 +1,7 @@
 //! What a user can set. Declared once: the flags of the command line, their help and the keys of a scene file are these
 //! fields, so they cannot drift apart.
 
+use super::units::TimeUnit;
 use crate::friction::AnyLaw;
 use crate::integrate::Choice;
 use clap::builder::{PossibleValue, TypedValueParser};
@@ -73,15 +74,27 @@ pub struct SlabOptions {
     /// Friction coefficient a_v at V*
     #[arg(long, value_name = "a_v", default_value_t = 0.369, value_parser = number, allow_negative_numbers = true)]
     pub reference_friction: f64,
+    /// Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law [default: 0; eta in Pa s/m with --si]
+    #[arg(long, value_name = "ETA", value_parser = number, allow_negative_numbers = true, conflicts_with_all = ["shear_modulus", "shear_wave_speed"])]
+    pub damping: Option<f64>,
     /// All input and output in SI units
     #[arg(long)]
     pub si: bool,
+    /// With --si: G in Pa, for the damping G/(2 c_s)
+    #[arg(long, value_name = "G", requires_all = ["si", "shear_wave_speed"], value_parser = number, allow_negative_numbers = true)]
+    pub shear_modulus: Option<f64>,
+    /// With --si: c_s in m/s, for the damping G/(2 c_s)
+    #[arg(long, value_name = "c_s", requires_all = ["si", "shear_modulus"], value_parser = number, allow_negative_numbers = true)]
+    pub shear_wave_speed: Option<f64>,
     /// With --si: L in m [default: 0.9e-6]
     #[arg(long, value_name = "L", requires = "si", value_parser = number, allow_negative_numbers = true)]
     pub slip_length: Option<f64>,
     /// With --si: V* in m/s [default: 1e-6]
     #[arg(long, value_name = "V*", requires = "si", value_parser = number, allow_negative_numbers = true)]
     pub reference_rate: Option<f64>,
+    /// With --si: unit of times in and out (run, period, state of laws in which it is a time); parameters stay in SI
+    #[arg(long, value_name = "UNIT", requires = "si", default_value = "s", value_parser = Names::of(TimeUnit::NAMES))]
+    pub time_unit: String,
     /// With --si: sigma in Pa; the paper states none, and it only scales stress and stiffness [default: 1e6]
     #[arg(long, value_name = "sigma", requires = "si", value_parser = number, allow_negative_numbers = true)]
     pub normal_stress: Option<f64>,

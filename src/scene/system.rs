@@ -1,7 +1,7 @@
 //! From the model's options to a checked system, and back to what the output says about it.
 
 use super::options::{ModelOptions, SlabOptions};
-use super::units::{Quantity, Units};
+use super::units::{Quantity, TimeUnit, Units};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Law, Parameters, positive};
 use crate::model::Loading;
@@ -62,6 +62,7 @@ impl System {
         }
         let scales = options.si.then(|| scales(options)).transpose()?;
         let time = scales.map_or(1.0, |s| s.time);
+        let damping = damping(options)?;
         let healing_time = options.healing_time.unwrap_or(HEALING_TIME * time);
         let parameters = Parameters::new(
             options.direct_effect,
@@ -69,9 +70,11 @@ impl System {
             options.reference_friction,
             positive("healing-time", healing_time / time)?,
             options.residual_strength,
-        )?;
+        )?
+        .damped(damping / scales.map_or(1.0, |s| s.stress / s.slip_rate))?;
         let law = AnyLaw::named(&options.law, parameters)?;
-        let units = Units::new(scales, !law.bounds_state());
+        let units =
+            Units::new(scales, !law.bounds_state()).in_time(TimeUnit::named(&options.time_unit)?);
         let inward = |quantity, name, value: Option<f64>| {
             value
                 .map(|x| positive(name, units.inward(quantity, x)))
@@ -84,7 +87,7 @@ impl System {
             stiffness: inward(Quantity::Stiffness, "stiffness", stiffness)?,
             units,
             direct_effect: options.direct_effect,
-            echo: echo(options, (driving, stiffness), healing_time),
+            echo: echo(options, (driving, stiffness), (healing_time, damping)),
         })
     }
 
@@ -133,10 +136,23 @@ fn scales(options: &SlabOptions) -> Result<Scales> {
     )
 }
 
+/// eta in the user's units: itself, or G/(2 c_s).
+fn damping(options: &SlabOptions) -> Result<f64> {
+    match (options.shear_modulus, options.shear_wave_speed) {
+        (Some(modulus), Some(speed)) => {
+            Ok(positive("shear-modulus", modulus)? / (2.0 * positive("shear-wave-speed", speed)?))
+        }
+        (Some(_), None) | (None, Some(_)) => Err(Error::Input(
+            "`shear-modulus` and `shear-wave-speed` make a damping only together".into(),
+        )),
+        (None, None) => Ok(options.damping.unwrap_or(0.0)),
+    }
+}
+
 fn echo(
     options: &SlabOptions,
     (driving, stiffness): (Option<f64>, Option<f64>),
-    healing_time: f64,
+    (healing_time, damping): (f64, f64),
 ) -> Map<String, Value> {
     let mut pairs = vec![
         ("law", json!(options.law)),
@@ -148,6 +164,7 @@ fn echo(
         ("direct_effect", json!(options.direct_effect)),
         ("evolution_effect", json!(options.evolution_effect)),
         ("reference_friction", json!(options.reference_friction)),
+        ("damping", json!(damping)),
         ("si", json!(options.si)),
     ];
     if options.si {
@@ -156,6 +173,7 @@ fn echo(
             ("slip_length", or(options.slip_length, SLIP_LENGTH)),
             ("reference_rate", or(options.reference_rate, REFERENCE_RATE)),
             ("normal_stress", or(options.normal_stress, NORMAL_STRESS)),
+            ("time_unit", json!(options.time_unit)),
         ]);
     }
     pairs

@@ -1,6 +1,6 @@
 //! What a number on the command line is measured in: dimensionless, or SI with `--si`.
 
-use crate::error::{Error, MessageUnits};
+use crate::error::{Error, MessageUnits, Result};
 use crate::model::scales::Scales;
 use crate::number::Uncertain;
 
@@ -27,11 +27,65 @@ pub enum Quantity {
     Number,
 }
 
+/// A unit of time beside SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TimeUnit {
+    name: &'static str,
+    /// The name of its inverse.
+    inverse: &'static str,
+    seconds: f64,
+}
+
+impl TimeUnit {
+    /// The second.
+    pub const SECOND: TimeUnit = TimeUnit {
+        name: "s",
+        inverse: "1/s",
+        seconds: 1.0,
+    };
+
+    /// All units; a year has 365.25 days.
+    const ALL: [TimeUnit; 4] = [
+        TimeUnit::SECOND,
+        TimeUnit {
+            name: "hour",
+            inverse: "1/hour",
+            seconds: 3600.0,
+        },
+        TimeUnit {
+            name: "day",
+            inverse: "1/day",
+            seconds: 86_400.0,
+        },
+        TimeUnit {
+            name: "year",
+            inverse: "1/year",
+            seconds: 31_557_600.0,
+        },
+    ];
+
+    /// The names by which the command line knows them.
+    pub const NAMES: [&'static str; 4] = {
+        let [a, b, c, d] = TimeUnit::ALL;
+        [a.name, b.name, c.name, d.name]
+    };
+
+    /// The unit of this name.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is not in [`TimeUnit::NAMES`].
+    pub fn named(name: &str) -> Result<Self> {
+        let unit = TimeUnit::ALL.into_iter().find(|unit| unit.name == name);
+        unit.ok_or_else(|| Error::unknown("time-unit", name, &TimeUnit::NAMES))
+    }
+}
+
 /// The units in which numbers come in and go out.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Units {
     scales: Option<Scales>,
     state_is_time: bool,
+    time: TimeUnit,
 }
 
 impl Units {
@@ -40,7 +94,13 @@ impl Units {
         Units {
             scales,
             state_is_time,
+            time: TimeUnit::SECOND,
         }
+    }
+
+    /// The same with times in this unit, where they are in SI.
+    pub fn in_time(self, time: TimeUnit) -> Self {
+        Units { time, ..self }
     }
 
     /// Whether the numbers are in SI.
@@ -57,10 +117,10 @@ impl Units {
             Quantity::Stress => scales.stress,
             Quantity::SlipRate => scales.slip_rate,
             Quantity::Length => scales.length,
-            Quantity::Time => scales.time,
+            Quantity::Time => scales.time / self.time.seconds,
             Quantity::Stiffness => scales.stiffness,
-            Quantity::Growth => 1.0 / scales.time,
-            Quantity::State if self.state_is_time => scales.time,
+            Quantity::Growth => self.time.seconds / scales.time,
+            Quantity::State if self.state_is_time => scales.time / self.time.seconds,
             Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
         }
     }
@@ -122,13 +182,13 @@ impl Units {
             Quantity::SlipRate => "V*",
             Quantity::Length if si => "m",
             Quantity::Length => "L",
-            Quantity::Time if si => "s",
+            Quantity::Time if si => self.time.name,
             Quantity::Time => "L/V*",
             Quantity::Stiffness if si => "Pa/m",
             Quantity::Stiffness => "a sigma/L",
-            Quantity::Growth if si => "1/s",
+            Quantity::Growth if si => self.time.inverse,
             Quantity::Growth => "V*/L",
-            Quantity::State if self.state_is_time && si => "s",
+            Quantity::State if self.state_is_time && si => self.time.name,
             Quantity::State if self.state_is_time => "L/V*",
             Quantity::State | Quantity::LogState | Quantity::Number => "1",
         }

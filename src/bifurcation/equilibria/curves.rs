@@ -25,12 +25,22 @@ fn balance<T: Real>(law: &impl Law, z: T, log_driving: T) -> T {
     }
     let fast = log_driving - (-z * 2.0).exp().ln_1p();
     let rates = Difference::new(fast, fast - z * 2.0, z * 2.0).exp();
+    if law.damping() != 0.0 {
+        return steady_log_activation(law, rates).gap / (z * 2.0);
+    }
     law.log_strength(law.steady_state(rates)).gap / (z * 2.0) + 1.0
 }
 
 /// The first and third derivatives of ln s(tau_ss) in x = ln V.
 fn log_derivatives<T: Real>(law: &impl Law, x: T) -> [T; 2] {
     let x = Jet::<_, 1>::variable(Jet::<_, 1>::variable(Jet::<T, 1>::variable(x, 0), 0), 0);
+    if law.damping() != 0.0 {
+        let level = steady_log_activation(law, x.exp());
+        return [
+            level.value.value.gradient[0],
+            level.gradient[0].gradient[0].gradient[0],
+        ];
+    }
     let level = law.log_strength(law.steady_state(x.exp()));
     [
         level.value.value.gradient[0] + 1.0,

@@ -96,11 +96,12 @@ impl Law for Bounded {
         Self::NAME
     }
 
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
         [
             Some(&mut self.beta),
             Some(&mut self.gamma0),
             Some(&mut self.r),
+            None,
             None,
         ]
     }

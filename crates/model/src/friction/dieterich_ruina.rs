@@ -28,6 +28,8 @@ impl DieterichRuina {
 }
 
 impl<C: Constant> Formulas<C> for DieterichRuina<C> {
+    const EXPONENTIAL: bool = true;
+
     // exp(-a_v/a) = gamma0 / 2
     #[inline(always)]
     fn activation<T: With<C>>(&self, tau: T) -> T {
@@ -83,8 +85,14 @@ impl Law for DieterichRuina {
         Self::NAME
     }
 
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
-        [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
+        [
+            Some(&mut self.beta),
+            Some(&mut self.gamma0),
+            None,
+            None,
+            None,
+        ]
     }
 
     fn ageing_form(&self) -> Option<AgeingForm> {

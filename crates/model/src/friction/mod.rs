@@ -8,6 +8,7 @@
 //! for. A new law is one file and its entry in the list of laws: the tests then run over it too.
 
 mod bounded;
+mod damped;
 mod dieterich_ruina;
 mod direct;
 mod regularised_ageing;
@@ -16,6 +17,7 @@ mod slip;
 mod spinodal;
 mod steady;
 
+pub use damped::Damped;
 #[doc(hidden)]
 pub use rounding::{effects, rounding};
 pub use steady::{
@@ -32,6 +34,9 @@ use std::fmt::Debug;
 /// The stress acts through one function of its own, as in any thermally activated process: v = s(tau) / strength(psi).
 /// Interfaces under the same stress share s(tau), which is why it is a formula apart.
 pub trait Formulas<C = f64> {
+    /// Whether s is (gamma0/2) e^tau, as in the plain laws; else gamma0 sinh(tau).
+    const EXPONENTIAL: bool = false;
+
     /// s(tau), the activation by the stress. Same sign as the slip rate.
     fn activation<T: With<C>>(&self, tau: T) -> T;
 
@@ -75,20 +80,25 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
     /// The name by which the command line knows the law.
     fn name(&self) -> &'static str;
 
-    /// Its constants, in the order of [`Parameters::NAMES`]: the first ones of these, as many as it has.
-    fn constants(&mut self) -> [Option<&mut f64>; 4];
+    /// Its constants, in the order of [`Parameters::NAMES`], as far as it has them.
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()];
 
-    /// Their names.
-    fn constant_names(&self) -> &'static [&'static str] {
-        let count = { *self }.constants().iter().flatten().count();
-        &Parameters::NAMES[..count]
+    /// eta, the radiation damping; 0 where the law is that of the friction alone.
+    fn damping(&self) -> f64 {
+        0.0
     }
 
     /// ln s(tau) for tau > 0.
     fn log_activation(&self, tau: f64) -> f64;
 
-    /// The extrema of tau_ss(V), by slip rate ascending: a maximum V_M, then a minimum V_m, where the law has them.
+    /// The extrema of tau_ss(V), by slip rate ascending: a maximum V_M, then a minimum V_m, where the law has them; of a law that weakens
+    /// from rest the minimum alone.
     fn steady_extrema(&self) -> Vec<f64>;
+
+    /// Whether tau_ss falls from rest on: the first of its extrema is then a minimum.
+    fn weakens_from_rest(&self) -> bool {
+        false
+    }
 
     /// Whether the evolution keeps psi in (0, 1].
     fn bounds_state(&self) -> bool {
@@ -176,24 +186,47 @@ pub struct Parameters<C = f64> {
     pub healing_time: C,
     /// c.
     pub residual_strength: C,
+    /// eta V*/(a sigma), the radiation damping.
+    pub damping: C,
 }
 
-impl<T> From<[T; 4]> for Parameters<Free<T>> {
+impl<T> From<[T; Parameters::NAMES.len()]> for Parameters<Free<T>> {
     /// In the order of [`Parameters::NAMES`].
-    fn from(constants: [T; 4]) -> Self {
-        let [beta, gamma0, healing_time, residual_strength] = constants.map(Free);
+    fn from(constants: [T; Parameters::NAMES.len()]) -> Self {
+        let [beta, gamma0, healing_time, residual_strength, damping] = constants.map(Free);
         Parameters {
             beta,
             gamma0,
             healing_time,
             residual_strength,
+            damping,
         }
     }
 }
 
 impl Parameters {
-    /// Their names. Every law has the first two, those whose state is bounded the third, the spinodal one all.
-    pub const NAMES: [&'static str; 4] = ["beta", "gamma0", "healing_time", "residual_strength"];
+    /// Their names. Every law has the first two, those whose state is bounded the third, the spinodal one the fourth, and those that are
+    /// damped the last.
+    pub const NAMES: [&'static str; 5] = [
+        "beta",
+        "gamma0",
+        "healing_time",
+        "residual_strength",
+        "damping",
+    ];
+
+    /// The same with this radiation damping eta V*/(a sigma).
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] if it is negative or not finite.
+    pub fn damped(self, damping: f64) -> Result<Self> {
+        if damping >= 0.0 && damping.is_finite() {
+            Ok(Parameters { damping, ..self })
+        } else {
+            let must = "zero or positive, and finite";
+            Err(Error::parameter("damping", damping, must))
+        }
+    }
 
     /// From the coefficients a, b, a_v and from R and c.
     ///
@@ -229,6 +262,7 @@ impl Parameters {
             gamma0,
             healing_time,
             residual_strength,
+            damping: 0.0,
         })
     }
 
@@ -271,6 +305,14 @@ macro_rules! laws {
         #[non_exhaustive]
         pub enum AnyLaw<C = f64> {
             $(#[doc = $equation] $law($law<C>),)+
+            /// One of these with radiation damping.
+            Damped(Damped<C>),
+        }
+
+        /// A law without damping, by its name alone.
+        #[derive(Debug, Clone, Copy, PartialEq)]
+        enum Undamped {
+            $($law,)+
         }
 
         impl AnyLaw {
@@ -280,12 +322,14 @@ macro_rules! laws {
             /// Where each is from: the paper's equation, or who wrote of it and when.
             pub const SOURCES: [&'static str; AnyLaw::NAMES.len()] = [$($equation.trim_ascii()),+];
 
-            /// The law of that name.
+            /// The law of that name, damped where the parameters say so.
             ///
             /// # Errors
             /// [`Error::Parameter`] for a name that is not in [`AnyLaw::NAMES`].
             pub fn named(name: &str, parameters: Parameters) -> Result<Self> {
+                let damped = parameters.damping != 0.0;
                 match name {
+                    $($law::NAME if damped => Ok(AnyLaw::Damped(Damped::new(Undamped::$law, parameters))),)+
                     $($law::NAME => Ok(AnyLaw::$law(parameters.$file())),)+
                     _ => Err(Error::unknown("law", name, &AnyLaw::NAMES)),
                 }
@@ -295,6 +339,7 @@ macro_rules! laws {
             fn of_kind<T: Real>(&self, constants: Parameters<Free<T>>) -> AnyLaw<Free<T>> {
                 match self {
                     $(AnyLaw::$law(_) => AnyLaw::$law(constants.$file()),)+
+                    AnyLaw::Damped(law) => AnyLaw::Damped(law.of_kind(constants)),
                 }
             }
         }
@@ -304,6 +349,19 @@ macro_rules! laws {
             ($d any:expr, $d law:ident => $d body:expr) => {
                 match $d any {
                     $($crate::friction::AnyLaw::$law($d law) => $d body,)+
+                    $crate::friction::AnyLaw::Damped($d law) => $d body,
+                }
+            };
+        }
+
+        /// The same with `law` the law of this name with these constants.
+        macro_rules! with_undamped {
+            ($d name:expr, $d constants:expr, $d law:ident => $d body:expr) => {
+                match $d name {
+                    $($crate::friction::Undamped::$law => {
+                        let $d law = $d constants.$file();
+                        $d body
+                    })+
                 }
             };
         }
@@ -324,6 +382,7 @@ laws! { $
     slip::Slip,
 }
 pub(crate) use with_law;
+use with_undamped;
 
 impl AnyLaw {
     /// The name by which the command line knows this law.
@@ -368,8 +427,14 @@ impl Law for AnyLaw {
     fn name(&self) -> &'static str {
         with_law!(self, law => law.name())
     }
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
         with_law!(self, law => law.constants())
+    }
+    fn damping(&self) -> f64 {
+        with_law!(self, law => law.damping())
+    }
+    fn weakens_from_rest(&self) -> bool {
+        with_law!(self, law => law.weakens_from_rest())
     }
     fn log_activation(&self, tau: f64) -> f64 {
         with_law!(self, law => law.log_activation(tau))

@@ -79,8 +79,14 @@ impl Law for RegularisedAgeing {
         Self::NAME
     }
 
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
-        [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
+        [
+            Some(&mut self.beta),
+            Some(&mut self.gamma0),
+            None,
+            None,
+            None,
+        ]
     }
 
     fn ageing_form(&self) -> Option<AgeingForm> {

@@ -40,6 +40,8 @@ impl<C: Constant> Slip<C> {
 }
 
 impl<C: Constant> Formulas<C> for Slip<C> {
+    const EXPONENTIAL: bool = true;
+
     #[inline(always)]
     fn activation<T: With<C>>(&self, tau: T) -> T {
         self.direct_effect().activation(tau)
@@ -90,8 +92,14 @@ impl Law for Slip {
         Self::NAME
     }
 
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
-        [Some(&mut self.beta), Some(&mut self.gamma0), None, None]
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
+        [
+            Some(&mut self.beta),
+            Some(&mut self.gamma0),
+            None,
+            None,
+            None,
+        ]
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -97,8 +97,14 @@ impl Law for Spinodal {
         Self::NAME
     }
 
-    fn constants(&mut self) -> [Option<&mut f64>; 4] {
-        [&mut self.beta, &mut self.gamma0, &mut self.r, &mut self.c].map(Some)
+    fn constants(&mut self) -> [Option<&mut f64>; Parameters::NAMES.len()] {
+        [
+            Some(&mut self.beta),
+            Some(&mut self.gamma0),
+            Some(&mut self.r),
+            Some(&mut self.c),
+            None,
+        ]
     }
 
     fn ageing_form(&self) -> Option<AgeingForm> {

@@ -9,25 +9,36 @@ pub fn steady_stress<C, T: With<C>>(law: &impl Formulas<C>, v: T) -> T {
     law.stress(v, law.steady_state(v))
 }
 
-/// d tau_ss / dV = F_V d ln s(tau_ss)/d ln V: next to an extremum it has the digits of the latter, of whatever size F_V is.
+/// d tau_ss / dV = F_V d ln s(tau_ss)/d ln V, F_V with the damping where there is one: next to an extremum it has the digits of the latter, of whatever size F_V is.
 pub fn steady_slope<T: Real>(law: &impl Law, v: T) -> T {
     let log_strength = law.log_strength(law.steady_state(v));
     steady_log_slope(law, v) / law.compliance(v, log_strength)
 }
 
 /// ln s(tau_ss(V)), the logarithm of the activation that steady sliding takes: it rises and falls as tau_ss does, and has a
-/// double where tau_ss or the strength has none.
+/// double where tau_ss or the strength has none. With damping, where equal stresses are no equal activations, tau_ss itself.
 pub fn steady_log_activation<T: Real>(law: &impl Law, v: T) -> T {
+    if law.damping() != 0.0 {
+        return steady_stress(law, v);
+    }
     v.ln() + law.log_strength(law.steady_state(v))
 }
 
-/// d ln s(tau_ss) / d ln V: positive where an interface strengthens with its slip rate, negative where it weakens.
+/// d ln s(tau_ss) / d ln V: positive where an interface strengthens with its slip rate, negative where it weakens. With damping
+/// d tau_ss/dV over F_V + eta, which is the same where there is none.
 pub fn steady_log_slope<T: Real>(law: &impl Law, v: T) -> T {
     let along = Jet {
         value: v,
         gradient: [v],
     };
-    law.log_strength(law.steady_state(along)).gradient[0] + 1.0
+    let strength = law.log_strength(law.steady_state(along));
+    let slope = strength.gradient[0] + 1.0;
+    if law.damping() == 0.0 {
+        return slope;
+    }
+    // (F_V l + eta) / (F_V + eta)
+    let radiated = law.compliance(v, strength.value) * law.damping();
+    slope + radiated * (-slope + 1.0)
 }
 
 /// tau_ss at a rate known within `radius`, with its error budget: rounding at the point, and the largest slope nearby.
@@ -60,6 +71,17 @@ pub enum ExtremumKind {
     Minimum,
 }
 
+impl ExtremumKind {
+    /// The kind of the extremum of a law at this place among [`Law::steady_extrema`]: maxima and minima take turns.
+    pub fn of(law: &impl Law, place: usize) -> Self {
+        if place % 2 == usize::from(law.weakens_from_rest()) {
+            ExtremumKind::Maximum
+        } else {
+            ExtremumKind::Minimum
+        }
+    }
+}
+
 /// An extremum of tau_ss(V), with bounds that hold.
 #[derive(Debug, Clone, Copy, PartialEq)]
 #[non_exhaustive]
@@ -81,11 +103,7 @@ impl Extremum {
             .map(|(i, v)| {
                 let radius = enclosing_radius(v, |x| steady_log_slope(law, x));
                 Extremum {
-                    kind: if i % 2 == 0 {
-                        ExtremumKind::Maximum
-                    } else {
-                        ExtremumKind::Minimum
-                    },
+                    kind: ExtremumKind::of(law, i),
                     slip_rate: Uncertain::new(v, radius),
                     stress: steady_stress_within(law, v, radius),
                 }
@@ -150,6 +168,9 @@ fn stiffness_growth<T: Real>(law: &impl Law, v: T) -> T {
         value: v,
         gradient: [v],
     };
+    if law.damping() != 0.0 {
+        return critical_stiffness(law, along).gradient[0] / renewal_slope(law, v);
+    }
     let psi = law.steady_state(along);
     let [rate, state] = Jet::<_, 2>::variables([along, psi]);
     let renewal = -law.evolution(rate, state).gradient[1];

@@ -57,11 +57,11 @@ impl Parameter {
     /// Their names.
     pub const LOADING: [&'static str; 2] = ["driving", "stiffness"];
 
-    /// The names of all parameters of systems of interfaces: these two, and the constants of laws. A system has the first ones of
-    /// them, those that its law has ([`Law::constants`]).
-    pub const NAMES: [&'static str; 6] = {
+    /// The names of all parameters of systems of interfaces: these two, and the constants of laws. A system has of these those that
+    /// its law has ([`Law::constants`]).
+    pub const NAMES: [&'static str; 7] = {
         let [driving, stiffness] = Parameter::LOADING;
-        let [beta, gamma0, healing_time, residual_strength] = Parameters::NAMES;
+        let [beta, gamma0, healing_time, residual_strength, damping] = Parameters::NAMES;
         [
             driving,
             stiffness,
@@ -69,12 +69,27 @@ impl Parameter {
             gamma0,
             healing_time,
             residual_strength,
+            damping,
         ]
     };
 
-    /// The names of the parameters of a system whose interfaces have this law.
+    /// The names of the parameters of a system whose interfaces have this law: the first ones of all, and the damping where there is one.
     pub fn names(law: &impl Law) -> &'static [&'static str] {
-        &Parameter::NAMES[..Parameter::LOADING.len() + law.constant_names().len()]
+        const ALL: [&str; 7] = Parameter::NAMES;
+        const DAMPED: [&[&str]; 2] = [
+            &[ALL[0], ALL[1], ALL[2], ALL[3], ALL[6]],
+            &[ALL[0], ALL[1], ALL[2], ALL[3], ALL[4], ALL[6]],
+        ];
+        let has = { *law }.constants().map(|constant| constant.is_some());
+        match has {
+            [_, _, true, true, true] => &Parameter::NAMES,
+            [_, _, true, _, true] => DAMPED[1],
+            [.., true] => DAMPED[0],
+            _ => {
+                let constants = has.iter().filter(|&&has| has).count();
+                &Parameter::NAMES[..Parameter::LOADING.len() + constants]
+            }
+        }
     }
 
     /// The places of V_H and K.

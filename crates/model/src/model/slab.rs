@@ -53,14 +53,19 @@ fn in_loading<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<S::L
     recorded(slab.equations(), slab.loading().into())
 }
 
-/// The formula in all parameters, to be differentiated in one at a place where the system has one.
-fn in_constant<S: Slab<N>, const N: usize>(
-    slab: &S,
-    place: usize,
-) -> Recorded<Logarithmic<S::Law>, N, ALL> {
+/// Where the parameter that a system has at this place stands among all.
+fn among_all<S: Slab<N>, const N: usize>(slab: &S, place: usize) -> usize {
     let names = Parameter::names(&slab.law());
     assert!(place < names.len(), "{names:?} have no place {place}");
-    in_all(slab)
+    let of_all = Parameter::NAMES
+        .iter()
+        .position(|name| *name == names[place]);
+    of_all.expect("a parameter of interfaces")
+}
+
+/// The same of several.
+fn all_among<S: Slab<N>, const N: usize>(slab: &S, places: &[usize]) -> Vec<usize> {
+    places.iter().map(|&place| among_all(slab, place)).collect()
 }
 
 /// The formula in all parameters.
@@ -104,7 +109,7 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
         if is_loading(place) {
             field(in_loading(self)).parameter_derivative(y, place)
         } else {
-            field(in_constant(self, place)).parameter_derivative(y, place)
+            field(in_all(self)).parameter_derivative(y, among_all(self, place))
         }
     }
 
@@ -112,7 +117,7 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
         if is_loading(place) {
             field(in_loading(self)).parameter_jacobian(y, place)
         } else {
-            field(in_constant(self, place)).parameter_jacobian(y, place)
+            field(in_all(self)).parameter_jacobian(y, among_all(self, place))
         }
     }
 }
@@ -129,7 +134,7 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
     /// Compiled in V_H and K; with constants of the law in loops.
     fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
         if !free.iter().copied().all(is_loading) {
-            return in_all(self).tangent(free);
+            return in_all(self).tangent(&all_among(self, free));
         }
         let law = self.law().core();
         let compiled = tangent(law, pair(self), self.weights(), free);
@@ -140,7 +145,7 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
         if free.iter().copied().all(is_loading) {
             in_loading(self).reference_tangent(free)
         } else {
-            in_all(self).reference_tangent(free)
+            in_all(self).reference_tangent(&all_among(self, free))
         }
     }
 

@@ -4,7 +4,7 @@
 //! rates merge, and subtracting two rounded stresses leaves no digit of the answer. Here the difference is carried through
 //! the formula by the addition theorems, so it keeps its relative accuracy however close the points are.
 
-use super::Real;
+use super::{Balance, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `first`, `second` and `gap` = first - second.
@@ -357,5 +357,43 @@ impl<T: Real, const ORDERED: bool> Real for Difference<T, ORDERED> {
             (true, true) => -self,
             _ => self.direct(T::abs),
         }
+    }
+    // With d = y_1 - y_2: d + a_1 e^(y_2) (e^d - 1) + b_1 e^(-y_2) (1 - e^(-d)) = x_1 - x_2 less what g differs by at y_2.
+    #[inline(never)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let (first, second) = (
+            self.first.balanced(g.map(|c| c.first)),
+            self.second.balanced(g.map(|c| c.second)),
+        );
+        let y = second.0;
+        let (apart, of_gap) = match g {
+            Balance::Exponential(a) => {
+                let e = y.exp();
+                (a.gap * e, [a.first * e, T::constant(0.0)])
+            }
+            Balance::Sinh(a) => {
+                let half = a.first * 0.5;
+                (a.gap * y.sinh(), [half * y.exp(), half * (-y).exp()])
+            }
+            Balance::Difference(a, b) => {
+                let (rising, falling) = (y.exp_m1(), (-y).exp_m1());
+                let of_gap = [a.first * y.exp(), b.first * (-y).exp()];
+                (a.gap * rising - b.gap * falling, of_gap)
+            }
+        };
+        let [a, b] = of_gap;
+        let (gap, of_g) = (self.gap - apart).balanced(Balance::Difference(a, b));
+        (
+            Difference {
+                first: first.0,
+                second: second.0,
+                gap,
+            },
+            Difference {
+                first: first.1,
+                second: second.1,
+                gap: apart + of_g,
+            },
+        )
     }
 }

@@ -4,7 +4,7 @@
 //! Routh-Hurwitz conditions hold for the whole interval, and undecided where they don't. Endpoints that are not finite
 //! simply certify nothing.
 
-use super::Real;
+use super::{Balance, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many units in the last place a function of the C mathematical library may be off, with a margin: glibc documents
@@ -342,5 +342,9 @@ impl Real for Interval {
                 hi: (-self.lo).max(self.hi),
             }
         }
+    }
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let y = g.enclose(self);
+        (y, g.at(y).0)
     }
 }

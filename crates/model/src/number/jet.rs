@@ -1,7 +1,7 @@
 //! A value with its gradient in N variables: exact first derivatives. Nested (`Jet<Jet<f64, N>, N>`) it gives second
 //! derivatives, and so on.
 
-use super::Real;
+use super::{Balance, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its N partial derivatives.
@@ -251,5 +251,20 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn abs(self) -> Self {
         self.chain(self.value.abs(), self.value.sign())
+    }
+    // dy (1 + g'(y)) = dx - dg and dg(y) (1 + g'(y)) = g'(y) dx + dg, with dg at the y that is held
+    #[inline(always)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let (y, value) = self.value.balanced(g.map(|c| c.value));
+        let held = Jet {
+            value: y,
+            gradient: [T::constant(0.0); N],
+        };
+        let (at, slope) = g.at(held);
+        let (slope, whole) = (slope.value, slope.value + 1.0);
+        (
+            zip!(self, at, y, |d, e| (d - e) / whole),
+            zip!(self, at, value, |d, e| (slope * d + e) / whole),
+        )
     }
 }

@@ -4,6 +4,7 @@
 //! [`Difference`] the difference of two values without cancellation; in [`Interval`] bounds that hold whatever the rounding;
 //! in [`DoubleDouble`] values of 31 digits. Their constants are fixed doubles or [`Free`] numbers. [`polynomial`] has the real roots of Taylor polynomials.
 
+mod balance;
 mod constant;
 mod difference;
 mod double_double;
@@ -13,6 +14,7 @@ pub mod polynomial;
 mod root;
 mod uncertain;
 
+pub use balance::Balance;
 pub use constant::{Constant, Free, With};
 pub use difference::Difference;
 pub use double_double::DoubleDouble;
@@ -102,6 +104,8 @@ pub trait Real:
     fn sign(self) -> Self {
         Self::constant(1_f64.copysign(self.leading()))
     }
+    /// the y of y + g(y) = x, and g(y), each with its own digits
+    fn balanced(self, g: Balance<Self>) -> (Self, Self);
 }
 
 /// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.
@@ -193,5 +197,9 @@ impl Real for f64 {
     #[inline]
     fn abs(self) -> f64 {
         self.abs()
+    }
+    fn balanced(self, g: Balance<f64>) -> (f64, f64) {
+        let y = g.solve(self);
+        (y, g.at(y).0)
     }
 }

@@ -1,7 +1,7 @@
 //! Third-order jets: polynomials of the third degree in two variations, what a flow map is around a solution.
 
-use super::element::{Element, rough_exp2, rough_log2};
-use crate::number::{DoubleDouble, Real};
+use super::element::{Element, balanced, rough_exp2, rough_log2};
+use crate::number::{Balance, DoubleDouble, Real};
 use pulp::NullaryFnOnce;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -218,6 +218,9 @@ impl Element for Jet3 {
         let y = self.0[0].tanh();
         let u = 1.0 - y * y;
         self.composed([y, u, -y * u, (6.0 * y * y - 2.0) * u / 6.0])
+    }
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        balanced(self, g, 2)
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.0[0] < 0.0 { a } else { b }

@@ -3,7 +3,8 @@
 //! A formula evaluated on series of these yields the solution of its variational equations along with its own: no second set
 //! of recurrences is needed. The directions stand in lanes.
 
-use super::element::Element;
+use super::element::{Element, balanced};
+use crate::number::Balance;
 use pulp::NullaryFnOnce;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -146,6 +147,10 @@ impl<X: Element> Element for Dual<X> {
         ln_1p: |x| 1.0 / (x + 1.0);
         atan: |x| 1.0 / (x * x + 1.0);
         tanh: |x| 1.0 - x.tanh() * x.tanh();
+    }
+    #[inline(always)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        balanced(self, g, 1)
     }
     #[inline(always)]
     fn powf(self, p: f64) -> Self {

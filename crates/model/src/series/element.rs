@@ -1,6 +1,6 @@
 //! What the coefficients of a series are: one number, or one in each of several lanes.
 
-use crate::number::{DoubleDouble, Real};
+use crate::number::{Balance, DoubleDouble, Real};
 use pulp::NullaryFnOnce;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
@@ -84,6 +84,15 @@ pub trait Element:
     /// hyperbolic tangent
     fn tanh(self) -> Self {
         lane_by_lane(self, f64::tanh)
+    }
+    /// The y of y + g(y) = self, and g(y); likewise.
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let mut both = (self, self);
+        for i in 0..Self::LANES {
+            let (y, value) = Real::balanced(self.lane(i), g.map(|c| c.lane(i)));
+            both = (both.0.with_lane(i, y), both.1.with_lane(i, value));
+        }
+        both
     }
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
@@ -333,6 +342,9 @@ impl Element for DoubleDouble {
     fn tanh(self) -> Self {
         Real::tanh(self)
     }
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        Real::balanced(self, g)
+    }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }
     }
@@ -348,4 +360,30 @@ impl Element for DoubleDouble {
     fn first(self) -> f64 {
         self.hi()
     }
+}
+
+/// The y of y + g(y) = x, and g(y), for numbers that carry more than doubles: from the solution of their doubles, by so many of Newton's
+/// steps, each of which doubles the order of the derivatives that are right.
+#[inline(never)]
+pub(super) fn balanced<E: Element>(x: E, g: Balance<E>, steps: usize) -> (E, E) {
+    let at = |y: E| match g {
+        Balance::Exponential(a) => {
+            let value = a * y.exp();
+            (value, value)
+        }
+        Balance::Sinh(a) => {
+            let (sinh, cosh) = y.sinh_cosh();
+            (a * sinh, a * cosh)
+        }
+        Balance::Difference(a, b) => (
+            a * y.exp_m1() - b * (-y).exp_m1(),
+            a * y.exp() + b * (-y).exp(),
+        ),
+    };
+    let mut y = x.like(g.map(Element::first).solve(x.first()));
+    for _ in 0..steps {
+        let (value, slope) = at(y);
+        y = y - (y + value - x) / (slope + x.like(1.0));
+    }
+    (y, at(y).0)
 }

@@ -1,7 +1,7 @@
 //! Both interfaces in ordinary numbers: for processors without the vector instructions, and for any kind of number.
 
 use super::element::Element;
-use crate::number::DoubleDouble;
+use crate::number::{Balance, DoubleDouble};
 use pulp::NullaryFnOnce;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -124,6 +124,12 @@ impl<T: Element> Element for Both<T> {
     fn sin_cos(self) -> (Self, Self) {
         let ((s1, c1), (s2, c2)) = (self.0[0].sin_cos(), self.0[1].sin_cos());
         (Both([s1, s2]), Both([c1, c2]))
+    }
+    #[inline(always)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let of = |i: usize| self.0[i].balanced(g.map(|c| c.0[i]));
+        let ((y, of_y), (z, of_z)) = (of(0), of(1));
+        (Both([y, z]), Both([of_y, of_z]))
     }
     #[inline(always)]
     fn first(self) -> f64 {

@@ -2,8 +2,8 @@
 
 use super::element::Element;
 use super::handle::{Series, SeriesKind, exact, literal, row, value};
-use super::tape::Order;
-use crate::number::{DoubleDouble, Real};
+use super::tape::{self, Order};
+use crate::number::{Balance, DoubleDouble, Real};
 use SeriesKind::{Exact, Literal, Row, Value};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -270,6 +270,48 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         match self.kind() {
             Row(a) => value(a.stored().get(0).sign()),
             _ => literal(1_f64.copysign(self.leading())),
+        }
+    }
+
+    #[inline(always)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let (mut rows, mut constants): (Option<tape::Row<'_, E, O>>, _) = (None, None);
+        let mut look = |x: Self| match x.kind() {
+            Row(a) => rows = Some(a),
+            Value(x) => constants = Some(x),
+            _ => {}
+        };
+        look(self);
+        g.map(look);
+        // What is constant becomes a row where something else is one.
+        if let Some(any) = rows {
+            let as_row = |x: Self| match x.kind().released() {
+                Row(a) => a,
+                Value(x) => any.constant_series(x),
+                Exact(x) => any.constant_series(any.any().like_exact(x)),
+                Literal(_) => unreachable!("released"),
+            };
+            let (y, of_y) = as_row(self).balanced(g.map(as_row));
+            return (row(y), row(of_y));
+        }
+        let exact_of = |x: Self| match x.kind().released() {
+            Exact(x) => x,
+            _ => unreachable!("no value"),
+        };
+        match constants {
+            Some(any) => {
+                let as_value = |x: Self| match x.kind().released() {
+                    Value(x) => x,
+                    Exact(x) => any.like_exact(x),
+                    _ => unreachable!("no row"),
+                };
+                let (y, of_y) = as_value(self).balanced(g.map(as_value));
+                (value(y), value(of_y))
+            }
+            None => {
+                let (y, of_y) = Real::balanced(exact_of(self), g.map(exact_of));
+                (exact(y), exact(of_y))
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::tape::{Order, Row};
-use crate::number::DoubleDouble;
+use crate::number::{Balance, DoubleDouble};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
@@ -354,5 +354,81 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let new = self.mul_add(factors.get(2), rest);
         slopes.put(new * new.like(k as f64));
         y.put(new)
+    }
+
+    /// y and g = g(y) with y + g = x. As e = exp y has k e_k = k y_k e_0 + sum of j y_j e_(k-j) over 0 < j < k, and the other functions
+    /// likewise, g_k = g'(y_0) y_k + r, and so y_k = (x_k - r) / (1 + g'(y_0)).
+    #[inline(always)]
+    pub(super) fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let k = self.order();
+        let g = g.map(Self::stored);
+        let (y, of_y, slopes) = (self.another(), self.another(), self.another());
+        // The first coefficients: 1 / (1 + g'(y_0)), the same times g'(y_0), and what the newest coefficients of g count at y_0.
+        let firsts = self.another();
+        // exp y and exp(-y), or sinh y and cosh y
+        let (e, f) = (self.another(), self.another());
+        if k == 0 {
+            let (first, value) = self.newest().balanced(g.map(|c| c.get(0)));
+            let ((of_e, of_f), counts) = match g {
+                Balance::Sinh(_) => (first.sinh_cosh(), [first; 2]),
+                _ => {
+                    let (rising, falling) = (first.exp_m1(), (-first).exp_m1());
+                    ((first.exp(), (-first).exp()), [rising, falling])
+                }
+            };
+            e.put(of_e);
+            f.put(of_f);
+            let slope = match g {
+                Balance::Exponential(a) => a.get(0) * of_e,
+                Balance::Sinh(a) => a.get(0) * of_f,
+                Balance::Difference(a, b) => a.get(0).mul_add(of_e, b.get(0) * of_f),
+            };
+            let one_over = first.like(1.0) / (slope + first.like(1.0));
+            let all = [one_over, slope * one_over, counts[0], counts[1]];
+            for (j, x) in all.into_iter().enumerate() {
+                firsts.tape.set(firsts.row, j, x);
+            }
+            return (y.put(first), of_y.put(value));
+        }
+        let one_over = self.one_over_order();
+        // what is known of the newest coefficient of a product
+        let known = |a: Self, of: Self, newest: E, first: E| {
+            let sum = a.get(k).mul_add(first, a.running_product(of));
+            a.get(0).mul_add(newest, sum)
+        };
+        // Of e and f, but for y_k, and what y_k counts in f.
+        let (of_e, of_f, rest, count);
+        match g {
+            Balance::Exponential(a) => {
+                of_e = slopes.running_product(e) * one_over;
+                (of_f, count) = (of_e.like(0.0), of_e.like(0.0));
+                rest = known(a, e, of_e, e.get(0));
+            }
+            Balance::Sinh(a) => {
+                of_e = slopes.running_product(f) * one_over;
+                of_f = slopes.running_product(e) * one_over;
+                count = e.get(0);
+                rest = known(a, e, of_e, e.get(0));
+            }
+            Balance::Difference(a, b) => {
+                of_e = slopes.running_product(e) * one_over;
+                of_f = -(slopes.running_product(f) * one_over);
+                count = -f.get(0);
+                let falling = known(b, f, of_f, firsts.get(3));
+                rest = known(a, e, of_e, firsts.get(2)) - falling;
+            }
+        }
+        let newest = self.newest();
+        let new = (newest - rest) * firsts.get(0);
+        let of_new = match g {
+            Balance::Sinh(_) => f.get(0),
+            _ => e.get(0),
+        };
+        e.put(new.mul_add(of_new, of_e));
+        f.put(new.mul_add(count, of_f));
+        slopes.put(new * new.like(k as f64));
+        // g_k = (g' x_k + r) / (1 + g')
+        let value = newest.mul_add(firsts.get(1), rest * firsts.get(0));
+        (y.put(new), of_y.put(value))
     }
 }

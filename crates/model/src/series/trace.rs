@@ -6,7 +6,7 @@
 //!
 //! Griewank, A. and Walther, A. (2008). Evaluating Derivatives, 2nd edition, chapters 2 and 6. SIAM.
 
-use crate::number::{DoubleDouble, Real};
+use crate::number::{Balance, DoubleDouble, Real};
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -50,6 +50,29 @@ pub(super) enum Node {
     Sign(NodeIndex),
     /// a with the sign of b.
     Signed(NodeIndex, NodeIndex),
+    /// The y of y + g(y) = a.
+    Balanced(NodeIndex, NodeBalance),
+    /// g(y) of that node, which stands before.
+    OfBalanced(NodeIndex),
+}
+
+/// g of a balance, of these nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum NodeBalance {
+    Exponential(NodeIndex),
+    Sinh(NodeIndex),
+    Difference(NodeIndex, NodeIndex),
+}
+
+impl NodeBalance {
+    /// g with the numbers that stand for its nodes.
+    pub fn of<T: Copy>(self, at: impl Fn(NodeIndex) -> T) -> Balance<T> {
+        match self {
+            NodeBalance::Exponential(a) => Balance::Exponential(at(a)),
+            NodeBalance::Sinh(a) => Balance::Sinh(at(a)),
+            NodeBalance::Difference(a, b) => Balance::Difference(at(a), at(b)),
+        }
+    }
 }
 
 /// Multiplies and rotates (Fx hash): nodes are few words, and a graph is made for every solution.
@@ -150,6 +173,20 @@ impl Graph {
                     slope(a) * (this / at(a) * at(p)) + slope(p) * (this * at(a).ln())
                 }
                 Node::Signed(a, b) => slope(a) * at(b).sign(),
+                Node::Balanced(a, g) => {
+                    // g with its coefficients' slopes, at the y that is held
+                    let (of_coefficients, _) = g.of(slope).at(this);
+                    let (_, steepness) = g.of(at).at(this);
+                    (slope(a) - of_coefficients) / (steepness + 1.0)
+                }
+                Node::OfBalanced(y) => {
+                    let Node::Balanced(a, g) = nodes[y] else {
+                        unreachable!("a balance");
+                    };
+                    let (of_coefficients, _) = g.of(slope).at(at(y));
+                    let (_, steepness) = g.of(at).at(at(y));
+                    (steepness * slope(a) + of_coefficients) / (steepness + 1.0)
+                }
             });
         }
         let slope = |x: &Traced<'_>| match x {
@@ -439,5 +476,34 @@ impl Real for Traced<'_> {
             |x| 1_f64.copysign(x),
             Node::Sign,
         )
+    }
+
+    #[inline(never)]
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let graph_of = |x: Self| match x {
+            Traced::Node(graph, _) => Some(graph),
+            Constant(_) => None,
+        };
+        let mut graph = graph_of(self);
+        g.map(|c| graph = graph.or(graph_of(c)));
+        let Some(graph) = graph else {
+            let number = |x: Self| match x {
+                Constant(x) => x,
+                Traced::Node(..) => unreachable!("constants"),
+            };
+            let (y, of_y) = Real::balanced(number(self), g.map(number));
+            return (Constant(y), Constant(of_y));
+        };
+        let place = graph.place_of(self);
+        let nodes = match g.map(|c| graph.place_of(c)) {
+            Balance::Exponential(a) => NodeBalance::Exponential(a),
+            Balance::Sinh(a) => NodeBalance::Sinh(a),
+            Balance::Difference(a, b) => NodeBalance::Difference(a, b),
+        };
+        let values = nodes.of(|at| graph.value(at));
+        let (value, of_value) = Real::balanced(graph.value(place), values);
+        let y = graph.place(Node::Balanced(place, nodes), value);
+        let of_y = graph.place(Node::OfBalanced(y), of_value);
+        (Traced::Node(graph, y), Traced::Node(graph, of_y))
     }
 }

@@ -2,7 +2,7 @@
 //! from these two. Each is arranged so that nothing cancels, as relative errors near zeros have to stay small too.
 
 use super::{DoubleDouble, two_product};
-use crate::number::Real;
+use crate::number::{Balance, Real};
 
 /// ln 2
 const LN_2: DoubleDouble = DoubleDouble {
@@ -340,6 +340,15 @@ impl Real for DoubleDouble {
     #[inline(always)]
     fn abs(self) -> Self {
         self.with_sign_of(DoubleDouble::ONE)
+    }
+
+    // The double's, and Newton's method from there.
+    fn balanced(self, g: Balance<Self>) -> (Self, Self) {
+        let mut y = DoubleDouble::from(g.map(|c| c.hi).solve(self.hi));
+        for _ in 0..2 {
+            y = g.newton(self, y);
+        }
+        (y, g.at(y).0)
     }
 }
 
