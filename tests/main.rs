@@ -67,6 +67,8 @@ mod parquet;
 mod periodic_schur;
 mod pictures;
 mod polynomials;
+mod programs;
+mod programs_input;
 mod reproduce;
 #[cfg(not(feature = "parquet"))]
 mod resonances_of_systems;

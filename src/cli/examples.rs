@@ -18,7 +18,9 @@ const LAW: &str = "Example, the paper's law and its extrema:
 
 const INTEGRATE: &str =
     "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
-  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
+  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg
+Slide-hold-slide, and a ramp of the driving velocity from 1 to 10:
+  twinslip integrate --driving 1 --stiffness 0.5 --program 50:0,150:1,200-250:10 --until 300";
 
 const EQUILIBRIA: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
   twinslip equilibria --driving 1000 --stiffness 0.45
