@@ -55,6 +55,7 @@ mod many_dimensions;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
+mod orbit_rows;
 mod orbits;
 #[cfg(not(feature = "parquet"))]
 mod orbits_of_systems;

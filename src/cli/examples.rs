@@ -31,7 +31,9 @@ log_state_uncertainty, slip_rate_uncertainty, and eigenvalue_uncertainty, a dist
 const ORBIT: &str = "Example, the three orbits that coexist at K = 0.05 and V_H = 0.2, the last one unstable:
   twinslip orbit --driving 0.2 --stiffness 0.05
   twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric
-  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480";
+  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480
+The cycle over one period, as rows and as a picture:
+  twinslip orbit --driving 10 --stiffness 0.14 --symmetry asymmetric --points 400 --plot cycle.svg";
 
 const SECTION: &str =
     "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:

@@ -311,6 +311,10 @@ pub struct OrbitOptions {
     /// The period, roughly; with it no shorter cycle is taken instead
     #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
+    /// Rows over one period, as those of integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then
+    /// holds these, and in JSON they are result.rows
+    #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]
+    pub points: Option<usize>,
     /// A second method that computes the orbit again, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
     pub crosscheck: Option<String>,
@@ -333,6 +337,9 @@ pub struct OrbitOptions {
     /// Give up an arc after so many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
+    /// Draw stress, states and slip rates over one period, and the phase plane, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,

@@ -236,7 +236,9 @@ def options_of(make, name):
             options.append(("period-guess", m.number_of(0.1, 500)))
         if m.chance(0.3):
             options.append(("crosscheck", m.one_of([*METHODS, "none"])))
-        options += m.output(plot=False)
+        if m.chance(0.15):
+            options.append(("points", m.number_of(2, 200, whole=True, edges=m.chance(0.2))))
+        options += m.output()
     elif name == "section":
         options = m.model() + m.numerics()
         options.append(("returns", m.number_of(1, 100, whole=True, edges=False)))
