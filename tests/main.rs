@@ -56,6 +56,7 @@ mod many_dimensions;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
+mod orbit_rows;
 mod orbits;
 #[cfg(not(feature = "parquet"))]
 mod orbits_of_systems;
@@ -68,6 +69,8 @@ mod parquet;
 mod periodic_schur;
 mod pictures;
 mod polynomials;
+mod programs;
+mod programs_input;
 mod reproduce;
 #[cfg(not(feature = "parquet"))]
 mod resonances_of_systems;

@@ -18,7 +18,9 @@ const LAW: &str = "Example, the paper's law and its extrema:
 
 const INTEGRATE: &str =
     "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
-  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg";
+  twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg
+Slide-hold-slide, and a ramp of the driving velocity from 1 to 10:
+  twinslip integrate --driving 1 --stiffness 0.5 --program 50:0,150:1,200-250:10 --until 300";
 
 const EQUILIBRIA: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
   twinslip equilibria --driving 1000 --stiffness 0.45
@@ -29,7 +31,9 @@ log_state_uncertainty, slip_rate_uncertainty, and eigenvalue_uncertainty, a dist
 const ORBIT: &str = "Example, the three orbits that coexist at K = 0.05 and V_H = 0.2, the last one unstable:
   twinslip orbit --driving 0.2 --stiffness 0.05
   twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric
-  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480";
+  twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480
+The cycle over one period, as rows and as a picture:
+  twinslip orbit --driving 10 --stiffness 0.14 --symmetry asymmetric --points 400 --plot cycle.svg";
 
 const SECTION: &str =
     "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:

@@ -7,7 +7,7 @@ use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::output::{Format, Place, RowList, object, plot};
-use crate::scene::{IntegrateOptions, Keeping, Plan, RunOutcome, explain, pictured_columns};
+use crate::scene::{Change, IntegrateOptions, Keeping, Plan, Program, RunOutcome, explain};
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::{IsTerminal, Write};
@@ -35,9 +35,11 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         say(explain(&plan, keeping).trim_end());
     }
     let columns = views::names(&plan.columns, false);
-    let pictured = views::names(&pictured_columns(plan.system.interfaces), false);
+    let pictured = views::names(&plan.pictured(), false);
     let numbers = numerics(&plan);
-    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns, kept) {
+    let remarks = report.remarks(&plan.system, &numbers);
+    let columns = (columns, &plan.system.units);
+    let mut out = match StreamOut::new(&report, remarks, columns, kept) {
         Ok(out) => out.drawing(pictured.into_iter().map(|(name, _)| name).collect()),
         Err(error) => return written(Err(error), &report.place),
     };
@@ -58,7 +60,7 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     }
     let ending = write(&plan, &report, &rows, &outcome, events.as_ref())?;
     if let Some(path) = &options.plot {
-        plot::write(path, &picture(&plan, &drawn))?;
+        plot::write(path, &views::picture_of_run(&plan, &drawn))?;
     }
     report.say(summary(&outcome, plan.events.is_some(), seconds));
     report.ended(match outcome.failure {
@@ -169,6 +171,8 @@ struct IntegrationResult<'a> {
     #[serde(rename = "final")]
     last: Option<Map<String, Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
+    program: Option<Vec<Value>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
     events: Option<Vec<Map<String, Value>>>,
 }
 
@@ -183,7 +187,18 @@ fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> Integrati
         let object = |event| views::object(&columns, event, &plan.system.units);
         outcome.events.iter().map(object).collect()
     });
-    IntegrationResult { rows, last, events }
+    IntegrationResult {
+        rows,
+        last,
+        program: plan.program.as_ref().map(changes),
+        events,
+    }
+}
+
+/// The changes of V_H, as they were given.
+fn changes(program: &Program) -> Vec<Value> {
+    let one = |change: &Change| json!({"time": change.time, "until": change.until, "driving": change.driving});
+    program.changes.iter().map(one).collect()
 }
 
 fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
@@ -207,10 +222,4 @@ fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
         text.push_str(&format!(", no error estimate: {error}"));
     }
     text
-}
-
-/// The run in time, and the phase plane beside it.
-fn picture(plan: &Plan, rows: &RowList) -> plot::Drawing {
-    let time = views::panels_in_time(plan, rows);
-    plot::Drawing::columns(vec![time, vec![views::phase_plane(plan, rows)]])
 }

@@ -1,20 +1,25 @@
 //! `twinslip orbit`.
 
 use super::report::{self, Report};
+use super::stream::StreamOut;
 use super::words::several;
 use super::{Ending, progress, say, written};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit};
-use crate::output::{self, Format};
+use crate::output::{self, Format, RowList, plot};
 use crate::scene::{OrbitOptions, OrbitPlan, Quantity, System};
 use crate::views;
 use serde_json::{Value, json};
+use std::path::Path;
 
 pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     let plan = OrbitPlan::new(options)?;
-    let report = Report::new(&options.output, words, &[])?;
+    let picture = options.plot.as_deref();
+    picture.map(plot::PictureFormat::of).transpose()?;
+    let others: Vec<&Path> = picture.into_iter().collect();
+    let report = Report::new(&options.output, words, &others)?;
     if options.output.explain {
         say(plan.explain());
     }
@@ -23,9 +28,10 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
-    if in_rows {
-        ending = write(&plan, &report, &orbit, &others, None)?;
+    if in_rows && plan.rows.is_none() {
+        ending = write_orbits(&plan, &report, &orbit, &others)?;
     }
+    let rows = along(&plan, &report, &orbit, picture)?;
     let second = plan.second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(report.quiet, &words, || plan.crosscheck(&orbit));
@@ -34,7 +40,8 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
         None
     });
     if !in_rows {
-        ending = write(&plan, &report, &orbit, &others, checked.as_ref())?;
+        let result = result(&plan, &orbit, &others, checked.as_ref(), rows.as_ref());
+        ending = write_object(&plan, &report, &orbit, result)?;
     }
     report.say(summary(&orbit, checked.as_ref(), &plan.system));
     if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
@@ -68,35 +75,101 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> Stri
     text
 }
 
-fn write(
+/// Goes along the orbit for the rows and the picture that are asked for, and gives the rows; none where nobody asks for them, or reads
+/// them.
+fn along(
     plan: &OrbitPlan,
     report: &Report<'_>,
     orbit: &Orbit,
-    others: &[Orbit],
-    checked: Option<&Crosscheck>,
-) -> Result<Ending> {
-    let numerics = json!({
+    picture: Option<&Path>,
+) -> Result<Option<RowList>> {
+    let Some(run) = plan.along(orbit) else {
+        return Ok(None);
+    };
+    let columns = views::names(&run.columns, false);
+    let out = if plan.rows.is_some() {
+        let mut remarks = report.remarks(&plan.system, &numerics(plan, orbit));
+        remarks.push(format!("orbit: {}", summary(orbit, None, &plan.system)));
+        let columns = (columns, &plan.system.units);
+        StreamOut::new(report, remarks, columns, false)
+    } else {
+        Ok(StreamOut::kept(report, columns))
+    };
+    let mut out = match out {
+        Ok(out) => {
+            let pictured = views::names(&run.pictured(), false).into_iter();
+            out.drawing(pictured.map(|(name, _)| name).collect())
+        }
+        Err(error) => return written(Err(error), &report.place).map(|_| None),
+    };
+    let outcome = crate::scene::run(&run, &mut out)?;
+    out.progress.finish();
+    if let Some(error) = out.broken {
+        return written(Err(error), &report.place).map(|_| None);
+    }
+    if let Some(path) = picture {
+        plot::write(path, &views::picture_of_run(&run, &out.drawn))?;
+    }
+    if plan.rows.is_none() {
+        return outcome.failure.map_or(Ok(None), Err);
+    }
+    report.ended(outcome.failure.map_or(Ok(Ending::Done), Err))?;
+    Ok(Some(out.rows))
+}
+
+fn numerics(plan: &OrbitPlan, orbit: &Orbit) -> Value {
+    json!({
         "method": orbit.method,
         "rtol": plan.accuracy.tolerances.rtol,
         "atol": plan.accuracy.tolerances.atol,
         "max_steps": plan.accuracy.max_steps,
         "crosscheck": plan.second.map(|second| second.method.name()),
-    });
+    })
+}
+
+/// What the object holds.
+fn result(
+    plan: &OrbitPlan,
+    orbit: &Orbit,
+    others: &[Orbit],
+    checked: Option<&Crosscheck>,
+    rows: Option<&RowList>,
+) -> Value {
     let system = &plan.system;
-    if report.format == Format::Json {
-        let mut main = object(orbit, system);
-        main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, system));
-        let rest: Vec<Value> = others.iter().map(|other| object(other, system)).collect();
-        let result = json!({"orbit": main, "others": rest});
-        let mut work = report::work(&orbit.work);
-        work["nodes"] = json!(orbit.nodes.len());
-        work["iterations"] = json!(orbit.iterations);
-        let bytes = report.envelope(system, numerics, result, work, None);
-        return written(report.place.write(&bytes), &report.place);
+    let mut main = object(orbit, system);
+    main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, system));
+    let rest: Vec<Value> = others.iter().map(|other| object(other, system)).collect();
+    let mut result = json!({"orbit": main, "others": rest});
+    if let Some(rows) = rows {
+        result["rows"] = json!(rows);
     }
+    result
+}
+
+fn write_object(
+    plan: &OrbitPlan,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    result: Value,
+) -> Result<Ending> {
+    let mut work = report::work(&orbit.work);
+    work["nodes"] = json!(orbit.nodes.len());
+    work["iterations"] = json!(orbit.iterations);
+    let bytes = report.envelope(&plan.system, numerics(plan, orbit), result, work, None);
+    written(report.place.write(&bytes), &report.place)
+}
+
+/// A row for each orbit.
+fn write_orbits(
+    plan: &OrbitPlan,
+    report: &Report<'_>,
+    orbit: &Orbit,
+    others: &[Orbit],
+) -> Result<Ending> {
+    let system = &plan.system;
     report.write_all(
         &system.units,
-        report.remarks(system, &numerics),
+        report.remarks(system, &numerics(plan, orbit)),
         &views::orbit_columns(system.interfaces),
         std::iter::once(orbit).chain(others),
     )

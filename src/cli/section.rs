@@ -31,7 +31,9 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     let columns = views::names(&section_columns(plan.system.interfaces), false);
     let numbers = numerics(&plan);
     let drawn = options.plot.is_some();
-    let mut out = match StreamOut::new(&report, (&plan.system, &numbers), columns, drawn) {
+    let remarks = report.remarks(&plan.system, &numbers);
+    let columns = (columns, &plan.system.units);
+    let mut out = match StreamOut::new(&report, remarks, columns, drawn) {
         Ok(out) => out.counting(),
         Err(error) => return written(Err(error), &report.place),
     };

@@ -5,8 +5,7 @@ use super::progress::Progress;
 use super::report::{Report, unit_names};
 use crate::integrate::Control;
 use crate::output::{Cell, Format, RowList, RowWriter};
-use crate::scene::{Quantity, Sink, System};
-use serde_json::Value;
+use crate::scene::{Quantity, Sink, Units};
 use std::io;
 
 /// Takes the rows of a run.
@@ -25,31 +24,37 @@ pub struct StreamOut {
 }
 
 impl StreamOut {
-    /// Begins the table or CSV, below the command that makes it. Rows are kept for an object anyway.
+    /// Begins the table or CSV, below remarks. Rows are kept for an object anyway.
     pub fn new(
         report: &Report<'_>,
-        (system, numerics): (&System, &Value),
-        columns: Vec<(String, Quantity)>,
+        remarks: Vec<String>,
+        (columns, units): (Vec<(String, Quantity)>, &Units),
         keep: bool,
     ) -> io::Result<Self> {
-        let (names, quantities): (Vec<_>, Vec<_>) = columns.into_iter().unzip();
-        let writer = if report.format == Format::Json {
-            None
-        } else {
-            let units = unit_names(&system.units, quantities.into_iter());
-            let remarks = report.remarks(system, numerics);
-            Some(report.begin(remarks, &names, &units)?)
-        };
+        if report.format == Format::Json {
+            return Ok(Self::kept(report, columns));
+        }
+        let (names, quantities): (Vec<_>, Vec<_>) = columns.iter().cloned().unzip();
+        let units = unit_names(units, quantities.into_iter());
         Ok(StreamOut {
-            keep: keep || writer.is_none(),
-            writer,
+            keep,
+            writer: Some(report.begin(remarks, &names, &units)?),
+            ..Self::kept(report, columns)
+        })
+    }
+
+    /// Writes nothing, and keeps the rows.
+    pub fn kept(report: &Report<'_>, columns: Vec<(String, Quantity)>) -> Self {
+        StreamOut {
+            keep: true,
+            writer: None,
             broken: None,
             counts: false,
-            rows: RowList::new(names),
+            rows: RowList::new(columns.into_iter().map(|(name, _)| name).collect()),
             drawn: RowList::default(),
             cells: Vec::new(),
             progress: Progress::new(report.quiet),
-        })
+        }
     }
 
     /// The first column counts: its whole numbers need no point.

@@ -15,8 +15,8 @@ pub(super) struct Extremes {
     pub stress: (f64, f64),
     pub slip_rate_max: f64,
     pub state_min: f64,
-    /// Where tau falls through the level asked for.
-    pub passage: Option<Vector>,
+    /// The time since the first node, and where tau falls through the level asked for then.
+    pub passage: Option<(f64, Vector)>,
 }
 
 /// Along the shooting's arcs, each from its own node.
@@ -44,6 +44,7 @@ pub(super) fn extremes(
     let mut turns = Vec::new();
     // The sign goes on from arc to arc, so that no passage at a node is lost.
     let mut through = Zeros::default();
+    let mut begin = 0.0;
     for (x, &duration) in shooting.nodes.iter().zip(&shooting.durations) {
         let mut turns_of = vec![Zeros::default(); dimension];
         all.see(x.as_slice());
@@ -68,10 +69,10 @@ pub(super) fn extremes(
                     found.clear();
                     let down = Some(Crossing::Downwards);
                     series.crossings(plane, down, &mut through, &mut found);
-                    all.passage = found
-                        .drain(..)
-                        .next()
-                        .map(|passage| Vector::from_vec(passage.state));
+                    all.passage = found.drain(..).next().map(|passage| {
+                        let time = (series.begin() + passage.time).hi();
+                        (begin + time, Vector::from_vec(passage.state))
+                    });
                 }
                 let end = series.length() / series.unit();
                 for rates in series.slip_rates() {
@@ -90,6 +91,7 @@ pub(super) fn extremes(
                 Ok(Control::Continue)
             }),
         )?;
+        begin += duration;
     }
     Ok(all)
 }

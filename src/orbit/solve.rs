@@ -23,6 +23,8 @@ pub struct Orbit {
     pub period: Uncertain,
     /// tau and ln psi of every interface: where tau falls through tau_ss(V_H/2), or at a node where it never does.
     pub point: Vec<f64>,
+    /// The time from the first node to the point.
+    pub point_time: f64,
     /// The point may be off by this, in units of 1 + |y|.
     pub point_uncertainty: f64,
     /// Least stress, in a sigma.
@@ -213,7 +215,9 @@ pub(super) fn orbit(
         period.uncertainty += SPREAD * apart;
     }
     let extremes = extremes(space.field(), shooting, level)?;
-    let point = extremes.passage.as_ref().unwrap_or(&shooting.nodes[0]);
+    let passage = extremes.passage.as_ref();
+    let (point_time, point) =
+        passage.map_or((0.0, &shooting.nodes[0]), |(time, point)| (*time, point));
     // What others differ by, and within a stress extreme's rounding as well.
     let of_stress = |of: &dyn Fn(&Extremes) -> f64| {
         let stress = of(&extremes);
@@ -224,13 +228,14 @@ pub(super) fn orbit(
     /// Of several passages in a cycle another one is farther off.
     const SAME: f64 = 1e-3;
     let passages = others.iter().filter_map(|other| other.passage.as_ref());
-    let of_point = passages.map(|other| relative(&(other - point), point));
+    let of_point = passages.map(|(_, other)| relative(&(other - point), point));
     let of_point = of_point.filter(|&off| off < SAME);
     let point_uncertainty = node_error + SPREAD * of_point.fold(0.0, f64::max);
     Ok(Orbit {
         symmetry: space.symmetry(shooting),
         period,
         point: point.iter().copied().collect(),
+        point_time,
         point_uncertainty,
         stress_min: of_stress(&|of| of.stress.0),
         stress_max: of_stress(&|of| of.stress.1),

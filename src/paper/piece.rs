@@ -14,7 +14,7 @@ use std::sync::Arc;
 pub struct Run {
     /// What was run.
     pub plan: Plan,
-    /// In the columns of [`pictured_columns`](crate::scene::pictured_columns).
+    /// In the columns of [`Plan::pictured`](crate::scene::Plan::pictured).
     pub rows: RowList,
     /// What it came to.
     pub outcome: RunOutcome,

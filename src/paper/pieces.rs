@@ -9,8 +9,7 @@ use crate::friction::{AnyLaw, Parameters};
 use crate::output::RowList;
 use crate::scene::{
     BranchKind, BranchPlan, Column, Command, EquilibriaPlan, LawPlan, LocusPlan, OrbitPlan, Plan,
-    Sampling, SceneFile, SectionPlan, pictured_columns, run, run_section, section_columns, shipped,
-    shipped_names,
+    Sampling, SceneFile, SectionPlan, run, run_section, section_columns, shipped, shipped_names,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -192,7 +191,7 @@ impl<'a> Pieces<'a> {
             picture: true,
             ..plan
         };
-        let columns = pictured_columns(plan.system.interfaces);
+        let columns = plan.pictured();
         let voice = self.voice(name, "a run in time");
         let mut kept = self.keep(&columns, true, &voice);
         let outcome = run(&plan, &mut kept)?;

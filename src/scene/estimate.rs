@@ -1,10 +1,13 @@
 //! The global error at the end of a run, from a second one.
 
-use super::plan::Plan;
+use super::plan::{Plan, Point};
+use super::program::Stretch;
 use super::run::{RunOutcome, Sink};
+use super::stretch::{Along, as_field, go, of_run, steps_left};
 use crate::error::{Error, Result};
-use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances};
+use crate::field::{Jacobian, State};
+use crate::integrate::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances, Work};
+use crate::model::Driven;
 
 /// How much tighter the second run is: its own error then hardly counts.
 const TIGHTER: f64 = 100.0;
@@ -53,30 +56,79 @@ impl Companion {
     }
 }
 
+/// The second run, along its stretches.
+struct Second<'a> {
+    companion: Companion,
+    plan: &'a Plan,
+    sink: &'a mut dyn Sink,
+    /// Whether it tells how far it is, and can be stopped.
+    watched: bool,
+    work: Work,
+    stopped: bool,
+}
+
+impl<'a> Second<'a> {
+    fn new(companion: Companion, plan: &'a Plan, sink: &'a mut dyn Sink, watched: bool) -> Self {
+        Second {
+            companion,
+            plan,
+            sink,
+            watched,
+            work: Work::default(),
+            stopped: false,
+        }
+    }
+}
+
+impl Along for Second<'_> {
+    fn along<const N: usize>(
+        &mut self,
+        stretch: &Stretch,
+        field: &dyn Driven<N>,
+        from: &State<N>,
+    ) -> Result<State<N>> {
+        if stretch.span.0 == stretch.span.1 {
+            return Ok(*from);
+        }
+        let left = steps_left(self.plan, stretch, &self.work)?;
+        let mut integrator = self.companion.integrator::<N>(left)?;
+        let until = self.plan.until;
+        let mut observer = |step: &Step<'_, N>| {
+            let control = self.sink.reached(step.t1 / until);
+            self.stopped = control == Control::Stop;
+            Ok(control)
+        };
+        let observer: Option<Observer<'_, N>> = if self.watched {
+            Some(&mut observer)
+        } else {
+            None
+        };
+        let end = integrator.flow(as_field(field), stretch.span, from, observer);
+        self.work += integrator.work();
+        end.map_err(|error| of_run(self.plan, error))
+    }
+
+    fn stopped(&self) -> bool {
+        self.stopped
+    }
+}
+
 /// Puts the error of `end`, and the work for it, into the outcome.
-pub(super) fn estimate<const N: usize>(
+pub(super) fn estimate(
     companion: Companion,
     plan: &Plan,
-    field: &dyn VectorField<N>,
-    y0: &State<N>,
-    end: &State<N>,
+    end: &Point,
     outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<()> {
-    let mut integrator = companion.integrator::<N>(plan.max_steps)?;
-    let span = (0.0, plan.until);
-    let mut stopped = false;
-    let mut observer = |step: &Step<'_, N>| {
-        let control = sink.reached(step.t1 / plan.until);
-        stopped = control == Control::Stop;
-        Ok(control)
-    };
     // The reference takes long enough that one wants to see it move, and to stop it.
     let watched = plan.observed() || companion == Companion::Reference;
-    let observer: Option<Observer<'_, N>> = if watched { Some(&mut observer) } else { None };
-    let second = integrator.flow(field, span, y0, observer);
-    outcome.work += integrator.work();
+    let mut run = Second::new(companion, plan, &mut *sink, watched);
+    let second = go(plan, &mut run);
+    let (work, stopped) = (run.work, run.stopped);
+    outcome.work += work;
     let second = match second {
+        Err(error @ Error::Parameter { .. }) => return Err(error),
         Ok(second) if !stopped => second,
         Ok(_) => {
             outcome.stopped = true;
@@ -87,7 +139,7 @@ pub(super) fn estimate<const N: usize>(
             return Ok(());
         }
     };
-    match rounding_of_start(plan, field, y0, end, outcome, sink) {
+    match rounding_of_start(plan, end, outcome, sink) {
         Ok(Some(rounding)) => {
             let distance = relative_distance(end, &second);
             outcome.error_estimate = Some(MARGIN * distance + rounding + ROUNDING);
@@ -98,53 +150,105 @@ pub(super) fn estimate<const N: usize>(
     Ok(())
 }
 
+/// The tangent flow in (tau, ln psi_1, ln psi_2), along the stretches of a run.
+struct Growth<'a> {
+    plan: &'a Plan,
+    sink: &'a mut dyn Sink,
+    tangent: Jacobian<3>,
+    work: Work,
+    stopped: bool,
+}
+
+impl Along for Growth<'_> {
+    fn along<const N: usize>(
+        &mut self,
+        stretch: &Stretch,
+        field: &dyn Driven<N>,
+        from: &State<N>,
+    ) -> Result<State<N>> {
+        let (plan, (begin, end)) = (self.plan, stretch.span);
+        let tolerances = Tolerances::equal(GROWTH)?;
+        let mut integrator = Choice::Auto.integrator::<N>(tolerances, plan.max_steps)?;
+        let pieces = (PIECES as f64 * (end - begin) / plan.until).ceil();
+        let time = |piece: usize| match piece as f64 {
+            last if last == pieces => end,
+            piece => begin + (end - begin) * (piece / pieces),
+        };
+        let (mut y, mut tangent) = (*from, Jacobian::<N>::identity());
+        for piece in 0..pieces as usize {
+            let span = (time(piece), time(piece + 1));
+            let (next, part) = integrator.tangent_flow(as_field(field), span, &y)?;
+            self.work += integrator.work();
+            y = next;
+            tangent = part * tangent;
+            if self.sink.reached(span.1 / plan.until) == Control::Stop {
+                self.stopped = true;
+                break;
+            }
+        }
+        // V_H, where it is a variable, is as it is.
+        let known = plan.dimension.number();
+        let mut part = Jacobian::<3>::identity();
+        for i in 0..known {
+            for j in 0..known {
+                part[(i, j)] = tangent[(i, j)];
+            }
+        }
+        self.tangent = part * self.tangent;
+        Ok(y)
+    }
+
+    fn stopped(&self) -> bool {
+        self.stopped
+    }
+}
+
 /// What becomes of the rounding of the start: both runs begin at the same doubles, in which psi is kept by its logarithm and SI
 /// units are divided out. `None` where the sink stops it.
-fn rounding_of_start<const N: usize>(
+fn rounding_of_start(
     plan: &Plan,
-    field: &dyn VectorField<N>,
-    y0: &State<N>,
-    end: &State<N>,
+    end: &Point,
     outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Option<f64>> {
-    let mut integrator =
-        Choice::Auto.integrator::<N>(Tolerances::equal(GROWTH)?, plan.max_steps)?;
-    let (mut y, mut tangent) = (*y0, Jacobian::<N>::identity());
-    let time = |piece: usize| plan.until * (piece as f64 / PIECES as f64);
-    for piece in 0..PIECES {
-        let (next, part) = integrator.tangent_flow(field, (time(piece), time(piece + 1)), &y)?;
-        outcome.work += integrator.work();
-        y = next;
-        tangent = part * tangent;
-        if sink.reached((piece + 1) as f64 / PIECES as f64) == Control::Stop {
-            return Ok(None);
-        }
+    let mut growth = Growth {
+        plan,
+        sink,
+        tangent: Jacobian::<3>::identity(),
+        work: Work::default(),
+        stopped: false,
+    };
+    let gone = go(plan, &mut growth);
+    outcome.work += growth.work;
+    gone?;
+    if growth.stopped {
+        return Ok(None);
     }
     // Half a spacing of ln psi and, relative to itself, of psi as it was read; tau likewise.
-    let rounded = y0.map(|x| 0.5 * f64::EPSILON * (1.0 + x.abs()));
-    let moved = tangent.abs() * rounded;
-    let stress = moved[0] / end[0].abs().max(f64::MIN_POSITIVE);
+    let (tau, [first, second]) = plan.start;
+    let start = State::<3>::new(tau, first, second);
+    let rounded = start.map(|x| 0.5 * f64::EPSILON * (1.0 + x.abs()));
+    let moved = growth.tangent.abs() * rounded;
+    let stress = moved[0] / end.0.abs().max(f64::MIN_POSITIVE);
     Ok(Some(
-        (1..N).fold(stress, |largest, i| largest.max(moved[i])),
+        (1..plan.dimension.number()).fold(stress, |largest, i| largest.max(moved[i])),
     ))
 }
 
 /// The time of a singularity, or of a burst too fast for doubles, with its uncertainty by a second run.
-pub(super) fn timed<const N: usize>(
+pub(super) fn timed(
     mut error: Error,
     plan: &Plan,
-    field: &dyn VectorField<N>,
-    y0: &State<N>,
     outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Error> {
     let companion = Companion::of(plan.tolerances, false);
-    let mut integrator = companion.integrator::<N>(plan.max_steps)?;
-    let span = (0.0, plan.until);
-    let mut observer = |step: &Step<'_, N>| Ok(sink.reached(step.t1 / plan.until));
-    let second = integrator.flow(field, span, y0, Some(&mut observer));
-    outcome.work += integrator.work();
+    let mut run = Second::new(companion, plan, sink, true);
+    let second = go(plan, &mut run);
+    outcome.work += run.work;
+    if let Err(error @ Error::Parameter { .. }) = second {
+        return Err(error);
+    }
     let (Error::BlowUp { t, uncertainty, .. } | Error::TooFast { t, uncertainty, .. }) = &mut error
     else {
         return Ok(error);
@@ -157,9 +261,10 @@ pub(super) fn timed<const N: usize>(
 }
 
 /// Largest relative difference in stress and states: the states by their logarithms.
-fn relative_distance<const N: usize>(y: &State<N>, reference: &State<N>) -> f64 {
-    let stress = (y[0] - reference[0]).abs() / reference[0].abs().max(f64::MIN_POSITIVE);
-    (1..N).fold(stress, |largest, i| {
-        largest.max((y[i] - reference[i]).exp_m1().abs())
+fn relative_distance((tau, log_state): &Point, (other, others): &Point) -> f64 {
+    let stress = (tau - other).abs() / other.abs().max(f64::MIN_POSITIVE);
+    let states = log_state.iter().zip(others);
+    states.fold(stress, |largest, (w, other)| {
+        largest.max((w - other).exp_m1().abs())
     })
 }

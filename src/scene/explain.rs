@@ -37,6 +37,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
         "tangents",
         "off: no output asks for multipliers or exponents".into(),
     );
+    line("driving", driving(plan));
     line("dense output", dense(plan));
     line(
         "slip",
@@ -92,6 +93,24 @@ fn method(plan: &Plan) -> String {
     } else {
         format!("{name}, chosen by {}: {reason}", plan.asked_method)
     }
+}
+
+fn driving(plan: &Plan) -> String {
+    let Some(program) = &plan.program else {
+        return "constant: `program` is not given".into();
+    };
+    let changes = program.changes.len();
+    let ramps = program.changes.iter().any(|change| change.until.is_some());
+    format!(
+        "{} {}, at each of which the integrator starts anew{}",
+        count(changes),
+        if changes == 1 { "change" } else { "changes" },
+        if ramps {
+            "; along ramps V_H is a variable more"
+        } else {
+            ""
+        }
+    )
 }
 
 fn dense(plan: &Plan) -> String {

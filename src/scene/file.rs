@@ -251,7 +251,7 @@ fn scalar(value: &DeValue<'_>) -> Option<String> {
 ///
 /// # Errors
 /// [`Error::File`] if it can't be read, is no text or is longer.
-fn read_bounded(path: &Path, most: u64) -> Result<String> {
+pub(super) fn read_bounded(path: &Path, most: u64) -> Result<String> {
     let wrong = |reason: String| Error::File {
         action: "read",
         path: path.to_owned(),

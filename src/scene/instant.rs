@@ -2,7 +2,6 @@
 
 use super::column::Column;
 use super::units::Quantity;
-use crate::field::State;
 use crate::friction::{AnyLaw, Formulas};
 
 /// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
@@ -18,17 +17,19 @@ pub struct Instant {
     pub log_state: [f64; 2],
     /// Slip of each interface since the start.
     pub slip: [f64; 2],
+    /// V_H.
+    pub driving: f64,
 }
 
 impl Instant {
-    /// From a state in dimension 2, (tau, w), or 3, (tau, w_1, w_2).
-    pub fn new<const N: usize>(law: AnyLaw, time: f64, y: &State<N>, slip: [f64; 2]) -> Self {
+    /// The same law and V_H at another point, of tau and ln psi.
+    pub fn at(&self, time: f64, (stress, log_state): (f64, [f64; 2]), slip: [f64; 2]) -> Self {
         Instant {
-            law,
             time,
-            stress: y[0],
-            log_state: [y[1], y[N - 1]],
+            stress,
+            log_state,
             slip,
+            ..*self
         }
     }
 
@@ -61,6 +62,13 @@ pub fn run_columns(interfaces: usize) -> Vec<Column<Instant>> {
     columns.extend(each("slip_rate", SlipRate, Instant::slip_rate));
     columns.extend(each("slip", Length, |at, i| at.slip[i]));
     columns
+}
+
+/// V_H, of runs in which it changes.
+pub fn driving_column() -> Column<Instant> {
+    Column::new("driving", Quantity::SlipRate, |at: &Instant| {
+        at.driving.into()
+    })
 }
 
 /// Those that a picture shows.

@@ -41,10 +41,12 @@ mod locus;
 mod options;
 mod orbit;
 mod plan;
+mod program;
 mod run;
 mod section;
 mod shipped;
 mod slip;
+mod stretch;
 mod sweep;
 mod system;
 mod units;
@@ -58,7 +60,7 @@ pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use following::Following;
-pub use instant::{Instant, pictured_columns, run_columns};
+pub use instant::{Instant, run_columns};
 pub use law::{LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
 pub use options::{
@@ -67,7 +69,8 @@ pub use options::{
 };
 pub use orbit::OrbitPlan;
 pub(crate) use orbit::SECOND_METHOD;
-pub use plan::{Dimension, Plan, Sampling, start, tolerances};
+pub use plan::{Dimension, Plan, Point, Sampling, start, tolerances};
+pub use program::{Change, Program, Stretch};
 pub use run::{RunOutcome, Sink, run};
 pub use section::{
     CheckedExponents, SectionOutcome, SectionPlan, SectionRow, explain_section, run_section,

@@ -178,6 +178,16 @@ pub struct IntegrateOptions {
         help = START_HELP
     )]
     pub start: String,
+    /// How V_H changes on the way, from --driving on: "T:V,T:V,..." for steps to V at T, where V = 0 is a hold, and "T1-T2:V" for a
+    /// ramp; or FILE.csv with the columns time, driving and, for ramps, until. Rows then have a column driving, and stand at both
+    /// sides of a change
+    #[arg(
+        long,
+        value_name = "PROGRAM",
+        allow_hyphen_values = true,
+        help_heading = "Run"
+    )]
+    pub program: Option<String>,
     /// End of the run; it begins at 0
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub until: Option<f64>,
@@ -198,7 +208,8 @@ pub struct IntegrateOptions {
     /// beside -o RUN.csv to RUN.events.csv
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, help_heading = "Run")]
     pub events: Option<PathBuf>,
-    /// Count events whose total slip rate exceeds X times V_H [default: 2]
+    /// Count events whose total slip rate exceeds X times V_H [default: 2]; with --program times the V_H of that moment, so that a
+    /// hold, in which all slip is faster than V_H = 0, counts as one
     #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub event_threshold: Option<f64>,
     /// Estimate the error of the last row by a second run with 100 times tighter tolerances, below --rtol 1e-12 by the
@@ -313,6 +324,10 @@ pub struct OrbitOptions {
     /// The period, roughly; with it no shorter cycle is taken instead
     #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
+    /// Rows over one period, as those of integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then
+    /// holds these, and in JSON they are result.rows
+    #[arg(long, value_name = "N", value_parser = count, help_heading = "Orbit")]
+    pub points: Option<usize>,
     /// A second method that computes the orbit again, or none [default: cvode-adams; rodas5p in a build without SUNDIALS]
     #[arg(long, value_name = "METHOD", help_heading = "Orbit")]
     pub crosscheck: Option<String>,
@@ -335,6 +350,9 @@ pub struct OrbitOptions {
     /// Give up an arc after so many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
+    /// Draw stress, states and slip rates over one period, and the phase plane, as FILE.svg or FILE.png
+    #[arg(long, value_name = "FILE", help_heading = "Output")]
+    pub plot: Option<PathBuf>,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,

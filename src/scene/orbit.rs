@@ -1,7 +1,8 @@
 //! A periodic orbit from options: which one, where the search begins, how accurately, and by which second method.
 
+use super::instant::run_columns;
 use super::options::OrbitOptions;
-use super::plan::{start, tolerances};
+use super::plan::{Dimension, Plan, Point, Sampling, equally_spaced, start, tolerances};
 use super::system::System;
 use super::units::Quantity;
 use crate::equilibrium::Symmetry;
@@ -26,6 +27,10 @@ pub struct OrbitPlan {
     pub accuracy: OrbitAccuracy,
     /// By which second method once more.
     pub second: Option<OrbitAccuracy>,
+    /// The rows over one period, where there are to be any.
+    pub rows: Option<Sampling>,
+    /// Whether the orbit is drawn.
+    pub picture: bool,
 }
 
 impl OrbitPlan {
@@ -50,6 +55,8 @@ impl OrbitPlan {
         let accuracy = accuracy(options)?;
         Ok(OrbitPlan {
             second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            rows: options.points.map(equally_spaced).transpose()?,
+            picture: options.plot.is_some(),
             slab,
             query,
             accuracy,
@@ -84,6 +91,12 @@ impl OrbitPlan {
             ),
             None => "off: `crosscheck` none".to_owned(),
         };
+        let dense = match (self.rows, self.picture) {
+            (None, false) => "on, for the extremes alone",
+            (Some(_), false) => "on, for the extremes and the rows",
+            (None, true) => "on, for the extremes and the picture",
+            (Some(_), true) => "on, for the extremes, the rows and the picture",
+        };
         format!(
             "plan of this command
   dimension         {dimension}
@@ -91,7 +104,7 @@ impl OrbitPlan {
   method            {}, tangents on, multiple shooting; rtol {:e}
   uncertainties     the noise of all arcs, and two more solutions at other nodes and 8 times looser
   crosscheck        {second}
-  dense output      on, for the extremes alone",
+  dense output      {dense}",
             method_name(self.accuracy.method),
             self.accuracy.tolerances.rtol
         )
@@ -103,6 +116,60 @@ impl OrbitPlan {
     /// Those of [`find()`].
     pub fn find(&self) -> Result<FoundOrbit> {
         find(&self.slab, &self.query, &self.accuracy)
+    }
+
+    /// The run over one period of an orbit, from its point back to it: along the arcs between its shooting nodes, each from its own
+    /// node, as an unstable orbit is soon left. `None` where neither rows nor a picture are asked for.
+    pub fn along(&self, orbit: &Orbit) -> Option<Plan> {
+        if self.rows.is_none() && !self.picture {
+            return None;
+        }
+        let dimension = match (orbit.symmetry, self.slab.interfaces) {
+            (Symmetry::Asymmetric, _) => Dimension::Full,
+            (Symmetry::Symmetric, 2) => Dimension::Symmetric,
+            (Symmetry::Symmetric, _) => Dimension::Single,
+        };
+        let point = |y: &[f64]| -> Point { (y[0], [y[1], y[y.len() - 1]]) };
+        let until = orbit.period.value;
+        let begins = orbit.durations.iter().scan(0.0, |sum, duration| {
+            let begin = *sum;
+            *sum += duration;
+            Some(begin)
+        });
+        // Since the point; what stands before it comes at the end.
+        let times = begins.map(|begin| {
+            let time = begin - orbit.point_time;
+            if time > 0.0 { time } else { time + until }
+        });
+        let nodes = times.zip(orbit.nodes.iter().map(|node| point(node)));
+        /// A node nearer to the point than this part of the period is as good as it.
+        const SAME: f64 = 1e-12;
+        let within = SAME * until..(1.0 - SAME) * until;
+        let mut nodes: Vec<(f64, Point)> =
+            nodes.filter(|(time, _)| within.contains(time)).collect();
+        nodes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let method = match self.accuracy.method {
+            Choice::Auto => Choice::Taylor,
+            other => other,
+        };
+        Some(Plan {
+            loading: self.slab.loading,
+            program: None,
+            start: point(&orbit.point),
+            nodes,
+            dimension,
+            until,
+            sampling: self.rows.unwrap_or(Sampling::FinalOnly),
+            columns: run_columns(self.system.interfaces),
+            events: None,
+            picture: self.picture,
+            estimate: None,
+            asked_method: method.name().into(),
+            method,
+            tolerances: self.accuracy.tolerances,
+            max_steps: self.accuracy.max_steps,
+            system: self.system.clone(),
+        })
     }
 
     /// The orbit once more, by the second method; `None` where there is none.

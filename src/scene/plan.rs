@@ -3,8 +3,9 @@
 
 use super::column::Column;
 use super::estimate::Companion;
-use super::instant::{Instant, run_columns};
+use super::instant::{Instant, driving_column, pictured_columns, run_columns};
 use super::options::{IntegrateOptions, NumericsOptions};
+use super::program::{Program, Stretch};
 use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result};
@@ -18,6 +19,9 @@ const NEAR_SYMMETRIC: f64 = 0.01;
 const EVENT_THRESHOLD: f64 = 2.0;
 /// More rows than this are a slip of the pen.
 const MAX_ROWS: f64 = 1e9;
+/// tau, and ln psi of both interfaces: twice the same where there is one, or where both move alike.
+pub type Point = (f64, [f64; 2]);
+
 /// The system that is integrated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dimension {
@@ -68,10 +72,15 @@ pub enum Sampling {
 pub struct Plan {
     /// What slides.
     pub system: System,
-    /// V_H and K.
+    /// V_H and K; with a program V_H before its first change, which may be 0.
     pub loading: Loading,
-    /// tau and ln psi_1, ln psi_2 at the start.
-    pub start: (f64, [f64; 2]),
+    /// How V_H changes on the way, where it does.
+    pub program: Option<Program>,
+    /// Where it starts.
+    pub start: Point,
+    /// Where the run begins anew from known points of the same solution, as an orbit from its shooting nodes: their times, ascending,
+    /// and the points. Empty for a run from its start alone.
+    pub nodes: Vec<(f64, Point)>,
     /// What is integrated.
     pub dimension: Dimension,
     /// End of the run.
@@ -102,25 +111,38 @@ impl Plan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &IntegrateOptions) -> Result<Self> {
-        let system = System::new(&options.model)?;
-        let loading = system.loading()?;
+        let end = || {
+            let missing = "`until` T is missing: when shall the run end?";
+            let end = options.until.ok_or_else(|| Error::Input(missing.into()))?;
+            positive("until", end)
+        };
+        let program = options.program.as_deref();
+        let program = program
+            .map(|text| Program::read(text, end()?))
+            .transpose()?;
+        let (system, loading) = match &program {
+            None => {
+                let system = System::new(&options.model)?;
+                let loading = system.loading()?;
+                (system, loading)
+            }
+            Some(program) => System::programmed(&options.model, program)?,
+        };
         let start = start(&options.start, &system, &loading)?;
         let dimension = Dimension::of(&system, &start);
-        let until = options
-            .until
-            .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
-        let until = system
-            .units
-            .inward(Quantity::Time, positive("until", until)?);
+        let until = system.units.inward(Quantity::Time, end()?);
         let sampling = sampling(options, &system, until)?;
         let mut columns = run_columns(system.interfaces);
+        columns.extend(program.as_ref().map(|_| driving_column()));
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
         }
         let (method, tolerances) = numerics(&options.numerics)?;
         Ok(Plan {
             loading,
+            program,
             start,
+            nodes: Vec::new(),
             dimension,
             until,
             sampling,
@@ -151,7 +173,34 @@ impl Plan {
         if self.max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
-        Ok(self)
+        self.stretches().map(|_| self)
+    }
+
+    /// The stretches of the run, one after the other.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a program whose velocities are beyond doubles without their unit.
+    pub fn stretches(&self) -> Result<Vec<Stretch>> {
+        let driving = self.loading.driving;
+        if let Some(program) = &self.program {
+            return program.stretches(driving, self.until, &self.system.units);
+        }
+        let begins = [(0.0, self.start)]
+            .into_iter()
+            .chain(self.nodes.iter().copied());
+        let ends = self.nodes.iter().map(|&(time, _)| time).chain([self.until]);
+        let stretch = |((begin, from), end)| Stretch {
+            from: Some(from),
+            ..Stretch::new((begin, end), (driving, driving))
+        };
+        Ok(begins.zip(ends).map(stretch).collect())
+    }
+
+    /// The columns of the points of a picture.
+    pub fn pictured(&self) -> Vec<Column<Instant>> {
+        let mut columns = pictured_columns(self.system.interfaces);
+        columns.extend(self.program.as_ref().map(|_| driving_column()));
+        columns
     }
 
     /// Whether a column or the events need the slip, and with it a quadrature along every step.
@@ -192,15 +241,24 @@ pub fn tolerances(rtol: f64, atol: Option<f64>) -> Result<Tolerances> {
     Ok(Tolerances { rtol, atol })
 }
 
+/// So many rows, both ends included.
+///
+/// # Errors
+/// [`Error::Parameter`] for less than two or far too many.
+pub(super) fn equally_spaced(points: usize) -> Result<Sampling> {
+    if (2..=MAX_ROWS as usize).contains(&points) {
+        Ok(Sampling::Points(points))
+    } else {
+        Err(Error::parameter("points", points, "from 2 to 1e9"))
+    }
+}
+
 fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<Sampling> {
     if options.final_only {
         return Ok(Sampling::FinalOnly);
     }
     if let Some(points) = options.points {
-        if !(2..=MAX_ROWS as usize).contains(&points) {
-            return Err(Error::parameter("points", points, "from 2 to 1e9"));
-        }
-        return Ok(Sampling::Points(points));
+        return equally_spaced(points);
     }
     let Some(every) = options.every else {
         return Ok(Sampling::EveryStep);
@@ -259,6 +317,12 @@ fn near_symmetric(
     system: &System,
     loading: &Loading,
 ) -> Result<(f64, [f64; 2])> {
+    if loading.driving == 0.0 {
+        return Err(Error::Input(format!(
+            "`start` near-symmetric is at the steady state, of which there is none at V_H = 0: give `start` {}",
+            shape(system)
+        )));
+    }
     let v = loading.driving / system.interfaces as f64;
     let w = system.law.steady_state(v).ln();
     let moved = match asymmetry {
@@ -302,8 +366,12 @@ fn start_number(part: &str, whole: &str) -> Result<f64> {
 }
 
 fn unreadable(text: &str, system: &System) -> Error {
-    let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][system.interfaces - 1];
+    let shape = shape(system);
     Error::Input(format!(
         "`start` {text:?} must be {shape} or near-symmetric[:EPS]"
     ))
+}
+
+fn shape(system: &System) -> &'static str {
+    ["TAU,PSI", "TAU,PSI1,PSI2"][system.interfaces - 1]
 }

@@ -1,15 +1,17 @@
-//! From a plan to rows: one flow, watched only as far as the plan needs.
+//! From a plan to rows: one flow, or one for each stretch of a program, watched only as far as the plan needs.
 
 use super::column::Column;
 use super::estimate::{estimate, timed};
 use super::event::{Detector, SlipEvent};
-use super::instant::{Instant, pictured_columns};
-use super::plan::{Dimension, Plan, Sampling};
+use super::instant::Instant;
+use super::plan::{Plan, Point, Sampling};
+use super::program::Stretch;
 use super::slip::{Slips, at, slips};
+use super::stretch::{Along, as_field, go, of_run, point, steps_left};
 use crate::error::{Error, Result};
 use crate::field::State;
 use crate::integrate::{Control, Step, Work};
-use crate::model::{self, Driven};
+use crate::model::Driven;
 use crate::number::DoubleDouble;
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
@@ -22,7 +24,7 @@ const RESTS: u32 = 63;
 pub trait Sink {
     /// A row, in the plan's columns and the user's units.
     fn row(&mut self, row: &[f64]) -> Control;
-    /// A point of the picture, in the columns [`pictured_columns`] and the user's units.
+    /// A point of the picture, in the columns [`Plan::pictured`] and the user's units.
     fn drawn(&mut self, _point: &[f64]) {}
     /// The run has come to this fraction of its time.
     fn reached(&mut self, fraction: f64) -> Control;
@@ -54,52 +56,23 @@ pub struct RunOutcome {
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`RunOutcome::failure`].
 pub fn run(plan: &Plan, sink: &mut dyn Sink) -> Result<RunOutcome> {
-    let (law, loading) = (plan.system.law, plan.loading);
-    let (tau, [first, second]) = plan.start;
-    let y = State::<2>::new(tau, first);
-    match plan.dimension {
-        Dimension::Single => flow(plan, &*model::single_interface(law, loading), y, sink),
-        Dimension::Symmetric => flow(plan, &*model::symmetric(law, loading), y, sink),
-        Dimension::Full => {
-            let y = State::<3>::new(tau, first, second);
-            flow(plan, &*model::two_interfaces(law, loading), y, sink)
-        }
-    }
-}
-
-fn flow<const N: usize>(
-    plan: &Plan,
-    field: &dyn Driven<N>,
-    y0: State<N>,
-    sink: &mut dyn Sink,
-) -> Result<RunOutcome> {
-    let mut integrator = plan
-        .method
-        .integrator::<N>(plan.tolerances, plan.max_steps)?;
-    let mut watch = RunObserver::new(plan, field, &y0, &mut *sink);
-    watch.start();
-    let span = (0.0, plan.until);
-    let end = if plan.observed() {
-        let mut observer = |step: &Step<'_, N>| watch.see(step);
-        integrator.flow(as_field(field), span, &y0, Some(&mut observer))
-    } else {
-        integrator.flow(as_field(field), span, &y0, None)
+    let mut run = Run {
+        watch: RunObserver::new(plan, &mut *sink),
+        work: Work::default(),
     };
+    let end = go(plan, &mut run);
+    if let Err(error @ Error::Parameter { .. }) = end {
+        return Err(error);
+    }
+    let Run { watch, work } = run;
     let mut outcome = watch.finish(&end);
-    outcome.work = integrator.work();
+    outcome.work = work;
     match (end, plan.estimate) {
-        (Ok(y), Some(companion)) if !outcome.stopped => estimate(
-            companion,
-            plan,
-            as_field(field),
-            &y0,
-            &y,
-            &mut outcome,
-            sink,
-        )?,
+        (Ok(end), Some(companion)) if !outcome.stopped => {
+            estimate(companion, plan, &end, &mut outcome, sink)?;
+        }
         (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
-            let timed = timed(error, plan, as_field(field), &y0, &mut outcome, sink)?;
-            outcome.failure = Some(timed);
+            outcome.failure = Some(timed(error, plan, &mut outcome, sink)?);
         }
         _ => {}
     }
@@ -109,18 +82,50 @@ fn flow<const N: usize>(
     Ok(outcome)
 }
 
-fn as_field<const N: usize>(field: &dyn Driven<N>) -> &dyn crate::field::VectorField<N> {
-    field
+/// The run itself, along its stretches: on each the integrator starts anew.
+struct Run<'a> {
+    watch: RunObserver<'a>,
+    work: Work,
+}
+
+impl Along for Run<'_> {
+    fn along<const N: usize>(
+        &mut self,
+        stretch: &Stretch,
+        field: &dyn Driven<N>,
+        from: &State<N>,
+    ) -> Result<State<N>> {
+        let (plan, span) = (self.watch.plan, stretch.span);
+        self.watch.begin(stretch, field, from);
+        if span.0 == span.1 {
+            return Ok(*from);
+        }
+        let left = steps_left(plan, stretch, &self.work)?;
+        let mut integrator = plan.method.integrator::<N>(plan.tolerances, left)?;
+        let end = if plan.observed() {
+            let mut observer = |step: &Step<'_, N>| self.watch.see(field, step);
+            integrator.flow(as_field(field), span, from, Some(&mut observer))
+        } else {
+            integrator.flow(as_field(field), span, from, None)
+        };
+        self.work += integrator.work();
+        end.map_err(|error| of_run(plan, error))
+    }
+
+    fn stopped(&self) -> bool {
+        self.watch.stopped
+    }
 }
 
 /// Sees the steps of a run and makes rows, slips and events of them.
-struct RunObserver<'a, const N: usize> {
+struct RunObserver<'a> {
     plan: &'a Plan,
-    field: &'a dyn Driven<N>,
     sink: &'a mut dyn Sink,
-    detector: Option<Detector<'a, N>>,
+    detector: Option<Detector>,
     /// Whether nothing but the end is shown.
     only_end: bool,
+    /// How V_H is here.
+    stretch: Stretch,
     /// The end of the last step seen.
     here: Instant,
     /// The slips there, in all digits.
@@ -129,52 +134,83 @@ struct RunObserver<'a, const N: usize> {
     pictured: Vec<Column<Instant>>,
     /// Rows at fixed times made so far.
     sampled: usize,
+    /// How many stretches have begun.
+    begun: usize,
+    /// The time of the last row.
+    shown: Option<f64>,
     stopped: bool,
 }
 
-impl<'a, const N: usize> RunObserver<'a, N> {
-    fn new(
-        plan: &'a Plan,
-        field: &'a dyn Driven<N>,
-        y0: &State<N>,
-        sink: &'a mut dyn Sink,
-    ) -> Self {
+impl<'a> RunObserver<'a> {
+    fn new(plan: &'a Plan, sink: &'a mut dyn Sink) -> Self {
+        let (law, driving) = (plan.system.law, plan.loading.driving);
+        let (stress, log_state) = plan.start;
         RunObserver {
             plan,
-            field,
             sink,
-            detector: plan
-                .events
-                .map(|threshold| Detector::new(field, plan, threshold)),
+            detector: plan.events.map(|threshold| Detector::new(plan, threshold)),
             only_end: plan.sampling == Sampling::FinalOnly
                 && plan.events.is_none()
                 && !plan.picture,
-            here: Instant::new(plan.system.law, 0.0, y0, [0.0; 2]),
+            stretch: Stretch::new((0.0, 0.0), (driving, driving)),
+            here: Instant {
+                law,
+                time: 0.0,
+                stress,
+                log_state,
+                slip: [0.0; 2],
+                driving,
+            },
             slips: [DoubleDouble::ZERO; 2],
             row: Vec::new(),
-            pictured: pictured_columns(plan.system.interfaces),
+            pictured: plan.pictured(),
             sampled: 0,
+            begun: 0,
+            shown: None,
             stopped: false,
         }
     }
 
-    fn start(&mut self) {
+    /// A stretch begins: the first one with the first row, the others with one at either side of a change.
+    fn begin<const N: usize>(&mut self, stretch: &Stretch, field: &dyn Driven<N>, from: &State<N>) {
+        let first = self.begun == 0;
+        self.begun += 1;
+        if let Some(detector) = &mut self.detector {
+            detector.begin(stretch, field, from, &self.slips);
+        }
+        let rows = self.plan.sampling != Sampling::FinalOnly;
+        let changes = !first && stretch.from.is_none();
+        if rows && changes && self.shown != Some(stretch.span.0) {
+            let before = self.here;
+            self.emit(&before);
+        }
+        let jumps = stretch.driving.0 != self.stretch.driving.1;
+        self.stretch = *stretch;
+        let slips = self.slips.map(DoubleDouble::hi);
+        self.here = Instant {
+            driving: stretch.driving.0,
+            ..self.here.at(stretch.span.0, point(self.plan, from), slips)
+        };
+        let here = self.here;
         if self.plan.picture {
-            let here = self.here;
             self.draw(&here);
         }
-        if self.plan.sampling != Sampling::FinalOnly {
-            let here = self.here;
+        if rows && (first || jumps) {
             self.emit(&here);
+        }
+        if first && rows {
             self.sampled = 1;
         }
     }
 
-    fn see(&mut self, step: &Step<'_, N>) -> Result<Control> {
-        let field = self.field;
+    fn see<const N: usize>(
+        &mut self,
+        field: &dyn Driven<N>,
+        step: &Step<'_, N>,
+    ) -> Result<Control> {
         let before = self.slips;
         if let Some(detector) = &mut self.detector {
-            detector.see(step, &before)?;
+            detector.see(field, step, &before)?;
         }
         let needs_slip = self.plan.needs_slip();
         let slip = |t: f64| {
@@ -184,33 +220,33 @@ impl<'a, const N: usize> RunObserver<'a, N> {
                 before
             }
         };
-        let law = self.plan.system.law;
-        let instant = |t: f64| Instant::new(law, t, &at(step, t), slip(t).map(DoubleDouble::hi));
+        let (plan, here, stretch) = (self.plan, self.here, self.stretch);
+        let instant = |t: f64, slips: Slips| Instant {
+            driving: stretch.driving_at(t),
+            ..here.at(t, point(plan, &at(step, t)), slips.map(DoubleDouble::hi))
+        };
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
-            self.emit(&instant(t));
+            self.emit(&instant(t, slip(t)));
             self.sampled += 1;
         }
         if self.plan.picture {
             for part in 1..=PICTURED {
                 let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&Instant::new(law, t, &at(step, t), [0.0; 2]));
+                self.draw(&instant(t, before));
             }
         }
         self.slips = slip(step.t1);
+        self.here = instant(step.t1, self.slips);
         if self.plan.sampling == Sampling::EveryStep {
-            let here = Instant::new(law, step.t1, step.y1, self.slips.map(DoubleDouble::hi));
+            let here = self.here;
             self.emit(&here);
         }
-        Ok(self.reached(step))
+        Ok(self.reached())
     }
 
-    /// The run has come to the end of this step.
-    fn reached(&mut self, step: &Step<'_, N>) -> Control {
-        self.here.time = step.t1;
-        self.here.stress = step.y1[0];
-        self.here.log_state = [step.y1[1], step.y1[N - 1]];
-        self.here.slip = self.slips.map(DoubleDouble::hi);
-        if self.sink.reached(step.t1 / self.plan.until) == Control::Stop {
+    /// The run has come to the end of a step.
+    fn reached(&mut self) -> Control {
+        if self.sink.reached(self.here.time / self.plan.until) == Control::Stop {
             self.stopped = true;
         }
         match (self.stopped, self.only_end) {
@@ -223,24 +259,23 @@ impl<'a, const N: usize> RunObserver<'a, N> {
     /// The next fixed time of a row.
     fn next_sample(&self) -> Option<f64> {
         let (i, until) = (self.sampled, self.plan.until);
-        match self.plan.sampling {
-            Sampling::EveryStep | Sampling::FinalOnly => None,
-            Sampling::Points(n) if i < n => Some(if i + 1 == n {
-                until
-            } else {
-                until * (i as f64 / (n - 1) as f64)
-            }),
-            Sampling::Points(_) => None,
-            Sampling::Every(dt) => {
-                let t = i as f64 * dt;
-                // The last multiple may exceed the end by rounding alone.
-                if (t - until).abs() <= 1e-9 * dt {
-                    Some(until)
-                } else {
-                    Some(t)
-                }
+        let (t, interval) = match self.plan.sampling {
+            Sampling::EveryStep | Sampling::FinalOnly => return None,
+            Sampling::Points(n) if i >= n => return None,
+            Sampling::Points(n) if i + 1 == n => return Some(until),
+            Sampling::Points(n) => {
+                let intervals = (n - 1) as f64;
+                (until * (i as f64 / intervals), until / intervals)
             }
-        }
+            Sampling::Every(dt) => (i as f64 * dt, dt),
+        };
+        // A multiple may miss the end, or a change, by rounding alone.
+        let end = match self.plan.program {
+            Some(_) => self.stretch.span.1,
+            None => until,
+        };
+        let meets = (t - end).abs() <= 1e-9 * interval;
+        Some(if meets { end } else { t })
     }
 
     fn draw(&mut self, at: &Instant) {
@@ -250,18 +285,22 @@ impl<'a, const N: usize> RunObserver<'a, N> {
 
     fn emit(&mut self, at: &Instant) {
         fill(&mut self.row, &self.plan.columns, self.plan, at);
+        self.shown = Some(at.time);
         if self.sink.row(&self.row) == Control::Stop {
             self.stopped = true;
         }
     }
 
-    fn finish(mut self, end: &Result<State<N>>) -> RunOutcome {
+    fn finish(mut self, end: &Result<Point>) -> RunOutcome {
         let plan = self.plan;
         let known = end.is_ok() || plan.observed();
-        if let Ok(y) = end
+        if let Ok(point) = end
             && !self.stopped
         {
-            self.here = Instant::new(plan.system.law, plan.until, y, self.here.slip);
+            self.here = Instant {
+                driving: self.stretch.driving.1,
+                ..self.here.at(plan.until, *point, self.here.slip)
+            };
         }
         if plan.sampling == Sampling::FinalOnly && end.is_ok() && !self.stopped {
             let here = self.here;

@@ -1,6 +1,7 @@
 //! From the model's options to a checked system, and back to what the output says about it.
 
 use super::options::{ModelOptions, SlabOptions};
+use super::program::Program;
 use super::units::{Quantity, TimeUnit, Units};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Law, Parameters, positive};
@@ -91,6 +92,38 @@ impl System {
         })
     }
 
+    /// The same where V_H changes on the way, with V_H before the first change: what is given, which may be 0, or that of a change
+    /// at the beginning.
+    ///
+    /// # Errors
+    /// As [`System::new`]; [`Error::Input`] that names the missing option.
+    pub(super) fn programmed(options: &ModelOptions, program: &Program) -> Result<(Self, Loading)> {
+        if let Some(driving) = options.driving.filter(|&driving| driving < 0.0) {
+            return Err(Error::parameter("driving", driving, "0 or positive"));
+        }
+        let moving = options.driving.filter(|&driving| driving != 0.0);
+        let mut system = Self::of(&options.slab, moving, options.stiffness)?;
+        let first = match (options.driving, program.first()) {
+            (Some(_), _) => system.driving.unwrap_or(0.0),
+            (None, Some(first)) => system.units.inward(Quantity::SlipRate, first),
+            (None, None) => {
+                return Err(Error::Input(
+                    "`driving` V_H is missing: which velocity is it before the first change of `program`?"
+                        .into(),
+                ));
+            }
+        };
+        let echo = &mut system.echo;
+        echo.insert("driving".into(), json!(options.driving.map(|v| v + 0.0)));
+        echo.insert("program".into(), json!(program.told()));
+        let stiffness = system.needed_stiffness()?;
+        let loading = Loading {
+            driving: first,
+            stiffness,
+        };
+        Ok((system, loading))
+    }
+
     /// V_H and K, both needed.
     ///
     /// # Errors
@@ -145,7 +178,15 @@ fn damping(options: &SlabOptions) -> Result<f64> {
         (Some(_), None) | (None, Some(_)) => Err(Error::Input(
             "`shear-modulus` and `shear-wave-speed` make a damping only together".into(),
         )),
-        (None, None) => Ok(options.damping.unwrap_or(0.0)),
+        (None, None) => {
+            let damping = options.damping.unwrap_or(0.0);
+            // In the user's number; the law's own check has another.
+            if damping >= 0.0 && damping.is_finite() {
+                return Ok(damping);
+            }
+            let must = "zero or positive, and finite";
+            Err(Error::parameter("damping", damping, must))
+        }
     }
 }
 

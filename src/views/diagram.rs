@@ -85,7 +85,7 @@ pub fn parameters(driving: f64, stiffness: f64, units: &Units) -> String {
 }
 
 /// A symbol with its value and unit, but for that of what has none.
-fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> String {
+pub(super) fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> String {
     let digits = seven_digits(units.outward(quantity, x));
     let digits = match digits.contains(['e', 'E']) || !digits.contains('.') {
         true => &digits,

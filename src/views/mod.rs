@@ -21,7 +21,7 @@ pub use law::law_columns;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
-pub use run::{event_columns, panels_in_time, phase_plane};
+pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
 pub use sweep::{GridSide, PointOutcome, basin_map, regime_map};
 
 /// The names as written, error budgets in columns of their own but in tables.

@@ -163,6 +163,20 @@ class Make:
         numbers = [self.number_of(8, 13)] + [self.number_of(1e-7, 1) for _ in range(self.random.choice([1, 2, 2, 2, 2, 3]))]
         return ",".join(numbers)
 
+    def program(self):
+        """Changes of V_H: mostly steps and ramps in the order of time."""
+        if self.chance(self.wild / 2):
+            return self.random.choice([*NO_NUMBERS, "0:", ":1", "1:2:3", "1-:2", "1--2:3", "5:1,5:2", *READS])
+        time, parts = 0.0, []
+        for _ in range(self.random.randint(1, 4)):
+            time += self.random.uniform(0.01, 6)
+            at = f"{time:.4g}"
+            if self.chance(0.3):
+                time += self.random.uniform(0.01, 6)
+                at += f"-{time:.4g}"
+            parts.append(f"{at}:{'0' if self.chance(0.25) else self.number_of(0.05, 300)}")
+        return ",".join(parts)
+
     def grid(self, low, high):
         if self.chance(0.15):
             return self.number_of(low, high)
@@ -191,6 +205,8 @@ def options_of(make, name):
             options.append(("points", m.number_of(1, 300, whole=True, edges=m.chance(0.2))))
         if m.chance(0.12):
             options.append(("every", m.number_of(0.1, 30)))
+        if m.chance(0.15):
+            options.append(("program", m.program()))
         for option in ["final-only", "events", "estimate-error"]:
             if m.chance(0.12):
                 options.append((option, None))
@@ -220,7 +236,9 @@ def options_of(make, name):
             options.append(("period-guess", m.number_of(0.1, 500)))
         if m.chance(0.3):
             options.append(("crosscheck", m.one_of([*METHODS, "none"])))
-        options += m.output(plot=False)
+        if m.chance(0.15):
+            options.append(("points", m.number_of(2, 200, whole=True, edges=m.chance(0.2))))
+        options += m.output()
     elif name == "section":
         options = m.model() + m.numerics()
         options.append(("returns", m.number_of(1, 100, whole=True, edges=False)))

@@ -1,12 +1,12 @@
 //! Events on the series of a step: stress maxima and minima, and the peaks between, are roots of polynomials.
 
 use super::super::slip::{Slips, sum};
-use super::{Detector, Moment};
+use super::{Detector, Log, Moment};
 use crate::number::polynomial::{Crossing, Root, evaluate, roots};
 use crate::series::{Expansion, REFERENCE_ORDER};
 
-impl<const N: usize> Detector<'_, N> {
-    pub(super) fn see_series(&mut self, series: &Expansion<N>, before: &Slips) {
+impl Detector {
+    pub(super) fn see_series<const N: usize>(&mut self, series: &Expansion<N>, before: &Slips) {
         let mut excess = [0.0; REFERENCE_ORDER];
         let excess = &mut excess[..series.order];
         for (j, c) in excess.iter_mut().enumerate() {
@@ -15,7 +15,10 @@ impl<const N: usize> Detector<'_, N> {
                 .map(|rates| rates[j])
                 .sum();
         }
-        excess[0] -= self.loading.driving;
+        let driving = self.driving_at(series.begin.hi());
+        let rate = self.rate() * series.unit;
+        excess[0] -= driving;
+        excess[1] -= rate;
         let length = series.length / series.unit;
         let moment = |s: f64| {
             let time = s * series.unit;
@@ -29,27 +32,31 @@ impl<const N: usize> Detector<'_, N> {
         let extrema = self.zeros.follow(excess, length);
         self.turnings.clear();
         if self.log.open.is_some() || !extrema.is_empty() {
-            turnings(excess, length, &mut self.turnings);
+            turnings(excess, rate, length, &mut self.turnings);
+            if rate != 0.0 {
+                let by = (1.0 - self.threshold) * rate;
+                turnings(excess, by, length, &mut self.turnings);
+            }
         }
-        let peak = |from: f64, to: f64| {
-            let inside = self.turnings.iter().map(|turning| turning.at);
-            let largest = inside
-                .filter(|s| (from..=to).contains(s))
-                .chain([from, to])
-                .map(|s| evaluate(excess, s))
-                .fold(0.0, f64::max);
-            self.loading.driving + largest
+        let (threshold, found) = (self.threshold, &self.turnings);
+        let raise = |log: &mut Log, from: f64, to: f64| {
+            let inside = found.iter().map(|turning| turning.at);
+            let inside = inside.filter(|s| (from..=to).contains(s));
+            for s in inside.chain([from, to]) {
+                let driving = driving + rate * s;
+                log.raise(driving + evaluate(excess, s), threshold * driving);
+            }
         };
         let mut from = 0.0;
         for extremum in extrema {
             let at = extremum.at;
             match extremum.crossing {
                 Crossing::Upwards => {
-                    self.log.open(moment(at));
+                    self.log.open(Some(moment(at)));
                     from = at;
                 }
                 Crossing::Downwards if self.log.open.is_some() => {
-                    self.log.raise(peak(from, at));
+                    raise(&mut self.log, from, at);
                     self.log.close(moment(at));
                 }
                 // Slip as fast as V_H and no faster, or an excursion that the run began in.
@@ -57,16 +64,17 @@ impl<const N: usize> Detector<'_, N> {
             }
         }
         if self.log.open.is_some() {
-            self.log.raise(peak(from, length));
+            raise(&mut self.log, from, length);
         }
     }
 }
 
-/// Where a polynomial is largest or smallest.
-fn turnings(coefficients: &[f64], length: f64, found: &mut Vec<Root>) {
+/// Where a polynomial, with so much more in its slope, is largest or smallest.
+fn turnings(coefficients: &[f64], more: f64, length: f64, found: &mut Vec<Root>) {
     let mut slope = [0.0; REFERENCE_ORDER];
     for (j, (slope, c)) in slope.iter_mut().zip(&coefficients[1..]).enumerate() {
         *slope = (j + 1) as f64 * c;
     }
+    slope[0] += more;
     roots(&slope[..coefficients.len() - 1], length, found);
 }

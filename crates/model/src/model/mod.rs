@@ -16,6 +16,7 @@ mod difference_tangent;
 mod lanes;
 mod logarithmic;
 pub mod normal_form;
+mod ramp;
 mod response;
 pub mod scales;
 mod series;
@@ -29,6 +30,7 @@ mod two_interfaces;
 #[doc(hidden)]
 pub use batch::{BatchSolution, MAX_LANES, batch_solution};
 pub use difference_chart::{DifferenceChart, from_difference_chart, to_difference_chart};
+pub use ramp::{Ramp, alike_on_ramp, two_interfaces_on_ramp};
 pub use single_interface::SingleInterface;
 pub use smooth::Smooth;
 pub use symmetric::Symmetric;

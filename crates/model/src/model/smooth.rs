@@ -130,7 +130,7 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> Smooth<S, N, P> {
 
 impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<S, N, P> {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        if const { N <= COMPILED } && self.is_small() {
+        if const { N <= COMPILED && S::KERNELS } && self.is_small() {
             return Box::new(Plain::new(self.equations, self.parameters));
         }
         self.recorded().solution()
@@ -144,7 +144,7 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<
         if let Some(own) = self.equations.own_tangent(self.parameters, free) {
             return own;
         }
-        if const { N <= COMPILED } && free.len() <= FREE && self.is_small() {
+        if const { N <= COMPILED && S::KERNELS } && free.len() <= FREE && self.is_small() {
             #[cfg(target_arch = "x86_64")]
             let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
             #[cfg(not(target_arch = "x86_64"))]

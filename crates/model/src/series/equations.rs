@@ -19,6 +19,9 @@ pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync 
     /// The names of the parameters, in the order in which `rates` takes them. Derivatives are had in any of them.
     const PARAMETERS: [&'static str; P];
 
+    /// Whether series of short formulas are compiled for them, which are without slip rates. What is seldom run goes in loops.
+    const KERNELS: bool = true;
+
     /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
     fn rates<T: Real>(&self, x: [T; N], parameters: [T; P]) -> [T; N];
 
