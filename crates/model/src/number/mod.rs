@@ -102,6 +102,16 @@ pub trait Real:
     fn sign(self) -> Self {
         Self::constant(1_f64.copysign(self.leading()))
     }
+    /// the lesser of two; this one where they are equal
+    #[inline(always)]
+    fn lesser(self, o: Self) -> Self {
+        if (o - self).leading() >= 0.0 { self } else { o }
+    }
+    /// the greater of two; this one where they are equal
+    #[inline(always)]
+    fn greater(self, o: Self) -> Self {
+        if (self - o).leading() >= 0.0 { self } else { o }
+    }
 }
 
 /// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.

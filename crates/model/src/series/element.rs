@@ -85,6 +85,10 @@ pub trait Element:
     fn tanh(self) -> Self {
         lane_by_lane(self, f64::tanh)
     }
+    /// inverse of the hyperbolic sine
+    fn asinh(self) -> Self {
+        lane_by_lane(self, <f64 as Real>::asinh)
+    }
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
     /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
@@ -332,6 +336,9 @@ impl Element for DoubleDouble {
     }
     fn tanh(self) -> Self {
         Real::tanh(self)
+    }
+    fn asinh(self) -> Self {
+        Real::asinh(self)
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }

@@ -45,6 +45,8 @@ enum Operation {
     Circular(usize, usize),
     /// atan a beside 1 + a^2; the spare row holds 1 / (1 + a_0^2), then j y_j
     Arctangent(usize, usize),
+    /// asinh a beside sqrt(1 + a^2); likewise
+    InverseHyperbolicSine(usize, usize),
     /// tanh a and, in that row, 1 - tanh^2 a; the spare row holds j a_j
     HyperbolicTangent(usize, usize),
     /// a^p; the spare row holds 1 / a_0, then j y_j
@@ -148,6 +150,7 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::Cosh(a, b)
             | Node::Cos(a, b)
             | Node::Arctangent(a, b)
+            | Node::InverseHyperbolicSine(a, b)
             | Node::VariablePower(a, b)
             | Node::Signed(a, b) => {
                 needed[a] = true;
@@ -265,6 +268,11 @@ impl Assembly<'_> {
             Node::Arctangent(a, u) => match (at(a), at(u)) {
                 (Row(a), Row(u)) => (Op::Arctangent(a, u), true),
                 (Number(x), _) => return Number(Real::atan(x)),
+                _ => unreachable!("1 + a^2 is as constant as a"),
+            },
+            Node::InverseHyperbolicSine(a, u) => match (at(a), at(u)) {
+                (Row(a), Row(u)) => (Op::InverseHyperbolicSine(a, u), true),
+                (Number(x), _) => return Number(Real::asinh(x)),
                 _ => unreachable!("1 + a^2 is as constant as a"),
             },
             Node::HyperbolicTangent(a) => match at(a) {
@@ -477,11 +485,14 @@ impl<T: Element> ProgramRows<T> {
                     s.scale(one_over)
                 }
             }
-            Operation::Arctangent(a, u) => {
-                // u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
+            Operation::Arctangent(a, u) | Operation::InverseHyperbolicSine(a, u) => {
+                // y' = a' / u: u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
                 if k == 0 {
                     self.set(spare, 0, any.like(1.0) / self.get(u, 0));
-                    self.get(a, 0).atan()
+                    match operation {
+                        Operation::Arctangent(..) => self.get(a, 0).atan(),
+                        _ => self.get(a, 0).asinh(),
+                    }
                 } else {
                     let sum = self
                         .convolution(spare, u, k, (1, k))
