@@ -73,6 +73,23 @@ fn every_command_of_the_guide_runs() {
 }
 
 #[test]
+fn every_command_of_the_page_on_systems_runs() {
+    let text = text_of("docs/system-file.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 4, "{lines:?}");
+    run_all(&lines, &folder("system-file"));
+    // The file that it shows is one.
+    let (_, rest) = text.split_once("```toml\n").expect("a file");
+    let (file, _) = rest.split_once("```").expect("an end");
+    let place = folder("system-file-shown");
+    std::fs::write(place.join("shown.toml"), file).expect("a file");
+    run_all(
+        &["twinslip integrate --system shown.toml --until 10 -o run.csv"],
+        &place,
+    );
+}
+
+#[test]
 fn the_first_result_of_the_readme_is_what_comes() {
     let text = text_of("README.md");
     let lines = commands(&text);

@@ -98,5 +98,7 @@ mod sweep_rows;
 mod systems;
 mod tableaus;
 mod taylor;
+mod text_files;
+mod text_systems;
 mod transport;
 mod work_precision;

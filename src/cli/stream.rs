@@ -5,7 +5,7 @@ use super::progress::Progress;
 use super::report::{Report, unit_names};
 use crate::integrate::Control;
 use crate::output::{Cell, Format, RowList, RowWriter};
-use crate::scene::{Quantity, Sink, System};
+use crate::scene::{Described, Quantity, Sink};
 use serde_json::Value;
 use std::io;
 
@@ -28,7 +28,7 @@ impl StreamOut {
     /// Begins the table or CSV, below the command that makes it. Rows are kept for an object anyway.
     pub fn new(
         report: &Report<'_>,
-        (system, numerics): (&System, &Value),
+        (system, numerics): (&dyn Described, &Value),
         columns: Vec<(String, Quantity)>,
         keep: bool,
     ) -> io::Result<Self> {
@@ -36,7 +36,7 @@ impl StreamOut {
         let writer = if report.format == Format::Json {
             None
         } else {
-            let units = unit_names(&system.units, quantities.into_iter());
+            let units = unit_names(system.units(), quantities.into_iter());
             let remarks = report.remarks(system, numerics);
             Some(report.begin(remarks, &names, &units)?)
         };

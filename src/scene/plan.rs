@@ -6,12 +6,14 @@ use super::estimate::Companion;
 use super::instant::{Instant, run_columns};
 use super::options::{IntegrateOptions, NumericsOptions};
 use super::system::System;
-use super::units::Quantity;
+use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
 use crate::friction::{Formulas, Law, beside, positive, steady_stress};
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 
+/// How a run starts where nobody says otherwise.
+pub(super) const USUAL_START: &str = "near-symmetric";
 /// The asymmetry of `--start near-symmetric` where none is given.
 const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
@@ -63,6 +65,30 @@ pub enum Sampling {
     FinalOnly,
 }
 
+impl Sampling {
+    /// When the i-th row is, of those at fixed times of a run until then.
+    pub(super) fn time(self, i: usize, until: f64) -> Option<f64> {
+        match self {
+            Sampling::EveryStep | Sampling::FinalOnly => None,
+            Sampling::Points(n) if i < n => Some(if i + 1 == n {
+                until
+            } else {
+                until * (i as f64 / (n - 1) as f64)
+            }),
+            Sampling::Points(_) => None,
+            Sampling::Every(dt) => {
+                let t = i as f64 * dt;
+                // The last multiple may exceed the end by rounding alone.
+                if (t - until).abs() <= 1e-9 * dt {
+                    Some(until)
+                } else {
+                    Some(t)
+                }
+            }
+        }
+    }
+}
+
 /// A run, checked, and only what its outputs need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -104,15 +130,11 @@ impl Plan {
     pub fn new(options: &IntegrateOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
         let loading = system.loading()?;
-        let start = start(&options.start, &system, &loading)?;
+        let text = options.start.as_deref().unwrap_or(USUAL_START);
+        let start = start(text, &system, &loading)?;
         let dimension = Dimension::of(&system, &start);
-        let until = options
-            .until
-            .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
-        let until = system
-            .units
-            .inward(Quantity::Time, positive("until", until)?);
-        let sampling = sampling(options, &system, until)?;
+        let until = system.units.inward(Quantity::Time, until(options)?);
+        let sampling = sampling(options, &system.units, until)?;
         let mut columns = run_columns(system.interfaces);
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
@@ -169,6 +191,14 @@ impl Plan {
     }
 }
 
+/// The end of a run, in the user's units.
+pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
+    let until = options
+        .until
+        .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
+    positive("until", until)
+}
+
 /// The method and the tolerances, checked.
 pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
     let tolerances = tolerances(options.rtol, options.atol)?;
@@ -192,7 +222,7 @@ pub fn tolerances(rtol: f64, atol: Option<f64>) -> Result<Tolerances> {
     Ok(Tolerances { rtol, atol })
 }
 
-fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<Sampling> {
+pub(super) fn sampling(options: &IntegrateOptions, units: &Units, until: f64) -> Result<Sampling> {
     if options.final_only {
         return Ok(Sampling::FinalOnly);
     }
@@ -205,9 +235,7 @@ fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<S
     let Some(every) = options.every else {
         return Ok(Sampling::EveryStep);
     };
-    let interval = system
-        .units
-        .inward(Quantity::Time, positive("every", every)?);
+    let interval = units.inward(Quantity::Time, positive("every", every)?);
     if until / interval > MAX_ROWS {
         return Err(Error::parameter(
             "every",

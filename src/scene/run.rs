@@ -13,10 +13,10 @@ use crate::model::{self, Driven};
 use crate::number::DoubleDouble;
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
-const PICTURED: usize = 4;
+pub(super) const PICTURED: usize = 4;
 
 /// Steps that pass unseen where only the end is shown: some microseconds.
-const RESTS: u32 = 63;
+pub(super) const RESTS: u32 = 63;
 
 /// Takes what a run yields, as it comes.
 pub trait Sink {
@@ -222,25 +222,7 @@ impl<'a, const N: usize> RunObserver<'a, N> {
 
     /// The next fixed time of a row.
     fn next_sample(&self) -> Option<f64> {
-        let (i, until) = (self.sampled, self.plan.until);
-        match self.plan.sampling {
-            Sampling::EveryStep | Sampling::FinalOnly => None,
-            Sampling::Points(n) if i < n => Some(if i + 1 == n {
-                until
-            } else {
-                until * (i as f64 / (n - 1) as f64)
-            }),
-            Sampling::Points(_) => None,
-            Sampling::Every(dt) => {
-                let t = i as f64 * dt;
-                // The last multiple may exceed the end by rounding alone.
-                if (t - until).abs() <= 1e-9 * dt {
-                    Some(until)
-                } else {
-                    Some(t)
-                }
-            }
-        }
+        self.plan.sampling.time(self.sampled, self.plan.until)
     }
 
     fn draw(&mut self, at: &Instant) {

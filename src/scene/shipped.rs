@@ -1,12 +1,21 @@
 //! The scenes that the program carries: those of the paper's figures, and some more.
 
 use include_dir::{Dir, include_dir};
+use std::path::Path;
 
 static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 
 /// The text of the scene of that name, which is that of its file without the ending.
 pub fn shipped(name: &str) -> Option<&'static str> {
     SCENES.get_file(format!("{name}.toml"))?.contents_utf8()
+}
+
+/// The text of the system of one's own that is built in under that name: `lorenz`, `lorenz.toml` or the path that its file has.
+pub(super) fn shipped_system(path: &Path) -> Option<&'static str> {
+    let path = path.strip_prefix("scenes").unwrap_or(path);
+    let path = path.strip_prefix("systems").unwrap_or(path);
+    let file = Path::new("systems").join(path).with_extension("toml");
+    SCENES.get_file(file)?.contents_utf8()
 }
 
 /// The names of all, sorted.

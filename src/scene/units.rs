@@ -32,6 +32,8 @@ pub enum Quantity {
 pub struct Units {
     scales: Option<Scales>,
     state_is_time: bool,
+    /// Whether they have names.
+    named: bool,
 }
 
 impl Units {
@@ -40,6 +42,15 @@ impl Units {
         Units {
             scales,
             state_is_time,
+            named: true,
+        }
+    }
+
+    /// Of a system of one's own: whatever its equations are in.
+    pub fn none() -> Self {
+        Units {
+            named: false,
+            ..Self::new(None, false)
         }
     }
 
@@ -116,6 +127,7 @@ impl Units {
     pub fn name(&self, quantity: Quantity) -> &'static str {
         let si = self.si();
         match quantity {
+            _ if !self.named => "1",
             Quantity::Stress if si => "Pa",
             Quantity::Stress => "a sigma",
             Quantity::SlipRate if si => "m/s",
@@ -135,8 +147,11 @@ impl Units {
     }
 
     /// The names of all units, by quantity: what the `units` object of the output holds.
-    pub fn names(&self) -> [(&'static str, &'static str); 7] {
-        [
+    pub fn names(&self) -> Vec<(&'static str, &'static str)> {
+        if !self.named {
+            return Vec::new();
+        }
+        vec![
             ("stress", self.name(Quantity::Stress)),
             ("slip_rate", self.name(Quantity::SlipRate)),
             ("slip", self.name(Quantity::Length)),

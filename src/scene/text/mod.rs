@@ -1,0 +1,18 @@
+//! Systems of one's own, from a file: their equations read, and what the commands make of them.
+
+mod equilibria;
+mod file;
+mod grammar;
+mod model;
+mod options;
+mod orbit;
+mod run;
+mod section;
+
+pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium};
+pub use file::SystemFile;
+pub use model::TextModel;
+pub use options::TextOptions;
+pub use orbit::TextOrbitPlan;
+pub use run::{TextInstant, TextOutcome, TextPlan, run_text, text_columns};
+pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};
