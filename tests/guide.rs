@@ -43,8 +43,10 @@ fn run_all(lines: &[&str], place: &Path) {
         let named = line
             .split_whitespace()
             .skip_while(|word| !word.starts_with('-'));
+        let file = |word: &&str| word.contains('.') && !word.contains('=');
         for file in named
-            .filter(|word| word.contains('.') && !word.starts_with(|c: char| c.is_ascii_digit()))
+            .filter(file)
+            .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
         {
             assert!(
                 place.join(file).metadata().is_ok_and(|data| data.len() > 0),

@@ -13,6 +13,7 @@ mod drawn;
 
 mod arcs;
 mod batch;
+mod boxes;
 mod branches;
 mod branches_equilibria;
 mod branches_orbits;

@@ -83,7 +83,7 @@ fn mistakes_are_told_by_line_and_column() {
         ),
         (
             changed("x + a*y", ""),
-            "9:6: the formula ends where a number",
+            "9:5: the formula ends where a number",
         ),
         (changed("x + a*y", "x + sn(y)"), "9:10: `sn` is no function"),
         (
@@ -259,7 +259,7 @@ fn depth_and_size_are_bounded() {
 fn files_that_are_none_are_refused() {
     let place = folder("text_none");
     for (path, told) in [
-        (place.join("missing.toml"), "cannot read"),
+        (place.join("missing.toml"), "there is no such file"),
         (place.clone(), "cannot read"),
         (written(&place, b"\xff\xfe"), "it is not UTF-8"),
     ] {

@@ -9,11 +9,11 @@ use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
     symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1 [default: \
-    near-symmetric]. With --system the values of all states in their order [default: its table start]";
+    near-symmetric]. Of a system from a file: the values of all states in their order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
-    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. With --system the values of \
-    all states in their order [default: its table start]";
+    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
+    values of all states in their order [default: its table start]";
 
 /// The laws with their sources, for help.
 fn laws() -> String {

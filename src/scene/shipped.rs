@@ -18,10 +18,19 @@ pub(super) fn shipped_system(path: &Path) -> Option<&'static str> {
     SCENES.get_file(file)?.contents_utf8()
 }
 
-/// The names of all, sorted.
+/// The names of these systems, sorted.
+pub(super) fn shipped_system_names() -> Vec<&'static str> {
+    SCENES.get_dir("systems").map_or_else(Vec::new, names)
+}
+
+/// The names of all scenes, sorted.
 pub fn shipped_names() -> Vec<&'static str> {
+    names(&SCENES)
+}
+
+fn names(folder: &Dir<'static>) -> Vec<&'static str> {
     let stem = |file: &include_dir::File<'static>| file.path().file_stem()?.to_str();
-    let mut names: Vec<&str> = SCENES.files().filter_map(stem).collect();
+    let mut names: Vec<&str> = folder.files().filter_map(stem).collect();
     names.sort_unstable();
     names
 }

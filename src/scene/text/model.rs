@@ -2,12 +2,12 @@
 
 use super::file::SystemFile;
 use super::options::TextOptions;
-use crate::error::{Error, Result};
+use crate::error::{Error, Result, did_you_mean};
 use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use crate::scene::file::read_bounded;
-use crate::scene::shipped::shipped_system;
+use crate::scene::shipped::{shipped_system, shipped_system_names};
 use crate::scene::system::Described;
 use crate::scene::units::Units;
 use serde_json::{Map, Value, json};
@@ -144,10 +144,16 @@ pub(super) fn number(text: &str) -> Option<f64> {
 /// The file, or where there is none of that name the system that is built in.
 fn read(path: &Path) -> Result<SystemFile> {
     let name = path.display().to_string();
-    if !path.exists()
-        && let Some(text) = shipped_system(path)
-    {
+    if path.exists() {
+        return SystemFile::parse(&name, &read_bounded(path, LONGEST)?);
+    }
+    if let Some(text) = shipped_system(path) {
         return SystemFile::parse(&name, text);
     }
-    SystemFile::parse(&name, &read_bounded(path, LONGEST)?)
+    let known = shipped_system_names();
+    let hint = did_you_mean(&name, known.iter().copied());
+    Err(Error::Input(format!(
+        "`system` {name}: there is no such file, and no built-in system of this name; those are {}{hint}",
+        known.join(", ")
+    )))
 }
