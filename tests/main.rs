@@ -99,6 +99,7 @@ mod sweep_rows;
 mod systems;
 mod tableaus;
 mod taylor;
+mod text_commands;
 mod text_files;
 mod text_systems;
 mod transport;

@@ -99,6 +99,14 @@ fn mistakes_are_told_by_line_and_column() {
             "9:10: `sin` is a function, whose argument must follow in parentheses",
         ),
         (
+            changed("x + a*y", "x + ()"),
+            "9:11: `)` stands where a number",
+        ),
+        (
+            changed("x + a*y", "x + min(x,)"),
+            "9:16: `)` stands where a number",
+        ),
+        (
             changed("x + a*y", "x + sin()"),
             "9:14: `)` stands where a number",
         ),

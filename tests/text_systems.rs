@@ -1,28 +1,11 @@
-//! Systems of one's own from files, as a user meets them: against values that others computed, closed forms, and the built-in systems.
+//! Systems of one's own from files: against values that others computed, closed forms, and the built-in systems.
 
 use crate::command;
-use command::{folder, number, object, refused_in_one_line, run, twinslip};
+use crate::common::text::{SPINODAL, file, near};
+use crate::common::{data, number as known};
+use command::{folder, number, object, twinslip};
 use serde_json::Value;
 use std::fs;
-use std::path::PathBuf;
-
-fn data(name: &str) -> Value {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/data")
-        .join(name);
-    serde_json::from_str(&fs::read_to_string(path).expect("data")).expect("JSON")
-}
-
-/// A number that is written as a text.
-fn known(value: &Value) -> f64 {
-    value.as_str().expect("a text").parse().expect("a number")
-}
-
-#[track_caller]
-fn near(made: f64, exact: f64, tolerance: f64) {
-    let off = (made - exact).abs();
-    assert!(off <= tolerance * (1.0 + exact.abs()), "{made} for {exact}");
-}
 
 /// A number with its budget, which must hold the truth.
 #[track_caller]
@@ -35,13 +18,6 @@ fn budgeted(made: &Value, pointer: &str, exact: f64) {
         (value - exact).abs() <= uncertainty + rounding,
         "{pointer}: {value} +- {uncertainty} for {exact}"
     );
-}
-
-/// A file of this test's own.
-fn file(folder_name: &str, text: &str) -> String {
-    let path = folder(folder_name).join("system.toml");
-    fs::write(&path, text).expect("a file");
-    path.display().to_string()
 }
 
 #[test]
@@ -168,6 +144,45 @@ fn orbits_of_roessler_and_lorenz_84_are_those_of_others() {
 }
 
 #[test]
+fn the_wave_around_six_variables_is_that_of_others() {
+    let exact = &data("foreign_orbits.json")["records"]["4a_lorenz96_N6_F2"]["values"];
+    let names = |i: usize| format!("x{}", i % 6 + 1);
+    let rate = |i: usize| {
+        let [next, before, last] = [i + 1, i + 4, i + 5].map(names);
+        format!("{0} = \"({next} - {before})*{last} - {0} + F\"\n", names(i))
+    };
+    let states: Vec<String> = (0..6).map(|i| format!("{:?}", names(i))).collect();
+    let text = format!(
+        "name = \"ring\"\nstates = [{}]\n[parameters]\nF = 2\n[rates]\n{}",
+        states.join(", "),
+        (0..6).map(rate).collect::<String>()
+    );
+    let system = file("text_ring", &text);
+    let point = exact["point"].as_array().expect("a list").iter();
+    let point: Vec<String> = point.map(|x| format!("{:.6}", known(x))).collect();
+    let made = object(&format!(
+        "orbit --system {system} --start {} --period-guess 2.73",
+        point.join(",")
+    ));
+    budgeted(&made, "/result/orbit/period", known(&exact["period"]));
+    for i in 0..5 {
+        let one = format!("/result/orbit/log_multipliers/{i}");
+        let multiplier = &exact["multipliers"][i];
+        budgeted(
+            &made,
+            &format!("{one}/ln_abs"),
+            known(&multiplier["ln_abs"]),
+        );
+        let angle = number(&made, &format!("{one}/angle_over_pi"));
+        near(
+            angle,
+            known(&multiplier["arg"]).abs() / std::f64::consts::PI,
+            1e-9,
+        );
+    }
+}
+
+#[test]
 fn all_equilibria_of_a_box_are_found_and_counted_for_certain() {
     let made = object("equilibria --system lorenz --box x=-50:50,y=-50:50,z=-50:100");
     let list = made["result"]["equilibria"].as_array().expect("a list");
@@ -229,32 +244,6 @@ fn equilibria_appear_at_the_folds_that_others_have() {
     assert_eq!(made["result"]["complete"], false);
 }
 
-/// The law of the paper and two interfaces, written as a user would.
-const SPINODAL: &str = r#"
-name = "two interfaces"
-states = ["tau", "w1", "w2"]
-[parameters]
-V = 10.0
-K = 0.14
-R = 100.0
-c = 0.001
-a = 0.0349
-b = 0.0489
-a_v = 0.369
-[rates]
-tau = "K*(V - v1 - v2)"
-w1 = "(exp(-w1) - 1)/R - abs(v1)"
-w2 = "(exp(-w2) - 1)/R - abs(v2)"
-[where]
-v1 = "gamma*sinh(tau)/(c + (1 + R)*exp(w1))^(b/a)"
-v2 = "gamma*sinh(tau)/(c + (1 + R)*exp(w2))^(b/a)"
-gamma = "2*exp(-a_v/a)"
-[start]
-tau = 9.9
-w1 = -6.0
-w2 = -6.2
-"#;
-
 #[test]
 fn the_interfaces_written_as_a_file_are_the_built_in_ones() {
     let path = file("text_spinodal", SPINODAL);
@@ -303,22 +292,6 @@ fn the_interfaces_written_as_a_file_are_the_built_in_ones() {
         let apart = made(&format!("{one}/value")) - exact(&format!("{one}/value"));
         let budget = made(&format!("{one}/uncertainty")) + exact(&format!("{one}/uncertainty"));
         assert!(apart.abs() <= budget, "{apart} with {budget}");
-    }
-}
-
-#[test]
-fn every_method_integrates_a_file() {
-    let exact = object(
-        "integrate --system brusselator --until 5 --rtol 1e-14 --method taylor --final-only",
-    );
-    for method in twinslip::integrate::Choice::names() {
-        let made = object(&format!(
-            "integrate --system brusselator --until 5 --rtol 1e-9 --method {method} --final-only"
-        ));
-        for state in ["x", "y"] {
-            let pointer = format!("/result/final/{state}");
-            near(number(&made, &pointer), number(&exact, &pointer), 2e-5);
-        }
     }
 }
 
@@ -404,153 +377,14 @@ fn every_function_is_the_integral_of_its_derivative() {
 }
 
 #[test]
-fn an_estimate_of_the_error_holds_the_truth() {
-    let arguments = "integrate --system lorenz --until 10 --estimate-error --final-only";
-    let exact = object(&format!("{arguments} --rtol 1e-15 --reference"));
-    for rtol in ["1e-6", "1e-9", "1e-12"] {
-        let made = object(&format!("{arguments} --rtol {rtol}"));
-        for state in ["x", "y", "z"] {
-            let value = |made: &Value| number(made, &format!("/result/final/{state}"));
-            let error = |made: &Value| number(made, &format!("/result/final/{state}_uncertainty"));
-            let off = (value(&made) - value(&exact)).abs();
-            assert!(
-                off <= error(&made) + error(&exact),
-                "{rtol}: {off} of {}",
-                error(&made)
-            );
-        }
+fn a_run_that_begins_on_a_kink_leaves_it_to_its_own_side() {
+    let text = "name = \"kink\"\nstates = [\"x\", \"y\", \"z\"]\n[parameters]\ns = 1\n[rates]\nx = \"s\"\ny = \"max(x, 0)\"\nz = \"abs(x)\"\n";
+    let system = file("text_kink", text);
+    for (s, y) in [(1.0, 0.5), (-1.0, 0.0)] {
+        let made = object(&format!(
+            "integrate --system {system} --set s={s} --start 0,0,0 --until 1 --method taylor --final-only"
+        ));
+        near(number(&made, "/result/final/y"), y, 1e-14);
+        near(number(&made, "/result/final/z"), 0.5, 1e-14);
     }
-}
-
-#[test]
-fn rows_have_the_names_of_the_states() {
-    let ended = twinslip(
-        "integrate --system roessler --until 10 --points 11 --columns time,z -q --format csv",
-    );
-    assert_eq!(ended.code, 0, "{}", ended.err);
-    let rows = command::csv(&ended.out);
-    assert_eq!(rows[0], ["time", "z"]);
-    assert_eq!(rows.len(), 12);
-    assert!(
-        ended.out.contains("# model: system = Roessler"),
-        "{}",
-        ended.out
-    );
-    assert!(!ended.out.contains("# units"), "{}", ended.out);
-}
-
-#[test]
-fn the_roessler_band_is_chaotic_and_its_orbit_periodic() {
-    let made = object(
-        "section --system roessler --set c=5.7 --surface x=0 --returns 400 --skip 100 --lyapunov",
-    );
-    assert_eq!(made["result"]["regime"], "chaotic");
-    // The largest and the smallest of long runs in the literature: 0.0714 and -5.39 (Sprott 2003, Chaos and Time-Series Analysis).
-    for (i, exact) in [0.0714, 0.0, -5.3943].into_iter().enumerate() {
-        let [value, uncertainty] = ["value", "uncertainty"]
-            .map(|part| number(&made, &format!("/result/lyapunov/{i}/{part}")));
-        assert!(
-            (value - exact).abs() <= uncertainty + 1e-4 && uncertainty < 0.05,
-            "{value} +- {uncertainty}"
-        );
-    }
-    let rows = made["result"]["rows"].as_array().expect("a list");
-    assert_eq!(rows.len(), 400);
-    assert!(
-        rows.iter()
-            .all(|row| row["x"].as_f64().is_some_and(|x| x.abs() < 1e-9))
-    );
-    let made =
-        object("section --system roessler --surface x=0 --returns 100 --skip 200 --lyapunov");
-    assert_eq!(made["result"]["regime"], "periodic");
-    assert_eq!(made["result"]["period_of_orbit"], 1);
-    let orbit = object("orbit --system roessler");
-    let period = number(&orbit, "/result/orbit/period/value");
-    near(number(&made, "/result/period/value"), period, 1e-12);
-    let ln_abs = number(&orbit, "/result/orbit/log_multipliers/0/ln_abs/value");
-    near(
-        number(&made, "/result/lyapunov/1/value"),
-        ln_abs / period,
-        1e-10,
-    );
-}
-
-#[test]
-fn scenes_take_a_system_beside_them() {
-    let place = folder("text_scene");
-    fs::write(place.join("mine.toml"), SPINODAL).expect("a file");
-    let scene = place.join("scene.toml");
-    let text = "command = \"integrate\"\nsystem = \"mine.toml\"\nset = { K = 0.2 }\nuntil = 1\nfinal-only = true\nformat = \"json\"\n";
-    fs::write(&scene, text).expect("a file");
-    let ended = run(&["run", scene.to_str().unwrap(), "-q"]);
-    assert_eq!(ended.code, 0, "{}", ended.err);
-    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
-    assert_eq!(made["model"]["parameters"]["K"], 0.2);
-    assert_eq!(made["model"]["system"], "two interfaces");
-}
-
-#[test]
-fn what_makes_no_sense_with_a_system_is_refused() {
-    for option in [
-        "--law bounded",
-        "--driving 1",
-        "--stiffness 1",
-        "--interfaces 1",
-        "--si",
-        "--healing-time 3",
-    ] {
-        let ended = twinslip(&format!("integrate --system lorenz --until 1 {option}"));
-        assert_eq!(ended.code, 2, "{option}: {}", ended.err);
-        let name = option.split(' ').next().unwrap();
-        assert!(
-            ended.err.starts_with("error: ") && ended.err.contains(name),
-            "{}",
-            ended.err
-        );
-    }
-    for command in ["branch orbits", "locus hopf", "sweep"] {
-        let ended = twinslip(&format!("{command} --system lorenz"));
-        assert_eq!(ended.code, 2, "{command}: {}", ended.err);
-    }
-    refused_in_one_line(
-        "integrate --system lorenz --until 1 --events",
-        "which need interfaces",
-    );
-    refused_in_one_line("law --system lorenz", "this command is of interfaces");
-    refused_in_one_line(
-        "sweep --driving 1:2:3 --stiffness 1:2:3 --system lorenz",
-        "this command is of interfaces",
-    );
-    refused_in_one_line(
-        "integrate --system lorenz --until 1 --set rr=3",
-        "set is rr, but must be s, r or b; did you mean \"r\"?",
-    );
-    refused_in_one_line(
-        "integrate --system lorenz --until 1 --set r=x",
-        "is not a finite number",
-    );
-    refused_in_one_line(
-        "integrate --system lorenz --until 1 --start 1,2",
-        "must have 3 values, one for each of x, y, z",
-    );
-    refused_in_one_line(
-        "section --system lorenz",
-        "--surface STATE=VALUE is missing",
-    );
-    refused_in_one_line(
-        "section --system lorenz --surface w=0",
-        "the state of --surface is w, but must be x, y or z",
-    );
-    refused_in_one_line(
-        "equilibria --system lorenz --box x=0:1,y=0:1",
-        "has no range of z",
-    );
-    refused_in_one_line(
-        "equilibria --system lorenz --box x=1:0,y=0:1,z=0:1",
-        "must rise",
-    );
-    refused_in_one_line(
-        "integrate --system lorentz --until 1",
-        "did you mean \"lorenz\"?",
-    );
 }

@@ -1,8 +1,9 @@
 //! A system from a TOML file: states, parameters and the formulas of their rates, all names resolved.
 
-use super::grammar::{self, Item, Token, Wrong, begins_name, continues_name};
+use super::grammar::{self, Item, Wrong, begins_name, continues_name};
+use super::lowering::lowered;
 use crate::error::{Error, Result, did_you_mean};
-use crate::expression::{Builder, Function, Place};
+use crate::expression::Function;
 use crate::model::TextSystem;
 use crate::scene::file::Reader;
 use std::borrow::Cow;
@@ -45,9 +46,9 @@ impl SystemFile {
 }
 
 /// A formula with the place of its text in the file.
-struct Formula<'a> {
-    name: &'a str,
-    items: Vec<Item>,
+pub(super) struct Formula<'a> {
+    pub name: &'a str,
+    pub items: Vec<Item>,
     /// Where it begins, and whether its letters stand there as they are.
     begin: usize,
     plain: bool,
@@ -55,22 +56,23 @@ struct Formula<'a> {
 
 /// What a name stands for.
 #[derive(Debug, Clone, Copy)]
-enum Meaning {
+pub(super) enum Meaning {
     State(usize),
     Parameter(usize),
     /// A formula of `[where]`.
     Defined(usize),
 }
 
-struct Tables<'a> {
+/// All that a file has.
+pub(super) struct Tables<'a> {
     reader: Reader<'a>,
     name: String,
     states: Vec<&'a str>,
     parameters: Vec<(&'a str, f64)>,
-    rates: Vec<Formula<'a>>,
-    defined: Vec<Formula<'a>>,
+    pub rates: Vec<Formula<'a>>,
+    pub defined: Vec<Formula<'a>>,
     start: Vec<Option<f64>>,
-    meanings: BTreeMap<&'a str, Meaning>,
+    pub meanings: BTreeMap<&'a str, Meaning>,
 }
 
 impl<'a> Tables<'a> {
@@ -288,121 +290,17 @@ impl<'a> Tables<'a> {
         Ok(Formula { items, ..formula })
     }
 
-    fn located(&self, formula: &Formula<'_>, Wrong { at, what }: Wrong) -> Error {
+    pub fn located(&self, formula: &Formula<'_>, Wrong { at, what }: Wrong) -> Error {
         let within = if formula.plain { at } else { 0 };
         self.reader.misplaced(formula.begin + within, what)
     }
 
     fn system(self) -> Result<SystemFile> {
-        let mut lowering = Lowering {
-            tables: &self,
-            builder: Builder::default(),
-            defined: vec![Progress::Open; self.defined.len()],
-        };
-        // Also those that nothing uses: they may have mistakes.
-        for i in 0..self.defined.len() {
-            lowering.define(i)?;
-        }
-        let rates: Result<Vec<Place>> =
-            self.rates.iter().map(|rate| lowering.place(rate)).collect();
-        let rates = lowering.builder.complete(rates?);
+        let rates = lowered(&self)?;
         Ok(SystemFile {
             system: TextSystem::new(rates, &self.states, &self.parameters)?,
             name: self.name,
             start: self.start,
         })
-    }
-}
-
-/// How far a formula of `[where]` is.
-#[derive(Debug, Clone, Copy, PartialEq)]
-enum Progress {
-    Open,
-    Begun,
-    Done(Place),
-}
-
-/// From formulas to operations.
-struct Lowering<'t, 'a> {
-    tables: &'t Tables<'a>,
-    builder: Builder,
-    defined: Vec<Progress>,
-}
-
-impl Lowering<'_, '_> {
-    /// The value of a formula of `[where]`, which is not in the making.
-    fn define(&mut self, i: usize) -> Result<Place> {
-        if let Progress::Done(place) = self.defined[i] {
-            return Ok(place);
-        }
-        self.defined[i] = Progress::Begun;
-        let place = self.place(&self.tables.defined[i])?;
-        self.defined[i] = Progress::Done(place);
-        Ok(place)
-    }
-
-    /// Carries out a formula on a stack.
-    fn place(&mut self, formula: &Formula<'_>) -> Result<Place> {
-        let mut stack: Vec<Place> = Vec::new();
-        for item in &formula.items {
-            let made = match &item.token {
-                Token::Name(name) => self.named(formula, item.at, name)?,
-                token => self
-                    .operation(token, &mut stack)
-                    .map_err(|error| self.wrong(formula, item.at, error.to_string()))?,
-            };
-            stack.push(made);
-        }
-        let whole = stack.pop().filter(|_| stack.is_empty());
-        whole.ok_or_else(|| self.wrong(formula, 0, "the formula is incomplete"))
-    }
-
-    fn operation(&mut self, token: &Token, stack: &mut Vec<Place>) -> Result<Place> {
-        let mut pop = || stack.pop().expect("operands stand before their operator");
-        match *token {
-            Token::Number(x) => self.builder.number(x),
-            Token::Negative => self.builder.negative(pop()),
-            Token::Binary(binary) => {
-                let b = pop();
-                self.builder.binary(binary, pop(), b)
-            }
-            Token::Call(function) if function.arguments() == 2 => {
-                let b = pop();
-                self.builder.call(function, &[pop(), b])
-            }
-            Token::Call(function) => self.builder.call(function, &[pop()]),
-            Token::Name(_) => unreachable!("names are looked up"),
-        }
-    }
-
-    fn named(&mut self, formula: &Formula<'_>, at: usize, name: &str) -> Result<Place> {
-        let made = match self.tables.meanings.get(name) {
-            Some(&Meaning::State(i)) => self.builder.variable(i),
-            Some(&Meaning::Parameter(i)) => self.builder.parameter(i),
-            Some(&Meaning::Defined(i)) if self.defined[i] == Progress::Begun => {
-                let what = match formula.name {
-                    own if own == name => format!("`{name}` is defined by itself"),
-                    other => format!("`{name}` is defined by `{other}`, and that by `{name}`"),
-                };
-                return Err(self.wrong(formula, at, what));
-            }
-            Some(&Meaning::Defined(i)) => return self.define(i),
-            None if name == "pi" => self.builder.pi(),
-            None => return Err(self.wrong(formula, at, self.unknown(name))),
-        };
-        made.map_err(|error| self.wrong(formula, at, error.to_string()))
-    }
-
-    fn unknown(&self, name: &str) -> String {
-        if Function::named(name).is_some() {
-            return format!("`{name}` is a function, whose argument must follow in parentheses");
-        }
-        let known = self.tables.meanings.keys().copied().chain(["pi"]);
-        let hint = did_you_mean(name, known);
-        format!("`{name}` is no state, no parameter and not defined in [where]{hint}")
-    }
-
-    fn wrong(&self, formula: &Formula<'_>, at: usize, what: impl Into<String>) -> Error {
-        self.tables.located(formula, Wrong::new(at, what))
     }
 }

@@ -6,7 +6,7 @@ use crate::error::did_you_mean;
 use crate::expression::{Binary, Function};
 use winnow::ModalResult;
 use winnow::ascii::{digit0, digit1, multispace0};
-use winnow::combinator::{Infix, Prefix, expression, opt, separated};
+use winnow::combinator::{Infix, Prefix, cut_err, expression, opt, separated};
 use winnow::error::{ErrMode, ParserError};
 use winnow::prelude::*;
 use winnow::stream::{LocatingSlice, Location, Stateful};
@@ -200,7 +200,7 @@ fn operand(input: &mut Text<'_>) -> Read<Items> {
         Some('(') => {
             any.parse_next(input)?;
             descend(input, at)?;
-            let items = formula(input)?;
+            let items = cut_err(formula).parse_next(input)?;
             closed(input, at)?;
             Ok(items)
         }
@@ -268,7 +268,7 @@ fn name(input: &mut Text<'_>, at: usize) -> Read<Items> {
     };
     any.parse_next(input)?;
     descend(input, opened)?;
-    let arguments: Vec<Items> = separated(1.., formula, ',').parse_next(input)?;
+    let arguments: Vec<Items> = separated(1.., cut_err(formula), ',').parse_next(input)?;
     closed(input, opened)?;
     let count = function.arguments();
     if arguments.len() != count {

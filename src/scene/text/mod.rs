@@ -3,9 +3,11 @@
 mod equilibria;
 mod file;
 mod grammar;
+mod lowering;
 mod model;
 mod options;
 mod orbit;
+mod plan;
 mod run;
 mod section;
 
@@ -14,5 +16,6 @@ pub use file::SystemFile;
 pub use model::TextModel;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
-pub use run::{TextInstant, TextOutcome, TextPlan, run_text, text_columns};
+pub use plan::{TextInstant, TextPlan, text_columns};
+pub use run::{TextOutcome, run_text};
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};

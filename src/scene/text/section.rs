@@ -1,7 +1,7 @@
 //! The return map of a system of one's own.
 
 use super::model::{TextModel, number};
-use super::run::numerics;
+use super::plan::numerics;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;

@@ -7,7 +7,8 @@ use super::Accuracy;
 use super::cubic::Jet3;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::linearised::longest_of_columns;
-use super::program::{Program, ProgramRows};
+use super::program::Program;
+use super::program_rows::ProgramRows;
 use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
 use crate::number::DoubleDouble;
 

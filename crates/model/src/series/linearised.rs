@@ -8,7 +8,8 @@
 use super::Accuracy;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::interpreted::{Interpreted, Trajectory};
-use super::program::{Program, ProgramRows, Source};
+use super::program::{Program, Source};
+use super::program_rows::ProgramRows;
 use crate::number::DoubleDouble;
 use pulp::NullaryFnOnce;
 

@@ -29,6 +29,7 @@ pub(crate) mod lanes;
 mod linearised;
 mod plain;
 mod program;
+mod program_rows;
 mod real;
 mod recorded;
 mod recurrences;

@@ -1,10 +1,9 @@
 //! A recorded formula on power series: one coefficient of all its quantities after the other.
 //!
-//! What depends on the variables has a row of coefficients; everything else is a number. The recurrences are those of
-//! [`super::tape`], in loops over the operations instead of compiled one by one: for any number of variables, for numbers of
-//! any kind, and no code for each formula.
+//! What depends on the variables has a row of coefficients; everything else is a number. The recurrences run in loops over the
+//! operations ([`super::program_rows`]) instead of compiled one by one: for any number of variables, for numbers of any kind, and no
+//! code for each formula.
 
-use super::element::Element;
 use super::trace::{Graph, Node, NodeIndex, Traced};
 use crate::number::{DoubleDouble, Real};
 
@@ -17,7 +16,7 @@ pub(super) enum Source {
 
 /// How a row comes from others.
 #[derive(Debug, Clone, Copy)]
-enum Operation {
+pub(super) enum Operation {
     Sum(usize, usize),
     Difference(usize, usize),
     Negative(usize),
@@ -55,12 +54,52 @@ enum Operation {
     Signed(usize, usize),
 }
 
+impl Operation {
+    /// The rows whose coefficients it needs at the order of its result.
+    fn operands(self) -> [Option<usize>; 2] {
+        match self {
+            Operation::Sum(a, b)
+            | Operation::Difference(a, b)
+            | Operation::Product(a, b)
+            | Operation::Quotient(Source::Row(a), b)
+            | Operation::ExponentialLessOne(a, b)
+            | Operation::LogarithmOfOneMore(a, b)
+            | Operation::Arctangent(a, b)
+            | Operation::InverseHyperbolicSine(a, b)
+            | Operation::Signed(a, b) => [Some(a), Some(b)],
+            Operation::Negative(a)
+            | Operation::Shifted(a, _)
+            | Operation::Complement(_, a)
+            | Operation::Scaled(a, _)
+            | Operation::Over(a, _)
+            | Operation::Quotient(Source::Number(_), a)
+            | Operation::Exponential(a)
+            | Operation::Logarithm(a)
+            | Operation::Hyperbolic(a, _)
+            | Operation::Circular(a, _)
+            | Operation::HyperbolicTangent(a, _)
+            | Operation::Power(a, _)
+            | Operation::Sign(a) => [Some(a), None],
+        }
+    }
+
+    /// The row that it makes beside its result.
+    fn second_result(self) -> Option<usize> {
+        match self {
+            Operation::Hyperbolic(_, row)
+            | Operation::Circular(_, row)
+            | Operation::HyperbolicTangent(_, row) => Some(row),
+            _ => None,
+        }
+    }
+}
+
 /// An operation, the row of its result, and one that it may use.
 #[derive(Debug, Clone, Copy)]
-struct Instruction {
-    operation: Operation,
-    result: usize,
-    spare: usize,
+pub(super) struct Instruction {
+    pub operation: Operation,
+    pub result: usize,
+    pub spare: usize,
 }
 
 /// The operations of a formula, whose variables stand in the first rows.
@@ -110,7 +149,29 @@ impl Program {
         }
         let mut program = assembly.program;
         program.outputs = outputs.iter().map(|&at| assembly.sources[at]).collect();
+        program.interleave();
         program
+    }
+
+    /// The operations, in an order in which they can be carried out.
+    pub fn instructions(&self) -> &[Instruction] {
+        &self.instructions
+    }
+
+    /// Puts operations that need the same number of others before them side by side: none of these waits for another, which would
+    /// take most of the time.
+    fn interleave(&mut self) {
+        let mut depths = vec![0; self.rows];
+        for instruction in &self.instructions {
+            let operands = instruction.operation.operands().into_iter().flatten();
+            let depth = 1 + operands.map(|row| depths[row]).max().unwrap_or(0);
+            depths[instruction.result] = depth;
+            if let Some(second) = instruction.operation.second_result() {
+                depths[second] = depth;
+            }
+        }
+        self.instructions
+            .sort_by_key(|instruction| depths[instruction.result]);
     }
 
     /// Rows that it takes.
@@ -325,252 +386,4 @@ impl Assembly<'_> {
         };
         Row(self.made(operation, spare))
     }
-}
-
-/// The rows of a program: the coefficients of each, one after the other.
-#[derive(Debug, Clone)]
-pub(super) struct ProgramRows<T> {
-    coefficients: Vec<T>,
-    /// Coefficients that a row has room for.
-    room: usize,
-    /// 1/k for every order k.
-    inverses: Vec<DoubleDouble>,
-    any: T,
-}
-
-impl<T: Element> ProgramRows<T> {
-    /// With room for these; `any` is any number.
-    pub fn new(program: &Program, room: usize, any: T) -> Self {
-        ProgramRows {
-            coefficients: vec![any.like(0.0); program.rows() * room],
-            room,
-            inverses: (0..room)
-                .map(|k| DoubleDouble::from(1.0) / k as f64)
-                .collect(),
-            any,
-        }
-    }
-
-    /// 1/k
-    pub fn one_over(&self, k: usize) -> DoubleDouble {
-        self.inverses[k]
-    }
-
-    /// The coefficients of a row.
-    pub fn row(&self, row: usize) -> &[T] {
-        &self.coefficients[row * self.room..][..self.room]
-    }
-
-    /// Puts down the k-th coefficient of a row.
-    pub fn set(&mut self, row: usize, k: usize, x: T) {
-        self.coefficients[row * self.room + k] = x;
-    }
-
-    fn get(&self, row: usize, k: usize) -> T {
-        self.coefficients[row * self.room + k]
-    }
-
-    /// The k-th coefficient of a quantity.
-    pub fn coefficient(&self, of: Source, k: usize) -> T {
-        match of {
-            Source::Row(row) => self.get(row, k),
-            Source::Number(x) if k == 0 => self.any.like_exact(x),
-            Source::Number(_) => self.any.like(0.0),
-        }
-    }
-
-    /// sum of a_j b_(k-j) over `from` <= j < `to`.
-    fn convolution(&self, a: usize, b: usize, k: usize, (from, to): (usize, usize)) -> T {
-        let zero = self.any.like(0.0);
-        if from >= to {
-            return zero;
-        }
-        let a = &self.row(a)[from..to];
-        let b = &self.row(b)[k + 1 - to..=k - from];
-        inner_product(a, b, zero)
-    }
-
-    /// The k-th coefficients of all rows but those of the variables, from those up to the k-th of these.
-    pub fn level(&mut self, program: &Program, k: usize) {
-        for instruction in &program.instructions {
-            self.carry_out(instruction, k);
-        }
-    }
-
-    fn carry_out(&mut self, instruction: &Instruction, k: usize) {
-        let Instruction {
-            operation,
-            result,
-            spare,
-        } = *instruction;
-        let any = self.any;
-        let new = match operation {
-            Operation::Sum(a, b) => self.get(a, k) + self.get(b, k),
-            Operation::Difference(a, b) => self.get(a, k) - self.get(b, k),
-            Operation::Negative(a) => -self.get(a, k),
-            Operation::Shifted(a, x) if k == 0 => self.get(a, 0) + any.like_exact(x),
-            Operation::Shifted(a, _) => self.get(a, k),
-            Operation::Complement(x, a) if k == 0 => any.like_exact(x) - self.get(a, 0),
-            Operation::Complement(_, a) => -self.get(a, k),
-            Operation::Scaled(a, x) => self.get(a, k).scale(x),
-            Operation::Over(a, x) => self.get(a, k) / any.like_exact(x),
-            Operation::Product(a, b) => self.convolution(a, b, k, (0, k + 1)),
-            Operation::Quotient(a, b) => {
-                // b_0 q_k = a_k - sum of q_j b_(k-j) over j < k
-                let a = self.coefficient(a, k);
-                if k == 0 {
-                    self.set(spare, 0, any.like(1.0) / self.get(b, 0));
-                    a / self.get(b, 0)
-                } else {
-                    (a - self.convolution(result, b, k, (0, k))) * self.get(spare, 0)
-                }
-            }
-            Operation::Exponential(a) => {
-                // k e_k = sum of j a_j e_(k-j) over 0 < j <= k
-                self.slope(a, spare, k);
-                if k == 0 {
-                    self.get(a, 0).exp()
-                } else {
-                    self.convolution(spare, result, k, (1, k + 1))
-                        .scale(self.one_over(k))
-                }
-            }
-            Operation::ExponentialLessOne(a, _) if k == 0 => self.get(a, 0).exp_m1(),
-            Operation::ExponentialLessOne(_, whole) => self.get(whole, k),
-            Operation::Logarithm(a) => {
-                // a_0 k l_k = k a_k - sum of j l_j a_(k-j) over 0 < j < k
-                if k == 0 {
-                    self.set(spare, 0, any.like(1.0) / self.get(a, 0));
-                    self.get(a, 0).ln()
-                } else {
-                    let sum = self
-                        .convolution(spare, a, k, (1, k))
-                        .scale(self.one_over(k));
-                    let new = (self.get(a, k) - sum) * self.get(spare, 0);
-                    self.set(spare, k, new.scale(DoubleDouble::from(k as f64)));
-                    new
-                }
-            }
-            Operation::LogarithmOfOneMore(a, _) if k == 0 => self.get(a, 0).ln_1p(),
-            Operation::LogarithmOfOneMore(_, whole) => self.get(whole, k),
-            Operation::Hyperbolic(a, cosh) => {
-                // k s_k = sum of j a_j c_(k-j), k c_k = sum of j a_j s_(k-j) over 0 < j <= k
-                self.slope(a, spare, k);
-                if k == 0 {
-                    let (s, c) = self.get(a, 0).sinh_cosh();
-                    self.set(cosh, 0, c);
-                    s
-                } else {
-                    let one_over = self.one_over(k);
-                    let c = self
-                        .convolution(spare, result, k, (1, k + 1))
-                        .scale(one_over);
-                    let s = self.convolution(spare, cosh, k, (1, k + 1)).scale(one_over);
-                    self.set(cosh, k, c);
-                    s
-                }
-            }
-            Operation::Circular(a, cos) => {
-                // k s_k = sum of j a_j c_(k-j), k c_k = -sum of j a_j s_(k-j) over 0 < j <= k
-                self.slope(a, spare, k);
-                if k == 0 {
-                    let (s, c) = self.get(a, 0).sin_cos();
-                    self.set(cos, 0, c);
-                    s
-                } else {
-                    let one_over = self.one_over(k);
-                    let c = self.convolution(spare, result, k, (1, k + 1));
-                    let s = self.convolution(spare, cos, k, (1, k + 1));
-                    self.set(cos, k, c.scale(-one_over));
-                    s.scale(one_over)
-                }
-            }
-            Operation::Arctangent(a, u) | Operation::InverseHyperbolicSine(a, u) => {
-                // y' = a' / u: u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
-                if k == 0 {
-                    self.set(spare, 0, any.like(1.0) / self.get(u, 0));
-                    match operation {
-                        Operation::Arctangent(..) => self.get(a, 0).atan(),
-                        _ => self.get(a, 0).asinh(),
-                    }
-                } else {
-                    let sum = self
-                        .convolution(spare, u, k, (1, k))
-                        .scale(self.one_over(k));
-                    let new = (self.get(a, k) - sum) * self.get(spare, 0);
-                    self.set(spare, k, new.scale(DoubleDouble::from(k as f64)));
-                    new
-                }
-            }
-            Operation::HyperbolicTangent(a, u) => {
-                // k y_k = sum of j a_j u_(k-j) over 0 < j <= k, u_k = -sum of y_j y_(k-j) over 0 <= j <= k
-                self.slope(a, spare, k);
-                if k == 0 {
-                    let y = self.get(a, 0).tanh();
-                    self.set(u, 0, any.like(1.0) - y * y);
-                    y
-                } else {
-                    let y = self
-                        .convolution(spare, u, k, (1, k + 1))
-                        .scale(self.one_over(k));
-                    let first = self.get(result, 0);
-                    let squared = self.convolution(result, result, k, (1, k));
-                    self.set(u, k, -(first + first).mul_add(y, squared));
-                    y
-                }
-            }
-            Operation::Power(a, p) => self.power(a, p, (result, spare), k),
-            Operation::Sign(a) if k == 0 => self.get(a, 0).sign(),
-            Operation::Sign(_) => any.like(0.0),
-            Operation::Signed(a, b) => self.get(a, k) * self.get(b, 0).sign(),
-        };
-        self.set(result, k, new);
-    }
-
-    /// y = a^p: k a_0 y_k = sum of (p (k-j) - j) a_(k-j) y_j over 0 <= j < k
-    ///                     = p k sum a_(k-j) y_j - (1+p) sum a_(k-j) j y_j.
-    fn power(&mut self, a: usize, p: f64, (y, slopes): (usize, usize), k: usize) -> T {
-        let any = self.any;
-        if k == 0 {
-            self.set(slopes, 0, any.like(1.0) / self.get(a, 0));
-            return self.get(a, 0).powf(p);
-        }
-        let one_and_p = DoubleDouble::of_finite(1.0, p) * self.one_over(k);
-        let plain = self
-            .convolution(y, a, k, (0, k))
-            .scale(DoubleDouble::from(p));
-        let weighted = self.convolution(slopes, a, k, (1, k)).scale(one_and_p);
-        let new = (plain - weighted) * self.get(slopes, 0);
-        self.set(slopes, k, new.scale(DoubleDouble::from(k as f64)));
-        new
-    }
-
-    /// j a_j
-    fn slope(&mut self, a: usize, slopes: usize, k: usize) {
-        let new = self.get(a, k).scale(DoubleDouble::from(k as f64));
-        self.set(slopes, k, new);
-    }
-}
-
-/// sum of a_j b_(n-1-j) over j < n, n being the length of both. With four sums side by side: one or two would wait for each
-/// other.
-pub(super) fn inner_product<T: Element>(a: &[T], b: &[T], zero: T) -> T {
-    let sums = T::four_sums(a, b).unwrap_or_else(|| four_sums(a, b, zero));
-    (sums[0] + sums[1]) + (sums[2] + sums[3])
-}
-
-fn four_sums<T: Element>(a: &[T], b: &[T], zero: T) -> [T; 4] {
-    let mut sums = [zero; 4];
-    let mut left = a.chunks_exact(4);
-    let mut right = b.rchunks_exact(4);
-    for (a, b) in left.by_ref().zip(right.by_ref()) {
-        for i in 0..4 {
-            sums[i] = a[i].mul_add(b[3 - i], sums[i]);
-        }
-    }
-    let rest = left.remainder().iter().zip(right.remainder().iter().rev());
-    for (sum, (a, b)) in sums.iter_mut().zip(rest) {
-        *sum = a.mul_add(*b, *sum);
-    }
-    sums
 }
