@@ -37,7 +37,7 @@
 
 // Bottom up: a room imports only from those above it here. The drawing in the README says from which.
 pub use twinslip_error as error;
-pub use twinslip_model::{field, friction, model, number, series};
+pub use twinslip_model::{expression, field, friction, model, number, series};
 #[cfg(feature = "plot")]
 pub use twinslip_output as output;
 

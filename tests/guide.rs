@@ -43,8 +43,10 @@ fn run_all(lines: &[&str], place: &Path) {
         let named = line
             .split_whitespace()
             .skip_while(|word| !word.starts_with('-'));
+        let file = |word: &&str| word.contains('.') && !word.contains('=');
         for file in named
-            .filter(|word| word.contains('.') && !word.starts_with(|c: char| c.is_ascii_digit()))
+            .filter(file)
+            .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
         {
             assert!(
                 place.join(file).metadata().is_ok_and(|data| data.len() > 0),
@@ -70,6 +72,23 @@ fn every_command_of_the_guide_runs() {
     assert!(lines.len() >= 12, "{lines:?}");
     run_all(&lines, &place);
     assert!(place.join("fig06.svg").exists());
+}
+
+#[test]
+fn every_command_of_the_page_on_systems_runs() {
+    let text = text_of("docs/system-file.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 4, "{lines:?}");
+    run_all(&lines, &folder("system-file"));
+    // The file that it shows is one.
+    let (_, rest) = text.split_once("```toml\n").expect("a file");
+    let (file, _) = rest.split_once("```").expect("an end");
+    let place = folder("system-file-shown");
+    std::fs::write(place.join("shown.toml"), file).expect("a file");
+    run_all(
+        &["twinslip integrate --system shown.toml --until 10 -o run.csv"],
+        &place,
+    );
 }
 
 #[test]

@@ -13,6 +13,7 @@ mod drawn;
 
 mod arcs;
 mod batch;
+mod boxes;
 mod branches;
 mod branches_equilibria;
 mod branches_orbits;
@@ -102,5 +103,8 @@ mod sweep_rows;
 mod systems;
 mod tableaus;
 mod taylor;
+mod text_commands;
+mod text_files;
+mod text_systems;
 mod transport;
 mod work_precision;

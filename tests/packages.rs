@@ -26,6 +26,7 @@ const OF_THE_COMMAND: &[&str] = &[
     "toml",
     "ttf-parser",
     "twinslip-output",
+    "winnow",
 ];
 
 /// All packages that go into the library with these features.

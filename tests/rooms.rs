@@ -8,10 +8,14 @@ use std::path::{Path, PathBuf};
 const MAY_IMPORT: &[(&str, &[&str])] = &[
     ("error", &[]),
     ("number", &[]),
-    ("series", &["number"]),
+    ("expression", &["number"]),
+    ("series", &["number", "expression"]),
     ("friction", &["number"]),
     ("field", &["series"]),
-    ("model", &["friction", "field", "series", "number"]),
+    (
+        "model",
+        &["friction", "field", "series", "expression", "number"],
+    ),
     ("contract", &[]),
     ("sundials", &["field", "contract"]),
     (
@@ -76,6 +80,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "integrate",
             "model",
             "series",
+            "expression",
             "friction",
             "number",
             "field",

@@ -10,6 +10,7 @@ fn shipped() -> Vec<PathBuf> {
     let mut paths: Vec<PathBuf> = std::fs::read_dir(folder)
         .expect("scenes/")
         .map(|entry| entry.expect("an entry").path())
+        .filter(|path| path.is_file())
         .collect();
     paths.sort_by_key(|path| path.file_stem().map(ToOwned::to_owned));
     paths

@@ -106,8 +106,8 @@ fn what_is_wrong_in_such_a_scene_is_said_with_its_line() {
         ),
         (
             format!("{orbit}period-guess = 9"),
-            ":",
-            "were not provided: --start <START>",
+            ":4:",
+            "--period-guess needs a --start near the orbit",
         ),
         (
             format!("{orbit}max-steps = 0"),

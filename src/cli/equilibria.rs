@@ -1,18 +1,22 @@
 //! `twinslip equilibria`.
 
 use super::report::{self, Report};
+use super::text;
 use super::{Ending, say, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{
     ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaOptions, EquilibriaPlan, Quantity,
-    System,
+    System, TextModel,
 };
 use crate::views;
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
 pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
+    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+        return text::equilibria::run(options, model, words);
+    }
     let plan = EquilibriaPlan::new(options)?;
     let report = Report::new(&options.output, words, &[])?;
     if options.output.explain {

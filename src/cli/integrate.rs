@@ -3,17 +3,24 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
+use super::text;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
+use crate::integrate::Work;
 use crate::output::{Format, Place, RowList, object, plot};
-use crate::scene::{Change, IntegrateOptions, Keeping, Plan, Program, RunOutcome, explain};
+use crate::scene::{
+    Change, IntegrateOptions, Keeping, Plan, Program, RunOutcome, TextModel, explain,
+};
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+        return text::integrate::run(options, model, words);
+    }
     let plan = Plan::new(options)?;
     if let Some(path) = &options.plot {
         plot::PictureFormat::of(path)?;
@@ -202,7 +209,18 @@ fn changes(program: &Program) -> Vec<Value> {
 }
 
 fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
-    let work = &outcome.work;
+    let estimate = (outcome.error_estimate, outcome.estimate_failure.as_ref());
+    let events = events.then_some(outcome.events.len());
+    summary_of(&outcome.work, events, estimate, seconds)
+}
+
+/// What a run has cost, how many events there were where they are asked for, and its error or why that is not known.
+pub fn summary_of(
+    work: &Work,
+    events: Option<usize>,
+    (estimate, failure): (Option<f64>, Option<&Error>),
+    seconds: f64,
+) -> String {
     let mut text = format!(
         "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {}",
         count(work.steps),
@@ -211,14 +229,14 @@ fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
         count(work.jacobians),
         time(seconds)
     );
-    if events {
-        let events = several(outcome.events.len(), "event", "events");
+    if let Some(events) = events {
+        let events = several(events, "event", "events");
         text.push_str(&format!(", {events}"));
     }
-    if let Some(estimate) = outcome.error_estimate {
+    if let Some(estimate) = estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));
     }
-    if let Some(error) = &outcome.estimate_failure {
+    if let Some(error) = failure {
         text.push_str(&format!(", no error estimate: {error}"));
     }
     text

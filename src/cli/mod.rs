@@ -21,6 +21,7 @@ mod shell;
 mod special;
 mod stream;
 pub(crate) mod sweep;
+mod text;
 pub(crate) mod words;
 
 use crate::error::Error;

@@ -2,6 +2,7 @@
 
 use super::report::{self, Report};
 use super::stream::StreamOut;
+use super::text;
 use super::words::several;
 use super::{Ending, progress, say, written};
 use crate::equilibrium::Verdict;
@@ -9,12 +10,15 @@ use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit};
 use crate::output::{self, Format, RowList, plot};
-use crate::scene::{OrbitOptions, OrbitPlan, Quantity, System};
+use crate::scene::{OrbitOptions, OrbitPlan, Quantity, System, TextModel, Units};
 use crate::views;
 use serde_json::{Value, json};
 use std::path::Path;
 
 pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
+    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+        return text::orbit::run(options, model, words);
+    }
     let plan = OrbitPlan::new(options)?;
     let picture = options.plot.as_deref();
     picture.map(plot::PictureFormat::of).transpose()?;
@@ -43,18 +47,22 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
         let result = result(&plan, &orbit, &others, checked.as_ref(), rows.as_ref());
         ending = write_object(&plan, &report, &orbit, result)?;
     }
-    report.say(summary(&orbit, checked.as_ref(), &plan.system));
+    report.say(summary(&orbit, checked.as_ref(), &plan.system.units));
     if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
         return Ok(Ending::Undecided);
     }
     Ok(ending)
 }
 
-fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, system: &System) -> String {
-    let unit = system.units.name(Quantity::Time);
-    let period = system.units.outward_uncertain(Quantity::Time, orbit.period);
+/// What was found, and at which cost.
+pub fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String {
+    let unit = match units.name(Quantity::Time) {
+        "1" => String::new(),
+        unit => format!(" {unit}"),
+    };
+    let period = units.outward_uncertain(Quantity::Time, orbit.period);
     let mut text = format!(
-        "period ({period}) {unit}, {}; {}, {}, {}",
+        "period ({period}){unit}, {}; {}, {}, {}",
         orbit.verdict().name(),
         several(orbit.nodes.len(), "node", "nodes"),
         several(orbit.iterations, "iteration", "iterations"),
@@ -89,7 +97,10 @@ fn along(
     let columns = views::names(&run.columns, false);
     let out = if plan.rows.is_some() {
         let mut remarks = report.remarks(&plan.system, &numerics(plan, orbit));
-        remarks.push(format!("orbit: {}", summary(orbit, None, &plan.system)));
+        remarks.push(format!(
+            "orbit: {}",
+            summary(orbit, None, &plan.system.units)
+        ));
         let columns = (columns, &plan.system.units);
         StreamOut::new(report, remarks, columns, false)
     } else {
@@ -197,14 +208,6 @@ fn outward_point(orbit: &Orbit, system: &System) -> Vec<f64> {
 
 fn object(orbit: &Orbit, system: &System) -> Value {
     let units = &system.units;
-    let mut multipliers = vec![[1.0, 0.0]];
-    let mut below = 1.0;
-    for multiplier in &orbit.floquet.multipliers {
-        let mu = multiplier.value();
-        let conjugate = multiplier.kind == Kind::Complex && below < 0.0;
-        multipliers.push([mu.re, if conjugate { -mu.im } else { mu.im }]);
-        below = -below;
-    }
     let logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
     json!({
         "symmetry": orbit.symmetry.name(),
@@ -215,7 +218,7 @@ fn object(orbit: &Orbit, system: &System) -> Value {
         "stress_max": report::uncertain(units, Quantity::Stress, orbit.stress_max),
         "slip_rate_max": units.outward(Quantity::SlipRate, orbit.slip_rate_max),
         "state_min": units.outward(Quantity::State, orbit.state_min),
-        "multipliers": multipliers,
+        "multipliers": multipliers(orbit),
         "log_multipliers": logs,
         "trivial_defect": orbit.floquet.trivial_defect,
         "liouville_defect": orbit.floquet.liouville_defect,
@@ -224,7 +227,21 @@ fn object(orbit: &Orbit, system: &System) -> Value {
     })
 }
 
-fn logarithm(multiplier: &Multiplier) -> Value {
+/// All multipliers, the trivial one first; of a conjugate pair the second one below the axis.
+pub fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
+    let mut multipliers = vec![[1.0, 0.0]];
+    let mut above = true;
+    for multiplier in &orbit.floquet.multipliers {
+        let mu = multiplier.value();
+        let complex = multiplier.kind == Kind::Complex;
+        multipliers.push([mu.re, if complex && !above { -mu.im } else { mu.im }]);
+        above = !complex || !above;
+    }
+    multipliers
+}
+
+/// A multiplier by its logarithm.
+pub fn logarithm(multiplier: &Multiplier) -> Value {
     let Uncertain { value, uncertainty } = multiplier.ln_abs;
     let known = multiplier.kind != Kind::BelowFloor;
     json!({

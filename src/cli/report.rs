@@ -8,7 +8,7 @@ use crate::number::Uncertain;
 use crate::output::{
     self, CsvRows, Envelope, Format, Over, Place, RowFile, RowWriter, Status, TableRows, plot,
 };
-use crate::scene::{Column, OutputOptions, Quantity, System, Units};
+use crate::scene::{Column, Described, OutputOptions, Quantity, Units};
 use crate::views;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -174,7 +174,7 @@ impl<'a> Report<'a> {
     }
 
     /// The `# ` lines of CSV: program, command, parameters, units.
-    pub fn remarks(&self, system: &System, numerics: &Value) -> Vec<String> {
+    pub fn remarks(&self, system: &dyn Described, numerics: &Value) -> Vec<String> {
         remarks(self.words, system, numerics)
     }
 
@@ -250,7 +250,7 @@ impl<'a> Report<'a> {
     /// The object of a command as one line.
     pub fn envelope<R: Serialize>(
         &self,
-        system: &System,
+        system: &dyn Described,
         numerics: Value,
         result: R,
         work: Value,
@@ -261,11 +261,11 @@ impl<'a> Report<'a> {
             command: self.words,
             sundials: sundials(),
             model: system.echo(),
-            units: units(&system.units),
+            units: units(system.units()),
             numerics,
             result,
             work,
-            error: error.map(|error| flagged(&system.units.told(error.clone()).to_string())),
+            error: error.map(|error| flagged(&system.units().told(error.clone()).to_string())),
         };
         let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
         bytes.push(b'\n');
@@ -274,7 +274,7 @@ impl<'a> Report<'a> {
 }
 
 /// The `# ` lines of CSV made by a command: program, command, parameters, units.
-pub fn remarks(words: &[String], system: &System, numerics: &Value) -> Vec<String> {
+pub fn remarks(words: &[String], system: &dyn Described, numerics: &Value) -> Vec<String> {
     let list = |pairs: &serde_json::Map<String, Value>| {
         let pairs: Vec<String> = pairs
             .iter()
@@ -287,11 +287,10 @@ pub fn remarks(words: &[String], system: &System, numerics: &Value) -> Vec<Strin
         pairs.join(", ")
     };
     let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-    let units: Vec<String> = system
-        .units
-        .names()
+    let units = system.units().names().into_iter();
+    let units: Vec<String> = units
         .map(|(name, unit)| format!("{name} [{unit}]"))
-        .into();
+        .collect();
     let mut remarks = vec![
         format!("twinslip {}", env!("CARGO_PKG_VERSION")),
         format!("command: {}", words.join(" ")),
@@ -300,7 +299,9 @@ pub fn remarks(words: &[String], system: &System, numerics: &Value) -> Vec<Strin
     if let Some(numerics) = numerics.as_object().filter(|map| !map.is_empty()) {
         remarks.push(format!("numerics: {}", list(numerics)));
     }
-    remarks.push(format!("units: {}", units.join(", ")));
+    if !units.is_empty() {
+        remarks.push(format!("units: {}", units.join(", ")));
+    }
     remarks
 }
 
@@ -315,6 +316,7 @@ pub fn sundials() -> Option<String> {
 fn units(units: &Units) -> Value {
     let names = units
         .names()
+        .into_iter()
         .map(|(name, unit)| (name.to_owned(), json!(unit)));
     Value::Object(names.into_iter().collect())
 }

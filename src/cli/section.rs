@@ -3,14 +3,15 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
+use super::text;
 use super::words::{count, flagged, several, time};
 use super::{Ending, say, written};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::output::{Cell, Format, RowList, plot};
 use crate::scene::{
-    CheckedExponents, Quantity, SectionOptions, SectionOutcome, SectionPlan, explain_section,
-    run_section, section_columns,
+    CheckedExponents, Described, Quantity, SectionOptions, SectionOutcome, SectionPlan, TextModel,
+    Units, explain_section, run_section, section_columns,
 };
 use crate::section::Regime;
 use crate::views;
@@ -19,6 +20,9 @@ use std::io::Write;
 use std::path::Path;
 
 pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
+    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+        return text::section::run(options, model, words);
+    }
     let plan = SectionPlan::new(options)?;
     if let Some(path) = &options.plot {
         plot::PictureFormat::of(path)?;
@@ -45,13 +49,14 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
-    let ending = write(&plan, &report, &rows, &outcome)?;
+    let asked = (numbers, plan.lyapunov);
+    let ending = write(&plan.system, asked, &report, &rows, &outcome)?;
     match &options.plot {
         Some(path) if rows.iter().len() > 0 => plot::write(path, &picture(&plan, &rows))?,
         Some(_) => report.say("there is no return to draw"),
         None => {}
     }
-    report.say(summary(&plan, &outcome, seconds));
+    report.say(summary(&plan.system.units, &outcome, seconds));
     report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
@@ -80,17 +85,19 @@ fn numerics(plan: &SectionPlan) -> Value {
 }
 
 /// The object, or in a table the verdict after the rows.
-fn write(
-    plan: &SectionPlan,
+pub fn write(
+    system: &dyn Described,
+    (numerics, lyapunov): (Value, bool),
     report: &Report<'_>,
     rows: &RowList,
     outcome: &SectionOutcome,
 ) -> Result<Ending> {
+    let units = system.units();
     if report.format == Format::Json {
         let bytes = report.envelope(
-            &plan.system,
-            numerics(plan),
-            result(plan, rows, outcome),
+            system,
+            numerics,
+            result(units, lyapunov, rows, outcome),
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
@@ -107,7 +114,7 @@ fn write(
     ];
     let mut quantities = vec![Quantity::Number; 2];
     let mut add = |name: &str, quantity, x: Option<Uncertain>| {
-        let x = x.map(|x| plan.system.units.outward_uncertain(quantity, x));
+        let x = x.map(|x| units.outward_uncertain(quantity, x));
         columns.extend([name.to_owned(), "±".to_owned()]);
         cells.extend([x.map(|x| x.value).into(), x.map(|x| x.uncertainty).into()]);
         quantities.extend([quantity; 2]);
@@ -121,7 +128,7 @@ fn write(
     {
         add(&format!("lyapunov_{}", i + 1), Quantity::Growth, Some(*x));
     }
-    let units = unit_names(&plan.system.units, quantities.into_iter());
+    let units = unit_names(units, quantities.into_iter());
     let mut to = report.place.stream()?;
     let all = writeln!(to)
         .and_then(|()| report.rows(to, &[], &columns, &units))
@@ -138,11 +145,11 @@ struct SectionResult<'a> {
 }
 
 fn result<'a>(
-    plan: &SectionPlan,
+    units: &Units,
+    lyapunov: bool,
     rows: &'a RowList,
     outcome: &SectionOutcome,
 ) -> SectionResult<'a> {
-    let units = &plan.system.units;
     let uncertain = |quantity, x: Option<Uncertain>| {
         x.map_or(Value::Null, |x| report::uncertain(units, quantity, x))
     };
@@ -156,7 +163,7 @@ fn result<'a>(
         uncertain(Quantity::Number, outcome.rotation_number),
     );
     put("curves", json!(outcome.curves));
-    if plan.lyapunov {
+    if lyapunov {
         let found = outcome.lyapunov.as_ref();
         let list = |found: &CheckedExponents| -> Value {
             let list = found.exponents.iter();
@@ -175,7 +182,8 @@ fn result<'a>(
     SectionResult { rows, verdict }
 }
 
-fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String {
+/// What was found, and at which cost.
+pub fn summary(units: &Units, outcome: &SectionOutcome, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
         "{} steps ({} rejected), {} evaluations of f, {}, {}: {}",
@@ -194,10 +202,7 @@ fn summary(plan: &SectionPlan, outcome: &SectionOutcome, seconds: f64) -> String
     }
     let exponents = outcome.lyapunov.iter().flat_map(|found| &found.exponents);
     let exponents: Vec<String> = exponents
-        .map(|x| {
-            let units = &plan.system.units;
-            units.outward_uncertain(Quantity::Growth, *x).to_string()
-        })
+        .map(|x| units.outward_uncertain(Quantity::Growth, *x).to_string())
         .collect();
     if !exponents.is_empty() {
         text.push_str(&format!(", exponents {}", exponents.join(", ")));

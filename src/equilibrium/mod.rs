@@ -4,6 +4,7 @@
 //! brackets (one for each solution, see `isolate`): Newton follows one unknown, the slower rate, KINSOL the two logarithms of the
 //! rates. What either finds is then carried to 31 digits, and bounded (see `refine`).
 
+mod boxes;
 mod eigenvalues;
 mod interface;
 mod isolate;
@@ -13,12 +14,15 @@ mod newton;
 mod pitchfork;
 mod polynomial;
 mod refine;
+mod spectrum;
 
+pub use boxes::{Enclosed, IntervalBox, IsolatedZero, ZerosInBox, zero_near, zeros_in_box};
 pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
 pub(crate) use interface::{Interface, routh_hurwitz};
 pub(crate) use isolate::quotient;
 pub use pitchfork::Pitchfork;
 pub(crate) use refine::refined;
+pub use spectrum::spectrum_within;
 
 use crate::error::Result;
 use crate::friction::{

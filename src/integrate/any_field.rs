@@ -7,6 +7,7 @@ use super::Taylor;
 use super::static_field::{Flows, Static};
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, VectorField};
+use crate::model::TextSystem;
 use crate::series::Jet3;
 
 /// A vector field of any dimension.
@@ -48,6 +49,25 @@ impl<'a> AnyField<'a> {
     /// A field that stays with its owner.
     pub fn of<const N: usize>(field: &'a dyn VectorField<N>) -> Self {
         AnyField(Box::new(Static::Lent(field)))
+    }
+
+    /// A system whose equations were read.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where it has more variables than [`TextSystem::LARGEST`].
+    pub fn of_text(system: &'a TextSystem) -> Result<Self> {
+        macro_rules! by_dimension {
+            ($($n:literal)*) => {
+                match system.states().len() {
+                    $( $n => Ok(AnyField::new::<$n>(Box::new(system.field()?))), )*
+                    more => {
+                        let must = format!("from 1 to {}", TextSystem::LARGEST);
+                        Err(Error::parameter("the number of states", more, must))
+                    }
+                }
+            };
+        }
+        by_dimension!(1 2 3 4 5 6 7 8)
     }
 
     /// The number of its variables.

@@ -64,6 +64,18 @@ impl AnyIntegrator {
         })
     }
 
+    /// Taylor's method in double-double arithmetic ([`Taylor::reference`]).
+    ///
+    /// # Errors
+    /// As there.
+    pub fn reference(max_steps: usize) -> Result<Self> {
+        Ok(AnyIntegrator {
+            method: Method::Taylor(Taylor::reference(max_steps)?),
+            name: Choice::Taylor.name(),
+            work: Work::default(),
+        })
+    }
+
     /// The method's name.
     pub fn name(&self) -> &'static str {
         self.name

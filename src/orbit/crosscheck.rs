@@ -3,8 +3,9 @@
 use super::interface_system::InterfaceSystem;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::{Orbit, OrbitAccuracy, orbit};
-use super::space::space_of;
+use super::space::{Alone, Space, space_of};
 use crate::error::Result;
+use crate::integrate::AnyField;
 
 /// What the second method found.
 #[derive(Debug, Clone, PartialEq)]
@@ -32,9 +33,30 @@ pub fn crosscheck(
     accuracy: &OrbitAccuracy,
 ) -> Result<Crosscheck> {
     let space = space_of(slab, first.symmetry);
+    again(Some(slab.steady_stress()), &*space, first, accuracy)
+}
+
+/// The same of an orbit of any field.
+///
+/// # Errors
+/// As of [`super::find_from`].
+pub fn crosscheck_of(
+    field: &AnyField<'_>,
+    first: &Orbit,
+    accuracy: &OrbitAccuracy,
+) -> Result<Crosscheck> {
+    again(None, &Alone(field), first, accuracy)
+}
+
+fn again(
+    level: Option<f64>,
+    space: &dyn Space,
+    first: &Orbit,
+    accuracy: &OrbitAccuracy,
+) -> Result<Crosscheck> {
     let from = |digits: i32| {
         let shooting = ShootingNodes::of_digits(digits, &first.nodes, &first.durations);
-        orbit(slab, &*space, accuracy, shooting)
+        orbit(level, space, accuracy, shooting)
     };
     let [few, more, most] = DIGITS;
     let second = from(few).or_else(|_| from(more)).or_else(|_| from(most))?;

@@ -1,4 +1,4 @@
-//! How far an orbit goes: its least and greatest stress, slip rate and state, on the series along it.
+//! How far an orbit goes: the least and greatest values of its variables and slip rates, on the series along it.
 
 use super::arc::Tracer;
 use super::settle::axis;
@@ -12,10 +12,10 @@ use crate::series::{REFERENCE_ORDER, Section, Zeros};
 /// The extremes over one cycle, and the point where a plane is passed.
 #[derive(Debug, Clone)]
 pub(super) struct Extremes {
-    pub stress: (f64, f64),
+    /// Of every variable.
+    pub ranges: Vec<(f64, f64)>,
     pub slip_rate_max: f64,
-    pub state_min: f64,
-    /// The time since the first node, and where tau falls through the level asked for then.
+    /// The time since the first node, and where the first variable, tau, falls through the level asked for then.
     pub passage: Option<(f64, Vector)>,
 }
 
@@ -23,7 +23,7 @@ pub(super) struct Extremes {
 pub(super) fn extremes(
     field: &AnyField<'_>,
     shooting: &ShootingNodes,
-    level: f64,
+    level: Option<f64>,
 ) -> Result<Extremes> {
     /// Tolerance of the run.
     const FINE: f64 = 1e-14;
@@ -32,12 +32,11 @@ pub(super) fn extremes(
     let axes: Vec<_> = (0..dimension).map(|i| axis(dimension, i)).collect();
     let plane = Section::Plane {
         normal: axes[0].as_slice(),
-        offset: level,
+        offset: level.unwrap_or_default(),
     };
     let mut all = Extremes {
-        stress: (f64::INFINITY, f64::NEG_INFINITY),
+        ranges: vec![(f64::INFINITY, f64::NEG_INFINITY); dimension],
         slip_rate_max: f64::NEG_INFINITY,
-        state_min: f64::INFINITY,
         passage: None,
     };
     let mut found = Vec::new();
@@ -65,7 +64,7 @@ pub(super) fn extremes(
                     series.crossings(section, None, zeros, &mut found);
                 }
                 found.iter().for_each(|turn| all.see(&turn.state));
-                if all.passage.is_none() {
+                if level.is_some() && all.passage.is_none() {
                     found.clear();
                     let down = Some(Crossing::Downwards);
                     series.crossings(plane, down, &mut through, &mut found);
@@ -98,9 +97,16 @@ pub(super) fn extremes(
 
 impl Extremes {
     fn see(&mut self, y: &[f64]) {
-        self.stress = (self.stress.0.min(y[0]), self.stress.1.max(y[0]));
-        for w in y.iter().skip(1) {
-            self.state_min = self.state_min.min(w.exp());
+        for ((least, most), &y) in self.ranges.iter_mut().zip(y) {
+            (*least, *most) = (least.min(y), most.max(y));
         }
+    }
+
+    /// Least psi.
+    pub fn state_min(&self) -> f64 {
+        let states = self.ranges.iter().skip(1);
+        states
+            .map(|range| range.0.exp())
+            .fold(f64::INFINITY, f64::min)
     }
 }

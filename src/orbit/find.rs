@@ -49,7 +49,7 @@ pub struct FoundOrbit {
 }
 
 /// Tolerance with which guesses are made and first closed.
-const ROUGH: f64 = 1e-10;
+pub(super) const ROUGH: f64 = 1e-10;
 /// Tolerance with which cycles are told from ones traversed twice.
 const FINE: f64 = 1e-15;
 /// Steps of a search, at most: some seconds of work.
@@ -104,23 +104,19 @@ fn search(
     accuracy: &OrbitAccuracy,
 ) -> Result<FoundOrbit> {
     let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
-    let mut guesses = Guesses {
-        space,
-        wanted: query.symmetry,
-        closed: Vec::new(),
-        otherwise: None,
-    };
+    let mut guesses = Guesses::new(space, query.symmetry);
+    let rough = slab.rough_period();
     match query.begin {
         InitialGuess::At { start, period } => {
             let start = variables(query.symmetry, start);
             match period {
                 Some(period) => guesses.over(period, &mut tracer, &start)?,
-                None => guesses.near(slab, &mut tracer, &start)?,
+                None => guesses.near(rough, &mut tracer, &start)?,
             }
         }
         InitialGuess::Anywhere => {
             for start in starts(slab, query.symmetry) {
-                guesses.settled(slab, &mut tracer, &start);
+                guesses.settled(rough, &mut tracer, &start);
             }
         }
         InitialGuess::Hopf => {}
@@ -145,22 +141,33 @@ fn search(
             )
         }));
     }
+    let whole_cycle = matches!(
+        query.begin,
+        InitialGuess::At {
+            period: Some(_),
+            ..
+        }
+    );
+    completed(guesses, Some(slab.steady_stress()), accuracy, whole_cycle)
+}
+
+/// The orbits that closed polygons are, a stable one first. Where their period was given they are whole cycles.
+pub(super) fn completed(
+    guesses: Guesses<'_>,
+    level: Option<f64>,
+    accuracy: &OrbitAccuracy,
+    whole_cycle: bool,
+) -> Result<FoundOrbit> {
+    let space = guesses.space;
     let mut orbits = Vec::new();
     let mut fine = Tracer::taylor(FINE)?;
     for mut shooting in guesses.closed {
-        let whole_cycle = matches!(
-            query.begin,
-            InitialGuess::At {
-                period: Some(_),
-                ..
-            }
-        );
         if !whole_cycle {
             // Close to a period doubling only the last digits tell a cycle from one traversed twice.
             shooting = close(&mut fine, space.field(), shooting)?.shooting;
             shooting = once_around(&mut fine, space.field(), shooting)?;
         }
-        let orbit = orbit(slab, space, accuracy, shooting)?;
+        let orbit = orbit(level, space, accuracy, shooting)?;
         let period = orbit.period.value;
         let known = |other: &Orbit| (other.period.value / period - 1.0).abs() < SAME_PERIOD;
         if !orbits.iter().any(known) {
@@ -178,15 +185,25 @@ fn search(
 }
 
 /// Closed polygons on the way to an answer.
-struct Guesses<'a> {
+pub(super) struct Guesses<'a> {
     space: &'a dyn Space,
     wanted: Symmetry,
-    closed: Vec<ShootingNodes>,
+    pub closed: Vec<ShootingNodes>,
     /// Why there is none, so far.
-    otherwise: Option<Error>,
+    pub otherwise: Option<Error>,
 }
 
-impl Guesses<'_> {
+impl<'a> Guesses<'a> {
+    /// None yet.
+    pub fn new(space: &'a dyn Space, wanted: Symmetry) -> Self {
+        Guesses {
+            space,
+            wanted,
+            closed: Vec::new(),
+            otherwise: None,
+        }
+    }
+
     /// Keeps a closed shooting if it has the symmetry and is new.
     fn take(&mut self, shooting: ShootingNodes) -> bool {
         if self.space.symmetry(&shooting) != self.wanted {
@@ -207,7 +224,7 @@ impl Guesses<'_> {
 
     /// Newton's method on the cycle of a given duration that begins at a point, or some cycles after it: the directions that
     /// contract have come to rest there.
-    fn over(&mut self, period: f64, tracer: &mut Tracer, start: &Vector) -> Result<()> {
+    pub fn over(&mut self, period: f64, tracer: &mut Tracer, start: &Vector) -> Result<()> {
         /// Cycles that are waited.
         const WAITED: usize = 3;
         let field = self.space.field();
@@ -247,14 +264,14 @@ impl Guesses<'_> {
     }
 
     /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.
-    fn near(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer, start: &Vector) -> Result<()> {
+    pub fn near(&mut self, rough_period: f64, tracer: &mut Tracer, start: &Vector) -> Result<()> {
         /// Rough periods that the returns are looked for in; returns; those that a cycle may begin with; cycles tried.
         const LONG: f64 = 30.0;
         const RETURNS: usize = 8;
         const LATER: usize = 4;
         const TRIED: usize = 6;
         let field = self.space.field();
-        let length = LONG * slab.rough_period();
+        let length = LONG * rough_period;
         let run = passages(tracer, field, start, length, start[0], RETURNS);
         let mut returns = Vec::new();
         if let Ok(run) = run {
@@ -279,19 +296,19 @@ impl Guesses<'_> {
                 return Ok(());
             }
         }
-        self.settled(slab, tracer, start);
+        self.settled(rough_period, tracer, start);
         Ok(())
     }
 
     /// What a run from this start settles on.
-    fn settled(&mut self, slab: &InterfaceSystem, tracer: &mut Tracer, start: &Vector) {
+    fn settled(&mut self, rough_period: f64, tracer: &mut Tracer, start: &Vector) {
         let field = self.space.field();
         let mut polygons = Vec::new();
         let run = settle(
             tracer,
             field,
             start,
-            slab.rough_period(),
+            rough_period,
             &mut |tracer, shooting| match close(tracer, field, shooting) {
                 Ok(closed) => once_around(tracer, field, closed.shooting)
                     .map(|shooting| polygons.push(shooting))

@@ -10,6 +10,7 @@ pub(crate) mod cyclic;
 mod extremes;
 mod family;
 mod find;
+mod find_from;
 pub(crate) mod floquet;
 mod hopf;
 mod interface_system;
@@ -31,11 +32,12 @@ mod test_function;
 pub use arc::{Arc, Tracer};
 pub use continuation_point::{ContinuationPoint, TangentVector};
 pub use correct::{Condition, Corrector, Goal, Regular};
-pub use crosscheck::{Crosscheck, crosscheck};
+pub use crosscheck::{Crosscheck, crosscheck, crosscheck_of};
 pub use family::{
     OverDifferenceChart, OverLoadings, OverLogarithms, OverParameters, ParametrisedField,
 };
 pub use find::{FoundOrbit, InitialGuess, Query, find};
+pub use find_from::find_from;
 pub use floquet::{Floquet, Kind, Multiplier, floquet};
 pub(crate) use hopf::EquilibriaAlong;
 pub use hopf::{HopfPoint, hopf_points};

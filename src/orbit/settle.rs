@@ -108,7 +108,7 @@ pub(super) fn settle(
             }
             return Err(no_orbit(
                 "the run comes to rest at an equilibrium".into(),
-                "give a `start` from which it does not, or other `driving` and `stiffness`",
+                "give a `start` from which it does not, or other parameters",
             ));
         }
         let level = 0.5 * (low + high);

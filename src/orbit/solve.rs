@@ -3,7 +3,6 @@
 use super::arc::Tracer;
 use super::extremes::{Extremes, extremes};
 use super::floquet::Floquet;
-use super::interface_system::InterfaceSystem;
 use super::other_orbit;
 use super::shooting::{Closed, close, relative};
 use super::shooting_nodes::ShootingNodes;
@@ -21,7 +20,8 @@ pub struct Orbit {
     pub symmetry: Symmetry,
     /// In L/V*.
     pub period: Uncertain,
-    /// tau and ln psi of every interface: where tau falls through tau_ss(V_H/2), or at a node where it never does.
+    /// tau and ln psi of every interface: where tau falls through tau_ss(V_H/2), or at a node where it never does. Of another
+    /// system's variables a node, as all that speaks of stress is of the first of them.
     pub point: Vec<f64>,
     /// The time from the first node to the point.
     pub point_time: f64,
@@ -35,6 +35,8 @@ pub struct Orbit {
     pub slip_rate_max: f64,
     /// Least psi.
     pub state_min: f64,
+    /// Least and greatest value of every variable.
+    pub extremes: Vec<[Uncertain; 2]>,
     /// Its multipliers.
     pub floquet: Floquet,
     /// The method.
@@ -172,9 +174,9 @@ pub(super) fn traversals(
     Ok(None)
 }
 
-/// The orbit near a guess, with everything.
+/// The orbit near a guess, with everything. Its point is where the first variable falls through the level, where one is given.
 pub(super) fn orbit(
-    slab: &InterfaceSystem,
+    level: Option<f64>,
     space: &dyn Space,
     accuracy: &OrbitAccuracy,
     guess: ShootingNodes,
@@ -188,7 +190,6 @@ pub(super) fn orbit(
     let shooting = &closed.shooting;
     let (mut period, node_error) = closed.budget(!accuracy.checked);
     let mut work = tracers.work();
-    let level = slab.steady_stress();
     let mut others = Vec::new();
     if !accuracy.checked {
         floquet.widened((work.steps.max(1) as f64).sqrt());
@@ -218,13 +219,15 @@ pub(super) fn orbit(
     let passage = extremes.passage.as_ref();
     let (point_time, point) =
         passage.map_or((0.0, &shooting.nodes[0]), |(time, point)| (*time, point));
-    // What others differ by, and within a stress extreme's rounding as well.
-    let of_stress = |of: &dyn Fn(&Extremes) -> f64| {
-        let stress = of(&extremes);
-        let apart = others.iter().map(|other| (of(other) - stress).abs());
-        let noise = (node_error + 4.0 * f64::EPSILON) * (1.0 + stress.abs());
-        Uncertain::new(stress, noise + SPREAD * apart.fold(0.0, f64::max))
+    // What others differ by, and within an extreme's rounding as well.
+    let bounded = |of: &dyn Fn(&Extremes) -> f64| {
+        let extreme = of(&extremes);
+        let apart = others.iter().map(|other| (of(other) - extreme).abs());
+        let noise = (node_error + 4.0 * f64::EPSILON) * (1.0 + extreme.abs());
+        Uncertain::new(extreme, noise + SPREAD * apart.fold(0.0, f64::max))
     };
+    let both = |i: usize| [bounded(&|of| of.ranges[i].0), bounded(&|of| of.ranges[i].1)];
+    let of_all: Vec<[Uncertain; 2]> = (0..extremes.ranges.len()).map(both).collect();
     /// Of several passages in a cycle another one is farther off.
     const SAME: f64 = 1e-3;
     let passages = others.iter().filter_map(|other| other.passage.as_ref());
@@ -237,10 +240,11 @@ pub(super) fn orbit(
         point: point.iter().copied().collect(),
         point_time,
         point_uncertainty,
-        stress_min: of_stress(&|of| of.stress.0),
-        stress_max: of_stress(&|of| of.stress.1),
+        stress_min: of_all[0][0],
+        stress_max: of_all[0][1],
         slip_rate_max: extremes.slip_rate_max,
-        state_min: extremes.state_min,
+        state_min: extremes.state_min(),
+        extremes: of_all,
         floquet,
         method: tracers.here.name(),
         nodes: shooting

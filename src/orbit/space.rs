@@ -73,9 +73,7 @@ impl Space for Whole<'_> {
     }
 
     fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
-        let arc = tracers.here.arc(&self.0, x, duration, &[])?;
-        let loss = arc.loss();
-        Ok((arc.end, loss))
+        loss_along(&self.0, tracers, x, duration)
     }
 
     fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
@@ -92,6 +90,38 @@ impl Space for Whole<'_> {
             Symmetry::Asymmetric
         }
     }
+}
+
+/// The space of any field, in which there are no parts that might move alike.
+pub(super) struct Alone<'f, 'a>(pub &'f AnyField<'a>);
+
+impl Space for Alone<'_, '_> {
+    fn field(&self) -> &AnyField<'_> {
+        self.0
+    }
+
+    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
+        loss_along(self.0, tracers, x, duration)
+    }
+
+    fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
+        Ok(floquet(closed, self.0))
+    }
+
+    fn symmetry(&self, _: &ShootingNodes) -> Symmetry {
+        Symmetry::Symmetric
+    }
+}
+
+fn loss_along(
+    field: &AnyField<'_>,
+    tracers: &mut Tracers,
+    x: &Vector,
+    duration: f64,
+) -> Result<(Vector, f64)> {
+    let arc = tracers.here.arc(field, x, duration, &[])?;
+    let loss = arc.loss();
+    Ok((arc.end, loss))
 }
 
 /// The plane of a single interface, or of two that move alike, with the whole space around it.
@@ -118,11 +148,7 @@ impl Space for Plane<'_> {
     fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
         Ok(match self.across(tracers, x, duration)? {
             Some(arc) => (arc.end.rows(0, 2).into_owned(), arc.loss()),
-            None => {
-                let arc = tracers.here.arc(&self.plane, x, duration, &[])?;
-                let loss = arc.loss();
-                (arc.end, loss)
-            }
+            None => loss_along(&self.plane, tracers, x, duration)?,
         })
     }
 

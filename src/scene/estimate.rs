@@ -6,7 +6,9 @@ use super::run::{RunOutcome, Sink};
 use super::stretch::{Along, as_field, go, of_run, steps_left};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State};
-use crate::integrate::{Choice, Control, Integrator, Observer, Step, Taylor, Tolerances, Work};
+use crate::integrate::{
+    AnyIntegrator, Choice, Control, Integrator, Observer, Step, Taylor, Tolerances, Work,
+};
 use crate::model::Driven;
 
 /// How much tighter the second run is: its own error then hardly counts.
@@ -15,15 +17,15 @@ const TIGHTER: f64 = 100.0;
 const TIGHTEST: f64 = 1e-14;
 /// The second run's error, of which little is known but that it is small, is allowed for by this factor; with the reference it
 /// allows for what rounding may still do within the run's own digits.
-const MARGIN: f64 = 2.0;
+pub(super) const MARGIN: f64 = 2.0;
 /// Relative errors below this are rounding.
-const ROUNDING: f64 = 4.0 * f64::EPSILON;
+pub(super) const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Spacings of the numbers around a time that its rounding, and that of what it follows from, may make.
-const TIME_SPACINGS: f64 = 64.0;
+pub(super) const TIME_SPACINGS: f64 = 64.0;
 /// Tolerance of the tangent flow that says how far the rounding of the start grows: a digit of it will do.
-const GROWTH: f64 = 1e-6;
+pub(super) const GROWTH: f64 = 1e-6;
 /// Pieces in which it goes, so that it can be stopped.
-const PIECES: usize = 64;
+pub(super) const PIECES: usize = 64;
 
 /// The second run.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -45,6 +47,16 @@ impl Companion {
                 rtol: rtol / TIGHTER,
                 atol: atol / TIGHTER,
             })
+        }
+    }
+
+    /// The method of the second run in a dimension known when the program runs.
+    pub(super) fn any_integrator(self, max_steps: usize) -> Result<AnyIntegrator> {
+        match self {
+            Companion::Tighter(tolerances) => {
+                AnyIntegrator::new(Choice::Auto, tolerances, max_steps)
+            }
+            Companion::Reference => AnyIntegrator::reference(max_steps),
         }
     }
 

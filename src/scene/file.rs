@@ -37,7 +37,17 @@ impl SceneFile {
     /// [`Error::File`] if it can't be read; [`Error::Input`] with file, line and key for what is wrong in it.
     pub fn read(path: &Path, program: &Command) -> Result<Self> {
         let text = read_bounded(path, LONGEST)?;
-        Self::parse(&path.display().to_string(), &text, program)
+        let mut scene = Self::parse(&path.display().to_string(), &text, program)?;
+        // Where a file is, its systems are; those that are built in have no place.
+        for (flag, value, _) in &mut scene.flags {
+            if let ("system", Some(value), Some(folder)) = (flag.as_str(), value, path.parent()) {
+                let beside = folder.join(value.as_str());
+                if beside.exists() {
+                    *value = beside.display().to_string();
+                }
+            }
+        }
+        Ok(scene)
     }
 
     /// Reads a text under the name that messages shall use for it.
@@ -113,9 +123,10 @@ impl SceneFile {
     }
 }
 
-struct Reader<'a> {
-    name: &'a str,
-    text: &'a str,
+/// A text, and the name that messages use for it.
+pub(super) struct Reader<'a> {
+    pub name: &'a str,
+    pub text: &'a str,
 }
 
 impl Reader<'_> {
@@ -129,6 +140,14 @@ impl Reader<'_> {
 
     fn wrong(&self, span: &Range<usize>, what: impl std::fmt::Display) -> Error {
         Error::Input(format!("{}:{}: {what}", self.name, self.line(span)))
+    }
+
+    /// What is wrong at a byte, by line and column.
+    pub(super) fn misplaced(&self, at: usize, what: impl std::fmt::Display) -> Error {
+        let begin = self.text.get(..at).unwrap_or(self.text);
+        let column = 1 + begin.chars().rev().take_while(|c| *c != '\n').count();
+        let line = self.line(&(at..at));
+        Error::Input(format!("{}:{line}:{column}: {what}", self.name))
     }
 
     /// What is wrong on the line of `span` if a text there has no quotes, with the line as it should be.
@@ -207,6 +226,15 @@ impl Reader<'_> {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),
             DeValue::Float(number) => number.as_str().to_owned(),
             DeValue::String(text) if !numeric => text.to_string(),
+            // What may be given again: NAME=VALUE for each.
+            DeValue::Table(entries) if matches!(option.get_action(), ArgAction::Append) => {
+                let pair = |(name, value): (&Spanned<_>, &Spanned<DeValue<'_>>)| {
+                    let name: &std::borrow::Cow<'_, str> = name.get_ref();
+                    Some(format!("{name}={}", scalar(value.get_ref())?))
+                };
+                let pairs: Option<Vec<String>> = entries.iter().map(pair).collect();
+                pairs.ok_or_else(|| wrong("a table of numbers"))?.join(",")
+            }
             DeValue::Array(items) if !numeric => {
                 let items: Option<Vec<String>> =
                     items.iter().map(|item| scalar(item.get_ref())).collect();

@@ -49,6 +49,7 @@ mod slip;
 mod stretch;
 mod sweep;
 mod system;
+mod text;
 mod units;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
@@ -78,5 +79,10 @@ pub use section::{
 };
 pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};
-pub use system::System;
+pub use system::{Described, System};
+pub use text::{
+    SearchPlace, SystemFile, TextEquilibria, TextEquilibriaPlan, TextEquilibrium, TextInstant,
+    TextModel, TextOptions, TextOrbitPlan, TextOutcome, TextPlan, TextReturn, TextSectionPlan,
+    run_text, run_text_section, text_columns, text_section_columns,
+};
 pub use units::{Quantity, TimeUnit, Units};

@@ -1,6 +1,7 @@
 //! What a user can set. Declared once: the flags of the command line, their help and the keys of a scene file are these
 //! fields, so they cannot drift apart.
 
+use super::text::TextOptions;
 use super::units::TimeUnit;
 use crate::friction::AnyLaw;
 use crate::integrate::Choice;
@@ -8,10 +9,12 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
-    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1";
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1 [default: \
+    near-symmetric]. Of a system from a file: the values of all states in their order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
-    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for";
+    hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
+    values of all states in their order [default: its table start]";
 
 /// The laws with their sources, for help.
 fn laws() -> String {
@@ -39,10 +42,10 @@ fn listed(all: &[impl AsRef<str>]) -> String {
 #[command(next_help_heading = "Model")]
 pub struct ModelOptions {
     /// Driving velocity V_H [V*; m/s with --si]
-    #[arg(long, value_name = "V_H", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "V_H", conflicts_with = "system", value_parser = number, allow_negative_numbers = true)]
     pub driving: Option<f64>,
     /// Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with --si]
-    #[arg(long, value_name = "K", value_parser = number, allow_negative_numbers = true)]
+    #[arg(long, value_name = "K", conflicts_with = "system", value_parser = number, allow_negative_numbers = true)]
     pub stiffness: Option<f64>,
     /// What slides.
     #[command(flatten)]
@@ -53,6 +56,9 @@ pub struct ModelOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Model")]
 pub struct SlabOptions {
+    /// Another system.
+    #[command(flatten)]
+    pub text: TextOptions,
     /// Friction law.
     #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
@@ -172,12 +178,11 @@ pub struct IntegrateOptions {
     #[arg(
         long,
         value_name = "START",
-        default_value = "near-symmetric",
         allow_hyphen_values = true,
         help_heading = "Run",
         help = START_HELP
     )]
-    pub start: String,
+    pub start: Option<String>,
     /// How V_H changes on the way, from --driving on: "T:V,T:V,..." for steps to V at T, where V = 0 is a hold, and "T1-T2:V" for a
     /// ramp; or FILE.csv with the columns time, driving and, for ramps, until. Rows then have a column driving, and stand at both
     /// sides of a change
@@ -240,22 +245,16 @@ pub struct SectionOptions {
     #[arg(
         long,
         value_name = "START",
-        default_value = "near-symmetric",
         allow_hyphen_values = true,
         help_heading = "Run",
         help = START_HELP
     )]
-    pub start: String,
+    pub start: Option<String>,
     /// The section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2)
-    /// of two interfaces
-    #[arg(
-        long,
-        value_name = "SURFACE",
-        default_value = "stress=auto",
-        help_heading = "Run"
-    )]
-    pub surface: String,
-    /// Count returns where the stress rises through the section, instead of where it falls
+    /// of two interfaces [default: stress=auto]. With --system STATE=VALUE, which must be given
+    #[arg(long, value_name = "SURFACE", help_heading = "Run")]
+    pub surface: Option<String>,
+    /// Count returns where the stress (with --system the state) rises through the section, instead of where it falls
     #[arg(long, help_heading = "Run")]
     pub upwards: bool,
     /// Returns that are recorded
@@ -264,7 +263,7 @@ pub struct SectionOptions {
     /// Returns that are skipped before, so that the run settles
     #[arg(long, value_name = "M", value_parser = count, default_value_t = 1000, help_heading = "Run")]
     pub skip: usize,
-    /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H)]
+    /// Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H); 1e4 with --system]
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub patience: Option<f64>,
     /// Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns of a run of their own; without them
@@ -288,8 +287,28 @@ pub struct EquilibriaOptions {
     /// What slides; without --stiffness there are no eigenvalues and no verdict.
     #[command(flatten)]
     pub model: ModelOptions,
+    /// With --system: all steady states in a box, a range for every state: x=-10:10,y=0:5
+    #[arg(
+        id = "box",
+        long = "box",
+        value_name = "RANGES",
+        requires = "system",
+        allow_hyphen_values = true,
+        help_heading = "Model"
+    )]
+    pub within: Option<String>,
+    /// With --system: near which values of all states, in their order [default: its table start]
+    #[arg(
+        long,
+        value_name = "START",
+        requires = "system",
+        conflicts_with = "box",
+        allow_hyphen_values = true,
+        help_heading = "Model"
+    )]
+    pub start: Option<String>,
     /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
-    #[arg(long, value_name = "NAME", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
+    #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
     pub solver: Option<String>,
     /// Where results go.
     #[command(flatten)]
@@ -307,6 +326,7 @@ pub struct OrbitOptions {
         long,
         value_name = "NAME",
         default_value = "symmetric",
+        conflicts_with = "system",
         value_parser = Names::of(["symmetric", "asymmetric"]),
         hide_possible_values = true,
         help_heading = "Orbit"
@@ -322,7 +342,7 @@ pub struct OrbitOptions {
     )]
     pub start: Option<String>,
     /// The period, roughly; with it no shorter cycle is taken instead
-    #[arg(long, value_name = "T", requires = "start", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
+    #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Orbit")]
     pub period_guess: Option<f64>,
     /// Rows over one period, as those of integrate: N equally spaced in time, from result.orbit.point back to it. A table or CSV then
     /// holds these, and in JSON they are result.rows

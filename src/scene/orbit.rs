@@ -191,6 +191,11 @@ fn begin(options: &OrbitOptions, system: &System, slab: &InterfaceSystem) -> Res
     };
     let period = options.period_guess.map(inward).transpose()?;
     Ok(match options.start.as_deref() {
+        None if period.is_some() => {
+            return Err(Error::Input(
+                "`period_guess` needs a `start` near the orbit".into(),
+            ));
+        }
         None => InitialGuess::Anywhere,
         Some("hopf") if period.is_some() => {
             return Err(Error::Input(
@@ -237,7 +242,7 @@ pub(crate) const SECOND_METHOD: &str = "cvode-adams";
 pub(crate) const SECOND_METHOD: &str = "rodas5p";
 
 /// The method of the crosscheck: another one than the first.
-fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
+pub(super) fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
     let name = match name {
         Some("none") => return Ok(None),
         Some(name) => name,

@@ -7,12 +7,14 @@ use super::instant::{Instant, driving_column, pictured_columns, run_columns};
 use super::options::{IntegrateOptions, NumericsOptions};
 use super::program::{Program, Stretch};
 use super::system::System;
-use super::units::Quantity;
+use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
 use crate::friction::{Formulas, Law, beside, positive, steady_stress};
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 
+/// How a run starts where nobody says otherwise.
+pub(super) const USUAL_START: &str = "near-symmetric";
 /// The asymmetry of `--start near-symmetric` where none is given.
 const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
@@ -67,6 +69,25 @@ pub enum Sampling {
     FinalOnly,
 }
 
+impl Sampling {
+    /// When the i-th row is, of those at fixed times of a run until then. The end of a stretch of it, or its own, is met where rounding
+    /// alone is in between.
+    pub(super) fn time(self, i: usize, until: f64, end: f64) -> Option<f64> {
+        let (t, interval) = match self {
+            Sampling::EveryStep | Sampling::FinalOnly => return None,
+            Sampling::Points(n) if i >= n => return None,
+            Sampling::Points(n) if i + 1 == n => return Some(until),
+            Sampling::Points(n) => {
+                let intervals = (n - 1) as f64;
+                (until * (i as f64 / intervals), until / intervals)
+            }
+            Sampling::Every(dt) => (i as f64 * dt, dt),
+        };
+        let meets = (t - end).abs() <= 1e-9 * interval;
+        Some(if meets { end } else { t })
+    }
+}
+
 /// A run, checked, and only what its outputs need.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Plan {
@@ -111,14 +132,9 @@ impl Plan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &IntegrateOptions) -> Result<Self> {
-        let end = || {
-            let missing = "`until` T is missing: when shall the run end?";
-            let end = options.until.ok_or_else(|| Error::Input(missing.into()))?;
-            positive("until", end)
-        };
         let program = options.program.as_deref();
         let program = program
-            .map(|text| Program::read(text, end()?))
+            .map(|text| Program::read(text, until(options)?))
             .transpose()?;
         let (system, loading) = match &program {
             None => {
@@ -128,10 +144,11 @@ impl Plan {
             }
             Some(program) => System::programmed(&options.model, program)?,
         };
-        let start = start(&options.start, &system, &loading)?;
+        let text = options.start.as_deref().unwrap_or(USUAL_START);
+        let start = start(text, &system, &loading)?;
         let dimension = Dimension::of(&system, &start);
-        let until = system.units.inward(Quantity::Time, end()?);
-        let sampling = sampling(options, &system, until)?;
+        let until = system.units.inward(Quantity::Time, until(options)?);
+        let sampling = sampling(options, &system.units, until)?;
         let mut columns = run_columns(system.interfaces);
         columns.extend(program.as_ref().map(|_| driving_column()));
         if let Some(names) = &options.columns {
@@ -218,6 +235,14 @@ impl Plan {
     }
 }
 
+/// The end of a run, in the user's units.
+pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
+    let until = options
+        .until
+        .ok_or_else(|| Error::Input("`until` T is missing: when shall the run end?".into()))?;
+    positive("until", until)
+}
+
 /// The method and the tolerances, checked.
 pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
     let tolerances = tolerances(options.rtol, options.atol)?;
@@ -253,7 +278,7 @@ pub(super) fn equally_spaced(points: usize) -> Result<Sampling> {
     }
 }
 
-fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<Sampling> {
+pub(super) fn sampling(options: &IntegrateOptions, units: &Units, until: f64) -> Result<Sampling> {
     if options.final_only {
         return Ok(Sampling::FinalOnly);
     }
@@ -263,9 +288,7 @@ fn sampling(options: &IntegrateOptions, system: &System, until: f64) -> Result<S
     let Some(every) = options.every else {
         return Ok(Sampling::EveryStep);
     };
-    let interval = system
-        .units
-        .inward(Quantity::Time, positive("every", every)?);
+    let interval = units.inward(Quantity::Time, positive("every", every)?);
     if until / interval > MAX_ROWS {
         return Err(Error::parameter(
             "every",

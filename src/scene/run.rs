@@ -15,10 +15,10 @@ use crate::model::Driven;
 use crate::number::DoubleDouble;
 
 /// Points of a picture in each step: steps are long where the solution is smooth, and a polygon would show.
-const PICTURED: usize = 4;
+pub(super) const PICTURED: usize = 4;
 
 /// Steps that pass unseen where only the end is shown: some microseconds.
-const RESTS: u32 = 63;
+pub(super) const RESTS: u32 = 63;
 
 /// Takes what a run yields, as it comes.
 pub trait Sink {
@@ -258,24 +258,12 @@ impl<'a> RunObserver<'a> {
 
     /// The next fixed time of a row.
     fn next_sample(&self) -> Option<f64> {
-        let (i, until) = (self.sampled, self.plan.until);
-        let (t, interval) = match self.plan.sampling {
-            Sampling::EveryStep | Sampling::FinalOnly => return None,
-            Sampling::Points(n) if i >= n => return None,
-            Sampling::Points(n) if i + 1 == n => return Some(until),
-            Sampling::Points(n) => {
-                let intervals = (n - 1) as f64;
-                (until * (i as f64 / intervals), until / intervals)
-            }
-            Sampling::Every(dt) => (i as f64 * dt, dt),
-        };
-        // A multiple may miss the end, or a change, by rounding alone.
-        let end = match self.plan.program {
+        let plan = self.plan;
+        let end = match plan.program {
             Some(_) => self.stretch.span.1,
-            None => until,
+            None => plan.until,
         };
-        let meets = (t - end).abs() <= 1e-9 * interval;
-        Some(if meets { end } else { t })
+        plan.sampling.time(self.sampled, plan.until, end)
     }
 
     fn draw(&mut self, at: &Instant) {

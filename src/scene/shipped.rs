@@ -1,6 +1,7 @@
 //! The scenes that the program carries: those of the paper's figures, and some more.
 
 use include_dir::{Dir, include_dir};
+use std::path::Path;
 
 static SCENES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 
@@ -9,10 +10,27 @@ pub fn shipped(name: &str) -> Option<&'static str> {
     SCENES.get_file(format!("{name}.toml"))?.contents_utf8()
 }
 
-/// The names of all, sorted.
+/// The text of the system of one's own that is built in under that name: `lorenz`, `lorenz.toml` or the path that its file has.
+pub(super) fn shipped_system(path: &Path) -> Option<&'static str> {
+    let path = path.strip_prefix("scenes").unwrap_or(path);
+    let path = path.strip_prefix("systems").unwrap_or(path);
+    let file = Path::new("systems").join(path).with_extension("toml");
+    SCENES.get_file(file)?.contents_utf8()
+}
+
+/// The names of these systems, sorted.
+pub(super) fn shipped_system_names() -> Vec<&'static str> {
+    SCENES.get_dir("systems").map_or_else(Vec::new, names)
+}
+
+/// The names of all scenes, sorted.
 pub fn shipped_names() -> Vec<&'static str> {
+    names(&SCENES)
+}
+
+fn names(folder: &Dir<'static>) -> Vec<&'static str> {
     let stem = |file: &include_dir::File<'static>| file.path().file_stem()?.to_str();
-    let mut names: Vec<&str> = SCENES.files().filter_map(stem).collect();
+    let mut names: Vec<&str> = folder.files().filter_map(stem).collect();
     names.sort_unstable();
     names
 }

@@ -18,6 +18,14 @@ const NORMAL_STRESS: f64 = 1e6;
 /// R of the paper.
 const HEALING_TIME: f64 = 100.0;
 
+/// What a result is of, as the output tells it.
+pub trait Described {
+    /// Every parameter, in the user's units.
+    fn echo(&self) -> &Map<String, Value>;
+    /// What its numbers are measured in.
+    fn units(&self) -> &Units;
+}
+
 /// What slides, checked and dimensionless, with the units that lead back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct System {
@@ -50,6 +58,11 @@ impl System {
     /// # Errors
     /// As [`System::new`].
     pub fn of(options: &SlabOptions, driving: Option<f64>, stiffness: Option<f64>) -> Result<Self> {
+        if options.text.system.is_some() {
+            return Err(Error::Input(
+                "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section and orbit take it".into(),
+            ));
+        }
         if !(1..=2).contains(&options.interfaces) {
             return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
         }
@@ -153,10 +166,15 @@ impl System {
             Error::Input(format!("`{name}` {symbol} is missing, and has no default"))
         })
     }
+}
 
-    /// The model as the output tells it: every parameter, in the user's units.
-    pub fn echo(&self) -> &Map<String, Value> {
+impl Described for System {
+    fn echo(&self) -> &Map<String, Value> {
         &self.echo
+    }
+
+    fn units(&self) -> &Units {
+        &self.units
     }
 }
 

@@ -86,6 +86,8 @@ pub struct Units {
     scales: Option<Scales>,
     state_is_time: bool,
     time: TimeUnit,
+    /// Whether they have names.
+    named: bool,
 }
 
 impl Units {
@@ -95,6 +97,15 @@ impl Units {
             scales,
             state_is_time,
             time: TimeUnit::SECOND,
+            named: true,
+        }
+    }
+
+    /// Of a system of one's own: whatever its equations are in.
+    pub fn none() -> Self {
+        Units {
+            named: false,
+            ..Self::new(None, false)
         }
     }
 
@@ -176,6 +187,7 @@ impl Units {
     pub fn name(&self, quantity: Quantity) -> &'static str {
         let si = self.si();
         match quantity {
+            _ if !self.named => "1",
             Quantity::Stress if si => "Pa",
             Quantity::Stress => "a sigma",
             Quantity::SlipRate if si => "m/s",
@@ -195,8 +207,11 @@ impl Units {
     }
 
     /// The names of all units, by quantity: what the `units` object of the output holds.
-    pub fn names(&self) -> [(&'static str, &'static str); 7] {
-        [
+    pub fn names(&self) -> Vec<(&'static str, &'static str)> {
+        if !self.named {
+            return Vec::new();
+        }
+        vec![
             ("stress", self.name(Quantity::Stress)),
             ("slip_rate", self.name(Quantity::SlipRate)),
             ("slip", self.name(Quantity::Length)),

@@ -52,7 +52,7 @@ pub fn orbit_columns(interfaces: usize) -> Vec<Column<Orbit>> {
 }
 
 /// Of one multiplier, counted from 0. Its bound is a column of its own: no unit rounds it.
-fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
+pub(super) fn multiplier_columns(i: usize) -> [Column<Orbit>; 4] {
     use Quantity::Number;
     let of = move |orbit: &Orbit| orbit.floquet.multipliers[i];
     let place = i + 1;

@@ -9,6 +9,7 @@ pub mod pages;
 pub mod returns;
 pub mod sections;
 pub mod stiff_classics;
+pub mod text;
 pub mod trajectories;
 
 use serde_json::Value;

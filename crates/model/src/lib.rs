@@ -1,8 +1,10 @@
-//! What twinslip computes with, bottom up: numbers in which a formula can be evaluated, power series, friction laws, vector
+//! What twinslip computes with, bottom up: numbers in which a formula can be evaluated, formulas that are read, power series, friction laws, vector
 //! fields, and the paper's systems. A crate of its own so that it is compiled once, whatever changes above it; to be used as
 //! part of the crate `twinslip`.
 
 pub mod number;
+
+pub mod expression;
 
 pub mod series;
 

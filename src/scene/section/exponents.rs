@@ -14,7 +14,7 @@ use crate::section::{
 };
 
 /// Periods that differ by less, relatively, are of one orbit.
-const SAME_PERIOD: f64 = 1e-6;
+pub(in crate::scene) const SAME_PERIOD: f64 = 1e-6;
 
 /// The Lyapunov exponents of a run, dimensionless, with what checks them.
 #[derive(Debug, Clone, PartialEq)]
@@ -33,11 +33,11 @@ pub struct CheckedExponents {
 }
 
 /// Told how far it has come; it may stop it.
-pub(super) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
+pub(in crate::scene) type ProgressObserver<'a> = &'a mut dyn FnMut(f64) -> Control;
 
 /// The exponents by means along a record with waypoints, or of the equilibrium that it ends at; `None` of too few returns, and
 /// if it is stopped.
-pub(super) fn of_record(
+pub(in crate::scene) fn of_record(
     field: &AnyField<'_>,
     record: &ReturnRecord,
     see: ProgressObserver<'_>,
@@ -95,7 +95,7 @@ pub(super) fn of_orbit(
     Some((orbit.period, of_multipliers(&orbit)?))
 }
 
-fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
+pub(in crate::scene) fn of_multipliers(orbit: &Orbit) -> Option<CheckedExponents> {
     let Uncertain {
         value: period,
         uncertainty,

@@ -7,11 +7,13 @@ mod run;
 
 pub use explain::explain_section;
 pub use exponents::CheckedExponents;
+pub(super) use exponents::{SAME_PERIOD, of_multipliers, of_record};
 pub use row::{SectionRow, section_columns};
+pub(super) use run::{Means, Settling};
 pub use run::{SectionOutcome, run_section};
 
 use super::options::SectionOptions;
-use super::plan::{Dimension, numerics, start};
+use super::plan::{Dimension, USUAL_START, numerics, start};
 use super::system::System;
 use super::units::Quantity;
 use crate::error::{Error, Result};
@@ -21,6 +23,8 @@ use crate::model::Loading;
 use crate::number::polynomial::Crossing;
 use crate::section::{FEWEST_FOR_EXPONENTS, half_driving_stress, usual_patience};
 
+/// The section of the paper.
+const USUAL_SURFACE: &str = "stress=auto";
 /// More returns than this are a slip of the pen.
 const MOST_RETURNS: usize = 100_000_000;
 
@@ -65,7 +69,8 @@ impl SectionPlan {
     pub fn new(options: &SectionOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
         let loading = system.loading()?;
-        let start = start(&options.start, &system, &loading)?;
+        let text = options.start.as_deref().unwrap_or(USUAL_START);
+        let start = start(text, &system, &loading)?;
         let (method, tolerances) = numerics(&options.numerics)?;
         let patience = match options.patience {
             Some(patience) => {
@@ -74,28 +79,16 @@ impl SectionPlan {
             }
             None => usual_patience(loading.driving, loading.stiffness),
         };
-        if !(1..=MOST_RETURNS).contains(&options.returns) {
-            return Err(Error::parameter(
-                "returns",
-                options.returns,
-                "from 1 to 1e8",
-            ));
-        }
-        if options.lyapunov && options.returns < FEWEST_FOR_EXPONENTS {
-            return Err(Error::parameter(
-                "returns",
-                options.returns,
-                "at least 60 with `lyapunov`",
-            ));
-        }
-        if options.skip > MOST_RETURNS {
-            return Err(Error::parameter("skip", options.skip, "at most 1e8"));
-        }
+        counted(options)?;
         if options.numerics.max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
         Ok(SectionPlan {
-            stress: stress(&options.surface, &system, &loading)?,
+            stress: stress(
+                options.surface.as_deref().unwrap_or(USUAL_SURFACE),
+                &system,
+                &loading,
+            )?,
             dimension: Dimension::of(&system, &start),
             start,
             direction: if options.upwards {
@@ -115,6 +108,28 @@ impl SectionPlan {
             system,
         })
     }
+}
+
+/// That the numbers of returns are allowed.
+pub(super) fn counted(options: &SectionOptions) -> Result<()> {
+    if !(1..=MOST_RETURNS).contains(&options.returns) {
+        return Err(Error::parameter(
+            "returns",
+            options.returns,
+            "from 1 to 1e8",
+        ));
+    }
+    if options.lyapunov && options.returns < FEWEST_FOR_EXPONENTS {
+        return Err(Error::parameter(
+            "returns",
+            options.returns,
+            "at least 60 with `lyapunov`",
+        ));
+    }
+    if options.skip > MOST_RETURNS {
+        return Err(Error::parameter("skip", options.skip, "at most 1e8"));
+    }
+    Ok(())
 }
 
 /// The stress of the section.

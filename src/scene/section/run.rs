@@ -11,8 +11,8 @@ use crate::integrate::{AnyField, AnyIntegrator, Control, Work};
 use crate::model;
 use crate::number::Uncertain;
 use crate::section::{
-    Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Regime, RegimeVerdict, Return,
-    ReturnRecord, Surface, Watching, aperiodic, record, record_finely, verdict,
+    Ended, Exponents, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, Periodic, Regime, RegimeVerdict,
+    Return, ReturnRecord, Surface, Watching, aperiodic, record, record_finely, verdict,
 };
 
 /// Where exponents are asked for, the run takes this part of the time, and has come to this part when their own run is done.
@@ -49,7 +49,7 @@ pub struct SectionOutcome {
 }
 
 /// The exponents by means along a record.
-type Means<'a> =
+pub(in crate::scene) type Means<'a> =
     &'a dyn Fn(&ReturnRecord, ProgressObserver<'_>) -> Result<Option<CheckedExponents>>;
 
 /// Runs the plan of a return map. A row is complete, and given to the sink, when the next return is known.
@@ -71,141 +71,174 @@ pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOut
         Dimension::Symmetric => of_record(&whole(), &embedded(record), see),
         Dimension::Single | Dimension::Full => of_record(field, record, see),
     };
-    let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?;
-    let surface = Surface::stress(field.dimension(), plan.stress, plan.direction);
-    // One more, for the last row's next.
-    let returns = plan.returns + 1;
-    let watching = Watching {
-        skip: plan.skip,
-        returns,
-        patience: plan.patience,
-        accuracy: plan.tolerances.rtol,
-        waypoints: false,
+    let settling = Settling {
+        field,
+        start,
+        surface: Surface::stress(field.dimension(), plan.stress, plan.direction),
+        watching: Watching {
+            skip: plan.skip,
+            // One more, for the last row's next.
+            returns: plan.returns + 1,
+            patience: plan.patience,
+            accuracy: plan.tolerances.rtol,
+            waypoints: false,
+        },
+        integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,
+        max_steps: plan.max_steps,
+        lyapunov: plan.lyapunov,
+        means,
+        by_orbit: &|periodic| of_orbit(plan, periodic),
     };
     let mut rows = RowMaker::new(plan);
-    let all = (plan.skip + returns) as f64 / if plan.lyapunov { RUN } else { 1.0 };
-    let mut see = |passed: usize, at: Option<&Return>| match at {
-        Some(at) if passed >= plan.skip => rows.next(at, sink),
-        Some(_) => Control::Continue,
-        None => sink.reached(passed as f64 / all),
-    };
-    let record = record(
-        &mut integrator,
-        field,
-        &start,
-        &surface,
-        &watching,
-        &mut see,
-    );
-    let mut outcome = SectionOutcome {
-        regime: Regime::Undecided,
-        period_of_orbit: None,
-        period: None,
-        rotation_number: None,
-        curves: None,
-        lyapunov: None,
-        note: None,
-        returns: record.returns.len().min(plan.returns),
-        work: integrator.work(),
-        failure: None,
-        stopped: record.ended == Ended::Stopped,
-    };
-    if let Ended::Failed(error) = &record.ended {
-        outcome.failure = Some(error.clone());
-        return Ok(outcome);
-    }
-    if outcome.stopped {
-        return Ok(outcome);
-    }
-    let mut made = verdict(field, &surface, &record, None)?;
-    if plan.lyapunov {
-        let at = (field, &surface, &watching);
-        let found = exponents(plan, at, (&record, &mut made), sink, means);
-        match found {
-            Ok(Some(found)) => outcome.lyapunov = Some(found),
-            Ok(None) => outcome.stopped = record.returns.len() >= FEWEST_FOR_EXPONENTS,
-            Err(error) => outcome.failure = Some(error),
-        }
-    }
-    outcome.regime = made.regime;
-    outcome.rotation_number = made.curve.map(|curve| curve.rotation);
-    outcome.curves = made.curve.map(|curve| curve.curves);
-    outcome.note = made.why.map(str::to_owned);
-    if let Some(periodic) = made.periodic {
-        outcome.period_of_orbit = Some(periodic.returns);
-        outcome.period = Some(periodic.period);
-    }
-    if let Ended::Steady { stable: false, .. } = record.ended {
-        outcome.note = Some(
-            "the run begins at an unstable equilibrium, which it leaves only by rounding; start elsewhere".into(),
-        );
-    }
-    Ok(outcome)
+    settling.run(&mut |at, sink| rows.next(at, sink), sink)
 }
 
-/// The exponents of what a run has settled on, and with them the verdict on a run in three dimensions that is not periodic.
-/// `None` if it is stopped, and of too few returns.
-///
-/// Means along the run itself would have the error of its tolerance as a bias: they are taken along one of their own.
-fn exponents(
-    plan: &SectionPlan,
-    (field, surface, watching): (&AnyField<'_>, &Surface, &Watching),
-    (record, made): (&ReturnRecord, &mut RegimeVerdict),
-    sink: &mut dyn Sink,
-    means: Means<'_>,
-) -> Result<Option<CheckedExponents>> {
-    if let Ended::Steady { .. } = record.ended {
-        return means(record, &mut |_| Control::Continue);
+/// What a run settles on, of any field.
+pub(in crate::scene) struct Settling<'a> {
+    pub field: &'a AnyField<'a>,
+    pub start: Vector,
+    pub surface: Surface,
+    pub watching: Watching,
+    pub integrator: AnyIntegrator,
+    pub max_steps: usize,
+    /// Whether the exponents are asked for.
+    pub lyapunov: bool,
+    /// Exponents by means along a record.
+    pub means: Means<'a>,
+    /// Exponents by the orbit through a periodic point, with its period.
+    pub by_orbit: &'a dyn Fn(&Periodic) -> Option<(Uncertain, CheckedExponents)>,
+}
+
+impl Settling<'_> {
+    /// Runs it; every return that is recorded goes to `row`.
+    pub fn run(
+        mut self,
+        row: &mut dyn FnMut(&Return, &mut dyn Sink) -> Control,
+        sink: &mut dyn Sink,
+    ) -> Result<SectionOutcome> {
+        let (skip, returns) = (self.watching.skip, self.watching.returns);
+        let all = (skip + returns) as f64 / if self.lyapunov { RUN } else { 1.0 };
+        let mut see = |passed: usize, at: Option<&Return>| match at {
+            Some(at) if passed >= skip => row(at, sink),
+            Some(_) => Control::Continue,
+            None => sink.reached(passed as f64 / all),
+        };
+        let record = record(
+            &mut self.integrator,
+            self.field,
+            &self.start,
+            &self.surface,
+            &self.watching,
+            &mut see,
+        );
+        let mut outcome = SectionOutcome {
+            regime: Regime::Undecided,
+            period_of_orbit: None,
+            period: None,
+            rotation_number: None,
+            curves: None,
+            lyapunov: None,
+            note: None,
+            returns: record.returns.len().min(returns - 1),
+            work: self.integrator.work(),
+            failure: None,
+            stopped: record.ended == Ended::Stopped,
+        };
+        if let Ended::Failed(error) = &record.ended {
+            outcome.failure = Some(error.clone());
+            return Ok(outcome);
+        }
+        if outcome.stopped {
+            return Ok(outcome);
+        }
+        let mut made = verdict(self.field, &self.surface, &record, None)?;
+        if self.lyapunov {
+            match self.exponents((&record, &mut made), sink) {
+                Ok(Some(found)) => outcome.lyapunov = Some(found),
+                Ok(None) => outcome.stopped = record.returns.len() >= FEWEST_FOR_EXPONENTS,
+                Err(error) => outcome.failure = Some(error),
+            }
+        }
+        outcome.regime = made.regime;
+        outcome.rotation_number = made.curve.map(|curve| curve.rotation);
+        outcome.curves = made.curve.map(|curve| curve.curves);
+        outcome.note = made.why.map(str::to_owned);
+        if let Some(periodic) = made.periodic {
+            outcome.period_of_orbit = Some(periodic.returns);
+            outcome.period = Some(periodic.period);
+        }
+        if let Ended::Steady { stable: false, .. } = record.ended {
+            outcome.note = Some(
+                "the run begins at an unstable equilibrium, which it leaves only by rounding; start elsewhere".into(),
+            );
+        }
+        Ok(outcome)
     }
-    if let Some(found) = by_orbit(plan, made) {
-        return Ok(Some(found));
-    }
-    let Some(first) = record.returns.first() else {
-        return Ok(None);
-    };
-    let all = watching.returns as f64;
-    let see = &mut |passed: usize, at: Option<&Return>| match at {
-        Some(_) => Control::Continue,
-        None => sink.reached(RUN + (OWN_RUN - RUN) * passed as f64 / all),
-    };
-    let own = record_finely(field, &first.state, surface, watching, plan.max_steps, see)?;
-    match &own.ended {
-        Ended::Stopped => return Ok(None),
-        Ended::Failed(error) => return Err(error.clone()),
-        Ended::Complete | Ended::Steady { .. } => {}
-    }
-    // What the error of the first run has hidden may show now.
-    let open = made.periodic.is_none();
-    if open && own.ended == Ended::Complete {
-        *made = verdict(field, surface, &own, None)?;
-        if let Some(found) = by_orbit(plan, made) {
+
+    /// The exponents of what a run has settled on, and with them the verdict on a run in three dimensions or more that is not
+    /// periodic. `None` if it is stopped, and of too few returns.
+    ///
+    /// Means along the run itself would have the error of its tolerance as a bias: they are taken along one of their own.
+    fn exponents(
+        &self,
+        (record, made): (&ReturnRecord, &mut RegimeVerdict),
+        sink: &mut dyn Sink,
+    ) -> Result<Option<CheckedExponents>> {
+        let (field, surface, watching) = (self.field, &self.surface, &self.watching);
+        if let Ended::Steady { .. } = record.ended {
+            return (self.means)(record, &mut |_| Control::Continue);
+        }
+        if let Some(found) = self.by_orbit(made) {
             return Ok(Some(found));
         }
-    }
-    let see = &mut |part: f64| sink.reached(OWN_RUN + (1.0 - OWN_RUN) * part);
-    let Some(found) = means(&own, see)? else {
-        return Ok(None);
-    };
-    let many = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
-    if field.dimension() == 3 && many && made.periodic.is_none() {
-        let known = Exponents {
-            values: &found.exponents,
-            converged: found.converged,
+        let Some(first) = record.returns.first() else {
+            return Ok(None);
         };
-        // Either run may be the one whose returns tell.
-        let by = |run: &ReturnRecord| aperiodic(surface, &run.returns, run.accuracy, Some(known));
-        *made = by(record);
-        if made.regime == Regime::Undecided {
-            *made = by(&own);
+        let all = watching.returns as f64;
+        let see = &mut |passed: usize, at: Option<&Return>| match at {
+            Some(_) => Control::Continue,
+            None => sink.reached(RUN + (OWN_RUN - RUN) * passed as f64 / all),
+        };
+        let own = record_finely(field, &first.state, surface, watching, self.max_steps, see)?;
+        match &own.ended {
+            Ended::Stopped => return Ok(None),
+            Ended::Failed(error) => return Err(error.clone()),
+            Ended::Complete | Ended::Steady { .. } => {}
         }
+        // What the error of the first run has hidden may show now.
+        let open = made.periodic.is_none();
+        if open && own.ended == Ended::Complete {
+            *made = verdict(field, surface, &own, None)?;
+            if let Some(found) = self.by_orbit(made) {
+                return Ok(Some(found));
+            }
+        }
+        let see = &mut |part: f64| sink.reached(OWN_RUN + (1.0 - OWN_RUN) * part);
+        let Some(found) = (self.means)(&own, see)? else {
+            return Ok(None);
+        };
+        let many = own.ended == Ended::Complete && own.returns.len() >= FEWEST_RETURNS;
+        if field.dimension() >= 3 && many && made.periodic.is_none() {
+            let known = Exponents {
+                values: &found.exponents,
+                converged: found.converged,
+            };
+            // Either run may be the one whose returns tell.
+            let by =
+                |run: &ReturnRecord| aperiodic(surface, &run.returns, run.accuracy, Some(known));
+            *made = by(record);
+            if made.regime == Regime::Undecided {
+                *made = by(&own);
+            }
+        }
+        Ok(Some(found))
     }
-    Ok(Some(found))
-}
 
-/// The exponents of the orbit that a verdict names, with its period then.
-fn by_orbit(plan: &SectionPlan, made: &mut RegimeVerdict) -> Option<CheckedExponents> {
-    let periodic = made.periodic.as_mut()?;
-    let (period, found) = of_orbit(plan, periodic)?;
-    periodic.period = period;
-    Some(found)
+    /// The exponents of the orbit that a verdict names, with its period then.
+    fn by_orbit(&self, made: &mut RegimeVerdict) -> Option<CheckedExponents> {
+        let periodic = made.periodic.as_mut()?;
+        let (period, found) = (self.by_orbit)(periodic)?;
+        periodic.period = period;
+        Some(found)
+    }
 }

@@ -1,5 +1,5 @@
 //! The paper's systems: one interface (11), two interfaces (19), the symmetric subspace of the latter, and the normal form
-//! (39)-(40); and any other small system.
+//! (39)-(40); and any other small system, written in Rust or read from a file.
 //!
 //! State (tau, w_1, w_2) with w = ln psi, so that psi stays positive by construction; everything dimensionless. [`scales`] alone knows metres and pascals.
 
@@ -25,6 +25,7 @@ mod slab;
 mod smooth;
 mod symmetric;
 mod tangent;
+mod text_system;
 mod two_interfaces;
 
 #[doc(hidden)]
@@ -34,6 +35,7 @@ pub use ramp::{Ramp, alike_on_ramp, two_interfaces_on_ramp};
 pub use single_interface::SingleInterface;
 pub use smooth::Smooth;
 pub use symmetric::Symmetric;
+pub use text_system::{TextField, TextSystem};
 pub use two_interfaces::TwoInterfaces;
 
 use crate::error::Result;

@@ -64,7 +64,15 @@ impl Interval {
             lo = lo.next_down();
             hi = hi.next_up();
         }
-        Interval { lo, hi }
+        Interval { lo, hi }.known()
+    }
+
+    /// The same; everything where an end is no number, as comparisons overlook these.
+    fn known(self) -> Self {
+        if self.lo.is_nan() || self.hi.is_nan() {
+            return Self::EVERYTHING;
+        }
+        self
     }
 
     /// A wave of the mathematical library that is largest, 1, at so many turns and all turns after, and least half a turn later.
@@ -216,6 +224,7 @@ impl Add for Interval {
             lo: Rounded::sum(self.lo, o.lo).below(),
             hi: Rounded::sum(self.hi, o.hi).above(),
         }
+        .known()
     }
 }
 
@@ -330,6 +339,24 @@ impl Real for Interval {
     }
     fn log10(self) -> Self {
         self.monotone(f64::log10)
+    }
+    fn sign(self) -> Self {
+        Interval {
+            lo: if self.lo >= 0.0 { 1.0 } else { -1.0 },
+            hi: if self.hi < 0.0 { -1.0 } else { 1.0 },
+        }
+    }
+    fn lesser(self, o: Self) -> Self {
+        Interval {
+            lo: self.lo.min(o.lo),
+            hi: self.hi.min(o.hi),
+        }
+    }
+    fn greater(self, o: Self) -> Self {
+        Interval {
+            lo: self.lo.max(o.lo),
+            hi: self.hi.max(o.hi),
+        }
     }
     fn abs(self) -> Self {
         if self.lo >= 0.0 {

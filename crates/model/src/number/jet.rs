@@ -267,4 +267,16 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
             zip!(self, at, value, |d, e| (slope * d + e) / whole),
         )
     }
+    // The gradient of the one that it is; where that is not known, as in intervals, of anything between both.
+    #[inline(always)]
+    fn lesser(self, o: Self) -> Self {
+        let half = (o.value - self.value).sign() * 0.5;
+        let (this, other) = (half + 0.5, -half + 0.5);
+        zip!(self, o, self.value.lesser(o.value), |d, e| this * d
+            + other * e)
+    }
+    #[inline(always)]
+    fn greater(self, o: Self) -> Self {
+        -(-self).lesser(-o)
+    }
 }

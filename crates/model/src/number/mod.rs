@@ -106,6 +106,16 @@ pub trait Real:
     }
     /// the y of y + g(y) = x, and g(y), each with its own digits
     fn balanced(self, g: Balance<Self>) -> (Self, Self);
+    /// the lesser of two; this one where they are equal
+    #[inline(always)]
+    fn lesser(self, o: Self) -> Self {
+        if (o - self).leading() >= 0.0 { self } else { o }
+    }
+    /// the greater of two; this one where they are equal
+    #[inline(always)]
+    fn greater(self, o: Self) -> Self {
+        if (self - o).leading() >= 0.0 { self } else { o }
+    }
 }
 
 /// Arguments for which sinh and cosh are accurate, and finite, as a sum of two exponentials.

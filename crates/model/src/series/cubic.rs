@@ -222,6 +222,15 @@ impl Element for Jet3 {
     fn balanced(self, g: Balance<Self>) -> (Self, Self) {
         balanced(self, g, 2)
     }
+    #[inline(never)]
+    fn asinh(self) -> Self {
+        // asinh' = r, asinh'' = -x r^3, asinh''' = (2 x^2 - 1) r^5, r = 1 / sqrt(1 + x^2)
+        let x = self.0[0];
+        let r = 1.0 / 1_f64.hypot(x);
+        let third = (2.0 * x * x - 1.0) * r.powi(5);
+        let value = Real::asinh(x);
+        self.composed([value, r, -0.5 * x * r.powi(3), third / 6.0])
+    }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.0[0] < 0.0 { a } else { b }
     }

@@ -94,6 +94,10 @@ pub trait Element:
         }
         both
     }
+    /// inverse of the hyperbolic sine
+    fn asinh(self) -> Self {
+        lane_by_lane(self, <f64 as Real>::asinh)
+    }
     /// a in the lanes where self is negative, else b.
     fn if_negative(self, a: Self, b: Self) -> Self;
     /// a in the lanes where self is positive and finite, else b. Lanes that belong together do so only together, and all do
@@ -344,6 +348,9 @@ impl Element for DoubleDouble {
     }
     fn balanced(self, g: Balance<Self>) -> (Self, Self) {
         Real::balanced(self, g)
+    }
+    fn asinh(self) -> Self {
+        Real::asinh(self)
     }
     fn if_negative(self, a: Self, b: Self) -> Self {
         if self.hi() < 0.0 { a } else { b }

@@ -260,7 +260,11 @@ impl<'a, T: Element> Interpreted<'a, T> {
             self.probe.set(i, 0, *x);
         }
         self.probe.level(&self.program, 0);
-        let signs = |&row: &usize| self.rows.row(row)[0].first() * self.probe.row(row)[0].first();
+        // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
+        let signs = |&row: &usize| {
+            let before = 1_f64.copysign(self.rows.row(row)[0].first());
+            before * self.probe.row(row)[0].first()
+        };
         self.program.kinks.iter().map(signs).any(|sign| sign < 0.0)
     }
 

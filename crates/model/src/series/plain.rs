@@ -82,6 +82,7 @@ impl<T: Element> Element for Both<T> {
         ln_1p();
         atan();
         tanh();
+        asinh();
         powf(p: f64);
         rough_log2();
         rough_exp2();

@@ -1,6 +1,8 @@
 //! A recorded formula on power series: one coefficient of all its quantities after the other.
 //!
-//! What depends on the variables has a row of coefficients; everything else is a number. `program_rows` carries the operations out.
+//! What depends on the variables has a row of coefficients; everything else is a number. The recurrences run in loops over the
+//! operations ([`super::program_rows`]) instead of compiled one by one: for any number of variables, for numbers of any kind, and no
+//! code for each formula.
 
 use super::trace::{Graph, Node, NodeIndex, Traced};
 use crate::number::{Balance, DoubleDouble, Real};
@@ -42,6 +44,8 @@ pub(super) enum Operation {
     Circular(usize, usize),
     /// atan a beside 1 + a^2; the spare row holds 1 / (1 + a_0^2), then j y_j
     Arctangent(usize, usize),
+    /// asinh a beside sqrt(1 + a^2); likewise
+    InverseHyperbolicSine(usize, usize),
     /// tanh a and, in that row, 1 - tanh^2 a; the spare row holds j a_j
     HyperbolicTangent(usize, usize),
     /// a^p; the spare row holds 1 / a_0, then j y_j
@@ -53,6 +57,44 @@ pub(super) enum Operation {
     Balanced(Source, Balance<Source>),
 }
 
+impl Operation {
+    /// The rows whose coefficients it needs at the order of its result.
+    fn operands(self) -> [Option<usize>; 3] {
+        let row = |source: Source| match source {
+            Source::Row(row) => Some(row),
+            Source::Number(_) => None,
+        };
+        match self {
+            Operation::Balanced(x, Balance::Exponential(a) | Balance::Sinh(a)) => {
+                [row(x), row(a), None]
+            }
+            Operation::Balanced(x, Balance::Difference(a, b)) => [row(x), row(a), row(b)],
+            Operation::Sum(a, b)
+            | Operation::Difference(a, b)
+            | Operation::Product(a, b)
+            | Operation::Quotient(Source::Row(a), b)
+            | Operation::ExponentialLessOne(a, b)
+            | Operation::LogarithmOfOneMore(a, b)
+            | Operation::Arctangent(a, b)
+            | Operation::InverseHyperbolicSine(a, b)
+            | Operation::Signed(a, b) => [Some(a), Some(b), None],
+            Operation::Negative(a)
+            | Operation::Shifted(a, _)
+            | Operation::Complement(_, a)
+            | Operation::Scaled(a, _)
+            | Operation::Over(a, _)
+            | Operation::Quotient(Source::Number(_), a)
+            | Operation::Exponential(a)
+            | Operation::Logarithm(a)
+            | Operation::Hyperbolic(a, _)
+            | Operation::Circular(a, _)
+            | Operation::HyperbolicTangent(a, _)
+            | Operation::Power(a, _)
+            | Operation::Sign(a) => [Some(a), None, None],
+        }
+    }
+}
+
 /// An operation, the row of its result, and one that it may use.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Instruction {
@@ -61,13 +103,26 @@ pub(super) struct Instruction {
     pub spare: usize,
 }
 
+impl Instruction {
+    /// The row that it makes beside its result.
+    fn second_result(self) -> Option<usize> {
+        match self.operation {
+            Operation::Hyperbolic(_, row)
+            | Operation::Circular(_, row)
+            | Operation::HyperbolicTangent(_, row) => Some(row),
+            Operation::Balanced(..) => Some(self.result - 1),
+            _ => None,
+        }
+    }
+}
+
 /// Rows before that of a balance.
 const BALANCE_ROWS: usize = 6;
 
 /// The operations of a formula, whose variables stand in the first rows.
 #[derive(Debug, Clone)]
 pub(super) struct Program {
-    pub instructions: Vec<Instruction>,
+    instructions: Vec<Instruction>,
     variables: usize,
     rows: usize,
     /// What the formula gives, in the order in which it was asked for.
@@ -112,7 +167,29 @@ impl Program {
         }
         let mut program = assembly.program;
         program.outputs = outputs.iter().map(|&at| assembly.sources[at]).collect();
+        program.interleave();
         program
+    }
+
+    /// The operations, in an order in which they can be carried out.
+    pub fn instructions(&self) -> &[Instruction] {
+        &self.instructions
+    }
+
+    /// Puts operations that need the same number of others before them side by side: none of these waits for another, which would
+    /// take most of the time.
+    fn interleave(&mut self) {
+        let mut depths = vec![0; self.rows];
+        for instruction in &self.instructions {
+            let operands = instruction.operation.operands().into_iter().flatten();
+            let depth = 1 + operands.map(|row| depths[row]).max().unwrap_or(0);
+            depths[instruction.result] = depth;
+            if let Some(second) = instruction.second_result() {
+                depths[second] = depth;
+            }
+        }
+        self.instructions
+            .sort_by_key(|instruction| depths[instruction.result]);
     }
 
     /// Rows that it takes.
@@ -157,6 +234,7 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::Cosh(a, b)
             | Node::Cos(a, b)
             | Node::Arctangent(a, b)
+            | Node::InverseHyperbolicSine(a, b)
             | Node::VariablePower(a, b)
             | Node::Signed(a, b) => {
                 needed[a] = true;
@@ -275,6 +353,11 @@ impl Assembly<'_> {
             Node::Arctangent(a, u) => match (at(a), at(u)) {
                 (Row(a), Row(u)) => (Op::Arctangent(a, u), true),
                 (Number(x), _) => return Number(Real::atan(x)),
+                _ => unreachable!("1 + a^2 is as constant as a"),
+            },
+            Node::InverseHyperbolicSine(a, u) => match (at(a), at(u)) {
+                (Row(a), Row(u)) => (Op::InverseHyperbolicSine(a, u), true),
+                (Number(x), _) => return Number(Real::asinh(x)),
                 _ => unreachable!("1 + a^2 is as constant as a"),
             },
             Node::HyperbolicTangent(a) => match at(a) {

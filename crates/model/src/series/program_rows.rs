@@ -1,7 +1,4 @@
-//! The operations of a program, carried out on rows of coefficients.
-//!
-//! The recurrences are those of [`super::tape`], in loops over the operations instead of compiled one by one: for any number of
-//! variables, for numbers of any kind, and no code for each formula.
+//! The rows of a [`Program`], and how its operations fill them: the recurrences of [`super::tape`], in loops.
 
 use super::element::Element;
 use super::program::{Instruction, Operation, Program, Source};
@@ -72,7 +69,7 @@ impl<T: Element> ProgramRows<T> {
 
     /// The k-th coefficients of all rows but those of the variables, from those up to the k-th of these.
     pub fn level(&mut self, program: &Program, k: usize) {
-        for instruction in &program.instructions {
+        for instruction in program.instructions() {
             self.carry_out(instruction, k);
         }
     }
@@ -165,11 +162,14 @@ impl<T: Element> ProgramRows<T> {
                     s.scale(one_over)
                 }
             }
-            Operation::Arctangent(a, u) => {
-                // u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
+            Operation::Arctangent(a, u) | Operation::InverseHyperbolicSine(a, u) => {
+                // y' = a' / u: u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
                 if k == 0 {
                     self.set(spare, 0, any.like(1.0) / self.get(u, 0));
-                    self.get(a, 0).atan()
+                    match operation {
+                        Operation::Arctangent(..) => self.get(a, 0).atan(),
+                        _ => self.get(a, 0).asinh(),
+                    }
                 } else {
                     let sum = self
                         .convolution(spare, u, k, (1, k))

@@ -1,4 +1,5 @@
-//! Solutions of any [`Equations`] that are computed by a recorded formula: references, tangents and Taylor maps.
+//! Solutions that are computed by a recorded formula: references, tangents and Taylor maps of any [`Equations`], and all solutions
+//! of [`Expressions`].
 
 use super::cubic::Jet3;
 use super::equations::Equations;
@@ -11,6 +12,7 @@ use super::{
 };
 #[cfg(target_arch = "x86_64")]
 use super::{Four, avx2};
+use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
 use std::ops::{Deref, DerefMut};
 
@@ -182,6 +184,75 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> Recorded<S, N,
                     (&rates, &slip_rates),
                     free.as_deref(),
                 )
+            }),
+        }
+    }
+}
+
+/// Right-hand sides that are known when the program runs, at given parameters, whose solutions are made by their recorded
+/// formulas.
+#[derive(Debug, Clone, Copy)]
+pub struct RecordedExpressions<'a, const N: usize> {
+    /// The right-hand sides, N of them in N variables.
+    pub rates: &'a Expressions,
+    /// The parameters.
+    pub parameters: &'a [f64],
+}
+
+impl<'a, const N: usize> RecordedExpressions<'a, N> {
+    /// A solution.
+    pub fn solution(self) -> Box<dyn Solution<N> + 'a> {
+        Box::new(Known(self.recording(None).solution()))
+    }
+
+    /// A solution in 31 digits.
+    pub fn reference(self) -> Box<dyn Solution<N> + 'a> {
+        Box::new(Known(self.recording(None).reference()))
+    }
+
+    /// A solution with its derivatives in its start and in the parameters of these places.
+    pub fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+        Box::new(Known(self.recording(Some(free)).tangent()))
+    }
+
+    /// The same in 31 digits.
+    pub fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+        Box::new(Known(self.recording(Some(free)).reference_tangent()))
+    }
+
+    /// A solution to third order in two variations, which are those of this start.
+    pub fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
+        let recording = self.recording(None);
+        Box::new(Known(Box::new(recording.transport(&start))))
+    }
+
+    fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
+        Recording::of_expressions(self.rates, N, self.parameters, free)
+    }
+}
+
+impl<'a> Recording<'a> {
+    /// As of [`Recorded::recording`].
+    fn of_expressions(
+        rates: &'a Expressions,
+        variables: usize,
+        parameters: &'a [f64],
+        free: Option<&[usize]>,
+    ) -> Self {
+        let free = free.map(<[usize]>::to_vec);
+        Recording {
+            slip_rates: 0,
+            symmetric: false,
+            variables,
+            free: free.as_ref().map_or(0, Vec::len),
+            record: Box::new(move |x| {
+                let graph = Graph::default();
+                let place = |(i, &value): (usize, &f64)| graph.variable(i, value);
+                let x: Vec<_> = x.iter().enumerate().map(place).collect();
+                let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
+                let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
+                let rates = rates.evaluate(&x, &p);
+                assemble(&graph, parameters, (&rates, &[]), free.as_deref())
             }),
         }
     }

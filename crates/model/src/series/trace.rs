@@ -42,6 +42,8 @@ pub(super) enum Node {
     /// atan a, and the node of 1 + a^2.
     Arctangent(NodeIndex, NodeIndex),
     HyperbolicTangent(NodeIndex),
+    /// asinh a, and the node of sqrt(1 + a^2).
+    InverseHyperbolicSine(NodeIndex, NodeIndex),
     /// a to the power of a constant, by its bits.
     Power(NodeIndex, u64),
     /// a to the power of b.
@@ -166,7 +168,7 @@ impl Graph {
                 Node::Cosh(a, sinh) => slope(a) * at(sinh),
                 Node::Sin(a) => slope(a) * at(a).cos(),
                 Node::Cos(a, sin) => -(slope(a) * at(sin)),
-                Node::Arctangent(a, u) => slope(a) / at(u),
+                Node::Arctangent(a, u) | Node::InverseHyperbolicSine(a, u) => slope(a) / at(u),
                 Node::HyperbolicTangent(a) => slope(a) * (-(this * this) + 1.0),
                 Node::Power(a, p) => slope(a) * (this / at(a) * f64::from_bits(p)),
                 Node::VariablePower(a, p) => {
@@ -455,11 +457,14 @@ impl Real for Traced<'_> {
         self.unary(Real::tanh, f64::tanh, Node::HyperbolicTangent)
     }
 
-    // Near 0 it cancels, as the laws' own formulas never do.
+    #[inline(never)]
     fn asinh(self) -> Self {
         match self {
             Constant(x) => Constant(Real::asinh(x)),
-            _ => (self + (self * self + 1.0).sqrt()).ln(),
+            _ => {
+                let root = (self * self + 1.0).sqrt();
+                self.binary(root, |a, _| Real::asinh(a), Node::InverseHyperbolicSine)
+            }
         }
     }
 
@@ -505,5 +510,15 @@ impl Real for Traced<'_> {
         let y = graph.place(Node::Balanced(place, nodes), value);
         let of_y = graph.place(Node::OfBalanced(y), of_value);
         (Traced::Node(graph, y), Traced::Node(graph, of_y))
+    }
+    // Chosen by a sign, so that steps end at the kink; the factor of the one that it is is exactly 1, of the other 0.
+    fn lesser(self, o: Self) -> Self {
+        let half = (o - self).sign() * 0.5;
+        self * (half + 0.5) + o * (-half + 0.5)
+    }
+
+    fn greater(self, o: Self) -> Self {
+        let half = (self - o).sign() * 0.5;
+        self * (half + 0.5) + o * (-half + 0.5)
     }
 }

@@ -1,0 +1,261 @@
+//! A system whose equations are read when the program runs, as a vector field: everything from its formulas.
+
+use crate::error::{Error, Result};
+use crate::expression::Expressions;
+use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
+use crate::number::{DoubleDouble, Interval, Jet, Real};
+use crate::series::{Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
+use std::collections::BTreeSet;
+use std::sync::Mutex;
+
+/// Directions in which derivatives are made at once.
+const AT_ONCE: usize = 4;
+
+/// Equations with the names of their variables and parameters, at values of the latter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSystem {
+    rates: Expressions,
+    states: Vec<&'static str>,
+    names: Vec<&'static str>,
+    parameters: Vec<f64>,
+}
+
+impl TextSystem {
+    /// As many variables as there are, at most.
+    pub const LARGEST: usize = 8;
+
+    /// The rates of the states, one for each, in the states and the parameters by their places in these lists.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] unless there are 1 to [`TextSystem::LARGEST`] states.
+    pub fn new(rates: Expressions, states: &[&str], parameters: &[(&str, f64)]) -> Result<Self> {
+        if !(1..=Self::LARGEST).contains(&states.len()) {
+            let must = format!("from 1 to {}", Self::LARGEST);
+            return Err(Error::parameter("the number of states", states.len(), must));
+        }
+        Ok(TextSystem {
+            rates,
+            states: states.iter().map(|name| kept(name)).collect(),
+            names: parameters.iter().map(|(name, _)| kept(name)).collect(),
+            parameters: parameters.iter().map(|(_, value)| *value).collect(),
+        })
+    }
+
+    /// The names of the variables.
+    pub fn states(&self) -> &[&'static str] {
+        &self.states
+    }
+
+    /// The names of the parameters.
+    pub fn parameter_names(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// Their values.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+
+    /// Gives the parameter of this name another value.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is none.
+    pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
+        let place = crate::field::place(&self.names, name)?;
+        self.parameters[place] = value;
+        Ok(())
+    }
+
+    /// The field.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where it has other than N variables.
+    pub fn field<const N: usize>(&self) -> Result<TextField<'_, N>> {
+        if self.states.len() != N {
+            let must = format!("{N}, as many as the field is asked for");
+            return Err(Error::parameter(
+                "the number of states",
+                self.states.len(),
+                must,
+            ));
+        }
+        Ok(TextField(self))
+    }
+
+    /// The rates in numbers of any kind.
+    ///
+    /// # Panics
+    /// Where x has fewer components than there are states, as all that follow.
+    pub fn rates<T: Real>(&self, x: &[T]) -> Vec<T> {
+        let parameters: Vec<T> = self.parameters.iter().map(|&p| T::constant(p)).collect();
+        self.rates.evaluate(x, &parameters)
+    }
+
+    /// The Jacobian, row by row, in numbers of any kind.
+    pub fn jacobian<T: Real>(&self, x: &[T]) -> Vec<T> {
+        let n = self.states.len();
+        let mut all = vec![T::constant(0.0); n * n];
+        for first in (0..n).step_by(AT_ONCE) {
+            let along = |(j, &value): (usize, &T)| {
+                let here = |i: usize| T::constant(f64::from(u8::from(first + i == j)));
+                Jet {
+                    value,
+                    gradient: std::array::from_fn::<T, AT_ONCE, _>(here),
+                }
+            };
+            let x: Vec<_> = x.iter().enumerate().map(along).collect();
+            for (i, rate) in self.rates(&x).into_iter().enumerate() {
+                for (j, slope) in (first..n).zip(rate.gradient) {
+                    all[i * n + j] = slope;
+                }
+            }
+        }
+        all
+    }
+
+    /// The rates over a box.
+    pub fn rates_within(&self, x: &[Interval]) -> Vec<Interval> {
+        self.rates(x)
+    }
+
+    /// The Jacobian over a box, row by row.
+    pub fn jacobian_within(&self, x: &[Interval]) -> Vec<Interval> {
+        self.jacobian(x)
+    }
+
+    /// The rates in 31 digits.
+    pub fn rates_exactly(&self, x: &[DoubleDouble]) -> Vec<DoubleDouble> {
+        self.rates(x)
+    }
+
+    fn second_derivative(&self, [y, u, v]: [&[f64]; 3]) -> Vec<f64> {
+        // f(y + a u + b v), differentiated in a and in b.
+        let of = |i: usize| Jet {
+            value: single(y[i], u[i]),
+            gradient: [single(v[i], 0.0)],
+        };
+        let x: Vec<_> = (0..self.states.len()).map(of).collect();
+        let rates = self.rates(&x).into_iter();
+        rates.map(|f| f.gradient[0].gradient[0]).collect()
+    }
+
+    fn parameter_derivative(&self, y: &[f64], place: usize) -> Vec<f64> {
+        let x: Vec<_> = y.iter().map(|&y| single(y, 0.0)).collect();
+        let along = |(q, &p): (usize, &f64)| single(p, f64::from(u8::from(q == place)));
+        let parameters: Vec<_> = self.parameters.iter().enumerate().map(along).collect();
+        let rates = self.rates.evaluate(&x, &parameters).into_iter();
+        rates.map(|f| f.gradient[0]).collect()
+    }
+
+    /// The derivative in the parameter of that in the variable.
+    fn mixed_derivative(&self, y: &[f64], variable: usize, place: usize) -> Vec<f64> {
+        let fixed = |value: Jet<f64, 1>| Jet {
+            value,
+            gradient: [single(0.0, 0.0)],
+        };
+        let one = |at: usize, i: usize| f64::from(u8::from(at == i));
+        let along = |(i, &y): (usize, &f64)| fixed(single(y, one(i, variable)));
+        let x: Vec<_> = y.iter().enumerate().map(along).collect();
+        let beside = |(q, &p): (usize, &f64)| Jet {
+            value: single(p, 0.0),
+            gradient: [single(one(q, place), 0.0)],
+        };
+        let parameters: Vec<_> = self.parameters.iter().enumerate().map(beside).collect();
+        let rates = self.rates.evaluate(&x, &parameters).into_iter();
+        rates.map(|f| f.gradient[0].gradient[0]).collect()
+    }
+}
+
+/// A number with its derivative in one direction.
+fn single(value: f64, slope: f64) -> Jet<f64, 1> {
+    Jet {
+        value,
+        gradient: [slope],
+    }
+}
+
+/// The same name for as long as the program runs: fields have names that do not end. Each is kept once.
+fn kept(name: &str) -> &'static str {
+    static NAMES: Mutex<BTreeSet<&'static str>> = Mutex::new(BTreeSet::new());
+    let mut names = NAMES.lock().unwrap_or_else(|held| held.into_inner());
+    if let Some(known) = names.get(name) {
+        return known;
+    }
+    let new: &'static str = Box::leak(name.to_owned().into_boxed_str());
+    names.insert(new);
+    new
+}
+
+/// A [`TextSystem`] of N variables.
+#[derive(Debug, Clone, Copy)]
+pub struct TextField<'a, const N: usize>(&'a TextSystem);
+
+impl<'a, const N: usize> TextField<'a, N> {
+    fn recorded(&self) -> RecordedExpressions<'a, N> {
+        RecordedExpressions {
+            rates: &self.0.rates,
+            parameters: &self.0.parameters,
+        }
+    }
+}
+
+impl<const N: usize> VectorField<N> for TextField<'_, N> {
+    fn f(&self, y: &State<N>) -> State<N> {
+        State::from_column_slice(&self.0.rates(y.as_slice()))
+    }
+
+    fn jacobian(&self, y: &State<N>) -> Jacobian<N> {
+        Jacobian::from_row_slice(&self.0.jacobian(y.as_slice()))
+    }
+
+    fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
+        let made = self.0.second_derivative([y, u, v].map(|x| x.as_slice()));
+        State::from_column_slice(&made)
+    }
+
+    fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
+        Some(self)
+    }
+
+    fn analytic(&self) -> Option<&dyn Analytic<N>> {
+        Some(self)
+    }
+}
+
+impl<const N: usize> Parametrised<N> for TextField<'_, N> {
+    fn names(&self) -> &[&'static str] {
+        &self.0.names
+    }
+
+    fn parameter_derivative(&self, y: &State<N>, place: usize) -> State<N> {
+        State::from_column_slice(&self.0.parameter_derivative(y.as_slice(), place))
+    }
+
+    fn parameter_jacobian(&self, y: &State<N>, place: usize) -> Jacobian<N> {
+        let column = |j: usize| self.0.mixed_derivative(y.as_slice(), j, place);
+        let columns: Vec<f64> = (0..N).flat_map(column).collect();
+        Jacobian::from_column_slice(&columns)
+    }
+}
+
+impl<const N: usize> Analytic<N> for TextField<'_, N> {
+    fn solution(&self) -> Box<dyn Solution<N> + '_> {
+        self.recorded().solution()
+    }
+
+    fn reference(&self) -> Box<dyn Solution<N> + '_> {
+        self.recorded().reference()
+    }
+
+    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
+        self.recorded().tangent(free)
+    }
+
+    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
+        self.recorded().reference_tangent(free)
+    }
+
+    fn transport(&self, start: [Jet3; N]) -> Option<Box<dyn TaylorMap<N> + '_>> {
+        Some(self.recorded().transport(start))
+    }
+}

@@ -1,0 +1,106 @@
+//! `twinslip equilibria --system`.
+
+use crate::cli::report::Report;
+use crate::cli::words::several;
+use crate::cli::{Ending, say, written};
+use crate::equilibrium::Verdict;
+use crate::error::Result;
+use crate::number::Interval;
+use crate::output::Format;
+use crate::scene::{
+    Described, EquilibriaOptions, SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium,
+    TextModel,
+};
+use crate::views;
+use serde_json::{Map, Value, json};
+
+pub fn run(options: &EquilibriaOptions, model: TextModel, words: &[String]) -> Result<Ending> {
+    let plan = TextEquilibriaPlan::new(options, model)?;
+    let report = Report::new(&options.output, words, &[])?;
+    if options.output.explain {
+        say(plan.explain());
+    }
+    let found = plan.solve()?;
+    let ending = write(&report, &plan, &found)?;
+    if !found.undecided.is_empty() {
+        report.say(format!(
+            "the number of equilibria is undecided: {} may hold any, near {}",
+            several(found.undecided.len(), "small box", "small boxes"),
+            near(&plan.model, &found.undecided[0])
+        ));
+    }
+    let undecided = |one: &TextEquilibrium| one.stability.verdict == Verdict::Undecided;
+    if ending == Ending::Done
+        && (!found.undecided.is_empty() || found.equilibria.iter().any(undecided))
+    {
+        return Ok(Ending::Undecided);
+    }
+    Ok(ending)
+}
+
+fn near(model: &TextModel, part: &[Interval]) -> String {
+    let states = model.system.states().iter().zip(part);
+    let middle = |x: &Interval| 0.5 * x.lo() + 0.5 * x.hi();
+    let states = states.map(|(name, x)| format!("{name} = {:.6}", middle(x)));
+    states.collect::<Vec<_>>().join(", ")
+}
+
+fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria) -> Result<Ending> {
+    let search = match plan.place {
+        SearchPlace::Near(_) => "near a start",
+        SearchPlace::Within(_) => "in a box",
+    };
+    let numerics = json!({"search": search});
+    let model = &plan.model;
+    if report.format == Format::Json {
+        let list: Vec<Value> = found
+            .equilibria
+            .iter()
+            .map(|one| object(one, model))
+            .collect();
+        let work = json!({"equilibria": list.len()});
+        let ends = |part: &Vec<Interval>| -> Map<String, Value> {
+            let states = model.system.states().iter().zip(part);
+            let pair =
+                |(name, x): (&&str, &Interval)| ((*name).to_owned(), json!([x.lo(), x.hi()]));
+            states.map(pair).collect()
+        };
+        let undecided: Vec<_> = found.undecided.iter().map(ends).collect();
+        let result = json!({
+            "equilibria": list,
+            "complete": matches!(plan.place, SearchPlace::Within(_)) && undecided.is_empty(),
+            "undecided": undecided,
+        });
+        let bytes = report.envelope(model, numerics, result, work, None);
+        return written(report.place.write(&bytes), &report.place);
+    }
+    report.write_all(
+        model.units(),
+        report.remarks(model, &numerics),
+        &views::text_equilibria_columns(model),
+        &found.equilibria,
+    )
+}
+
+fn object(found: &TextEquilibrium, model: &TextModel) -> Value {
+    let states = model.system.states().iter().zip(&found.state);
+    let mut all = Map::new();
+    for (name, x) in states {
+        all.insert(
+            (*name).to_owned(),
+            crate::output::uncertain((x.value, x.uncertainty)),
+        );
+    }
+    let eigenvalues = found.stability.eigenvalues.iter();
+    all.insert(
+        "eigenvalues".into(),
+        eigenvalues.map(|z| json!([z.re, z.im])).collect(),
+    );
+    all.insert(
+        "eigenvalue_uncertainty".into(),
+        json!(found.stability.uncertainty),
+    );
+    all.insert("verdict".into(), json!(found.stability.verdict.name()));
+    all.insert("residual".into(), json!(found.residual));
+    Value::Object(all)
+}

@@ -1,0 +1,6 @@
+//! The commands of a system of one's own.
+
+pub mod equilibria;
+pub mod integrate;
+pub mod orbit;
+pub mod section;

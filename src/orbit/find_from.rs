@@ -1,0 +1,93 @@
+//! A periodic orbit of any field, near a point or as what a run from there settles on.
+
+use super::arc::Tracer;
+use super::find::{FoundOrbit, Guesses, ROUGH, SEARCH, completed};
+use super::no_orbit;
+use super::settle::passages;
+use super::solve::OrbitAccuracy;
+use super::space::Alone;
+use crate::equilibrium::Symmetry;
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::integrate::{AnyField, Control};
+
+/// The periodic orbit at or near a start; with its period, roughly, no shorter cycle is taken for it. Without it, where the returns
+/// of the start lead to none, what a run from there settles on.
+///
+/// # Errors
+/// [`Error::Input`] for a field of one variable; [`Error::NoOrbit`] says what was found instead; [`Error::NotConverged`]; those
+/// of the flow.
+pub fn find_from(
+    field: &AnyField<'_>,
+    start: &Vector,
+    period: Option<f64>,
+    accuracy: &OrbitAccuracy,
+) -> Result<FoundOrbit> {
+    if field.dimension() < 2 {
+        return Err(Error::Input(
+            "a system of one state has no periodic orbit".into(),
+        ));
+    }
+    let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
+    let space = Alone(field);
+    let mut guesses = Guesses::new(&space, Symmetry::Symmetric);
+    match period {
+        Some(period) => guesses.over(period, &mut tracer, start)?,
+        None => {
+            let rough = rough_period(&mut tracer, field, start)?;
+            guesses.near(rough, &mut tracer, start)?;
+        }
+    }
+    if guesses.closed.is_empty() {
+        return Err(guesses.otherwise.unwrap_or_else(|| {
+            no_orbit(
+                "no periodic orbit was met".into(),
+                "give a `start` near it and a `period_guess`, or other parameters",
+            )
+        }));
+    }
+    completed(guesses, None, accuracy, period.is_some())
+}
+
+/// The time between passages of the middle of what the first variable does.
+fn rough_period(tracer: &mut Tracer, field: &AnyField<'_>, start: &Vector) -> Result<f64> {
+    /// Steps of a run that is watched, in its second half.
+    const STEPS: usize = 2000;
+    /// As long as a run may be, which ends by its steps.
+    const FOREVER: f64 = 1e100;
+    /// Parts of a run that has no passages.
+    const PARTS: f64 = 10.0;
+    let (mut steps, mut elapsed) = (0, 0.0);
+    let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+    let end = tracer.flow(
+        field,
+        start,
+        FOREVER,
+        Some(&mut |step| {
+            steps += 1;
+            elapsed = step.t1;
+            if 2 * steps > STEPS {
+                range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
+            }
+            Ok(if steps == STEPS {
+                Control::Stop
+            } else {
+                Control::Continue
+            })
+        }),
+    )?;
+    let level = 0.5 * (range.0 + range.1);
+    if !level.is_finite() || elapsed >= FOREVER {
+        return Err(no_orbit(
+            "the run comes to rest at an equilibrium".into(),
+            "give a `start` from which it does not, or other parameters",
+        ));
+    }
+    let found = passages(tracer, field, &end, elapsed, level, usize::MAX)?.found;
+    Ok(match (found.first(), found.last()) {
+        (Some((first, _)), Some((last, _))) if last > first => {
+            (last - first) / (found.len() - 1) as f64
+        }
+        _ => elapsed / PARTS,
+    })
+}

@@ -1,0 +1,29 @@
+//! What a user can set about a system of their own.
+
+use std::path::PathBuf;
+
+/// A system from a file, in place of interfaces.
+#[derive(Debug, Clone, Default, PartialEq, clap::Args)]
+#[command(next_help_heading = "Model")]
+pub struct TextOptions {
+    /// A system of one's own in place of interfaces: a TOML file with its states, parameters and rates, or one that is built in,
+    /// such as lorenz
+    #[arg(
+        long,
+        value_name = "FILE",
+        conflicts_with_all = [
+            "law", "interfaces", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
+            "si", "slip_length", "reference_rate", "normal_stress",
+        ]
+    )]
+    pub system: Option<PathBuf>,
+    /// With --system: another value of a parameter, NAME=VALUE; may be given again
+    #[arg(
+        long,
+        value_name = "NAME=VALUE",
+        requires = "system",
+        value_delimiter = ',',
+        allow_hyphen_values = true
+    )]
+    pub set: Vec<String>,
+}

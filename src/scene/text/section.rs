@@ -1,0 +1,234 @@
+//! The return map of a system of one's own.
+
+use super::model::{TextModel, number};
+use super::plan::numerics;
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::friction::positive;
+use crate::integrate::{AnyField, AnyIntegrator, Choice, Control, Tolerances};
+use crate::number::Uncertain;
+use crate::number::polynomial::Crossing;
+use crate::orbit::{OrbitAccuracy, find_from};
+use crate::scene::column::Column;
+use crate::scene::options::SectionOptions;
+use crate::scene::run::Sink;
+use crate::scene::section::{
+    CheckedExponents, Means, SAME_PERIOD, SectionOutcome, Settling, counted, of_multipliers,
+    of_record,
+};
+use crate::scene::system::Described;
+use crate::scene::units::Quantity;
+use crate::section::{Periodic, SeriesVariables, Surface, Watching};
+
+/// The longest time to wait for a return where nobody says otherwise.
+const PATIENCE: f64 = 1e4;
+
+/// A return map of a system of one's own, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSectionPlan {
+    /// The system.
+    pub model: TextModel,
+    /// Where the run starts.
+    pub start: Vector,
+    /// The place of the state that has a fixed value in the section.
+    pub state: usize,
+    /// That value.
+    pub value: f64,
+    /// The direction in which it is crossed.
+    pub direction: Crossing,
+    /// Returns that are let pass.
+    pub skip: usize,
+    /// Returns that are recorded.
+    pub returns: usize,
+    /// The longest time to wait for one.
+    pub patience: f64,
+    /// Whether the Lyapunov exponents are asked for.
+    pub lyapunov: bool,
+    /// The method's name as it was asked for.
+    pub asked_method: String,
+    /// The method.
+    pub method: Choice,
+    /// The tolerances.
+    pub tolerances: Tolerances,
+    /// The bound on steps.
+    pub max_steps: usize,
+}
+
+/// A return to the section.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextReturn {
+    /// Its number after the returns let pass, from 0.
+    pub number: usize,
+    /// When it is.
+    pub time: f64,
+    /// The values of all states.
+    pub state: Vec<f64>,
+}
+
+/// The columns of a return map: the number of the return, its time, and every state by its name.
+pub fn text_section_columns(model: &TextModel) -> Vec<Column<TextReturn>> {
+    let mut columns = vec![
+        Column::new("return", Quantity::Number, |row: &TextReturn| {
+            row.number.into()
+        }),
+        Column::new("time", Quantity::Number, |row: &TextReturn| row.time.into()),
+    ];
+    let states = model.system.states().iter().enumerate();
+    columns.extend(states.map(|(i, name)| {
+        Column::new(*name, Quantity::Number, move |row: &TextReturn| {
+            row.state[i].into()
+        })
+    }));
+    columns
+}
+
+impl TextSectionPlan {
+    /// Checks the options for this system.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &SectionOptions, model: TextModel) -> Result<Self> {
+        if model.system.states().len() < 2 {
+            return Err(Error::Input(
+                "a system of one state has no return map: it never comes back".into(),
+            ));
+        }
+        counted(options)?;
+        let (method, tolerances) = numerics(&options.numerics)?;
+        let (state, value) = surface(options.surface.as_deref(), &model)?;
+        Ok(TextSectionPlan {
+            start: model.start(options.start.as_deref())?,
+            state,
+            value,
+            direction: if options.upwards {
+                Crossing::Upwards
+            } else {
+                Crossing::Downwards
+            },
+            skip: options.skip,
+            returns: options.returns,
+            patience: positive("patience", options.patience.unwrap_or(PATIENCE))?,
+            lyapunov: options.lyapunov,
+            asked_method: options.numerics.method.clone(),
+            method,
+            tolerances,
+            max_steps: options.numerics.max_steps,
+            model,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let sense = match self.direction {
+            Crossing::Downwards => "falling",
+            _ => "rising",
+        };
+        let tangents = if self.lyapunov {
+            "on, for the Lyapunov exponents"
+        } else {
+            "off but for the periodic point: `lyapunov` is not given"
+        };
+        format!(
+            "plan of this return map
+  dimension         {}
+  method            {}: {}
+  section           {} {sense} through {}
+  returns           {} after {} that are skipped; a run that does not return for {} ends
+  tangents          {tangents}",
+            self.start.len(),
+            self.method.name(),
+            self.method.reason(),
+            self.model.system.states()[self.state],
+            self.value,
+            self.returns,
+            self.skip,
+            self.patience
+        )
+    }
+
+    fn surface(&self) -> Surface {
+        let along = |i: usize, _: usize| f64::from(u8::from(i == self.state));
+        Surface {
+            normal: Vector::from_fn(self.start.len(), along),
+            offset: self.value,
+            direction: self.direction,
+            chart: SeriesVariables::Plain,
+        }
+    }
+}
+
+/// STATE=VALUE
+fn surface(text: Option<&str>, model: &TextModel) -> Result<(usize, f64)> {
+    let Some(text) = text else {
+        let states = model.system.states().join(", ");
+        return Err(Error::Input(format!(
+            "`surface` STATE=VALUE is missing: where is the section? The states are {states}"
+        )));
+    };
+    let read = text.split_once('=');
+    let Some((name, value)) = read.and_then(|(name, value)| Some((name, number(value)?))) else {
+        return Err(Error::Input(format!(
+            "`surface` {text:?} must be STATE=VALUE"
+        )));
+    };
+    Ok((model.state("the state of `surface`", name.trim())?, value))
+}
+
+/// Runs the plan of a return map.
+///
+/// # Errors
+/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
+pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
+    let field = &plan.model.field()?;
+    let means: Means<'_> = &|record, see| of_record(field, record, see);
+    let settling = Settling {
+        field,
+        start: plan.start.clone(),
+        surface: plan.surface(),
+        watching: Watching {
+            skip: plan.skip,
+            // One more, as for interfaces, so that the verdicts are on as many.
+            returns: plan.returns + 1,
+            patience: plan.patience,
+            accuracy: plan.tolerances.rtol,
+            waypoints: false,
+        },
+        integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,
+        max_steps: plan.max_steps,
+        lyapunov: plan.lyapunov,
+        means,
+        by_orbit: &|periodic| of_orbit(field, periodic),
+    };
+    let columns = text_section_columns(&plan.model);
+    let mut made = 0;
+    settling.run(
+        &mut |at, sink| {
+            if made == plan.returns {
+                return Control::Continue;
+            }
+            let row = TextReturn {
+                number: made,
+                time: at.time,
+                state: at.state.as_slice().to_vec(),
+            };
+            made += 1;
+            let units = plan.model.units();
+            let numbers = columns.iter().map(|column| column.number(&row, units));
+            sink.row(&numbers.collect::<Vec<f64>>())
+        },
+        sink,
+    )
+}
+
+/// ln |mu| / T of the periodic orbit through a point, with its period.
+fn of_orbit(field: &AnyField<'_>, periodic: &Periodic) -> Option<(Uncertain, CheckedExponents)> {
+    let period = periodic.period.value;
+    let accuracy = OrbitAccuracy::of(Choice::Taylor);
+    let orbit = find_from(field, &periodic.point, Some(period), &accuracy)
+        .ok()?
+        .orbit;
+    let apart = orbit.period.value / period - 1.0;
+    let known = apart.abs() < SAME_PERIOD;
+    let exponents = known.then(|| of_multipliers(&orbit)).flatten()?;
+    Some((orbit.period, exponents))
+}
