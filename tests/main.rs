@@ -65,6 +65,7 @@ mod packages;
 mod page;
 #[cfg(not(feature = "parquet"))]
 mod parameters;
+mod parameters_by_name;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod periodic_schur;

@@ -137,10 +137,8 @@ fn ends(
 
 /// V_H and K both vary along a curve.
 fn not_fixed(options: &LocusOptions) -> Result<()> {
-    let given = [
-        ("driving", options.model.driving),
-        ("stiffness", options.model.stiffness),
-    ];
+    let model = options.model.resolved()?;
+    let given = [("driving", model.driving), ("stiffness", model.stiffness)];
     match given.iter().find(|(_, value)| value.is_some()) {
         None => Ok(()),
         Some((name, _)) => Err(Error::Input(format!(

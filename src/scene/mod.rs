@@ -44,6 +44,7 @@ mod plan;
 mod program;
 mod run;
 mod section;
+mod set;
 mod shipped;
 mod slip;
 mod stretch;

@@ -50,6 +50,7 @@ impl System {
     /// # Errors
     /// [`Error::Parameter`] for a value outside its domain, in the user's own name and number.
     pub fn new(options: &ModelOptions) -> Result<Self> {
+        let options = options.resolved()?;
         Self::of(&options.slab, options.driving, options.stiffness)
     }
 
@@ -111,6 +112,7 @@ impl System {
     /// # Errors
     /// As [`System::new`]; [`Error::Input`] that names the missing option.
     pub(super) fn programmed(options: &ModelOptions, program: &Program) -> Result<(Self, Loading)> {
+        let options = options.resolved()?;
         if let Some(driving) = options.driving.filter(|&driving| driving < 0.0) {
             return Err(Error::parameter("driving", driving, "0 or positive"));
         }

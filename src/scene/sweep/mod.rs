@@ -72,7 +72,11 @@ impl SweepPlan {
             false => None,
         };
         let fixed = |grain: &Grain| options.basin.then_some(grain.range.from);
-        let system = System::of(&options.slab, fixed(&driving), fixed(&stiffness))?;
+        let system = System::of(
+            &options.slab.resolved()?,
+            fixed(&driving),
+            fixed(&stiffness),
+        )?;
         let units = &system.units;
         let grid = match &states {
             None => Grid::Plane {

@@ -49,6 +49,10 @@ pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<
             ("slip-length", maybe(slab.slip_length)),
             ("reference-rate", maybe(slab.reference_rate)),
             ("normal-stress", maybe(slab.normal_stress)),
+            (
+                "set",
+                Some(slab.text.set.join(",")).filter(|set| !set.is_empty()),
+            ),
             ("time-unit", Some(slab.time_unit.clone())),
             ("starts", count(options.starts)),
             ("seed", Some(options.seed.to_string())),

@@ -7,6 +7,7 @@ use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use crate::scene::file::read_bounded;
+use crate::scene::set::assignments;
 use crate::scene::shipped::{shipped_system, shipped_system_names};
 use crate::scene::system::Described;
 use crate::scene::units::Units;
@@ -37,14 +38,7 @@ impl TextModel {
             return Ok(None);
         };
         let mut read = read(path)?;
-        for set in &options.set {
-            let (name, value) = set
-                .split_once('=')
-                .ok_or_else(|| Error::Input(format!("`set` {set:?} must be NAME=VALUE")))?;
-            let value = number(value).ok_or_else(|| {
-                Error::Input(format!("`set` {set:?}: {value:?} is not a finite number"))
-            })?;
-            let name = name.trim();
+        for (name, value) in assignments(&options.set)? {
             if read.system.parameter_names().is_empty() {
                 let what = format!("`set` {name}: the system {} has no parameters", read.name);
                 return Err(Error::Input(what));

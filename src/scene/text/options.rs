@@ -13,15 +13,14 @@ pub struct TextOptions {
         value_name = "FILE",
         conflicts_with_all = [
             "law", "interfaces", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
-            "si", "slip_length", "reference_rate", "normal_stress",
+            "si", "slip_length", "reference_rate", "normal_stress", "damping", "shear_modulus", "shear_wave_speed",
         ]
     )]
     pub system: Option<PathBuf>,
-    /// With --system: another value of a parameter, NAME=VALUE; may be given again
+    /// Another value of any parameter, NAME=VALUE, by the names that JSON has; may be given again
     #[arg(
         long,
         value_name = "NAME=VALUE",
-        requires = "system",
         value_delimiter = ',',
         allow_hyphen_values = true
     )]
