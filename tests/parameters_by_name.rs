@@ -1,7 +1,7 @@
 //! What the commands take and write of parameters: `--set`, radiation damping in SI, and units of time.
 
 use crate::command;
-use command::{csv, number, object, refused_in_one_line, twinslip};
+use command::{csv, number, object, refused, refused_in_one_line, twinslip};
 
 #[test]
 fn a_parameter_that_is_set_is_as_one_that_has_a_flag() {
@@ -35,7 +35,7 @@ fn a_parameter_that_is_set_is_as_one_that_has_a_flag() {
 fn what_cannot_be_set_is_refused_in_one_sentence() {
     let model = "equilibria --driving 10 --stiffness 0.14";
     for (set, sentence) in [
-        ("residual_strenght=1", "did you mean residual_strength"),
+        ("residual_strenght=1", "did you mean \"residual_strength\""),
         ("damping", "must be NAME=VALUE"),
         ("damping=much", "\"much\" is not a finite number"),
         ("damping=inf", "is not a finite number"),
@@ -87,7 +87,7 @@ fn damping_in_si_is_that_of_the_rock() {
     );
     let stiffness = |row: usize| number(&plain, &format!("/result/rows/{row}/critical_stiffness"));
     assert!((k_c(1) / stiffness(1) / (0.01 * 50e6 / 10e-6) - 1.0).abs() < 1e-12);
-    refused_in_one_line("law --shear-modulus 30e9", "shear-wave-speed");
+    refused("law --shear-modulus 30e9", "--shear-wave-speed");
 }
 
 #[test]
@@ -114,7 +114,7 @@ fn times_have_the_unit_that_is_asked_for() {
     assert!((fast / again - 1.0).abs() < 1e-6);
     refused_in_one_line(
         &format!("{run} --until 2 --time-unit yaer"),
-        "did you mean year",
+        "did you mean \"year\"",
     );
     let said = twinslip("integrate --driving 1 --stiffness 1 --until 2 --time-unit year");
     assert_eq!(said.code, 2, "{}", said.err);

@@ -57,7 +57,7 @@ fn mistakes_are_told_by_line_and_column() {
     let cases = [
         (
             changed("x + a*y", "x + aa*y"),
-            "9:10: `aa` is no state, no parameter and not defined in [where]; did you mean \"a\"?",
+            "9:10: \"aa\" is no state, no parameter and not defined in [where]; did you mean \"a\"?",
         ),
         (
             changed("x + a*y", "x + a y"),
@@ -85,18 +85,21 @@ fn mistakes_are_told_by_line_and_column() {
             changed("x + a*y", ""),
             "9:5: the formula ends where a number",
         ),
-        (changed("x + a*y", "x + sn(y)"), "9:10: `sn` is no function"),
+        (
+            changed("x + a*y", "x + sn(y)"),
+            "9:10: \"sn\" is no function",
+        ),
         (
             changed("x + a*y", "x + sin(y, a)"),
-            "9:10: `sin` takes one argument, and has 2 here",
+            "9:10: \"sin\" takes one argument, and has 2 here",
         ),
         (
             changed("x + a*y", "x + min(y)"),
-            "9:10: `min` takes two arguments, and has 1 here",
+            "9:10: \"min\" takes two arguments, and has 1 here",
         ),
         (
             changed("x + a*y", "x + sin"),
-            "9:10: `sin` is a function, whose argument must follow in parentheses",
+            "9:10: \"sin\" is a function, whose argument must follow in parentheses",
         ),
         (
             changed("x + a*y", "x + ()"),
@@ -124,15 +127,15 @@ fn mistakes_are_told_by_line_and_column() {
         ),
         (
             changed("x + a*y", "system('ls')"),
-            "9:6: `system` is no function",
+            "9:6: \"system\" is no function",
         ),
         (
             changed("x - c", "x - rate"),
-            "12:13: `rate` is defined by itself",
+            "12:13: \"rate\" is defined by itself",
         ),
         (
             changed("rate = \"x - c\"", "rate = \"x - d\"\nd = \"rate\""),
-            "is defined by `",
+            "is defined by \"",
         ),
         (changed("a = 0.2", "x = 0.2"), "4:1: \"x\" is given twice"),
         (
@@ -198,7 +201,7 @@ fn mistakes_are_told_by_line_and_column() {
     assert!(
         run_of(&path)
             .1
-            .contains("system.toml:9:5: `aa` is no state")
+            .contains("system.toml:9:5: \"aa\" is no state")
     );
 }
 

@@ -20,10 +20,14 @@ const INTEGRATE: &str =
     "Example, two interfaces that part from their symmetric steady state and end in stick-slip:
   twinslip integrate --driving 10 --stiffness 0.14 --until 20 -o run.csv --plot run.svg
 Slide-hold-slide, and a ramp of the driving velocity from 1 to 10:
-  twinslip integrate --driving 1 --stiffness 0.5 --program 50:0,150:1,200-250:10 --until 300";
+  twinslip integrate --driving 1 --stiffness 0.5 --program 50:0,150:1,200-250:10 --until 300
+Another system, from a file with its equations or one that is built in:
+  twinslip integrate --system lorenz --until 30 -o lorenz.csv --plot lorenz.svg";
 
 const EQUILIBRIA: &str = "Example, the three steady states between the pitchforks of the paper's Fig. 5, and which is stable:
   twinslip equilibria --driving 1000 --stiffness 0.45
+All equilibria of another system in a box:
+  twinslip equilibria --system lorenz --box x=-50:50,y=-50:50,z=-50:100
 
 CSV and JSON say how far each number may be off: stress_uncertainty (in JSON stress.uncertainty), state_uncertainty,
 log_state_uncertainty, slip_rate_uncertainty, and eigenvalue_uncertainty, a distance in the complex plane.";
@@ -33,11 +37,15 @@ const ORBIT: &str = "Example, the three orbits that coexist at K = 0.05 and V_H 
   twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric
   twinslip orbit --driving 0.2 --stiffness 0.05 --symmetry asymmetric --start 11.377,1.53e-6,1.83e-4 --period-guess 480
 The cycle over one period, as rows and as a picture:
-  twinslip orbit --driving 10 --stiffness 0.14 --symmetry asymmetric --points 400 --plot cycle.svg";
+  twinslip orbit --driving 10 --stiffness 0.14 --symmetry asymmetric --points 400 --plot cycle.svg
+An orbit of another system:
+  twinslip orbit --system van-der-pol --set mu=8";
 
 const SECTION: &str =
     "Example, the torus of the paper's Fig. 13, with its rotation number and exponents:
-  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg";
+  twinslip section --driving 0.102 --stiffness 0.2 --lyapunov -o torus.csv --plot torus.svg
+The return map of another system:
+  twinslip section --system roessler --set c=5.7 --surface x=0 --lyapunov -o roessler.csv --plot roessler.svg";
 
 const BRANCH: &str =
     "Example, all equilibria and their Hopf points at K = 0.14, and the orbits that begin there:

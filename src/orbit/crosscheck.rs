@@ -39,7 +39,7 @@ pub fn crosscheck(
 /// The same of an orbit of any field.
 ///
 /// # Errors
-/// As of [`super::find_from`].
+/// As of [`super::find_from()`].
 pub fn crosscheck_of(
     field: &AnyField<'_>,
     first: &Orbit,

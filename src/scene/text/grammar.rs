@@ -263,7 +263,7 @@ fn name(input: &mut Text<'_>, at: usize) -> Read<Items> {
         let known = Function::NAMES.join(", ");
         return cut(
             at,
-            format!("`{name}` is no function, there are {known}{hint}"),
+            format!("{name:?} is no function, there are {known}{hint}"),
         );
     };
     any.parse_next(input)?;
@@ -279,7 +279,7 @@ fn name(input: &mut Text<'_>, at: usize) -> Read<Items> {
         };
         return cut(
             at,
-            format!("`{name}` takes {must}, and has {} here", arguments.len()),
+            format!("{name:?} takes {must}, and has {} here", arguments.len()),
         );
     }
     let mut items = arguments.concat();

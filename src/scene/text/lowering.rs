@@ -92,8 +92,8 @@ impl<'t, 'a> Lowering<'t, 'a> {
             Some(&Meaning::Parameter(i)) => self.builder.parameter(i),
             Some(&Meaning::Defined(i)) if self.defined[i] == Progress::Begun => {
                 let what = match formula.name {
-                    own if own == name => format!("`{name}` is defined by itself"),
-                    other => format!("`{name}` is defined by `{other}`, and that by `{name}`"),
+                    own if own == name => format!("{name:?} is defined by itself"),
+                    other => format!("{name:?} is defined by {other:?}, and that by {name:?}"),
                 };
                 return Err(self.wrong(formula, at, what));
             }
@@ -106,11 +106,11 @@ impl<'t, 'a> Lowering<'t, 'a> {
 
     fn unknown(&self, name: &str) -> String {
         if Function::named(name).is_some() {
-            return format!("`{name}` is a function, whose argument must follow in parentheses");
+            return format!("{name:?} is a function, whose argument must follow in parentheses");
         }
         let known = self.tables.meanings.keys().copied().chain(["pi"]);
         let hint = did_you_mean(name, known);
-        format!("`{name}` is no state, no parameter and not defined in [where]{hint}")
+        format!("{name:?} is no state, no parameter and not defined in [where]{hint}")
     }
 
     fn wrong(&self, formula: &Formula<'_>, at: usize, what: impl Into<String>) -> Error {
