@@ -54,7 +54,7 @@ fn what_cannot_be_set_is_refused_in_one_sentence() {
         &format!("{model} --damping -1"),
         "damping is -1, but must be zero or positive",
     );
-    refused_in_one_line(&format!("{model} --si --damping nan"), "damping");
+    refused(&format!("{model} --si --damping nan"), "damping");
 }
 
 /// Granite.
