@@ -11,7 +11,10 @@ use twinslip::friction::{
     AnyLaw, Extremum, ExtremumKind, Formulas, Law, Parameters, critical_stiffness, steady_log_slope,
 };
 use twinslip::integrate::{Choice, Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
-use twinslip::model::{Driven, Loading, single_interface, two_interfaces};
+use twinslip::model::{
+    Driven, Loading, from_difference_chart, interfaces_in_difference_chart, single_interface,
+    to_difference_chart, two_interfaces,
+};
 use twinslip::number::{Balance, Difference, DoubleDouble, Interval, Jet, Real};
 use twinslip::orbit::{InitialGuess, InterfaceSystem, OrbitAccuracy, Query, find};
 
@@ -452,6 +455,71 @@ fn without_damping_nothing_is_another_law() {
                 .damped(damping)
                 .unwrap_err()
                 .is_input()
+        );
+    }
+}
+
+#[test]
+fn small_differences_keep_their_digits_along_a_run() {
+    for name in AnyLaw::NAMES {
+        let damped = law(name, 1e-3);
+        let loading = Loading::new(1.0, 0.14).expect("positive");
+        let chart = interfaces_in_difference_chart(damped, loading);
+        let plain = two_interfaces(damped, loading);
+        let tolerances = Tolerances::equal(1e-14).expect("positive");
+        let mut taylor = Taylor::new(tolerances, MAX_STEPS).expect("a method");
+        // Far from each other both charts have all digits.
+        let y = State::<3>::new(11.0, -1.5, -2.0);
+        let x = to_difference_chart(&y).expect("psi_1 > psi_2");
+        let rates = [chart.slip_rates(&x), plain.slip_rates(&y)];
+        assert_close(rates[0][0], rates[1][0], 1e-13, name);
+        assert_close(rates[0][1], rates[1][1], 1e-13, name);
+        let span = (0.0, 4.0);
+        let there = taylor.flow(&*chart, span, &x, None).expect("a run");
+        let here = taylor.flow(&*plain, span, &y, None).expect("a run");
+        let off = (from_difference_chart(&there) - here).amax();
+        assert!(off < 1e-10, "{name}: {off:e}");
+        // Close to each other only one has: the difference grows or falls by the same factor, however small it is.
+        let growth = |log_gap: f64, taylor: &mut Taylor| {
+            let x = State::<3>::new(11.0, -2.0, log_gap);
+            let end = taylor.flow(&*chart, span, &x, None).expect("a run");
+            end[2] - log_gap
+        };
+        let tiny = growth(-60.0, &mut taylor);
+        let tinier = growth(-90.0, &mut taylor);
+        assert!(
+            (tiny - tinier).abs() < 1e-10 * (1.0 + tiny.abs()),
+            "{name}: {tiny} and {tinier}"
+        );
+    }
+}
+
+#[cfg(feature = "sundials")]
+#[test]
+fn sensitivities_to_the_damping_are_those_of_taylor() {
+    use twinslip::integrate::CvodeIntegrator;
+    use twinslip::sundials::MultistepMethod;
+    for name in AnyLaw::NAMES {
+        let field = two_interfaces(law(name, 1e-3), Loading::new(1.0, 0.14).expect("positive"));
+        let names = field.parametrised().expect("parameters").names();
+        let damping = place(names, "damping").expect("a parameter");
+        let (y, span) = (State::<3>::new(11.0, -1.0, -3.0), (0.0, 3.0));
+        let mut taylor =
+            Taylor::new(Tolerances::equal(1e-13).expect("positive"), MAX_STEPS).expect("a method");
+        let (_, truth) = taylor
+            .derivatives(&*field, span, &y, &[damping])
+            .expect("a run");
+        let tolerances = Tolerances::equal(1e-11).expect("positive");
+        let mut cvode =
+            CvodeIntegrator::new(MultistepMethod::Bdf, tolerances, MAX_STEPS).expect("a method");
+        let (_, _, made) = cvode
+            .derivatives(&*field, span, &y, &[damping])
+            .expect("a run");
+        let truth = State::<3>::from(truth.parameters[0]);
+        assert!(
+            (made[0] - truth).amax() < 1e-6 * truth.amax(),
+            "{name}: {} for {truth}",
+            made[0]
         );
     }
 }
