@@ -122,8 +122,17 @@ proptest! {
     }
 }
 
-/// Runs of one and of two interfaces at rest at the times that a reference gives.
-fn runs() -> Vec<(String, AnyLaw, Loading, Vec<f64>, Vec<(f64, Vec<f64>)>)> {
+/// A run of one or two interfaces, and the states at the times that a reference gives.
+struct Run {
+    name: String,
+    law: AnyLaw,
+    loading: Loading,
+    start: Vec<f64>,
+    ends: Vec<(f64, Vec<f64>)>,
+}
+
+/// Those of the references.
+fn runs() -> Vec<Run> {
     let all = data("damping.json");
     let mut runs = Vec::new();
     for (name, run) in entries(&all["single_interface"]) {
@@ -133,13 +142,13 @@ fn runs() -> Vec<(String, AnyLaw, Loading, Vec<f64>, Vec<(f64, Vec<f64>)>)> {
                 vec![number(&end["tau"]), number(&end["psi"]).ln()],
             )
         });
-        runs.push((
-            name.clone(),
-            law(run["law"].as_str().expect("a name"), number(&run["eta"])),
-            Loading::new(number(&run["V_H"]), number(&run["K"])).expect("positive"),
-            vec![number(&run["y0"]["tau"]), number(&run["y0"]["psi"]).ln()],
-            ends.collect(),
-        ));
+        runs.push(Run {
+            name: name.clone(),
+            law: law(run["law"].as_str().expect("a name"), number(&run["eta"])),
+            loading: Loading::new(number(&run["V_H"]), number(&run["K"])).expect("positive"),
+            start: vec![number(&run["y0"]["tau"]), number(&run["y0"]["psi"]).ln()],
+            ends: ends.collect(),
+        });
     }
     for (name, run) in entries(&all["two_interface_trajectories"]) {
         let psi = |at: &Value| [number(&at["1"]).ln(), number(&at["2"]).ln()];
@@ -152,13 +161,13 @@ fn runs() -> Vec<(String, AnyLaw, Loading, Vec<f64>, Vec<(f64, Vec<f64>)>)> {
             let [first, second] = psi(&end["psi"]);
             (number(&end["t"]), vec![number(&end["tau"]), first, second])
         });
-        runs.push((
-            name.clone(),
-            law("spinodal", number(&run["eta"])),
-            Loading::new(number(&run["V_H"]), number(&run["K"])).expect("positive"),
-            vec![numbers[0], numbers[1].ln(), numbers[2].ln()],
-            ends.collect(),
-        ));
+        runs.push(Run {
+            name: name.clone(),
+            law: law("spinodal", number(&run["eta"])),
+            loading: Loading::new(number(&run["V_H"]), number(&run["K"])).expect("positive"),
+            start: vec![numbers[0], numbers[1].ln(), numbers[2].ln()],
+            ends: ends.collect(),
+        });
     }
     assert_eq!(runs.len(), 5);
     runs
@@ -191,7 +200,14 @@ fn runs_end_where_the_references_do() {
         methods.push(("cvode-adams", 1e-13, 1e-9));
         methods.push(("cvode-bdf", 1e-13, 1e-8));
     }
-    for (name, law, loading, start, ends) in runs() {
+    for run in runs() {
+        let Run {
+            name,
+            law,
+            loading,
+            start,
+            ends,
+        } = run;
         for &(method, rtol, bound) in &methods {
             let choice = Choice::named(method).expect("a method");
             for (t, truth) in &ends {
