@@ -5,10 +5,11 @@ use crate::common;
 use common::{assert_close, data, number, relative};
 use proptest::prelude::*;
 use serde_json::Value;
-use twinslip::equilibrium::Symmetry;
+use twinslip::equilibrium::{Solver, Symmetry, steady_states};
 use twinslip::field::{State, place};
 use twinslip::friction::{
-    AnyLaw, Extremum, ExtremumKind, Formulas, Law, Parameters, critical_stiffness, steady_log_slope,
+    AnyLaw, Extremum, ExtremumKind, Formulas, Law, Parameters, critical_stiffness,
+    steady_log_slope, steady_stress,
 };
 use twinslip::integrate::{Choice, Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use twinslip::model::{
@@ -537,5 +538,44 @@ fn sensitivities_to_the_damping_are_those_of_taylor() {
             "{name}: {} for {truth}",
             made[0]
         );
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    #[test]
+    fn no_equilibrium_is_overlooked(
+        law in 0..AnyLaw::NAMES.len(),
+        beta in 0.9..1.9_f64,
+        (log_r, log_c, log_eta, log_v) in (0.0..3.0_f64, -5.0..-1.0_f64, -7.0..0.0_f64, -2.5..4.0_f64),
+    ) {
+        let ten = |x: f64| 10_f64.powf(x);
+        let constants = Parameters {
+            beta,
+            healing_time: ten(log_r),
+            residual_strength: ten(log_c),
+            damping: ten(log_eta),
+            ..Parameters::heslot_1994()
+        };
+        let law = AnyLaw::named(AnyLaw::NAMES[law], constants).expect("a law");
+        let driving = ten(log_v);
+        let found = steady_states(&law, driving, 2, Solver::Newton).expect("equilibria");
+        for state in &found.equilibria {
+            prop_assert!(state.residual(&law, driving) < 1e-9, "{law:?} {driving}: {state:?}");
+        }
+        // Every change of sign of the difference of the stresses on a grid of slower rates V_H/2 e^(-x); within a cell of it there may be
+        // two more.
+        let apart = |x: f64| {
+            let slow = 0.5 * driving * (-x).exp();
+            steady_stress(&law, driving - slow) > steady_stress(&law, slow)
+        };
+        let grid = (0..12_000).map(|i| apart((-14.0 + 0.0017 * f64::from(i)).exp()));
+        let signs: Vec<bool> = grid.collect();
+        let turns = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
+        if found.complete {
+            let asymmetric = found.equilibria.len() - 1;
+            prop_assert!(asymmetric >= turns && (asymmetric - turns) % 2 == 0, "{:?} {}: {} and {}", law, driving, asymmetric, turns);
+        }
     }
 }

@@ -87,16 +87,17 @@ pub fn parameters(driving: f64, stiffness: f64, units: &Units) -> String {
 /// A symbol with its value and unit, but for that of what has none.
 pub(super) fn value(name: &str, quantity: Quantity, x: f64, units: &Units) -> String {
     let digits = seven_digits(units.outward(quantity, x));
-    let digits = match digits.contains(['e', 'E']) || !digits.contains('.') {
-        true => &digits,
-        false => digits.trim_end_matches('0').trim_end_matches('.'),
+    let (mantissa, exponent) = digits.split_at(digits.find('e').unwrap_or(digits.len()));
+    let mantissa = match mantissa.contains('.') {
+        true => mantissa.trim_end_matches('0').trim_end_matches('.'),
+        false => mantissa,
     };
     let unit = if units.si() {
         format!(" {}", units.short_name(quantity))
     } else {
         String::new()
     };
-    format!("{name} = {digits}{unit}")
+    format!("{name} = {mantissa}{exponent}{unit}")
 }
 
 /// The label of an axis: name and unit.
