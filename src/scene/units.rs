@@ -85,7 +85,9 @@ impl TimeUnit {
 pub struct Units {
     scales: Option<Scales>,
     state_is_time: bool,
-    time: TimeUnit,
+    time_unit: TimeUnit,
+    /// L/V* in that unit; 1 without units.
+    time: f64,
     /// Whether they have names.
     named: bool,
 }
@@ -96,7 +98,8 @@ impl Units {
         Units {
             scales,
             state_is_time,
-            time: TimeUnit::SECOND,
+            time_unit: TimeUnit::SECOND,
+            time: scales.map_or(1.0, |scales| scales.time),
             named: true,
         }
     }
@@ -110,8 +113,13 @@ impl Units {
     }
 
     /// The same with times in this unit, where they are in SI.
-    pub fn in_time(self, time: TimeUnit) -> Self {
-        Units { time, ..self }
+    pub fn in_time(self, time_unit: TimeUnit) -> Self {
+        let of_scales = |scales: Scales| scales.time / time_unit.seconds;
+        Units {
+            time_unit,
+            time: self.scales.map_or(1.0, of_scales),
+            ..self
+        }
     }
 
     /// Whether the numbers are in SI.
@@ -128,10 +136,10 @@ impl Units {
             Quantity::Stress => scales.stress,
             Quantity::SlipRate => scales.slip_rate,
             Quantity::Length => scales.length,
-            Quantity::Time => scales.time / self.time.seconds,
+            Quantity::Time => self.time,
             Quantity::Stiffness => scales.stiffness,
-            Quantity::Growth => self.time.seconds / scales.time,
-            Quantity::State if self.state_is_time => scales.time / self.time.seconds,
+            Quantity::Growth => 1.0 / self.time,
+            Quantity::State if self.state_is_time => self.time,
             Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
         }
     }
@@ -194,13 +202,13 @@ impl Units {
             Quantity::SlipRate => "V*",
             Quantity::Length if si => "m",
             Quantity::Length => "L",
-            Quantity::Time if si => self.time.name,
+            Quantity::Time if si => self.time_unit.name,
             Quantity::Time => "L/V*",
             Quantity::Stiffness if si => "Pa/m",
             Quantity::Stiffness => "a sigma/L",
-            Quantity::Growth if si => self.time.inverse,
+            Quantity::Growth if si => self.time_unit.inverse,
             Quantity::Growth => "V*/L",
-            Quantity::State if self.state_is_time && si => self.time.name,
+            Quantity::State if self.state_is_time && si => self.time_unit.name,
             Quantity::State if self.state_is_time => "L/V*",
             Quantity::State | Quantity::LogState | Quantity::Number => "1",
         }
