@@ -575,7 +575,7 @@ proptest! {
         let turns = signs.windows(2).filter(|pair| pair[0] != pair[1]).count();
         if found.complete {
             let asymmetric = found.equilibria.len() - 1;
-            prop_assert!(asymmetric >= turns && (asymmetric - turns) % 2 == 0, "{:?} {}: {} and {}", law, driving, asymmetric, turns);
+            prop_assert!(asymmetric >= turns && (asymmetric - turns).is_multiple_of(2), "{:?} {}: {} and {}", law, driving, asymmetric, turns);
         }
     }
 }
