@@ -114,6 +114,7 @@ fn lorenz_has_a_pitchfork_and_a_subcritical_hopf_point() {
     let family = FieldEquilibria {
         fields: &fields,
         along: "rho",
+        scale: None,
     };
     for longest in [0.5, 2.0] {
         let settings = Settings::new((0.0, 30.0), longest).unwrap();
@@ -161,6 +162,7 @@ fn the_brusselator_oscillates_beyond_its_hopf_point() {
         let family = FieldEquilibria {
             fields: &fields,
             along: "b",
+            scale: None,
         };
         let settings = Settings::new((0.5, 8.0), 0.3).unwrap();
         let start = Vector::from_vec(vec![a, 0.5 / a]);
@@ -182,6 +184,7 @@ fn both_folds_of_a_cubic() {
     let family = FieldEquilibria {
         fields: &fields,
         along: "p",
+        scale: None,
     };
     let mut settings = Settings::new((-2.0, 1.0), 0.2).unwrap();
     settings.wanted = vec![-0.5];
@@ -211,6 +214,7 @@ fn a_start_of_another_dimension_is_an_error() {
     let family = FieldEquilibria {
         fields: &fields,
         along: "p",
+        scale: None,
     };
     let onward = Onward::along(Vector::zeros(2), -2.0, true);
     let refused = family.follow(&onward, &settings, &mut |_| ControlFlow::Continue(()));

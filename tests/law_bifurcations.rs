@@ -37,6 +37,7 @@ fn along(name: &str, from: f64, settings: &Settings) -> Vec<FoundEquilibrium> {
     let family = FieldEquilibria {
         fields: &fields,
         along: name,
+        scale: None,
     };
     let w = slab.steady_log_state();
     let start = Vector::from_column_slice(&[slab.steady_stress(), w, w]);

@@ -407,6 +407,7 @@ fn labelled<S: Equations<N, 2> + 'static, const N: usize>(
     let family = FieldEquilibria {
         fields: &fields,
         along: S::PARAMETERS[0],
+        scale: None,
     };
     let settings = Settings::new((from.min(to), from.max(to)), 0.2).expect("settings");
     let mut found = Vec::new();

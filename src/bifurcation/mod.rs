@@ -3,6 +3,7 @@
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
 pub mod equilibria;
+pub mod general;
 pub mod orbits;
 mod request;
 pub mod strong_resonance;

@@ -1,19 +1,44 @@
 //! `twinslip branch`.
 
 use super::continuation::Task;
-use super::{Ending, say};
+use super::rows::{SlabRow, special_row};
+use super::{Ending, general, say, special};
+use crate::bifurcation::{BranchRow, Special, orbits};
 use crate::error::Result;
-use crate::scene::{BranchKind, BranchOptions, BranchPlan};
+use crate::scene::{BranchKind, BranchOptions, BranchPlan, Described, TextModel, TextSubject};
 use crate::views;
+use std::ops::ControlFlow;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
+    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+        let search = &options.search;
+        let subject = TextSubject::new(
+            model,
+            search.within.as_deref(),
+            search.start.as_deref(),
+            search.period_guess,
+            options.of.as_deref() == Some("orbits"),
+        )?;
+        return general::branch(options, &subject, words);
+    }
     let plan = BranchPlan::new(options)?;
+    let units = plan.system.units();
+    let again = |one: &Special| {
+        let second = plan.following.second;
+        let checked = second.map(|method| orbits::crosscheck(&plan.request.slab, one, method));
+        checked.unwrap_or(Ok(None))
+    };
     let task = Task {
         system: &plan.system,
+        names: vec![],
         columns: views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces),
+        special_columns: views::special_columns(),
+        read: (&|cell| BranchRow::read(cell, units), &|cell| {
+            special_row(cell, units)
+        }),
+        lines: &|special, checks| special::lines(special, checks, units),
         numerics: plan.numerics.clone(),
-        slab: &plan.request.slab,
-        second: plan.following.second,
+        second: plan.following.second.map(|second| (second, &again as _)),
         resume: options.resume.as_ref(),
         plot: options.plot.as_ref(),
         output: &options.output,
@@ -25,7 +50,11 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     }
     task.run(
         &report,
-        |known, seen| plan.follow(known, seen),
+        |known, seen| {
+            plan.follow(known, &mut |event| {
+                BranchRow::found(event).map_or(ControlFlow::Continue(()), &mut *seen)
+            })
+        },
         |rows, _| views::branches(rows, &plan.along, &plan.request.slab, &plan.system),
     )
 }

@@ -2,19 +2,18 @@
 
 use super::progress::{Progress, during};
 use super::report::{Report, unit_names};
-use super::resume::{EarlierRun, Expected, beside, row_key, special_key};
-use super::rows::CurveRow;
+use super::resume::{EarlierRun, Expected, ReadRow, beside, row_key, special_key};
+use super::rows::{CurveRow, Found, SpecialPoint};
 use super::words::{flagged, several, time};
 use super::{Ending, interrupt, say, special, written};
-use crate::bifurcation::{Criticality, Event, EventObserver, Label, Special, orbits};
+use crate::bifurcation::{Criticality, Label};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
-use crate::orbit::InterfaceSystem;
 use crate::output::{
-    self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot, seven_digits,
+    self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot,
 };
-use crate::scene::{Column, OutputOptions, Quantity, System, Units};
-use crate::views::{self, special_columns};
+use crate::scene::{Column, Described, OutputOptions, Quantity};
+use crate::views;
 use serde_json::{Value, json};
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
@@ -22,18 +21,30 @@ use std::ops::ControlFlow;
 use std::path::PathBuf;
 use std::time::Instant;
 
+/// How a special point of orbits is computed once more, by which method.
+pub type Recheck<'a, S> = (Choice, &'a dyn Fn(&S) -> Result<Option<[f64; 3]>>);
+
+/// Whether to go on.
+pub type FoundObserver<'a, R> = &'a mut dyn FnMut(Found<R>) -> ControlFlow<()>;
+
 /// Everything that a run needs.
-pub struct Task<'a, R> {
-    /// What slides.
-    pub system: &'a System,
+pub struct Task<'a, R: CurveRow> {
+    /// What the rows are of.
+    pub system: &'a dyn Described,
+    /// The names of the parameters that vary.
+    pub names: Vec<&'a str>,
     /// The columns of rows.
     pub columns: Vec<Column<R>>,
+    /// The columns of special points.
+    pub special_columns: Vec<Column<R::Special>>,
+    /// Rows and special points from the cells of an earlier run.
+    pub read: (ReadRow<'a, R>, ReadRow<'a, R::Special>),
+    /// Special points in lines of a table.
+    pub lines: &'a dyn Fn(&[R::Special], &special::Checks) -> Vec<String>,
     /// What was asked for.
     pub numerics: Value,
-    /// The same in dimensionless numbers.
-    pub slab: &'a InterfaceSystem,
-    /// By which method special points of orbits are computed once more.
-    pub second: Option<Choice>,
+    /// How special points are computed once more, where they are.
+    pub second: Option<Recheck<'a, R::Special>>,
     /// The file to go on with.
     pub resume: Option<&'a PathBuf>,
     /// The picture.
@@ -59,8 +70,8 @@ impl<'a, R: CurveRow> Task<'a, R> {
     pub fn run(
         &self,
         report: &Report<'_>,
-        compute: impl FnOnce(&[usize], EventObserver<'_>) -> Result<()>,
-        picture: impl Fn(&[R], &[Special]) -> plot::Drawing,
+        compute: impl FnOnce(&[usize], FoundObserver<'_, R>) -> Result<()>,
+        picture: impl Fn(&[R], &[R::Special]) -> plot::Drawing,
     ) -> Result<Ending> {
         let mut out = ContinuationOut::new(self, report)?;
         interrupt::watch();
@@ -68,7 +79,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
         out.progress.begin("looking for the first point");
         let computed = match out.complete {
             true => Ok(()),
-            false => compute(&skipped, &mut |event| out.take(event)),
+            false => compute(&skipped, &mut |found| out.take(found)),
         };
         let failure = match computed {
             Err(error) if error.is_input() && out.new == 0 => return Err(error),
@@ -105,9 +116,14 @@ impl<'a, R: CurveRow> Task<'a, R> {
     }
 
     /// Every special point by the second method.
-    fn recheck(&self, report: &Report<'_>, special: &[Special], failed: bool) -> special::Checks {
+    fn recheck(
+        &self,
+        report: &Report<'_>,
+        special: &[R::Special],
+        failed: bool,
+    ) -> special::Checks {
         let mut checks = special::Checks::default();
-        let Some(method) = self.second.filter(|_| !failed) else {
+        let Some((method, again)) = self.second.filter(|_| !failed) else {
             return checks;
         };
         checks.method = Some(method.name());
@@ -115,8 +131,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
         let mut unchecked = Vec::new();
         during(report.quiet, &words, || {
             for one in special.iter().take_while(|_| !interrupt::asked()) {
-                let difference = orbits::crosscheck(self.slab, one, method);
-                let difference = difference.unwrap_or_else(|error| {
+                let difference = again(one).unwrap_or_else(|error| {
                     unchecked.push((one, error));
                     None
                 });
@@ -124,9 +139,10 @@ impl<'a, R: CurveRow> Task<'a, R> {
             }
         });
         for (one, error) in unchecked {
-            let (label, driving) = (one.label.name(), one.driving.value);
+            let label = one.label().map_or("", Label::name);
             report.say(format!(
-                "the crosscheck of {label} at V_H = {driving} by {} failed: {error}",
+                "the crosscheck of {label} at {} by {} failed: {error}",
+                one.place(&self.names, self.system.units()),
                 method.name()
             ));
         }
@@ -142,19 +158,19 @@ impl<'a, R: CurveRow> Task<'a, R> {
         failure: Option<&Error>,
     ) -> Result<Ending> {
         if report.format != Format::Json {
-            for line in special::lines(&out.special, checks, self.system) {
+            for line in (self.lines)(&out.special, checks) {
                 report.say(line);
             }
             return Ok(Ending::Done);
         }
-        let units = &self.system.units;
+        let units = self.system.units();
         let rows = out.rows.iter();
         let rows: Vec<Value> = rows
             .map(|row| Value::Object(views::object(&self.columns, row, units)))
             .collect();
         let result = json!({
             "rows": rows,
-            "special": special::objects(&out.special, checks, units),
+            "special": special::objects(&out.special, &self.special_columns, checks, units),
         });
         let bytes = report.envelope(
             self.system,
@@ -176,7 +192,7 @@ enum ContinuationSink {
 }
 
 /// Takes what is found: writes it and keeps it.
-struct ContinuationOut<'a, R> {
+struct ContinuationOut<'a, R: CurveRow> {
     task: &'a Task<'a, R>,
     report: &'a Report<'a>,
     remarks: Vec<String>,
@@ -195,7 +211,7 @@ struct ContinuationOut<'a, R> {
     skipped: Vec<usize>,
     rows: Vec<R>,
     new: usize,
-    special: Vec<Special>,
+    special: Vec<R::Special>,
     progress: Progress,
     /// Rows scroll by on the terminal: progress enough, once the first one is there.
     scrolling: bool,
@@ -220,18 +236,13 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         if let Some(path) = task.resume {
             let [rows, special] = [
                 checked(&names),
-                checked(&views::names(&special_columns(), false)),
+                checked(&views::names(&task.special_columns, false)),
             ];
             let expected = |columns| Expected {
                 remarks: &remarks,
                 columns,
             };
-            kept = EarlierRun::read(
-                path,
-                &expected(&rows),
-                &expected(&special),
-                &task.system.units,
-            )?;
+            kept = EarlierRun::read(path, &expected(&rows), &expected(&special), task.read)?;
         }
         let scrolling = report.format != Format::Json
             && report.place.path().is_none()
@@ -266,7 +277,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         }
         if self.report.format == Format::Table {
             let (names, quantities): (Vec<_>, Vec<_>) = self.names.iter().cloned().unzip();
-            let units = unit_names(&self.task.system.units, quantities.into_iter());
+            let units = unit_names(self.task.system.units(), quantities.into_iter());
             self.to =
                 ContinuationSink::Table(self.report.begin(self.remarks.clone(), &names, &units)?);
             return Ok(());
@@ -286,11 +297,11 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
             Some(file) => {
                 let mut to = file.after(special_bytes)?;
                 if special_bytes == 0 {
-                    let names = checked(&views::names(&special_columns(), false));
+                    let names = checked(&views::names(&self.task.special_columns, false));
                     to.write_all(&output::head(&remarks, &names))?;
                 }
                 for (number, one) in self.special.iter().enumerate().skip(self.kept_special) {
-                    to.write_all(special_line(number, one, &self.task.system.units).as_bytes())?;
+                    to.write_all(self.task.special_line(number, one).as_bytes())?;
                 }
                 Some(to)
             }
@@ -306,7 +317,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
     fn row(&mut self, row: &R) -> io::Result<()> {
         self.open()?;
         let table = self.report.format == Format::Table;
-        let cells = views::cells(&self.task.columns, row, &self.task.system.units, table);
+        let cells = views::cells(&self.task.columns, row, self.task.system.units(), table);
         match &mut self.to {
             ContinuationSink::Nothing => {
                 interrupt::holds();
@@ -321,8 +332,8 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         }
     }
 
-    fn special(&mut self, special: &Special) -> io::Result<()> {
-        let line = special_line(self.special.len(), special, &self.task.system.units);
+    fn special(&mut self, special: &R::Special) -> io::Result<()> {
+        let line = self.task.special_line(self.special.len(), special);
         match &mut self.to {
             ContinuationSink::Lines(_, Some(to)) => to.write_all(line.as_bytes()),
             _ => Ok(()),
@@ -342,31 +353,36 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         self.report.end(status(self.rows.len()))
     }
 
-    fn take(&mut self, event: Event) -> ControlFlow<()> {
-        if let Event::Special(mut special) = event {
-            special.note = special.note.as_deref().map(flagged);
-            if let Err(error) = self.special(&special) {
-                self.broken = Some(error);
-                return ControlFlow::Break(());
+    fn take(&mut self, found: Found<R>) -> ControlFlow<()> {
+        let written = match &found {
+            Found::Special(_) => Ok(()),
+            Found::Row(row) => self.row(row),
+        };
+        let written = written.and_then(|()| match found {
+            Found::Special(mut special) => {
+                let note = special.note().map(flagged);
+                special.noted(note);
+                self.special(&special)?;
+                self.special.push(special);
+                Ok(())
             }
-            self.special.push(special);
-        } else if let Some(row) = R::of(event) {
-            if let Err(error) = self.row(&row) {
-                self.broken = Some(error);
-                return ControlFlow::Break(());
+            Found::Row(row) => {
+                self.new += 1;
+                if self.scrolling {
+                    self.progress.finish();
+                }
+                let (points, task) = (self.new, self.task);
+                self.progress.reached_at(|| {
+                    let place = row.place(&task.names, task.system.units());
+                    format!("{points} points, {place}")
+                });
+                self.rows.push(row);
+                Ok(())
             }
-            self.new += 1;
-            if self.scrolling {
-                self.progress.finish();
-            }
-            let (points, units) = (self.new, &self.task.system.units);
-            let (driving, stiffness) = row.loading();
-            self.progress.reached_at(|| {
-                let driving = seven_digits(units.outward(Quantity::SlipRate, driving.value));
-                let stiffness = seven_digits(units.outward(Quantity::Stiffness, stiffness.value));
-                format!("{points} points, V_H = {driving}, K = {stiffness}")
-            });
-            self.rows.push(row);
+        });
+        if let Err(error) = written {
+            self.broken = Some(error);
+            return ControlFlow::Break(());
         }
         if interrupt::asked() {
             ControlFlow::Break(())
@@ -395,23 +411,22 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
 
     /// How it ended, if nothing failed outright.
     fn ending(&self) -> Ending {
-        let stuck = self.special.iter().filter(|one| one.label == Label::Mx);
+        let is_stuck = |one: &&R::Special| one.label() == Some(Label::Mx);
         let mut ending = Ending::Done;
-        for one in stuck {
-            let units = &self.task.system.units;
-            let note = one.note.as_deref().unwrap_or("the method goes no further");
+        for one in self.special.iter().filter(is_stuck) {
+            let note = one.note();
+            let note = note.unwrap_or("the method goes no further");
             say(format_args!(
-                "error: a {} ends at V_H = {}, K = {}: {note}",
+                "error: a {} ends at {}: {note}",
                 R::WHOLE,
-                units.outward(Quantity::SlipRate, one.driving.value),
-                units.outward(Quantity::Stiffness, one.stiffness.value)
+                one.place(&self.task.names, self.task.system.units())
             ));
             ending = Ending::Stuck;
         }
         // Where a coefficient is zero by definition, as at GH, nothing is left to decide.
-        let side = |one: &Special| {
-            one.criticality == Some(Criticality::Undecided)
-                && Label::BIFURCATIONS.contains(&one.label)
+        let side = |one: &R::Special| {
+            let bifurcates = |label| Label::BIFURCATIONS.contains(&label);
+            one.criticality() == Some(Criticality::Undecided) && one.label().is_some_and(bifurcates)
         };
         let undecided = self.rows.iter().any(R::undecided) || self.special.iter().any(side);
         if ending == Ending::Done && undecided {
@@ -427,7 +442,9 @@ fn checked(names: &[(String, Quantity)]) -> Vec<String> {
     names.chain([ROW_CHECK.to_owned()]).collect()
 }
 
-fn special_line(number: usize, special: &Special, units: &Units) -> String {
-    let cells = views::cells(&special_columns(), special, units, false);
-    checked_line(&special_key(number), &cells)
+impl<R: CurveRow> Task<'_, R> {
+    fn special_line(&self, number: usize, special: &R::Special) -> String {
+        let cells = views::cells(&self.special_columns, special, self.system.units(), false);
+        checked_line(&special_key(number), &cells)
+    }
 }

@@ -4,6 +4,7 @@ mod branch;
 mod continuation;
 mod equilibria;
 mod examples;
+mod general;
 mod integrate;
 mod interrupt;
 mod law;

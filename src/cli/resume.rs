@@ -1,11 +1,9 @@
 //! Going on with the CSV file of an interrupted run: the rows of all branches but the last one that it had begun stay as they are,
 //! with their special points in the file beside it. What follows is computed as if nothing had happened.
 
-use super::rows::{CurveRow, special_row};
-use crate::bifurcation::Special;
+use super::rows::{CurveRow, SpecialPoint};
 use crate::error::{Error, Result};
 use crate::output::{Head, OURS, Status, checked_cells, damage, whole_line};
-use crate::scene::Units;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{BufReader, ErrorKind, Read};
@@ -15,12 +13,11 @@ use std::path::{Path, PathBuf};
 const FEW: usize = 300;
 
 /// What stays of an earlier run.
-#[derive(Debug)]
-pub struct EarlierRun<R> {
+pub struct EarlierRun<R: CurveRow> {
     /// The rows.
     pub rows: Vec<R>,
     /// The special points.
-    pub special: Vec<Special>,
+    pub special: Vec<R::Special>,
     /// The numbers of the branches or curves, which are not told of again.
     pub numbers: Vec<usize>,
     /// Whether all is there.
@@ -31,7 +28,7 @@ pub struct EarlierRun<R> {
     pub special_bytes: u64,
 }
 
-impl<R> Default for EarlierRun<R> {
+impl<R: CurveRow> Default for EarlierRun<R> {
     fn default() -> Self {
         EarlierRun {
             rows: Vec::new(),
@@ -76,6 +73,9 @@ type Keys = Box<dyn Iterator<Item = String>>;
 
 /// Makes a row of its cells by name, and of which of its keys the check was made with.
 type MakeRow<'a, R> = &'a mut dyn FnMut(&dyn Fn(&str) -> String, usize) -> Option<R>;
+
+/// Makes a row of its cells by name.
+pub type ReadRow<'a, R> = &'a dyn Fn(&dyn Fn(&str) -> String) -> Option<R>;
 
 /// The rows of a file, each with where it ends.
 struct SavedRows<R> {
@@ -161,7 +161,7 @@ impl<R: CurveRow> EarlierRun<R> {
         path: &Path,
         rows: &Expected<'_>,
         special: &Expected<'_>,
-        units: &Units,
+        (read, read_special): (ReadRow<'_, R>, ReadRow<'_, R::Special>),
     ) -> Result<Self> {
         // How many special points there were before the last row.
         let before = std::cell::Cell::new(0);
@@ -174,7 +174,7 @@ impl<R: CurveRow> EarlierRun<R> {
             },
             &mut |cell, more| {
                 before.set(before.get() + more);
-                R::read(cell, units)
+                read(cell)
             },
         )?;
         let Some(rows) = rows else {
@@ -185,7 +185,7 @@ impl<R: CurveRow> EarlierRun<R> {
             &points,
             special,
             &|number| Box::new(std::iter::once(special_key(number))),
-            &mut |cell, _| special_row(cell, units),
+            &mut |cell, _| read_special(cell),
         )?;
         let bytes = rows.head.bytes;
         let Some(special) = special else {
@@ -207,7 +207,7 @@ impl<R: CurveRow> EarlierRun<R> {
         }
         let complete = rows.complete() && special.complete();
         let last = rows.rows.last().map_or(0, R::number);
-        let (special, special_bytes) = special.staying(|one| complete || one.branch < last);
+        let (special, special_bytes) = special.staying(|one| complete || one.number() < last);
         let (rows, bytes) = rows.staying(|row| complete || row.number() < last);
         Ok(EarlierRun {
             rows,

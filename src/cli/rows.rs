@@ -3,24 +3,98 @@
 use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
-use crate::scene::{Quantity, Units};
+use crate::output::seven_digits;
+use crate::scene::{GeneralRow, Quantity, Units};
 
 /// A row of a branch or of a curve.
 pub trait CurveRow: Sized {
+    /// What special points are.
+    type Special: SpecialPoint;
     /// What rows of one number make up.
     const WHOLE: &'static str;
     /// The same, more of them.
     const WHOLES: &'static str;
+    /// The number of the branch or curve.
+    fn number(&self) -> usize;
+    /// Where it is, in the user's units.
+    fn place(&self, names: &[&str], units: &Units) -> String;
+    /// Whether its stability is undecided where it could be told.
+    fn undecided(&self) -> bool;
+}
+
+/// A special point.
+pub trait SpecialPoint: Sized {
+    /// The number of the branch or curve.
+    fn number(&self) -> usize;
+    /// What it is.
+    fn label(&self) -> Option<Label>;
+    /// To which side the bifurcation goes.
+    fn criticality(&self) -> Option<Criticality>;
+    /// What else is to be said.
+    fn note(&self) -> Option<&str>;
+    /// Changes that.
+    fn noted(&mut self, note: Option<String>);
+    /// Where it is, in the user's units.
+    fn place(&self, names: &[&str], units: &Units) -> String;
+}
+
+/// A row, or a special point.
+pub enum Found<R: CurveRow> {
+    /// A row.
+    Row(R),
+    /// A special point.
+    Special(R::Special),
+}
+
+/// A row of interfaces in V_H and K.
+pub trait SlabRow: CurveRow<Special = Special> {
     /// The row that an event is, if it is one of these.
     fn of(event: Event) -> Option<Self>;
     /// From the cells of a CSV in the user's units.
     fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self>;
-    /// The number of the branch or curve.
-    fn number(&self) -> usize;
-    /// V_H and K.
-    fn loading(&self) -> (Uncertain, Uncertain);
-    /// Whether its stability is undecided where it could be told.
-    fn undecided(&self) -> bool;
+
+    /// What an event is, if it is of this kind.
+    fn found(event: Event) -> Option<Found<Self>> {
+        match event {
+            Event::Special(special) => Some(Found::Special(special)),
+            row => Self::of(row).map(Found::Row),
+        }
+    }
+}
+
+/// V_H and K to seven digits.
+fn loading(driving: f64, stiffness: f64, units: &Units) -> String {
+    let driving = seven_digits(units.outward(Quantity::SlipRate, driving));
+    let stiffness = seven_digits(units.outward(Quantity::Stiffness, stiffness));
+    format!("V_H = {driving}, K = {stiffness}")
+}
+
+impl SpecialPoint for Special {
+    fn number(&self) -> usize {
+        self.branch
+    }
+
+    fn label(&self) -> Option<Label> {
+        Some(self.label)
+    }
+
+    fn criticality(&self) -> Option<Criticality> {
+        self.criticality
+    }
+
+    fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    fn noted(&mut self, note: Option<String>) {
+        self.note = note;
+    }
+
+    fn place(&self, _: &[&str], units: &Units) -> String {
+        let driving = units.outward(Quantity::SlipRate, self.driving.value);
+        let stiffness = units.outward(Quantity::Stiffness, self.stiffness.value);
+        format!("V_H = {driving}, K = {stiffness}")
+    }
 }
 
 /// A value whose error budget was not written.
@@ -72,9 +146,25 @@ pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Speci
 }
 
 impl CurveRow for BranchRow {
+    type Special = Special;
     const WHOLE: &'static str = "branch";
     const WHOLES: &'static str = "branches";
 
+    fn number(&self) -> usize {
+        self.branch
+    }
+
+    fn place(&self, _: &[&str], units: &Units) -> String {
+        loading(self.driving, self.stiffness, units)
+    }
+
+    /// At a bifurcation, and where a branch ends in one, there is nothing to decide.
+    fn undecided(&self) -> bool {
+        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
+    }
+}
+
+impl SlabRow for BranchRow {
     fn of(event: Event) -> Option<Self> {
         match event {
             Event::Branch(row) => Some(row),
@@ -117,25 +207,28 @@ impl CurveRow for BranchRow {
             label: Label::named(&cell("label")),
         })
     }
-
-    fn number(&self) -> usize {
-        self.branch
-    }
-
-    fn loading(&self) -> (Uncertain, Uncertain) {
-        (unknown(self.driving), unknown(self.stiffness))
-    }
-
-    /// At a bifurcation, and where a branch ends in one, there is nothing to decide.
-    fn undecided(&self) -> bool {
-        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
-    }
 }
 
 impl CurveRow for LocusRow {
+    type Special = Special;
     const WHOLE: &'static str = "curve";
     const WHOLES: &'static str = "curves";
 
+    fn number(&self) -> usize {
+        self.curve
+    }
+
+    fn place(&self, _: &[&str], units: &Units) -> String {
+        loading(self.driving.value, self.stiffness.value, units)
+    }
+
+    /// Points of a curve have no verdict.
+    fn undecided(&self) -> bool {
+        false
+    }
+}
+
+impl SlabRow for LocusRow {
     fn of(event: Event) -> Option<Self> {
         match event {
             Event::Locus(row) => Some(row),
@@ -157,17 +250,57 @@ impl CurveRow for LocusRow {
             label: Label::named(&cell("label")),
         })
     }
+}
+
+/// The names of the free parameters with their values.
+fn named(names: &[&str], row: &GeneralRow) -> String {
+    let pairs = names.iter().zip(&row.parameters);
+    let pairs: Vec<_> = pairs
+        .map(|(name, x)| format!("{name} = {}", seven_digits(x.value)))
+        .collect();
+    pairs.join(", ")
+}
+
+impl SpecialPoint for GeneralRow {
+    fn number(&self) -> usize {
+        self.number
+    }
+
+    fn label(&self) -> Option<Label> {
+        self.label
+    }
+
+    fn criticality(&self) -> Option<Criticality> {
+        self.criticality
+    }
+
+    fn note(&self) -> Option<&str> {
+        self.note.as_deref()
+    }
+
+    fn noted(&mut self, note: Option<String>) {
+        self.note = note;
+    }
+
+    fn place(&self, names: &[&str], _: &Units) -> String {
+        named(names, self)
+    }
+}
+
+impl CurveRow for GeneralRow {
+    type Special = GeneralRow;
+    const WHOLE: &'static str = "branch";
+    const WHOLES: &'static str = "branches";
 
     fn number(&self) -> usize {
-        self.curve
+        self.number
     }
 
-    fn loading(&self) -> (Uncertain, Uncertain) {
-        (self.driving, self.stiffness)
+    fn place(&self, names: &[&str], _: &Units) -> String {
+        named(names, self)
     }
 
-    /// Points of a curve have no verdict.
     fn undecided(&self) -> bool {
-        false
+        self.verdict == Some(Verdict::Undecided) && matches!(self.label, None | Some(Label::Uz))
     }
 }

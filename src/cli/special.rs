@@ -1,8 +1,8 @@
 //! Special points as objects and as a short table.
 
 use crate::bifurcation::{Criticality, Special};
-use crate::scene::{Quantity, System, Units};
-use crate::views::{self, special_columns};
+use crate::scene::{CellValue, Column, GeneralRow, Quantity, Units};
+use crate::views;
 use serde_json::{Value, json};
 
 /// What a second method says of the special points.
@@ -15,10 +15,14 @@ pub struct Checks {
 }
 
 /// `result.special`.
-pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value> {
-    let columns = special_columns();
-    let object = |(i, one): (usize, &Special)| {
-        let mut object = views::object(&columns, one, units);
+pub fn objects<S>(
+    special: &[S],
+    columns: &[Column<S>],
+    checks: &Checks,
+    units: &Units,
+) -> Vec<Value> {
+    let object = |(i, one): (usize, &S)| {
+        let mut object = views::object(columns, one, units);
         if let Some(method) = checks.method {
             let difference = checks.differences.get(i).copied().flatten();
             let check = difference.map(|[driving, stiffness, period]| {
@@ -36,12 +40,11 @@ pub fn objects(special: &[Special], checks: &Checks, units: &Units) -> Vec<Value
     special.iter().enumerate().map(object).collect()
 }
 
-/// The table, a line each with the header first; none where there is no special point.
-pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<String> {
+/// The table of special points in V_H and K, a line each with the header first; none where there is none.
+pub fn lines(special: &[Special], checks: &Checks, units: &Units) -> Vec<String> {
     if special.is_empty() {
         return Vec::new();
     }
-    let units = &system.units;
     let check = checks
         .method
         .map(|method| format!("{method} differs in V_H, K, period by"));
@@ -59,6 +62,45 @@ pub fn lines(special: &[Special], checks: &Checks, system: &System) -> Vec<Strin
     for (i, one) in special.iter().enumerate() {
         let difference = checks.differences.get(i).copied().flatten();
         table.push(line(one, difference, units));
+    }
+    aligned(&table)
+}
+
+/// The same in other parameters, by the columns that are numbers with their budgets.
+pub fn general_lines(
+    special: &[GeneralRow],
+    columns: &[Column<GeneralRow>],
+    units: &Units,
+) -> Vec<String> {
+    if special.is_empty() {
+        return Vec::new();
+    }
+    let known: Vec<_> = columns.iter().filter(|column| column.uncertain).collect();
+    let named = |column: &&Column<GeneralRow>| match units.name(column.quantity) {
+        "" | "1" => column.name.to_string(),
+        unit => format!("{} [{unit}]", column.name),
+    };
+    let around = |first: [String; 2], inner: Vec<String>, last: [String; 2]| -> Vec<String> {
+        first.into_iter().chain(inner).chain(last).collect()
+    };
+    let empty = || [String::new(), String::new()];
+    let mut table = vec![around(empty(), known.iter().map(named).collect(), empty())];
+    for one in special {
+        let cell = |column: &&Column<GeneralRow>| match column.entry(one) {
+            CellValue::Uncertain(Some(x)) => {
+                units.outward_uncertain(column.quantity, x).to_string()
+            }
+            _ => String::new(),
+        };
+        let label = one
+            .label
+            .map_or(["", ""], |label| [label.name(), label.meaning()]);
+        let criticality = one.criticality.map_or("", Criticality::name).to_owned();
+        table.push(around(
+            label.map(str::to_owned),
+            known.iter().map(cell).collect(),
+            [criticality, one.note.clone().unwrap_or_default()],
+        ));
     }
     aligned(&table)
 }

@@ -7,8 +7,9 @@ use super::Taylor;
 use super::static_field::{Flows, Static};
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, VectorField};
-use crate::model::TextSystem;
+use crate::model::{TextField, TextSystem};
 use crate::series::Jet3;
+use std::borrow::Cow;
 
 /// A vector field of any dimension.
 ///
@@ -55,11 +56,11 @@ impl<'a> AnyField<'a> {
     ///
     /// # Errors
     /// [`Error::Parameter`] where it has more variables than [`TextSystem::LARGEST`].
-    pub fn of_text(system: &'a TextSystem) -> Result<Self> {
+    pub fn of_text(system: Cow<'a, TextSystem>) -> Result<Self> {
         macro_rules! by_dimension {
             ($($n:literal)*) => {
                 match system.states().len() {
-                    $( $n => Ok(AnyField::new::<$n>(Box::new(system.field()?))), )*
+                    $( $n => Ok(AnyField::new::<$n>(Box::new(TextField::of(system)?))), )*
                     more => {
                         let must = format!("from 1 to {}", TextSystem::LARGEST);
                         Err(Error::parameter("the number of states", more, must))

@@ -69,16 +69,20 @@ impl<'c, 'f> Palc<'c, 'f> {
 
     /// Which of these Hopf points the branch is about to end at. `before` is where the last step began, with the same nodes.
     pub fn ends_at(&self, before: &ContinuationPoint, hopfs: &[HopfPoint]) -> Option<usize> {
+        let free = *self.curve.settings.free.first()?;
+        let coordinates: Vec<f64> = hopfs.iter().map(|hopf| hopf.at()[free]).collect();
+        self.ends_at_coordinate(before, &coordinates)
+    }
+
+    /// The same by the coordinates of the Hopf points.
+    pub fn ends_at_coordinate(&self, before: &ContinuationPoint, hopfs: &[f64]) -> Option<usize> {
         /// What the prediction may err by: part of the way that is left, and rounding.
         const PART: f64 = 0.2;
         const ROUNDING: f64 = 1e-6;
         let end = self.vanishes(before)?;
-        let free = *self.curve.settings.free.first()?;
-        let here = self.now.here.site.at[free];
-        hopfs.iter().position(|hopf| {
-            let hopf = hopf.at()[free];
-            (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING
-        })
+        let here = self.now.here.site.at[*self.curve.settings.free.first()?];
+        let near = |hopf: &f64| (end - hopf).abs() < PART * (here - hopf).abs() + ROUNDING;
+        hopfs.iter().position(near)
     }
 }
 

@@ -9,6 +9,7 @@ use super::arc::Tracer;
 use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
 use super::linear::Linear;
+use super::multipliers::eigenvalues_of;
 use super::shooting_nodes::ShootingNodes;
 use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
@@ -46,6 +47,22 @@ pub struct Regular {
     /// The last correction: the largest of a node, a duration and a parameter's coordinate.
     pub residual: f64,
     pub(super) linear: Shared<Linear>,
+}
+
+impl Regular {
+    /// ln |mu| of all nontrivial multipliers, the largest first; not numbers where the maps do not tell them.
+    pub fn log_multipliers(&self) -> Vec<f64> {
+        let spectrum = &self.spectrum;
+        if let Ok(both) = spectrum.log_multipliers() {
+            return both.to_vec();
+        }
+        if spectrum.dimension == 2 {
+            return vec![spectrum.volume];
+        }
+        let all = eigenvalues_of(&self.linear.maps);
+        let known = all.map(|all| all.iter().map(|one| one.ln_abs).collect());
+        known.unwrap_or_else(|| vec![f64::NAN; spectrum.dimension - 1])
+    }
 }
 
 /// When a correction is at its end.

@@ -19,6 +19,18 @@ pub(super) struct Extremes {
     pub passage: Option<(f64, Vector)>,
 }
 
+/// The least and greatest value of every variable along an orbit, to some six digits.
+///
+/// # Errors
+/// [`crate::Error::Dimension`] and [`crate::Error::Parameter`] for nodes with another number of variables than the field; those of
+/// the flow.
+pub fn ranges(field: &AnyField<'_>, shooting: &ShootingNodes) -> Result<Vec<(f64, f64)>> {
+    /// Tolerance of the run.
+    const ROUGH: f64 = 1e-8;
+    shooting.checked(field.dimension())?;
+    Ok(extremes_by(Tracer::taylor(ROUGH)?, field, shooting, None)?.ranges)
+}
+
 /// Along the shooting's arcs, each from its own node.
 pub(super) fn extremes(
     field: &AnyField<'_>,
@@ -27,7 +39,15 @@ pub(super) fn extremes(
 ) -> Result<Extremes> {
     /// Tolerance of the run.
     const FINE: f64 = 1e-14;
-    let mut tracer = Tracer::taylor(FINE)?;
+    extremes_by(Tracer::taylor(FINE)?, field, shooting, level)
+}
+
+fn extremes_by(
+    mut tracer: Tracer,
+    field: &AnyField<'_>,
+    shooting: &ShootingNodes,
+    level: Option<f64>,
+) -> Result<Extremes> {
     let dimension = field.dimension();
     let axes: Vec<_> = (0..dimension).map(|i| axis(dimension, i)).collect();
     let plane = Section::Plane {

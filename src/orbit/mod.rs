@@ -19,6 +19,7 @@ mod linear;
 pub(crate) mod multipliers;
 mod noise;
 mod orbit_curve;
+mod over_text;
 pub(crate) mod periodic_schur;
 mod profile;
 mod settle;
@@ -33,6 +34,7 @@ pub use arc::{Arc, Tracer};
 pub use continuation_point::{ContinuationPoint, TangentVector};
 pub use correct::{Condition, Corrector, Goal, Regular};
 pub use crosscheck::{Crosscheck, crosscheck, crosscheck_of};
+pub use extremes::ranges;
 pub use family::{
     OverDifferenceChart, OverLoadings, OverLogarithms, OverParameters, ParametrisedField,
 };
@@ -46,6 +48,7 @@ pub(crate) use jet::{Axes, CVector, PoincareMaps, cut_into, finely_cut, squares}
 pub(crate) use multipliers::{eigenvalues_of, unit_pair};
 pub(crate) use noise::Noise;
 pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunction};
+pub use over_text::{Coordinate, OverText};
 pub(crate) use periodic_schur::LogEigenvalue;
 pub use profile::{Profile, profile};
 pub use shooting::{Closed, close};

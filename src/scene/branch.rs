@@ -24,7 +24,7 @@ impl BranchKind {
     /// What branches there are.
     pub(super) const NAMES: [&'static str; 2] = ["equilibria", "orbits"];
 
-    fn named(name: Option<&str>) -> Result<Self> {
+    pub(super) fn named(name: Option<&str>) -> Result<Self> {
         match name {
             Some("equilibria") => Ok(BranchKind::Equilibria),
             Some("orbits") => Ok(BranchKind::Orbits),
@@ -35,7 +35,7 @@ impl BranchKind {
         }
     }
 
-    fn name(self) -> &'static str {
+    pub(super) fn name(self) -> &'static str {
         match self {
             BranchKind::Equilibria => "equilibria",
             BranchKind::Orbits => "orbits",
@@ -126,7 +126,7 @@ impl BranchPlan {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &BranchOptions) -> Result<Self> {
         let of = BranchKind::named(options.of.as_deref())?;
-        let along = BranchParameter::named(&options.along)?;
+        let along = BranchParameter::named(options.along.as_deref().unwrap_or("driving"))?;
         let system = System::new(&options.model)?;
         let units = &system.units;
         let ends = along.ends(options, units)?;

@@ -28,6 +28,33 @@ pub struct ContinuationOptions {
     pub crosscheck: Option<String>,
 }
 
+/// Where branches of a system from a file begin.
+#[derive(Debug, Clone, PartialEq, clap::Args)]
+#[command(next_help_heading = "Search")]
+pub struct SearchOptions {
+    /// With --system: branches of equilibria begin at all in a box, a range for every state: x=-10:10,y=0:5
+    #[arg(
+        id = "box",
+        long = "box",
+        value_name = "RANGES",
+        requires = "system",
+        allow_hyphen_values = true
+    )]
+    pub within: Option<String>,
+    /// With --system: they begin near these values of all states, in their order; those of orbits at or near an orbit at --from
+    /// [default: the file's table start]
+    #[arg(
+        long,
+        value_name = "START",
+        requires = "system",
+        allow_hyphen_values = true
+    )]
+    pub start: Option<String>,
+    /// With --start of an orbit: its period, roughly
+    #[arg(long, value_name = "T", value_parser = number, requires = "start", allow_negative_numbers = true)]
+    pub period_guess: Option<f64>,
+}
+
 /// `branch`: equilibria or periodic orbits as a parameter varies.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct BranchOptions {
@@ -37,17 +64,17 @@ pub struct BranchOptions {
     /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// What varies: driving (V_H) or stiffness (K)
+    /// What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a system from a file any of its own
+    /// [default: driving]
     #[arg(
         long,
         value_name = "PARAMETER",
-        default_value = "driving",
         value_parser = Names::of(BranchParameter::NAMES),
         hide_possible_values = true,
         help_heading = "Branch"
     )]
-    pub along: String,
-    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L]
+    pub along: Option<String>,
+    /// Where the branches begin [default: V_H = 1e-3 V*; K = 1e-3 a sigma/L; others have none]
     #[arg(long, value_name = "A", value_parser = number, allow_negative_numbers = true, help_heading = "Branch")]
     pub from: Option<f64>,
     /// Where they end; it may be the smaller one [default: V_H = 1e6 V*; K = 1 a sigma/L]
@@ -74,6 +101,9 @@ pub struct BranchOptions {
     /// How many period doublings to follow: the branches of orbits with doubled period are computed too
     #[arg(long, value_name = "N", value_parser = count, default_value = "0", help_heading = "Branch")]
     pub doublings: usize,
+    /// Where equilibria and orbits of a system from a file are looked for.
+    #[command(flatten)]
+    pub search: SearchOptions,
     /// How they are followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,
@@ -143,6 +173,33 @@ pub struct LocusOptions {
     /// Say at every point whether the bifurcation is supercritical or subcritical
     #[arg(long, help_heading = "Curve")]
     pub criticality: bool,
+    /// The two parameters that vary, by their names [default: driving,stiffness]
+    #[arg(
+        id = "in",
+        long = "in",
+        value_name = "NAME1,NAME2",
+        help_heading = "Curve"
+    )]
+    pub plane: Option<String>,
+    /// NAME=A,B: the range of one of these; may be given again
+    #[arg(
+        long,
+        value_name = "NAME=A,B",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub range: Vec<String>,
+    /// NAME=V1,V2,...: values of one of these to land on exactly, at every crossing; may be given again
+    #[arg(
+        long,
+        value_name = "NAME=V1,V2,...",
+        allow_hyphen_values = true,
+        help_heading = "Curve"
+    )]
+    pub at: Vec<String>,
+    /// Where equilibria and orbits of a system from a file are looked for.
+    #[command(flatten)]
+    pub search: SearchOptions,
     /// How it is followed.
     #[command(flatten)]
     pub continuation: ContinuationOptions,

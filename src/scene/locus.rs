@@ -99,7 +99,16 @@ impl CurveChoice {
         names
     };
 
-    fn named(name: Option<&str>) -> Result<Self> {
+    /// Whether it is of periodic orbits.
+    pub fn of_orbits(&self) -> bool {
+        self.orbits
+    }
+
+    /// The curve of this name.
+    ///
+    /// # Errors
+    /// [`Error::Input`] without a name; [`Error::Parameter`] for one that is none.
+    pub fn named(name: Option<&str>) -> Result<Self> {
         let name = name.ok_or_else(|| {
             Error::Input(format!(
                 "say which bifurcation to follow: twinslip locus followed by one of {}",

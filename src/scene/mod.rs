@@ -35,6 +35,7 @@ mod event;
 mod explain;
 mod file;
 mod following;
+mod general;
 mod instant;
 mod law;
 mod locus;
@@ -56,12 +57,16 @@ mod units;
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
-pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions};
+pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
 pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use following::Following;
+pub use general::{
+    Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, Subject,
+    TextSubject,
+};
 pub use instant::{Instant, run_columns};
 pub use law::{LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};

@@ -201,7 +201,7 @@ fn marks(
 }
 
 /// The points with their labels, each once.
-fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec<Mark> {
+pub(super) fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: bool) -> Vec<Mark> {
     /// Points nearer than this, relatively, are drawn as one.
     const SAME: f64 = 1e-6;
     let near = |a: f64, b: f64| (a - b).abs() <= SAME * a.abs().max(b.abs());

@@ -30,6 +30,8 @@ pub struct FieldEquilibria<'a> {
     pub fields: Fields<'a>,
     /// The parameter's name, by which the fields know its derivatives.
     pub along: &'a str,
+    /// The derivative of the parameter in what the fields are a function of, where that is another coordinate of it.
+    pub scale: Option<&'a dyn Fn(f64) -> f64>,
 }
 
 impl std::fmt::Debug for FieldEquilibria<'_> {
@@ -100,7 +102,8 @@ impl<'a> FieldEquilibria<'a> {
     fn in_parameter(&self, y: &Vector, p: f64) -> Vector {
         let here = self.field(p);
         if let Ok(place) = place(here.parameter_names(), self.along) {
-            return here.parameter_derivative(y, place);
+            let scale = self.scale.map_or(1.0, |scale| scale(p));
+            return here.parameter_derivative(y, place) * scale;
         }
         let h = CHANGE * (1.0 + p.abs());
         let f = |p: f64| self.field(p).f(y);
@@ -254,6 +257,16 @@ struct EquilibriumObserver<'a, 'b> {
     seen: &'a mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
 }
 
+impl EquilibriumObserver<'_, '_> {
+    /// Whether the derivatives in state and parameter together lose a rank: at a branch point.
+    fn crosses(&self, y: &Vector, p: f64) -> bool {
+        /// What is left of a singular value that is zero, against the largest.
+        const ZERO: f64 = 1e-7;
+        let values = self.family.extended(y, p).singular_values();
+        values.min() < ZERO * values.max()
+    }
+}
+
 impl CurveObserver for EquilibriumObserver<'_, '_> {
     fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let (y, p) = (&point.u, point.lambda);
@@ -269,6 +282,10 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
 
     fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         let (y, p) = (&point.u, point.lambda);
+        // Where another branch crosses, a turn of this one is no fold.
+        if mark == PointKind::Zero(0) && self.crosses(y, p) {
+            return ControlFlow::Continue(());
+        }
         let label = match mark {
             PointKind::Step => None,
             PointKind::Zero(i) => Some(LABELS[i]),

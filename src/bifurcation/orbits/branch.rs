@@ -14,12 +14,12 @@ use crate::orbit::{
 use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Tolerance of the continuation.
-pub(super) const ROUGH: f64 = 1e-11;
+pub(in crate::bifurcation) const ROUGH: f64 = 1e-11;
 /// The longest step.
-pub(super) const LONGEST: f64 = 0.7;
+pub(in crate::bifurcation) const LONGEST: f64 = 0.7;
 /// Steps of the integrator along a branch, or both ways along a curve, and on an arc, at most.
-const WORK: usize = 20_000_000;
-const ARC: usize = 100_000;
+pub(in crate::bifurcation) const WORK: usize = 20_000_000;
+pub(in crate::bifurcation) const ARC: usize = 100_000;
 /// The first step onto a branch that bifurcates.
 const ASIDE: f64 = 0.02;
 /// Coordinates of bifurcations that differ by less are of the same one.

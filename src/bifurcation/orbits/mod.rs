@@ -16,6 +16,8 @@ mod top;
 mod vertical;
 
 pub use branch::branch;
+pub(super) use branch::{ARC, LONGEST, ROUGH, WORK};
 pub use crosscheck::crosscheck;
 pub use locus::{loci, locus};
 pub use refine::SpecialOrbit;
+pub(super) use refine::refined;

@@ -97,7 +97,7 @@ pub fn refined(
         let first = of(&solutions[0]);
         let spread = solutions.iter().map(|s| (of(s) - first).abs());
         let spread = spread.fold(0.0, f64::max);
-        let uncertainty = SPREAD * spread + (DEVIATIONS * noise + rounding) * first.abs();
+        let uncertainty = SPREAD * spread + DEVIATIONS * noise + rounding * first.abs();
         Uncertain::new(first, if alone { f64::INFINITY } else { uncertainty })
     };
     let fixed = |i: usize| {
@@ -113,12 +113,17 @@ pub fn refined(
             let given = of(&solutions[0]);
             return Uncertain::new(given, rounding * given.abs());
         }
-        let scale = family.scale(solutions[0].site.at)[i] / of(&solutions[0]);
+        let scale = family.scale(solutions[0].site.at)[i];
         all(&of, noise.parameters[i] * scale.abs(), rounding)
     };
+    let period = solutions[0].site.shooting.period();
     Some(RefinedPoint {
         at: [parameter(0), parameter(1)],
-        period: all(&|s| s.site.shooting.period(), noise.period, ROUNDING),
+        period: all(
+            &|s| s.site.shooting.period(),
+            noise.period * period,
+            ROUNDING,
+        ),
         meets: meets.to_vec(),
         free: free.to_vec(),
         orbit: solutions.swap_remove(0),

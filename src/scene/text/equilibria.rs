@@ -26,6 +26,16 @@ pub enum SearchPlace {
     Within(Vec<Interval>),
 }
 
+impl SearchPlace {
+    /// In a box that a text gives: a range for every state.
+    ///
+    /// # Errors
+    /// [`Error::Input`] and [`Error::Parameter`] for a text that gives none.
+    pub fn within(text: &str, model: &TextModel) -> Result<Self> {
+        Ok(SearchPlace::Within(ranges(text, model)?))
+    }
+}
+
 /// An equilibrium.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextEquilibrium {
@@ -63,7 +73,7 @@ impl TextEquilibriaPlan {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &EquilibriaOptions, model: TextModel) -> Result<Self> {
         let place = match &options.within {
-            Some(text) => SearchPlace::Within(ranges(text, &model)?),
+            Some(text) => SearchPlace::within(text, &model)?,
             None => SearchPlace::Near(model.start(options.start.as_deref())?),
         };
         Ok(TextEquilibriaPlan { model, place })

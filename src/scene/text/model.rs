@@ -12,6 +12,7 @@ use crate::scene::shipped::{shipped_system, shipped_system_names};
 use crate::scene::system::Described;
 use crate::scene::units::Units;
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::path::Path;
 
 /// No file is longer, in bytes.
@@ -65,12 +66,20 @@ impl TextModel {
         }))
     }
 
+    /// The same with another system of these states.
+    pub fn with(&self, system: TextSystem) -> Self {
+        TextModel {
+            system,
+            ..self.clone()
+        }
+    }
+
     /// Its field.
     ///
     /// # Errors
     /// Those of [`AnyField::of_text`].
     pub fn field(&self) -> Result<AnyField<'_>> {
-        AnyField::of_text(&self.system)
+        AnyField::of_text(Cow::Borrowed(&self.system))
     }
 
     /// The values of all states: those of a text, or of the file where none is given.

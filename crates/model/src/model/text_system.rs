@@ -5,8 +5,9 @@ use crate::expression::Expressions;
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::number::{DoubleDouble, Interval, Jet, Real};
 use crate::series::{Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
+use std::borrow::Cow;
 use std::collections::BTreeSet;
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 
 /// Directions in which derivatives are made at once.
 const AT_ONCE: usize = 4;
@@ -14,7 +15,7 @@ const AT_ONCE: usize = 4;
 /// Equations with the names of their variables and parameters, at values of the latter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSystem {
-    rates: Expressions,
+    rates: Arc<Expressions>,
     states: Vec<&'static str>,
     names: Vec<&'static str>,
     parameters: Vec<f64>,
@@ -34,7 +35,7 @@ impl TextSystem {
             return Err(Error::parameter("the number of states", states.len(), must));
         }
         Ok(TextSystem {
-            rates,
+            rates: Arc::new(rates),
             states: states.iter().map(|name| kept(name)).collect(),
             names: parameters.iter().map(|(name, _)| kept(name)).collect(),
             parameters: parameters.iter().map(|(_, value)| *value).collect(),
@@ -62,8 +63,16 @@ impl TextSystem {
     /// [`Error::Parameter`] for a name that is none.
     pub fn set(&mut self, name: &str, value: f64) -> Result<()> {
         let place = crate::field::place(&self.names, name)?;
-        self.parameters[place] = value;
+        self.put(place, value);
         Ok(())
+    }
+
+    /// Gives the parameter at this place another value.
+    ///
+    /// # Panics
+    /// Where there is none.
+    pub fn put(&mut self, place: usize, value: f64) {
+        self.parameters[place] = value;
     }
 
     /// The field.
@@ -71,15 +80,7 @@ impl TextSystem {
     /// # Errors
     /// [`Error::Parameter`] where it has other than N variables.
     pub fn field<const N: usize>(&self) -> Result<TextField<'_, N>> {
-        if self.states.len() != N {
-            let must = format!("{N}, as many as the field is asked for");
-            return Err(Error::parameter(
-                "the number of states",
-                self.states.len(),
-                must,
-            ));
-        }
-        Ok(TextField(self))
+        TextField::of(Cow::Borrowed(self))
     }
 
     /// The rates in numbers of any kind.
@@ -187,11 +188,24 @@ fn kept(name: &str) -> &'static str {
 }
 
 /// A [`TextSystem`] of N variables.
-#[derive(Debug, Clone, Copy)]
-pub struct TextField<'a, const N: usize>(&'a TextSystem);
+#[derive(Debug, Clone)]
+pub struct TextField<'a, const N: usize>(Cow<'a, TextSystem>);
 
 impl<'a, const N: usize> TextField<'a, N> {
-    fn recorded(&self) -> RecordedExpressions<'a, N> {
+    /// The field of a system that stays with its owner, or of one's own.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where the system has other than N variables.
+    pub fn of(system: Cow<'a, TextSystem>) -> Result<Self> {
+        let count = system.states.len();
+        if count != N {
+            let must = format!("{N}, as many as the field is asked for");
+            return Err(Error::parameter("the number of states", count, must));
+        }
+        Ok(TextField(system))
+    }
+
+    fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
             rates: &self.0.rates,
             parameters: &self.0.parameters,

@@ -1,0 +1,244 @@
+//! Branches of equilibria along one parameter, with all that branches off.
+
+use super::{GeneralBranch, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
+use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
+use crate::bifurcation::{Criticality, Label};
+use crate::continuation::{Settings, Stop};
+use crate::error::Result;
+use crate::field::Vector;
+use crate::number::Uncertain;
+use std::f64::consts::TAU;
+use std::ops::ControlFlow::{self, Continue};
+
+/// Longest steps, as parts of the range and of 1 + |state|.
+const LONGEST: f64 = 0.05;
+/// The first step onto a branch that crosses, in units of 1 + |state|.
+const ASIDE: f64 = 1e-3;
+/// Points nearer to each other than this, in units of 1 + |x|, are one.
+const SAME: f64 = 1e-6;
+
+/// Follows all branches of equilibria over the range and hands on what is found.
+///
+/// # Errors
+/// Those of the known equilibria; [`crate::Error::TooManyPoints`]; [`crate::Error::NotConverged`] where not one equilibrium is
+/// found to begin with. That a branch ends early is none: it is told as `MX`.
+pub fn equilibria(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<()> {
+    let mut teller = Teller::new(seen, &branch.following);
+    EquilibriumBranches::new(branch).all(&mut |point, special| teller.point(point, special))?;
+    teller.end()
+}
+
+/// Who is told of a point, and whether it is special.
+type PointObserver<'a> = &'a mut dyn FnMut(GeneralPoint, bool) -> ControlFlow<()>;
+
+/// All branches, and what is known of them so far.
+pub(super) struct EquilibriumBranches<'b, 'a> {
+    branch: &'b GeneralBranch<'a>,
+    count: usize,
+    /// Where branches ended, (state, coordinate).
+    ends: Vec<Vector>,
+    /// Branch points, and how many branches passed each.
+    crossings: Vec<(FoundEquilibrium, usize)>,
+}
+
+impl<'b, 'a> EquilibriumBranches<'b, 'a> {
+    pub fn new(branch: &'b GeneralBranch<'a>) -> Self {
+        EquilibriumBranches {
+            branch,
+            count: 0,
+            ends: Vec::new(),
+            crossings: Vec::new(),
+        }
+    }
+
+    /// Follows all; whoever is told may break.
+    pub fn all(mut self, seen: PointObserver<'_>) -> Result<()> {
+        let (range, held) = (self.branch.range, self.branch.held);
+        for (begin, end) in [range, (range.1, range.0)] {
+            let known = (self.branch.system.equilibria)([begin, held])?;
+            for state in known {
+                if self.is_known(&state, begin) {
+                    continue;
+                }
+                let onward = Onward::along(state, begin, end > begin);
+                if self.follow(&onward, seen)?.is_break() {
+                    return Ok(());
+                }
+            }
+        }
+        // The list grows as it is gone through.
+        let mut i = 0;
+        while i < self.crossings.len() {
+            let (point, passed) = self.crossings[i].clone();
+            i += 1;
+            if passed > 1 {
+                continue;
+            }
+            let distance = ASIDE * (1.0 + point.state.amax());
+            let ways = self.with_family(|family| family.switch(&point, distance));
+            for onward in ways.into_iter().flatten() {
+                if self.crossings[i - 1].1 > 1 {
+                    break;
+                }
+                if self.inside(onward.parameter) && self.follow(&onward, seen)?.is_break() {
+                    return Ok(());
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn with_family<R>(&self, then: impl FnOnce(&FieldEquilibria<'_>) -> R) -> R {
+        let (system, held) = (self.branch.system, self.branch.held);
+        let fields = |x: f64| system.family.field([x, held]);
+        let scale = |x: f64| system.family.scale([x, held])[0];
+        then(&FieldEquilibria {
+            fields: &fields,
+            along: system.names[0],
+            scale: Some(&scale),
+        })
+    }
+
+    fn inside(&self, x: f64) -> bool {
+        let (a, b) = self.branch.range;
+        (a.min(b)..=a.max(b)).contains(&x)
+    }
+
+    /// Whether a branch has ended there.
+    fn is_known(&self, state: &Vector, at: f64) -> bool {
+        let here = state.push(at);
+        self.ends.iter().any(|end| near(end, &here))
+    }
+
+    /// One branch, both ways round from a branch point being two.
+    fn follow(&mut self, onward: &Onward, seen: PointObserver<'_>) -> Result<ControlFlow<()>> {
+        let number = self.count;
+        self.count += 1;
+        let GeneralBranch { range, at, .. } = self.branch;
+        let (low, high) = (range.0.min(range.1), range.0.max(range.1));
+        let size = (high - low) + 1.0 + onward.state.amax();
+        let longest = LONGEST * size * self.branch.following.step;
+        let settings = Settings {
+            wanted: at.clone(),
+            max_points: self.branch.following.max_points + 1,
+            ..Settings::new((low, high), longest)?
+        };
+        let (mut told, mut last) = (Continue(()), None);
+        let (mut ends, mut crossings) = (Vec::new(), Vec::new());
+        let mut begun = false;
+        let mut look = |found: &FoundEquilibrium| {
+            let here = found.state.push(found.parameter);
+            // From a branch point a branch begins without a label of its own.
+            let first = !std::mem::replace(&mut begun, true);
+            let label = found.label.filter(|_| !(first && onward.across));
+            if label == Some(Label::Ep) {
+                ends.push(here);
+            }
+            if label == Some(Label::Bp) {
+                crossings.push(found.clone());
+            }
+            let point = self.point(number, found, label);
+            last = Some(point.clone());
+            told = seen(point, label.is_some());
+            told
+        };
+        let followed = self.with_family(|family| family.follow(onward, &settings, &mut look));
+        let followed = match followed {
+            Ok(followed) => followed,
+            // What was thought to be an equilibrium is none.
+            Err(_) if onward.across => {
+                self.count -= 1;
+                return Ok(Continue(()));
+            }
+            Err(error) => return Err(error),
+        };
+        self.ends.extend(ends);
+        for found in crossings {
+            self.cross(found);
+        }
+        match followed.stopped {
+            Stop::Observer | Stop::RangeEnd | Stop::Closed => {}
+            other => {
+                if let Some(mut point) = last {
+                    point.label = Some(Label::Mx);
+                    point.note = Some(other.to_string());
+                    told = seen(point, true);
+                }
+            }
+        }
+        Ok(told)
+    }
+
+    /// One more branch passes a branch point.
+    fn cross(&mut self, found: FoundEquilibrium) {
+        let here = found.state.push(found.parameter);
+        let known = self.crossings.iter_mut();
+        let mut same = known.filter(|(other, _)| near(&other.state.push(other.parameter), &here));
+        match same.next() {
+            Some((_, passed)) => *passed += 1,
+            None => self.crossings.push((found, 1)),
+        }
+    }
+
+    fn point(&self, number: usize, found: &FoundEquilibrium, label: Option<Label>) -> GeneralPoint {
+        let held = self.branch.held;
+        let solution = |state: &Vector| GeneralSolution::Equilibrium {
+            state: state.clone(),
+            eigenvalues: found.eigenvalues.clone(),
+        };
+        let system = self.branch.system;
+        let rough = GeneralPoint {
+            label,
+            period: found.period.map(|t| Uncertain::new(t, f64::INFINITY)),
+            coefficient: found.coefficient,
+            criticality: found.coefficient.map(criticality),
+            ..GeneralPoint::new(number, [found.parameter, held], solution(&found.state))
+        };
+        let kind = match label {
+            Some(Label::Lp) => EquilibriumBifurcation::Fold,
+            Some(Label::Hb) => EquilibriumBifurcation::Hopf,
+            Some(Label::Uz | Label::Ep) => return rough.placed(system.family, [0.0; 2]),
+            _ => return rough.placed(system.family, [f64::INFINITY, 0.0]),
+        };
+        let curve = EquilibriumCurve {
+            family: system.family,
+            kind,
+        };
+        match curve.sharp(&found.state, rough.at, 1) {
+            Some(sharp) if near(&sharp.state, &found.state) => {
+                let mut point = GeneralPoint {
+                    at: [sharp.at[0], held],
+                    solution: solution(&sharp.state),
+                    ..rough
+                };
+                if let Some(omega) = sharp.frequency {
+                    let period = TAU / omega.value;
+                    let off = period * omega.uncertainty / omega.value;
+                    point.period = Some(Uncertain::new(period, off));
+                }
+                point.placed(system.family, sharp.uncertainty)
+            }
+            _ => rough.placed(system.family, [f64::INFINITY, 0.0]),
+        }
+    }
+}
+
+/// Whether two points of (state, coordinate) are one.
+fn near(a: &Vector, b: &Vector) -> bool {
+    let mut pairs = a.iter().zip(b);
+    pairs.all(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
+}
+
+/// Which way a Hopf bifurcation goes, by the first Lyapunov coefficient.
+pub(super) fn criticality(coefficient: f64) -> Criticality {
+    /// What a difference of second derivatives leaves.
+    const ZERO: f64 = 1e-9;
+    if coefficient.abs() < ZERO {
+        Criticality::Undecided
+    } else if coefficient < 0.0 {
+        Criticality::Supercritical
+    } else {
+        Criticality::Subcritical
+    }
+}

@@ -1,0 +1,78 @@
+//! Hopf points of any field, and the small orbits beside them.
+
+use crate::error::Result;
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
+use crate::orbit::{
+    ContinuationPoint, Corrector, Palc, PalcSettings, ShootingNodes, TangentVector,
+};
+use std::f64::consts::TAU;
+
+/// A Hopf point.
+#[derive(Debug, Clone)]
+pub(super) struct GeneralHopf {
+    /// The equilibrium.
+    pub state: Vector,
+    /// The coordinates of the parameters.
+    pub at: [f64; 2],
+    /// omega of the pair on the imaginary axis.
+    pub frequency: f64,
+}
+
+/// Nodes of a small orbit, and its size in units of 1 + |state|.
+const NODES: usize = 12;
+const FIRST: f64 = 0.01;
+
+impl GeneralHopf {
+    /// The ellipse of this size on which the linearised system turns: in the plane where J^2 = -omega^2.
+    fn ellipse(&self, field: &AnyField<'_>, size: f64) -> Option<ShootingNodes> {
+        let jacobian = field.jacobian(&self.state);
+        let count = jacobian.nrows();
+        let square = &jacobian * &jacobian
+            + Matrix::identity(count, count) * (self.frequency * self.frequency);
+        let decomposed = square.svd(false, true);
+        let smallest = decomposed.singular_values.imin();
+        let along: Vector = decomposed.v_t?.row(smallest).transpose();
+        let across = jacobian * &along / self.frequency;
+        let scale = size / along.amax().max(across.amax());
+        let turn = TAU / NODES as f64;
+        let nodes = (0..NODES).map(|k| {
+            let (sin, cos) = (turn * k as f64).sin_cos();
+            &self.state + (&along * cos + &across * sin) * scale
+        });
+        Some(ShootingNodes {
+            nodes: nodes.collect(),
+            durations: vec![turn / self.frequency; NODES],
+        })
+    }
+
+    /// Along the branch of orbits, from a small one outwards.
+    ///
+    /// # Errors
+    /// As of [`Palc::from`].
+    pub fn palc<'c, 'f>(
+        &self,
+        corrector: &'c mut Corrector<'f>,
+        settings: PalcSettings,
+    ) -> Result<Palc<'c, 'f>> {
+        let size = FIRST * (1.0 + self.state.amax());
+        let shooting = self.ellipse(&corrector.family.field(self.at), size);
+        let shooting = shooting.ok_or_else(|| crate::error::Error::NotConverged {
+            what: "the plane of the small orbits beside a Hopf point",
+            iterations: 0,
+            residual: f64::INFINITY,
+            tolerance: 0.0,
+        })?;
+        let outwards = TangentVector {
+            nodes: shooting.nodes.iter().map(|x| x - &self.state).collect(),
+            durations: vec![0.0; shooting.nodes.len()],
+            parameters: [0.0; 2],
+        };
+        // The ellipse itself is the first prediction.
+        let site = ContinuationPoint {
+            shooting,
+            at: self.at,
+        };
+        Palc::from(corrector, settings, site, outwards)
+    }
+}

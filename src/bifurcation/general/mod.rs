@@ -1,0 +1,270 @@
+//! Branches and curves of bifurcations of any system with named parameters, from its fields alone.
+//!
+//! Equilibria begin at those that the system knows at both ends of a range, and go on through branch points; orbits begin at the
+//! Hopf points met on them, or at an orbit that is given. What is met is told as it comes.
+
+mod curves;
+mod equilibria;
+mod hopf;
+mod orbit_curves;
+mod orbits;
+
+pub use curves::equilibrium_curves;
+pub use equilibria::equilibria;
+pub use orbit_curves::orbit_curves;
+pub use orbits::orbits;
+
+use super::{Criticality, Label};
+use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use crate::equilibrium::Verdict;
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::number::Uncertain;
+use crate::orbit::{ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction};
+use nalgebra::Complex;
+use std::ops::ControlFlow;
+
+/// The equilibria that are known at some coordinates of the parameters.
+pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sync);
+
+/// A system over one or two of its parameters.
+#[derive(Clone, Copy)]
+pub struct GeneralSystem<'a> {
+    /// Its fields.
+    pub family: &'a dyn ParametrisedField,
+    /// The names of the parameters, by which fields know their derivatives.
+    pub names: [&'a str; 2],
+    /// Where branches of equilibria begin.
+    pub equilibria: KnownEquilibria<'a>,
+}
+
+/// A branch that is asked for. All values of parameters are coordinates of the family.
+#[derive(Clone)]
+pub struct GeneralBranch<'a> {
+    /// The system; the first parameter varies.
+    pub system: GeneralSystem<'a>,
+    /// From where to where; the larger one may come first.
+    pub range: (f64, f64),
+    /// The second coordinate.
+    pub held: f64,
+    /// Values to land on.
+    pub at: Vec<f64>,
+    /// An orbit at the beginning of the range, where one is known.
+    pub orbit: Option<ContinuationPoint>,
+    /// How many times orbits may double their period.
+    pub doublings: usize,
+    /// How it is followed.
+    pub following: GeneralFollowing,
+}
+
+/// A curve of bifurcations that is asked for, in the plane of both parameters.
+#[derive(Clone)]
+pub struct GeneralCurve<'a> {
+    /// The system.
+    pub system: GeneralSystem<'a>,
+    /// What bifurcates.
+    pub kind: GeneralBifurcation,
+    /// From where to where in both.
+    pub ranges: [(f64, f64); 2],
+    /// Values to land on.
+    pub at: [Vec<f64>; 2],
+    /// An orbit with its coordinates, where one is known.
+    pub orbit: Option<ContinuationPoint>,
+    /// Whether the way is told that bifurcations of orbits go.
+    pub criticality: bool,
+    /// How it is followed.
+    pub following: GeneralFollowing,
+}
+
+/// How branches and curves are followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneralFollowing {
+    /// Factor on the step limits.
+    pub step: f64,
+    /// Numbers of branches that are known already and not told of again.
+    pub skip: Vec<usize>,
+    /// More points than this are an error, of all branches together.
+    pub max_points: usize,
+}
+
+/// What bifurcates along a curve.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum GeneralBifurcation {
+    /// Equilibria.
+    Equilibrium(EquilibriumBifurcation),
+    /// Orbits.
+    Orbit(TestFunction),
+}
+
+/// What is found at a point.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GeneralSolution {
+    /// An equilibrium.
+    Equilibrium {
+        /// Its state.
+        state: Vector,
+        /// By real part, the largest first.
+        eigenvalues: Vec<Complex<f64>>,
+    },
+    /// A periodic orbit.
+    Orbit {
+        /// Its nodes.
+        shooting: ShootingNodes,
+        /// ln |mu| of its nontrivial multipliers, the largest first.
+        log_multipliers: Vec<f64>,
+    },
+}
+
+/// A point of a branch or of a curve.
+#[derive(Debug, Clone, PartialEq)]
+#[non_exhaustive]
+pub struct GeneralPoint {
+    /// The number of the branch or curve, from 0.
+    pub number: usize,
+    /// What is special here.
+    pub label: Option<Label>,
+    /// The coordinates.
+    pub at: [f64; 2],
+    /// The parameters; of points that are not special their uncertainty is not known.
+    pub parameters: [Uncertain; 2],
+    /// What is there.
+    pub solution: GeneralSolution,
+    /// The period of the orbit, or of the oscillation at a Hopf point.
+    pub period: Option<Uncertain>,
+    /// The angle of the multipliers of a torus bifurcation, over pi.
+    pub angle_over_pi: Option<f64>,
+    /// To which side the bifurcation goes.
+    pub criticality: Option<Criticality>,
+    /// The normal form's coefficient.
+    pub coefficient: Option<f64>,
+    /// It may be off by this, where that is known.
+    pub coefficient_uncertainty: Option<f64>,
+    /// What else is to be said.
+    pub note: Option<String>,
+}
+
+/// What is found on the way.
+#[derive(Debug, Clone, PartialEq)]
+pub enum GeneralEvent {
+    /// A point of a branch or curve.
+    Row(GeneralPoint),
+    /// A special point.
+    Special(GeneralPoint),
+}
+
+/// Whether to go on.
+pub type GeneralObserver<'a> = &'a mut dyn FnMut(GeneralEvent) -> ControlFlow<()>;
+
+impl GeneralPoint {
+    fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
+        GeneralPoint {
+            number,
+            label: None,
+            at,
+            parameters: [Uncertain::new(0.0, f64::INFINITY); 2],
+            solution,
+            period: None,
+            angle_over_pi: None,
+            criticality: None,
+            coefficient: None,
+            coefficient_uncertainty: None,
+            note: None,
+        }
+    }
+
+    /// With the parameters of its coordinates, which may be off by so much.
+    fn placed(mut self, family: &dyn ParametrisedField, uncertainty: [f64; 2]) -> Self {
+        let (values, scale) = (family.parameters(self.at), family.scale(self.at));
+        for i in 0..2 {
+            let off = uncertainty[i] * scale[i].abs() + 2.0 * f64::EPSILON * values[i].abs();
+            self.parameters[i] = Uncertain::new(values[i], off);
+        }
+        self
+    }
+
+    /// Stability.
+    pub fn verdict(&self) -> Verdict {
+        /// What rounding and the continuation's accuracy leave of what is zero.
+        const NEUTRAL: f64 = 1e-6;
+        let (largest, size) = match &self.solution {
+            GeneralSolution::Equilibrium { eigenvalues, .. } => {
+                let most = eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max);
+                (eigenvalues.first().map_or(f64::NAN, |z| z.re), 1e-3 * most)
+            }
+            GeneralSolution::Orbit {
+                log_multipliers, ..
+            } => (log_multipliers.first().copied().unwrap_or(f64::NAN), 1.0),
+        };
+        if largest > NEUTRAL * size {
+            Verdict::Unstable
+        } else if largest < -NEUTRAL * size {
+            Verdict::Stable
+        } else {
+            Verdict::Undecided
+        }
+    }
+}
+
+/// Tells of rows as long as there are no more than allowed, and of those branches only that are asked for.
+struct Teller<'t> {
+    seen: GeneralObserver<'t>,
+    skip: &'t [usize],
+    left: usize,
+    limit: usize,
+    beyond: bool,
+    told: ControlFlow<()>,
+}
+
+impl<'t> Teller<'t> {
+    fn new(seen: GeneralObserver<'t>, following: &'t GeneralFollowing) -> Self {
+        Teller {
+            seen,
+            skip: &following.skip,
+            left: following.max_points,
+            limit: following.max_points,
+            beyond: false,
+            told: ControlFlow::Continue(()),
+        }
+    }
+
+    fn tell(&mut self, event: GeneralEvent) -> ControlFlow<()> {
+        self.told?;
+        let (GeneralEvent::Row(point) | GeneralEvent::Special(point)) = &event;
+        if self.skip.contains(&point.number) {
+            return ControlFlow::Continue(());
+        }
+        if matches!(event, GeneralEvent::Row(_)) {
+            self.beyond = self.left == 0;
+            self.left = self.left.saturating_sub(1);
+        }
+        self.told = if self.beyond {
+            ControlFlow::Break(())
+        } else {
+            (self.seen)(event)
+        };
+        self.told
+    }
+
+    /// A point, with a row, and special or not.
+    fn point(&mut self, point: GeneralPoint, special: bool) -> ControlFlow<()> {
+        match special {
+            true => self.special(point),
+            false => self.tell(GeneralEvent::Row(point)),
+        }
+    }
+
+    /// A special point and its row.
+    fn special(&mut self, point: GeneralPoint) -> ControlFlow<()> {
+        self.tell(GeneralEvent::Special(point.clone()))?;
+        self.tell(GeneralEvent::Row(point))
+    }
+
+    /// # Errors
+    /// [`Error::TooManyPoints`] where there were more than allowed.
+    fn end(self) -> Result<()> {
+        match self.beyond {
+            true => Err(Error::TooManyPoints { limit: self.limit }),
+            false => Ok(()),
+        }
+    }
+}

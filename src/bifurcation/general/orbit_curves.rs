@@ -1,0 +1,295 @@
+//! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
+
+use super::curves::{along_first, scanned};
+use super::orbits::{classified, new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
+use super::{GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use crate::bifurcation::Label;
+use crate::bifurcation::orbits::LONGEST;
+use crate::bifurcation::orbits::normal_form::Form;
+use crate::continuation::{Met, Stop};
+use crate::error::Result;
+use crate::number::Uncertain;
+use crate::orbit::{
+    Condition, ContinuationPoint, DirectedPoint, Goal, Palc, PalcSettings, Regular, TangentVector,
+    TestFunction, WatchedFunction,
+};
+use std::f64::consts::PI;
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// The most steps on a curve, each way.
+const STEPS: usize = 3000;
+/// Coordinates, and ln T, that differ by less are of the same orbit.
+const SAME: f64 = 1e-6;
+/// R1 to R4 and the sum of the pair of multipliers there.
+const RESONANCES: [(Label, f64); 4] = [
+    (Label::R1, 2.0),
+    (Label::R2, -2.0),
+    (Label::R3, -1.0),
+    (Label::R4, 0.0),
+];
+
+/// Follows all curves of this bifurcation of orbits through the ranges and hands on what is found.
+///
+/// # Errors
+/// Those of the orbits; [`crate::Error::TooManyPoints`]. That a curve ends early is none: it is told as `MX`.
+pub fn orbit_curves(
+    curve: &GeneralCurve<'_>,
+    test_function: TestFunction,
+    seen: GeneralObserver<'_>,
+) -> Result<()> {
+    test_function.checked(curve.system.family.dimension())?;
+    let mut teller = Teller::new(seen, &curve.following);
+    let mut curves = OrbitCurves {
+        curve,
+        test_function,
+        count: 0,
+        passes: Vec::new(),
+    };
+    let given = curve.orbit.iter().map(|orbit| orbit.at[1]);
+    let scan: Vec<f64> = given.chain(scanned(curve)).collect();
+    for held in scan {
+        for seed in curves.seeds(held)? {
+            if curves.is_known(&seed) {
+                continue;
+            }
+            if curves.through(seed, &mut teller)?.is_break() {
+                return teller.end();
+            }
+        }
+    }
+    teller.end()
+}
+
+struct OrbitCurves<'c, 'a> {
+    curve: &'c GeneralCurve<'a>,
+    test_function: TestFunction,
+    count: usize,
+    /// Where curves pass the values at which bifurcations are looked for: both coordinates and ln T.
+    passes: Vec<[f64; 3]>,
+}
+
+fn pass(site: &ContinuationPoint) -> [f64; 3] {
+    [site.at[0], site.at[1], site.shooting.period().ln()]
+}
+
+impl OrbitCurves<'_, '_> {
+    /// The bifurcations along the first parameter at a value of the second.
+    fn seeds(&self, held: f64) -> Result<Vec<ContinuationPoint>> {
+        let wanted = match self.test_function {
+            TestFunction::Fold => Label::Sn,
+            TestFunction::Doubling => Label::Pd,
+            TestFunction::Transverse => Label::Pf,
+            _ => Label::Tr,
+        };
+        let mut branch = along_first(self.curve, held);
+        branch.orbit = self.curve.orbit.clone().filter(|orbit| orbit.at[1] == held);
+        let mut found = Vec::new();
+        orbits(&branch, &mut |event| {
+            if let GeneralEvent::Row(point) = event
+                && point.label == Some(wanted)
+                && let GeneralSolution::Orbit { shooting, .. } = point.solution
+            {
+                let at = point.at;
+                found.push(ContinuationPoint { shooting, at });
+            }
+            Continue(())
+        })?;
+        Ok(found)
+    }
+
+    fn is_known(&self, seed: &ContinuationPoint) -> bool {
+        let here = pass(seed);
+        let near = |pass: &[f64; 3]| (0..3).all(|i| (pass[i] - here[i]).abs() < SAME);
+        self.passes.iter().any(near)
+    }
+
+    /// The curve through a bifurcation, both ways.
+    fn through(
+        &mut self,
+        seed: ContinuationPoint,
+        teller: &mut Teller<'_>,
+    ) -> Result<ControlFlow<()>> {
+        self.passes.push(pass(&seed));
+        let step = self.curve.following.step;
+        let settings = PalcSettings::locus(self.test_function, LONGEST * step);
+        let mut corrector = new_corrector(self.curve.system.family)?;
+        let held = settings.and(Condition::Parameter(1, seed.at[1]));
+        let Ok(closed) = corrector.correct(seed, &settings.free, &held, Goal::STEP) else {
+            return Ok(Continue(()));
+        };
+        let Ok(here) = corrector.look(closed.site, &settings.free, &settings.own()) else {
+            return Ok(Continue(()));
+        };
+        let Some(direction) = settings.direction(&here, &here.along[0]) else {
+            return Ok(Continue(()));
+        };
+        let number = self.count;
+        self.count += 1;
+        let mut back = Vec::new();
+        let begin = (&here, &direction);
+        self.half(begin, &settings, number, 1.0, &mut |point, special| {
+            back.push((point, special));
+            Continue(())
+        })?;
+        for (point, special) in back.into_iter().rev() {
+            if teller.point(point, special).is_break() {
+                return Ok(Break(()));
+            }
+        }
+        let first = self.row(number, &here, None);
+        if teller.point(first, false).is_break() {
+            return Ok(Break(()));
+        }
+        self.half(begin, &settings, number, -1.0, &mut |point, special| {
+            teller.point(point, special)
+        })?;
+        Ok(teller.told)
+    }
+
+    fn watches(&self) -> Vec<WatchedFunction> {
+        let mut watches = Vec::new();
+        let dimension = self.curve.system.family.dimension();
+        match self.test_function {
+            TestFunction::Torus => watches.extend(
+                RESONANCES.map(|(_, sum)| WatchedFunction::TestFunction(TestFunction::Trace(sum))),
+            ),
+            TestFunction::Doubling | TestFunction::Fold if dimension > 2 => {
+                watches.push(WatchedFunction::TestFunction(TestFunction::Torus));
+            }
+            _ => {}
+        }
+        for (i, (from, to)) in self.curve.ranges.into_iter().enumerate() {
+            let wanted = self.curve.at[i].iter().copied();
+            let values = [from, to].into_iter().chain(wanted);
+            watches.extend(values.map(|x| WatchedFunction::Value(i, x)));
+        }
+        let scan = scanned(self.curve).into_iter();
+        watches.extend(scan.map(|x| WatchedFunction::Value(1, x)));
+        watches
+    }
+
+    /// One way from a point of the curve.
+    fn half(
+        &mut self,
+        (here, direction): (&Regular, &TangentVector),
+        settings: &PalcSettings,
+        number: usize,
+        way: f64,
+        seen: &mut dyn FnMut(GeneralPoint, bool) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let mut corrector = new_corrector(self.curve.system.family)?;
+        let direction = direction.clone().scaled(way);
+        let palc = Palc::from(
+            &mut corrector,
+            settings.clone(),
+            here.site.clone(),
+            direction,
+        );
+        let Ok(mut palc) = palc else {
+            return Ok(());
+        };
+        let begin = pass(&here.site);
+        let watches = self.watches();
+        let end = palc.follow(&watches, STEPS, &mut |palc, _, met| match met {
+            Met::Zero(watch, at) => self.zero(palc, (watch, at), number, begin, seen),
+            Met::Point(now) => {
+                let mut point = self.row(number, &now.here, None);
+                if self.curve.criticality {
+                    point = self.classified(point, &now.here);
+                }
+                seen(point, false)
+            }
+        })?;
+        if end != Stop::Observer {
+            let mut point = self.row(number, &palc.now.here, Some(Label::Mx));
+            point.note = Some(end.to_string());
+            let _ = seen(point, true);
+        }
+        Ok(())
+    }
+
+    fn zero(
+        &mut self,
+        palc: &Palc<'_, '_>,
+        (watch, at): (WatchedFunction, &DirectedPoint),
+        number: usize,
+        begin: [f64; 3],
+        seen: &mut dyn FnMut(GeneralPoint, bool) -> ControlFlow<()>,
+    ) -> ControlFlow<()> {
+        let near = &at.here;
+        if let WatchedFunction::Value(i, value) = watch {
+            let here = pass(&near.site);
+            if (0..3).all(|k| (here[k] - begin[k]).abs() < SAME) {
+                return Continue(());
+            }
+            if i == 1 && scanned(self.curve).contains(&value) {
+                self.passes.push(here);
+                if !self.curve.at[1].contains(&value) {
+                    return Continue(());
+                }
+            }
+        }
+        /// The sum of a pair e^(+-i theta) that is certainly not real.
+        const REAL: f64 = 1.999;
+        let sum = |x: f64| RESONANCES.iter().find(|(_, sum)| *sum == x);
+        let (label, ends) = match watch {
+            WatchedFunction::Value(i, x) => {
+                let (from, to) = self.curve.ranges[i];
+                let end = x == from || x == to;
+                (if end { Label::Ep } else { Label::Uz }, end)
+            }
+            WatchedFunction::TestFunction(TestFunction::Trace(x)) => match sum(x) {
+                Some((label, _)) => (*label, x.abs() == 2.0),
+                None => return Continue(()),
+            },
+            // Both multipliers are -1, or 1; elsewhere the pair whose product is 1 has nothing to do with the bifurcation.
+            WatchedFunction::TestFunction(_) if sum_of_pair(near).abs() < REAL => {
+                return Continue(());
+            }
+            WatchedFunction::TestFunction(_) if self.test_function == TestFunction::Doubling => {
+                (Label::R2, false)
+            }
+            WatchedFunction::TestFunction(_) => (Label::R1, false),
+            WatchedFunction::Turn(_) => return Continue(()),
+        };
+        let meets = [WatchedFunction::TestFunction(self.test_function), watch];
+        let family = self.curve.system.family;
+        let settings = &palc.curve.settings;
+        let (point, orbit) = special_orbit(family, (number, label), near, (&settings.free, &meets));
+        let orbit = orbit.as_ref().unwrap_or(near);
+        let point = self.classified(self.angled(point, orbit), orbit);
+        seen(point, true)?;
+        if ends { Break(()) } else { Continue(()) }
+    }
+
+    fn row(&self, number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
+        /// The last correction was made; with old gradients a small part of it is left.
+        const LEFT: f64 = 0.05;
+        let off = LEFT * orbit.residual + 100.0 * crate::bifurcation::orbits::ROUGH;
+        let point = self.angled(orbit_point(number, orbit, label), orbit);
+        let point = point.placed(self.curve.system.family, [off; 2]);
+        let period = orbit.site.shooting.period();
+        GeneralPoint {
+            period: Some(Uncertain::new(period, f64::INFINITY)),
+            ..point
+        }
+    }
+
+    /// With the angle of the pair on the unit circle.
+    fn angled(&self, mut point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
+        if self.test_function == TestFunction::Torus {
+            let sum = sum_of_pair(orbit);
+            point.angle_over_pi = Some((0.5 * sum).clamp(-1.0, 1.0).acos() / PI);
+        }
+        point
+    }
+
+    fn classified(&self, point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
+        let form = match self.test_function {
+            TestFunction::Doubling => Form::Doubling,
+            TestFunction::Torus => Form::Torus,
+            _ => return point,
+        };
+        classified(point, self.curve.system.family, &orbit.site, form)
+    }
+}

@@ -1,0 +1,422 @@
+//! Branches of periodic orbits along one parameter: from the Hopf points, through folds, onto the branches of doubled periods.
+
+use super::equilibria::EquilibriumBranches;
+use super::hopf::GeneralHopf;
+use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use crate::bifurcation::Label;
+use crate::bifurcation::orbits::normal_form::{Form, normal_form};
+use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, refined};
+use crate::continuation::Met;
+use crate::error::Result;
+use crate::number::Uncertain;
+use crate::orbit::{
+    Condition, ContinuationPoint, Corrector, DirectedPoint, Goal, Palc, PalcSettings,
+    ParametrisedField, Regular, Switch, TestFunction, Tracer, WatchedFunction,
+};
+use std::ops::ControlFlow::{self, Break, Continue};
+
+/// The most steps on a branch.
+const STEPS: usize = 5000;
+/// The first step onto a branch that bifurcates.
+const ASIDE: f64 = 0.02;
+/// The free parameter.
+const FREE: usize = 0;
+/// Coordinates, and ln T, that differ by less are of the same orbit.
+const SAME: f64 = 1e-6;
+
+/// Follows the branches of orbits over the range and hands on what is found.
+///
+/// # Errors
+/// Those of the equilibria and of the flow; [`crate::Error::TooManyPoints`]; that a branch ends early is none.
+pub fn orbits(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<()> {
+    let mut teller = Teller::new(seen, &branch.following);
+    let mut set = OrbitBranches::new(branch)?;
+    set.all(&mut teller)?;
+    teller.end()
+}
+
+/// What makes the orbits of a family, its work bounded.
+pub(super) fn new_corrector(family: &dyn ParametrisedField) -> Result<Corrector<'_>> {
+    Ok(Corrector::by(family, Tracer::limited(ROUGH, ARC, WORK)?))
+}
+
+/// The Hopf points on all equilibria, by their coordinate, each once; as they are told of.
+pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf, GeneralPoint)>> {
+    let mut found: Vec<(GeneralHopf, GeneralPoint)> = Vec::new();
+    EquilibriumBranches::new(branch).all(&mut |point, _| {
+        if let (Some(Label::Hb), Some(period)) = (point.label, point.period)
+            && let GeneralSolution::Equilibrium { state, .. } = &point.solution
+        {
+            let hopf = GeneralHopf {
+                state: state.clone(),
+                at: point.at,
+                frequency: std::f64::consts::TAU / period.value,
+            };
+            let same = |other: &GeneralHopf| {
+                (other.at[FREE] - hopf.at[FREE]).abs() < SAME
+                    && (&other.state - &hopf.state).amax() < SAME * (1.0 + hopf.state.amax())
+            };
+            if !found.iter().any(|(other, _)| same(other)) {
+                found.push((hopf, point));
+            }
+        }
+        Continue(())
+    })?;
+    found.sort_by(|a, b| a.0.at[FREE].total_cmp(&b.0.at[FREE]));
+    Ok(found)
+}
+
+/// All branches, and what is known of them so far.
+struct OrbitBranches<'b, 'a> {
+    branch: &'b GeneralBranch<'a>,
+    count: usize,
+    hopfs: Vec<(GeneralHopf, GeneralPoint)>,
+    /// The coordinates of the Hopf points, and whether a branch has come there.
+    coordinates: Vec<f64>,
+    reached: Vec<bool>,
+    /// Period doublings with how often the period has doubled before, and whether a branch of doubled orbits was there.
+    doublings: Vec<(Regular, usize, bool)>,
+}
+
+impl<'b, 'a> OrbitBranches<'b, 'a> {
+    fn new(branch: &'b GeneralBranch<'a>) -> Result<Self> {
+        let hopfs = hopf_points(branch)?;
+        Ok(OrbitBranches {
+            branch,
+            count: 0,
+            coordinates: hopfs.iter().map(|(hopf, _)| hopf.at[FREE]).collect(),
+            reached: vec![false; hopfs.len()],
+            hopfs,
+            doublings: Vec::new(),
+        })
+    }
+
+    fn all(&mut self, teller: &mut Teller<'_>) -> Result<()> {
+        if let Some(site) = &self.branch.orbit {
+            self.from_orbit(site.clone(), teller)?;
+        }
+        for i in 0..self.hopfs.len() {
+            if !std::mem::replace(&mut self.reached[i], true) && teller.told.is_continue() {
+                self.from_hopf(i, teller)?;
+            }
+        }
+        // The list grows as it is gone through.
+        let mut i = 0;
+        while i < self.doublings.len() && teller.told.is_continue() {
+            let (orbit, before, visited) = &mut self.doublings[i];
+            let times = *before + 1;
+            let new = !std::mem::replace(visited, true);
+            let switch = orbit.doubled();
+            i += 1;
+            if let Some(switch) = switch.filter(|_| new && times <= self.branch.doublings) {
+                self.aside(switch, times, teller)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn settings(&self) -> PalcSettings {
+        PalcSettings::branch(FREE, LONGEST * self.branch.following.step)
+    }
+
+    fn next(&mut self) -> usize {
+        self.count += 1;
+        self.count - 1
+    }
+
+    /// From an orbit at the beginning of the range to its end; both ways from one that lies within.
+    fn from_orbit(&mut self, site: ContinuationPoint, teller: &mut Teller<'_>) -> Result<()> {
+        let mut corrector = new_corrector(self.branch.system.family)?;
+        let held = [Condition::Parameter(FREE, site.at[FREE])];
+        let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;
+        let (from, to) = self.branch.range;
+        let begin = orbit.site.at[FREE];
+        let along = orbit.along[0].clone();
+        let ways: &[f64] = if begin == from { &[1.0] } else { &[1.0, -1.0] };
+        for way in ways {
+            let number = self.next();
+            let label = (begin == from).then_some(Label::Ep);
+            let first = self.row(number, &orbit, label);
+            let first = first.placed(self.branch.system.family, [0.0; 2]);
+            if teller.point(first, label.is_some()).is_break() {
+                return Ok(());
+            }
+            let ahead = along.parameters[FREE] * (to - from) * way;
+            let direction = along.clone().scaled(if ahead < 0.0 { -1.0 } else { 1.0 });
+            let site = orbit.site.clone();
+            let mut corrector = new_corrector(self.branch.system.family)?;
+            let mut palc = Palc::from(&mut corrector, self.settings(), site, direction)?;
+            OrbitBranch::new(self, number, 0, true).go(&mut palc, teller)?;
+        }
+        Ok(())
+    }
+
+    fn from_hopf(&mut self, i: usize, teller: &mut Teller<'_>) -> Result<()> {
+        let number = self.next();
+        let (hopf, point) = self.hopfs[i].clone();
+        let point = GeneralPoint { number, ..point };
+        if teller.tell(GeneralEvent::Special(point.clone())).is_break() {
+            return Ok(());
+        }
+        let mut corrector = new_corrector(self.branch.system.family)?;
+        match hopf.palc(&mut corrector, self.settings()) {
+            Ok(mut palc) => OrbitBranch::new(self, number, 0, true).go(&mut palc, teller),
+            Err(error) => {
+                let special = GeneralPoint {
+                    label: Some(Label::Mx),
+                    note: Some(format!("no orbit is found beside the Hopf point: {error}")),
+                    criticality: None,
+                    coefficient: None,
+                    ..point
+                };
+                let _ = teller.tell(GeneralEvent::Special(special));
+                Ok(())
+            }
+        }
+    }
+
+    /// Along a branch of doubled orbits.
+    fn aside(
+        &mut self,
+        (site, direction): Switch,
+        times: usize,
+        teller: &mut Teller<'_>,
+    ) -> Result<()> {
+        let mut corrector = new_corrector(self.branch.system.family)?;
+        let inside = self.inside(site.at[FREE]);
+        let first = site.moved(&direction, ASIDE);
+        let Ok(mut palc) = Palc::from(&mut corrector, self.settings(), first, direction) else {
+            return Ok(());
+        };
+        let number = self.next();
+        OrbitBranch::new(self, number, times, inside).go(&mut palc, teller)
+    }
+
+    fn inside(&self, x: f64) -> bool {
+        let (a, b) = self.branch.range;
+        (a.min(b)..=a.max(b)).contains(&x)
+    }
+
+    fn row(&self, number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
+        let point = orbit_point(number, orbit, label);
+        point.placed(self.branch.system.family, [f64::INFINITY, 0.0])
+    }
+}
+
+/// An orbit as a point, without its parameters.
+pub(super) fn orbit_point(number: usize, orbit: &Regular, label: Option<Label>) -> GeneralPoint {
+    let shooting = orbit.site.shooting.clone();
+    GeneralPoint {
+        label,
+        period: Some(Uncertain::new(shooting.period(), f64::INFINITY)),
+        ..GeneralPoint::new(
+            number,
+            orbit.site.at,
+            GeneralSolution::Orbit {
+                log_multipliers: orbit.log_multipliers(),
+                shooting,
+            },
+        )
+    }
+}
+
+/// A special orbit near a site in the last digits, or what is known of it.
+pub(super) fn special_orbit(
+    family: &dyn ParametrisedField,
+    (number, label): (usize, Label),
+    near: &Regular,
+    (free, meets): (&[usize], &[WatchedFunction]),
+) -> (GeneralPoint, Option<Regular>) {
+    let Some(sharp) = refined(family, &near.site, free, meets) else {
+        let rough = orbit_point(number, near, Some(label));
+        let unknown = [0, 1].map(|i| {
+            if free.contains(&i) {
+                f64::INFINITY
+            } else {
+                0.0
+            }
+        });
+        return (rough.placed(family, unknown), None);
+    };
+    let point = GeneralPoint {
+        parameters: sharp.at,
+        period: Some(sharp.period),
+        ..orbit_point(number, &sharp.orbit, Some(label))
+    };
+    (point, Some(sharp.orbit))
+}
+
+/// With which way the bifurcation goes.
+pub(super) fn classified(
+    mut point: GeneralPoint,
+    family: &dyn ParametrisedField,
+    site: &ContinuationPoint,
+    form: Form,
+) -> GeneralPoint {
+    if let Ok((coefficient, criticality)) = normal_form(family, site, form) {
+        let known = coefficient.uncertainty.is_finite();
+        point.criticality = Some(criticality);
+        point.coefficient = known.then_some(coefficient.value);
+        point.coefficient_uncertainty = known.then_some(coefficient.uncertainty);
+    }
+    point
+}
+
+/// One branch.
+struct OrbitBranch<'s, 'b, 'a> {
+    set: &'s mut OrbitBranches<'b, 'a>,
+    number: usize,
+    times: usize,
+    inside: bool,
+}
+
+impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
+    fn new(set: &'s mut OrbitBranches<'b, 'a>, number: usize, times: usize, inside: bool) -> Self {
+        OrbitBranch {
+            set,
+            number,
+            times,
+            inside,
+        }
+    }
+
+    fn watches(&self) -> Vec<WatchedFunction> {
+        let branch = self.set.branch;
+        let dimension = branch.system.family.dimension();
+        // Folds by their multiplier: along a canard the parameter turns within its rounding.
+        let all = [
+            TestFunction::Fold,
+            TestFunction::Doubling,
+            TestFunction::Torus,
+        ];
+        let known = all.into_iter().filter(|one| one.checked(dimension).is_ok());
+        let mut watches: Vec<_> = known.map(WatchedFunction::TestFunction).collect();
+        let (a, b) = branch.range;
+        let values = [a, b].into_iter().chain(branch.at.iter().copied());
+        watches.extend(values.map(|x| WatchedFunction::Value(FREE, x)));
+        watches
+    }
+
+    fn go(mut self, palc: &mut Palc<'_, '_>, teller: &mut Teller<'_>) -> Result<()> {
+        let watches = self.watches();
+        let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
+            Met::Zero(watch, at) => self.zero(palc, watch, at, teller),
+            Met::Point(now) => self.orbit(palc, now, before, teller),
+        })?;
+        if end != crate::continuation::Stop::Observer && self.inside {
+            let mut point = self.set.row(self.number, &palc.now.here, Some(Label::Mx));
+            point.note = Some(end.to_string());
+            let _ = teller.tell(GeneralEvent::Special(point));
+        }
+        Ok(())
+    }
+
+    /// The next orbit: whether the branch goes on.
+    fn orbit(
+        &mut self,
+        palc: &Palc<'_, '_>,
+        now: &DirectedPoint,
+        before: &DirectedPoint,
+        teller: &mut Teller<'_>,
+    ) -> ControlFlow<()> {
+        let here = &now.here;
+        let last = &before.here.site;
+        if let Some(i) = palc.ends_at_coordinate(last, &self.set.coordinates) {
+            self.set.reached[i] = true;
+            let point = GeneralPoint {
+                number: self.number,
+                ..self.set.hopfs[i].1.clone()
+            };
+            let _ = teller.tell(GeneralEvent::Special(point));
+            return Break(());
+        }
+        let turned = now.direction.parameters[FREE] * before.direction.parameters[FREE] <= 0.0;
+        if self.times > 0 && turned && self.is_doubling(&here.site) {
+            return Break(());
+        }
+        if !self.set.inside(here.site.at[FREE]) {
+            return if self.inside { Break(()) } else { Continue(()) };
+        }
+        self.inside = true;
+        teller.tell(GeneralEvent::Row(self.set.row(self.number, here, None)))
+    }
+
+    /// Whether a branch of doubled orbits, whose parameter turns, is back at a period doubling.
+    fn is_doubling(&mut self, site: &ContinuationPoint) -> bool {
+        /// Of the turn in the coordinate, and of the period from twice that at the doubling.
+        const NEAR: (f64, f64) = (2e-3, 1e-3);
+        let times = self.times;
+        let near = |(orbit, before, _): &(Regular, usize, bool)| {
+            let period = 2.0 * orbit.site.shooting.period();
+            (orbit.site.at[FREE] - site.at[FREE]).abs() < NEAR.0
+                && (site.shooting.period() / period - 1.0).abs() < NEAR.1
+                && before + 1 == times
+        };
+        let found = self.set.doublings.iter().position(near);
+        if let Some(i) = found {
+            self.set.doublings[i].2 = true;
+        }
+        found.is_some()
+    }
+
+    /// Something that is watched is zero here.
+    fn zero(
+        &mut self,
+        palc: &Palc<'_, '_>,
+        watch: WatchedFunction,
+        at: &DirectedPoint,
+        teller: &mut Teller<'_>,
+    ) -> ControlFlow<()> {
+        /// A slope of the parameter along the branch that is zero: at folds, where the multiplier 1 is no pitchfork's.
+        const FLAT: f64 = 1e-3;
+        let branch = self.set.branch;
+        let (from, to) = branch.range;
+        let near = &at.here;
+        let label = match watch {
+            WatchedFunction::Value(_, x) if x == from || x == to => Label::Ep,
+            _ if !self.set.inside(near.site.at[FREE]) => return Continue(()),
+            WatchedFunction::Value(..) => Label::Uz,
+            WatchedFunction::TestFunction(TestFunction::Doubling) => Label::Pd,
+            WatchedFunction::TestFunction(TestFunction::Torus) if sum_of_pair(near).abs() < 2.0 => {
+                Label::Tr
+            }
+            WatchedFunction::TestFunction(TestFunction::Fold)
+                if self.times > 0 && self.is_doubling(&near.site) =>
+            {
+                return Continue(());
+            }
+            WatchedFunction::TestFunction(TestFunction::Fold) => {
+                let turns = at.direction.parameters[FREE].abs() < FLAT;
+                if turns { Label::Sn } else { Label::Pf }
+            }
+            _ => return Continue(()),
+        };
+        let ends = label == Label::Ep && self.inside;
+        self.inside |= label == Label::Ep;
+        let family = branch.system.family;
+        let meets = (&palc.curve.settings.free[..], &[watch][..]);
+        let (mut point, orbit) = match label {
+            // There the condition has no simple zero.
+            Label::Pf => (self.set.row(self.number, near, Some(label)), None),
+            _ => special_orbit(family, (self.number, label), near, meets),
+        };
+        let form = match label {
+            Label::Pd => Some(Form::Doubling),
+            Label::Tr => Some(Form::Torus),
+            _ => None,
+        };
+        if let (Some(form), Some(orbit)) = (form, &orbit) {
+            point = classified(point, family, &orbit.site, form);
+        }
+        if let (Label::Pd, Some(orbit)) = (label, orbit) {
+            self.set.doublings.push((orbit, self.times, false));
+        }
+        teller.special(point)?;
+        if ends { Break(()) } else { Continue(()) }
+    }
+}
+
+/// The sum of the two multipliers whose product is nearest to 1.
+pub(super) fn sum_of_pair(orbit: &Regular) -> f64 {
+    TestFunction::Trace(0.0).of(&orbit.spectrum)
+}

@@ -1,0 +1,113 @@
+//! `branch` and `locus` in any parameters.
+
+use super::continuation::Task;
+use super::rows::Found;
+use super::{Ending, say, special};
+use crate::error::Result;
+use crate::scene::{
+    BranchOptions, Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow,
+    LocusOptions, OutputOptions, Quantity, RowKind, Subject,
+};
+use crate::views;
+use serde_json::Value;
+use std::path::PathBuf;
+
+/// Branches along a parameter of any system.
+pub fn branch(options: &BranchOptions, subject: &dyn Subject, words: &[String]) -> Result<Ending> {
+    let plan = GeneralBranchPlan::new(options, subject)?;
+    let files = (options.resume.as_ref(), options.plot.as_ref());
+    let free = [&plan.free];
+    let frame = Frame::new(subject, plan.kind, &free);
+    let task = frame.task(&plan.numerics, files, &options.output, words);
+    let report = task.report()?;
+    if options.output.explain {
+        say(plan.explain());
+    }
+    task.run(
+        &report,
+        |known, seen| plan.follow(known, &mut |found| seen(found.into())),
+        |rows, special| views::general_branches(rows, special, &plan),
+    )
+}
+
+/// Curves in the plane of two parameters of any system.
+pub fn locus(options: &LocusOptions, subject: &dyn Subject, words: &[String]) -> Result<Ending> {
+    let plan = GeneralLocusPlan::new(options, subject)?;
+    let files = (options.resume.as_ref(), options.plot.as_ref());
+    let free = plan.free.each_ref();
+    let frame = Frame::new(subject, plan.kind, &free);
+    let task = frame.task(&plan.numerics, files, &options.output, words);
+    let report = task.report()?;
+    if options.output.explain {
+        say(plan.explain());
+    }
+    task.run(
+        &report,
+        |known, seen| plan.follow(known, &mut |found| seen(found.into())),
+        |rows, special| views::general_curves(rows, special, &plan),
+    )
+}
+
+impl From<GeneralFound> for Found<GeneralRow> {
+    fn from(found: GeneralFound) -> Self {
+        match found {
+            GeneralFound::Row(row) => Found::Row(row),
+            GeneralFound::Special(special) => Found::Special(special),
+        }
+    }
+}
+
+type Reader<'s> = Box<dyn Fn(&dyn Fn(&str) -> String) -> Option<GeneralRow> + 's>;
+type Lines<'s> = Box<dyn Fn(&[GeneralRow], &special::Checks) -> Vec<String> + 's>;
+
+/// What the tasks of branches and curves share.
+struct Frame<'s> {
+    subject: &'s dyn Subject,
+    kind: RowKind,
+    names: Vec<(&'static str, Quantity)>,
+    read: Reader<'s>,
+    read_special: Reader<'s>,
+    lines: Lines<'s>,
+}
+
+impl<'s> Frame<'s> {
+    fn new(subject: &'s dyn Subject, kind: RowKind, free: &[&Free]) -> Self {
+        let names: Vec<_> = free.iter().map(|free| (free.name, free.quantity)).collect();
+        let numbers = subject.numbers(kind);
+        let (of_rows, of_special, of_lines) = (names.clone(), names.clone(), names.clone());
+        let units = subject.units();
+        Frame {
+            subject,
+            kind,
+            names,
+            read: Box::new(move |cell| GeneralRow::read(cell, units, &of_rows, &numbers)),
+            read_special: Box::new(move |cell| GeneralRow::read(cell, units, &of_special, &[])),
+            lines: Box::new(move |special, _| {
+                special::general_lines(special, &GeneralRow::special_columns(&of_lines), units)
+            }),
+        }
+    }
+
+    fn task<'t>(
+        &'t self,
+        numerics: &Value,
+        (resume, plot): (Option<&'t PathBuf>, Option<&'t PathBuf>),
+        output: &'t OutputOptions,
+        words: &'t [String],
+    ) -> Task<'t, GeneralRow> {
+        Task {
+            system: self.subject,
+            names: self.names.iter().map(|(name, _)| *name).collect(),
+            columns: GeneralRow::columns(self.subject, self.kind, &self.names),
+            special_columns: GeneralRow::special_columns(&self.names),
+            read: (&*self.read, &*self.read_special),
+            lines: &*self.lines,
+            numerics: numerics.clone(),
+            second: None,
+            resume,
+            plot,
+            output,
+            words,
+        }
+    }
+}

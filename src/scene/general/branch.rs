@@ -1,0 +1,226 @@
+//! Branches along any parameter, from options.
+
+use super::following::{Free, general, numbers, without_crosscheck};
+use super::{GeneralRow, RowKind, Subject};
+use crate::bifurcation::general::{
+    GeneralBranch, GeneralEvent, GeneralPoint, GeneralSystem, equilibria, orbits,
+};
+use crate::error::{Error, Result};
+use crate::number::Uncertain;
+use crate::orbit::{Coordinate, ParametrisedField};
+use crate::scene::branch::BranchKind;
+use crate::scene::continuation::BranchOptions;
+use crate::scene::following::Following;
+use serde_json::{Value, json};
+use std::ops::ControlFlow;
+
+/// Branches that are asked for, checked.
+pub struct GeneralBranchPlan<'s> {
+    /// Of equilibria, or of orbits.
+    pub kind: RowKind,
+    /// What is followed.
+    pub subject: &'s dyn Subject,
+    /// What varies.
+    pub free: Free,
+    /// How many times orbits may double their period.
+    pub doublings: usize,
+    /// How.
+    pub following: Following,
+    /// The same for the output.
+    pub numerics: Value,
+}
+
+/// A row, or a special point.
+pub enum GeneralFound {
+    /// A row.
+    Row(GeneralRow),
+    /// A special point.
+    Special(GeneralRow),
+}
+
+impl<'s> GeneralBranchPlan<'s> {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &BranchOptions, subject: &'s dyn Subject) -> Result<Self> {
+        let of = BranchKind::named(options.of.as_deref())?;
+        let known = subject.parameters();
+        let Some(along) = options.along.as_deref() else {
+            let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+            return Err(Error::Input(format!(
+                "say which parameter varies: `along` one of {}",
+                names.join(", ")
+            )));
+        };
+        let end = |name: &str, given: Option<f64>| {
+            given.ok_or_else(|| {
+                Error::Input(format!(
+                    "`{name}` is missing, and has no default along {along}"
+                ))
+            })
+        };
+        let at = options.at.as_deref();
+        let at = at.map_or(Ok(Vec::new()), |text| numbers("at", text))?;
+        // A name that is none is told of first.
+        let range = match (options.from, options.to) {
+            _ if !known.iter().any(|(name, _)| *name == along) => (0.0, 1.0),
+            (from, to) => (end("from", from)?, end("to", to)?),
+        };
+        let free = Free::new(subject, ("along", along), range, &at)?;
+        let orbits = of == BranchKind::Orbits;
+        let following = Following::new(&options.continuation, orbits)?;
+        without_crosscheck(&following)?;
+        let numerics = json!({
+            "of": of.name(),
+            "along": along,
+            "from": range.0,
+            "to": range.1,
+            "at": at,
+            "step_limit": following.step,
+            "tolerance": following.tolerance,
+            "doublings": options.doublings,
+        });
+        Ok(GeneralBranchPlan {
+            kind: RowKind {
+                orbits,
+                curve: false,
+            },
+            subject,
+            free,
+            doublings: options.doublings,
+            following,
+            numerics,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let out = |x| self.subject.units().outward(self.free.quantity, x);
+        let method = match self.kind.orbits {
+            true => {
+                "taylor, tangents on, multiple shooting; begins at the Hopf points, or at an orbit that is given"
+            }
+            false => {
+                "pseudo-arclength continuation from the equilibria at both ends, and through branch points"
+            }
+        };
+        format!(
+            "plan of this command
+  range             {} from {:e} to {:e}
+  method            {method}
+  derivatives       exact, in the states and in {}
+  landings          {}
+  points            at most {}",
+            self.free.name,
+            out(self.free.range.0),
+            out(self.free.range.1),
+            self.free.name,
+            match self.free.at.len() {
+                0 => "off: no `at` values are given".to_owned(),
+                n => format!("on {n} values, each solved for"),
+            },
+            self.following.max_points
+        )
+    }
+
+    /// Follows them, but those whose numbers are known.
+    ///
+    /// # Errors
+    /// Those of the branches, and of what rows tell.
+    pub fn follow(
+        &self,
+        known: &[usize],
+        seen: &mut dyn FnMut(GeneralFound) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let name = self.free.name;
+        let coordinates = [self.free.coordinate, Coordinate::Logarithm];
+        let family = self.subject.family(&[name], coordinates)?;
+        let equilibria_at = |at: [f64; 2]| {
+            let value = family.parameters(at)[0];
+            self.subject
+                .equilibria(&[(name, self.free.asked(at[0]).unwrap_or(value))])
+        };
+        let mut branch = GeneralBranch {
+            system: GeneralSystem {
+                family: &*family,
+                names: [name; 2],
+                equilibria: &equilibria_at,
+            },
+            range: self.free.ends(),
+            held: 0.0,
+            at: self.free.landings(),
+            orbit: None,
+            doublings: self.doublings,
+            following: general(&self.following, known),
+        };
+        if self.kind.orbits {
+            branch.orbit = self.subject.orbit(&[(name, self.free.range.0)])?;
+            if let Some(orbit) = &mut branch.orbit {
+                orbit.at = [branch.range.0, 0.0];
+            }
+        }
+        let mut failed = None;
+        let mut met = 0;
+        let mut look = |event: GeneralEvent| {
+            met += 1;
+            let found = found(self.subject, &*family, self.kind, &[&self.free], event);
+            match found {
+                Ok(found) => seen(found),
+                Err(error) => {
+                    failed = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        };
+        match self.kind.orbits {
+            true => orbits(&branch, &mut look)?,
+            false => equilibria(&branch, &mut look)?,
+        }
+        match failed {
+            Some(error) => Err(error),
+            None if met == 0 && known.is_empty() => Err(nothing(self.kind.orbits)),
+            None => Ok(()),
+        }
+    }
+}
+
+/// What is said where nothing is found to begin with.
+pub(super) fn nothing(orbits: bool) -> Error {
+    Error::NoOrbit {
+        what: match orbits {
+            true => "no Hopf point is met on the equilibria in the range".into(),
+            false => "no equilibrium is found at either end of the range".into(),
+        },
+        period: None,
+        hint: match orbits {
+            true => {
+                "give a `start` near an orbit, or a `box` with all equilibria, or another range"
+            }
+            false => "give a `start` near one, or a `box`, or another range",
+        },
+    }
+}
+
+/// What is found, as a row or a special point.
+pub(super) fn found(
+    subject: &dyn Subject,
+    family: &dyn ParametrisedField,
+    kind: RowKind,
+    free: &[&Free],
+    event: GeneralEvent,
+) -> Result<GeneralFound> {
+    let exactly = |mut point: GeneralPoint| {
+        for (i, free) in free.iter().enumerate() {
+            // As it was given, and not the exponential of its logarithm.
+            if let Some(given) = free.asked(point.at[i]) {
+                point.parameters[i] = Uncertain::new(given, 0.0);
+            }
+        }
+        GeneralRow::of(subject, family, kind, point)
+    };
+    Ok(match event {
+        GeneralEvent::Row(point) => GeneralFound::Row(exactly(point)?),
+        GeneralEvent::Special(point) => GeneralFound::Special(exactly(point)?),
+    })
+}

@@ -1,0 +1,125 @@
+//! Names, ranges and values that branches and curves in any parameters share.
+
+use super::Subject;
+use crate::bifurcation::general::GeneralFollowing;
+use crate::error::{Error, Result};
+use crate::orbit::Coordinate;
+use crate::scene::following::Following;
+use crate::scene::units::Quantity;
+
+/// A parameter that varies, with its range and the values to land on, dimensionless.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Free {
+    /// Its name.
+    pub name: &'static str,
+    /// What it measures.
+    pub quantity: Quantity,
+    /// From where to where; the larger one may come first.
+    pub range: (f64, f64),
+    /// Values to land on.
+    pub at: Vec<f64>,
+    /// How it is measured along the continuation.
+    pub coordinate: Coordinate,
+}
+
+impl Free {
+    /// Checks the range and the values, which are in the user's units.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a name that is none; [`Error::Input`] for a range without two different ends, and for values
+    /// outside of it.
+    pub fn new(
+        subject: &dyn Subject,
+        (option, name): (&str, &str),
+        range: (f64, f64),
+        at: &[f64],
+    ) -> Result<Self> {
+        let known = subject.parameters();
+        let Some(&(name, quantity)) = known.iter().find(|(known, _)| *known == name) else {
+            let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+            if names.is_empty() {
+                let what = format!("`{option}` {name}: the system has no parameters");
+                return Err(Error::Input(what));
+            }
+            return Err(Error::unknown(option, name, &names));
+        };
+        if range.0 == range.1 {
+            return Err(Error::Input(format!(
+                "the range of {name} begins and ends at {:?}, but must have two different ends",
+                range.0
+            )));
+        }
+        let (low, high) = (range.0.min(range.1), range.0.max(range.1));
+        if let Some(x) = at.iter().find(|x| !(low..=high).contains(*x)) {
+            return Err(Error::Input(format!(
+                "`at` of {name} is {x:?}, but must be in the range from {low:?} to {high:?}"
+            )));
+        }
+        let inward = |x: f64| subject.units().inward(quantity, x);
+        let range = (inward(range.0), inward(range.1));
+        Ok(Free {
+            name,
+            quantity,
+            coordinate: Coordinate::of(&[range.0, range.1]),
+            range,
+            at: at.iter().map(|&x| inward(x)).collect(),
+        })
+    }
+
+    /// The range in the coordinate.
+    pub fn ends(&self) -> (f64, f64) {
+        let inward = |x| self.coordinate.inward(x);
+        (inward(self.range.0), inward(self.range.1))
+    }
+
+    /// The values to land on in the coordinate.
+    pub fn landings(&self) -> Vec<f64> {
+        self.at.iter().map(|&x| self.coordinate.inward(x)).collect()
+    }
+
+    /// The number that was asked for and has this coordinate: not what comes back from it.
+    pub fn asked(&self, coordinate: f64) -> Option<f64> {
+        let ends = [self.range.0, self.range.1];
+        let mut all = ends.into_iter().chain(self.at.iter().copied());
+        all.find(|&x| self.coordinate.inward(x) == coordinate)
+    }
+}
+
+/// Numbers, comma-separated.
+///
+/// # Errors
+/// [`Error::Input`] for what is not a finite number.
+pub fn numbers(option: &str, text: &str) -> Result<Vec<f64>> {
+    let one = |word: &str| {
+        let x = word.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        x.ok_or_else(|| {
+            Error::Input(format!(
+                "`{option}` {text:?}: {word:?} is not a finite number"
+            ))
+        })
+    };
+    text.split(',').map(one).collect()
+}
+
+/// How it is followed.
+pub fn general(following: &Following, known: &[usize]) -> GeneralFollowing {
+    GeneralFollowing {
+        step: following.step,
+        skip: known.to_vec(),
+        max_points: following.max_points,
+    }
+}
+
+/// The second method has no place here yet.
+///
+/// # Errors
+/// [`Error::Input`] where one is asked for.
+pub fn without_crosscheck(following: &Following) -> Result<()> {
+    match following.second {
+        None => Ok(()),
+        Some(_) => Err(Error::Input(
+            "`crosscheck` is of the special points of interfaces in V_H and K; here it is not made"
+                .into(),
+        )),
+    }
+}

@@ -1,0 +1,235 @@
+//! Curves of bifurcations in the plane of any two parameters, from options.
+
+use super::branch::{GeneralFound, found, nothing};
+use super::following::{Free, general, numbers, without_crosscheck};
+use super::{RowKind, Subject};
+use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
+use crate::bifurcation::general::{GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralSystem};
+use crate::error::{Error, Result};
+use crate::orbit::TestFunction;
+use crate::scene::continuation::LocusOptions;
+use crate::scene::following::Following;
+use crate::scene::locus::CurveChoice;
+use serde_json::{Value, json};
+use std::ops::ControlFlow;
+
+/// A curve that is asked for, checked.
+pub struct GeneralLocusPlan<'s> {
+    /// Of what.
+    pub choice: CurveChoice,
+    /// The same.
+    pub kind: RowKind,
+    /// What bifurcates.
+    bifurcation: GeneralBifurcation,
+    /// What is followed.
+    pub subject: &'s dyn Subject,
+    /// What varies.
+    pub free: [Free; 2],
+    criticality: bool,
+    /// How.
+    pub following: Following,
+    /// The same for the output.
+    pub numerics: Value,
+}
+
+/// The two names of `in`.
+///
+/// # Errors
+/// [`Error::Input`] unless there are two.
+pub fn plane(text: &str) -> Result<[&str; 2]> {
+    let names: Vec<&str> = text.split(',').map(str::trim).collect();
+    match names[..] {
+        [first, second] if first != second => Ok([first, second]),
+        _ => Err(Error::Input(format!(
+            "`in` {text:?} must be two different parameters, NAME1,NAME2"
+        ))),
+    }
+}
+
+/// What options of the form NAME=... say of each of the two names.
+fn by_name<'o>(option: &str, all: &'o [String], names: [&str; 2]) -> Result<[Option<&'o str>; 2]> {
+    let mut of = [None; 2];
+    for text in all {
+        let pair = text.split_once('=');
+        let (name, rest) =
+            pair.ok_or_else(|| Error::Input(format!("`{option}` {text:?} must begin with NAME=")))?;
+        let Some(i) = names.iter().position(|known| *known == name.trim()) else {
+            return Err(Error::unknown(option, name.trim(), &names));
+        };
+        of[i] = Some(rest);
+    }
+    Ok(of)
+}
+
+impl<'s> GeneralLocusPlan<'s> {
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &LocusOptions, subject: &'s dyn Subject) -> Result<Self> {
+        let choice = CurveChoice::named(options.of.as_deref())?;
+        let bifurcation = match choice.name {
+            "saddle-node" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Fold),
+            "hopf" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Hopf),
+            "orbit-saddle-node" => GeneralBifurcation::Orbit(TestFunction::Fold),
+            "period-doubling" => GeneralBifurcation::Orbit(TestFunction::Doubling),
+            "torus" => GeneralBifurcation::Orbit(TestFunction::Torus),
+            other => {
+                return Err(Error::Input(format!(
+                    "a curve of {other} needs a symmetry, and this system is not known to have one; follow saddle-node or orbit-saddle-node"
+                )));
+            }
+        };
+        let text = options.plane.as_deref().ok_or_else(|| {
+            Error::Input("say which two parameters vary: `in` NAME1,NAME2".into())
+        })?;
+        let names = plane(text)?;
+        let ranges = by_name("range", &options.range, names)?;
+        let at = by_name("at", &options.at, names)?;
+        let free = |i: usize| {
+            let known = subject
+                .parameters()
+                .iter()
+                .any(|(name, _)| *name == names[i]);
+            let range = match ranges[i] {
+                // A name that is none is told of first.
+                _ if !known => (0.0, 1.0),
+                None => {
+                    return Err(Error::Input(format!(
+                        "`range` {}=A,B is missing, and has no default",
+                        names[i]
+                    )));
+                }
+                Some(text) => match numbers("range", text)?[..] {
+                    [a, b] => (a.min(b), a.max(b)),
+                    _ => {
+                        return Err(Error::Input(format!(
+                            "`range` {}={text} must be two numbers, A,B",
+                            names[i]
+                        )));
+                    }
+                },
+            };
+            let at = at[i].map_or(Ok(Vec::new()), |text| numbers("at", text))?;
+            Free::new(subject, ("in", names[i]), range, &at)
+        };
+        let free = [free(0)?, free(1)?];
+        let orbits = matches!(bifurcation, GeneralBifurcation::Orbit(_));
+        let following = Following::new(&options.continuation, orbits)?;
+        without_crosscheck(&following)?;
+        let outward = |free: &Free, x: f64| subject.units().outward(free.quantity, x);
+        let list = |free: &Free, all: &[f64]| -> Vec<f64> {
+            all.iter().map(|&x| outward(free, x)).collect()
+        };
+        let numerics = json!({
+            "of": choice.name,
+            "in": names,
+            "ranges": free.each_ref().map(|free| list(free, &[free.range.0, free.range.1])),
+            "at": free.each_ref().map(|free| list(free, &free.at)),
+            "criticality": options.criticality,
+            "step_limit": following.step,
+            "tolerance": following.tolerance,
+        });
+        Ok(GeneralLocusPlan {
+            choice,
+            kind: RowKind {
+                orbits,
+                curve: true,
+            },
+            bifurcation,
+            subject,
+            free,
+            criticality: options.criticality,
+            following,
+            numerics,
+        })
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let ranges = self.free.each_ref().map(|free| {
+            let out = |x| self.subject.units().outward(free.quantity, x);
+            format!(
+                "  {:<18}from {:e} to {:e}\n",
+                free.name,
+                out(free.range.0),
+                out(free.range.1)
+            )
+        });
+        let method = match self.kind.orbits {
+            true => "taylor, tangents on, multiple shooting, both parameters unknown",
+            false => {
+                "the equilibrium and a determinant, both parameters unknown; nothing is integrated"
+            }
+        };
+        format!(
+            "plan of this command\n  curve             {}\n{}  method            {method}\n  points            at most {}",
+            self.choice.name,
+            ranges.concat(),
+            self.following.max_points
+        )
+    }
+
+    /// Follows all of them, but those whose numbers are known.
+    ///
+    /// # Errors
+    /// Those of the curves, and of what rows tell.
+    pub fn follow(
+        &self,
+        known: &[usize],
+        seen: &mut dyn FnMut(GeneralFound) -> ControlFlow<()>,
+    ) -> Result<()> {
+        let names = [self.free[0].name, self.free[1].name];
+        let coordinates = self.free.each_ref().map(|free| free.coordinate);
+        let family = self.subject.family(&names, coordinates)?;
+        let equilibria = |at: [f64; 2]| {
+            let values = family.parameters(at);
+            let value = |i: usize| self.free[i].asked(at[i]).unwrap_or(values[i]);
+            self.subject
+                .equilibria(&[(names[0], value(0)), (names[1], value(1))])
+        };
+        let mut orbit = None;
+        if self.kind.orbits {
+            let own = [self.subject.value(names[0]), self.subject.value(names[1])];
+            // Without values of their own there is no orbit either.
+            if let [Ok(first), Ok(second)] = own {
+                orbit = self
+                    .subject
+                    .orbit(&[(names[0], first), (names[1], second)])?;
+                if let Some(orbit) = &mut orbit {
+                    orbit.at = [0, 1].map(|i| self.free[i].coordinate.inward([first, second][i]));
+                }
+            }
+        }
+        let curve = GeneralCurve {
+            system: GeneralSystem {
+                family: &*family,
+                names,
+                equilibria: &equilibria,
+            },
+            kind: self.bifurcation,
+            ranges: self.free.each_ref().map(Free::ends),
+            at: self.free.each_ref().map(Free::landings),
+            orbit,
+            criticality: self.criticality,
+            following: general(&self.following, known),
+        };
+        let (mut failed, mut met) = (None, 0);
+        curve.follow(&mut |event: GeneralEvent| {
+            met += 1;
+            let free = self.free.each_ref();
+            match found(self.subject, &*family, self.kind, &free, event) {
+                Ok(found) => seen(found),
+                Err(error) => {
+                    failed = Some(error);
+                    ControlFlow::Break(())
+                }
+            }
+        })?;
+        match failed {
+            Some(error) => Err(error),
+            None if met == 0 && known.is_empty() => Err(nothing(self.kind.orbits)),
+            None => Ok(()),
+        }
+    }
+}

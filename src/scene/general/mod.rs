@@ -1,0 +1,63 @@
+//! Branches and curves in any parameter: of systems of one's own, and of interfaces in other parameters than V_H and K.
+
+mod branch;
+mod following;
+mod locus;
+mod row;
+mod text;
+
+pub use branch::{GeneralBranchPlan, GeneralFound};
+pub use following::Free;
+pub use locus::GeneralLocusPlan;
+pub use row::{GeneralRow, RowKind};
+pub use text::TextSubject;
+
+use super::system::Described;
+use super::units::Quantity;
+use crate::bifurcation::general::GeneralPoint;
+use crate::error::Result;
+use crate::field::Vector;
+use crate::orbit::{ContinuationPoint, Coordinate, ParametrisedField};
+
+/// A system with parameters by name, to be continued in any of these.
+pub trait Subject: Described + Sync {
+    /// The parameters, with what each measures.
+    fn parameters(&self) -> Vec<(&'static str, Quantity)>;
+
+    /// The value of one, dimensionless.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for a name that is none; [`crate::Error::Input`] where it was not given.
+    fn value(&self, name: &str) -> Result<f64>;
+
+    /// Over one parameter, or two.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for names that are none, or are the same.
+    fn family<'s>(
+        &'s self,
+        names: &[&str],
+        coordinates: [Coordinate; 2],
+    ) -> Result<Box<dyn ParametrisedField + 's>>;
+
+    /// The equilibria that are known at these values of parameters, the others being held.
+    ///
+    /// # Errors
+    /// Those of the search.
+    fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>>;
+
+    /// An orbit at these values of parameters, where one was asked for; its coordinates are yet to be set.
+    ///
+    /// # Errors
+    /// As of [`crate::orbit::find_from`].
+    fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>>;
+
+    /// What rows tell of a state or an orbit: names and quantities.
+    fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)>;
+
+    /// These numbers of a point.
+    ///
+    /// # Errors
+    /// Those of the flow along an orbit.
+    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>>;
+}

@@ -1,0 +1,226 @@
+//! A row of a branch or of a curve, with its columns.
+
+use super::Subject;
+use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::bifurcation::{Criticality, Label};
+use crate::equilibrium::Verdict;
+use crate::error::Result;
+use crate::number::Uncertain;
+use crate::orbit::ParametrisedField;
+use crate::scene::column::{CellValue, Column};
+use crate::scene::units::{Quantity, Units};
+
+/// What rows are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct RowKind {
+    /// Of orbits, or of equilibria.
+    pub orbits: bool,
+    /// Of a curve in the plane of two parameters, or of a branch along one.
+    pub curve: bool,
+}
+
+/// A point of a branch or of a curve, as rows and special points show it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneralRow {
+    /// The number of the branch or curve.
+    pub number: usize,
+    /// The free parameters: one of a branch, two of a curve.
+    pub parameters: Vec<Uncertain>,
+    /// What the system tells of the state or the orbit.
+    pub numbers: Vec<f64>,
+    /// The period of an orbit, or of the oscillation at a Hopf point.
+    pub period: Option<Uncertain>,
+    /// The real parts of the leading eigenvalues, or ln |mu| of the leading multipliers.
+    pub exponents: [Option<f64>; 2],
+    /// The angle of the multipliers of a torus bifurcation, over pi.
+    pub angle_over_pi: Option<f64>,
+    /// To which side a bifurcation goes.
+    pub criticality: Option<Criticality>,
+    /// The normal form's coefficient.
+    pub coefficient: Option<f64>,
+    /// It may be off by this, where that is known.
+    pub coefficient_uncertainty: Option<f64>,
+    /// Stability, of branches.
+    pub verdict: Option<Verdict>,
+    /// What is special here.
+    pub label: Option<Label>,
+    /// What else is to be said.
+    pub note: Option<String>,
+}
+
+impl GeneralRow {
+    /// The row of a point.
+    ///
+    /// # Errors
+    /// As of [`Subject::told`].
+    pub fn of(
+        subject: &dyn Subject,
+        family: &dyn ParametrisedField,
+        kind: RowKind,
+        point: GeneralPoint,
+    ) -> Result<Self> {
+        let numbers = subject.told(family, &point)?;
+        let exponents: Vec<f64> = match &point.solution {
+            GeneralSolution::Equilibrium { eigenvalues, .. } => {
+                eigenvalues.iter().map(|z| z.re).collect()
+            }
+            GeneralSolution::Orbit {
+                log_multipliers, ..
+            } => log_multipliers.clone(),
+        };
+        let free = if kind.curve { 2 } else { 1 };
+        Ok(GeneralRow {
+            number: point.number,
+            parameters: point.parameters[..free].to_vec(),
+            numbers,
+            period: point.period,
+            exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
+            angle_over_pi: point.angle_over_pi,
+            criticality: point.criticality,
+            coefficient: point.coefficient,
+            coefficient_uncertainty: point.coefficient_uncertainty,
+            verdict: (!kind.curve).then(|| point.verdict()),
+            label: point.label,
+            note: point.note,
+        })
+    }
+
+    /// The columns of rows.
+    pub fn columns(
+        subject: &dyn Subject,
+        kind: RowKind,
+        names: &[(&'static str, Quantity)],
+    ) -> Vec<Column<Self>> {
+        type Row = GeneralRow;
+        use Quantity::{Growth, Number, Time};
+        let mut columns: Vec<Column<Row>> = Vec::new();
+        for (i, &(name, quantity)) in names.iter().enumerate() {
+            columns.push(if kind.curve {
+                Column::uncertain(name, quantity, move |row: &Row| row.parameters[i].into())
+            } else {
+                Column::new(name, quantity, move |row: &Row| {
+                    row.parameters[i].value.into()
+                })
+            });
+        }
+        let numbers = subject.numbers(kind).into_iter().enumerate();
+        columns.extend(numbers.map(|(i, (name, quantity))| {
+            Column::new(name, quantity, move |row: &Row| row.numbers[i].into())
+        }));
+        let period = Column::new("period", Time, |row: &Row| {
+            row.period.map(|period| period.value).into()
+        });
+        if kind.curve || kind.orbits {
+            columns.push(period);
+        }
+        if kind.curve {
+            columns.push(Column::new("angle_over_pi", Number, |row: &Row| {
+                row.angle_over_pi.into()
+            }));
+            columns.push(criticality());
+        } else {
+            let exponent = if kind.orbits { Number } else { Growth };
+            for i in 0..2 {
+                let name = format!("ln_abs_multiplier_{}", i + 1);
+                let entry = move |row: &Row| row.exponents[i].into();
+                columns.push(Column::new(name, exponent, entry));
+            }
+            columns.push(Column::new("verdict", Number, |row: &Row| {
+                row.verdict.map(Verdict::name).into()
+            }));
+        }
+        columns.push(Column::new("label", Number, |row: &Row| {
+            row.label.map(Label::name).into()
+        }));
+        let whole = if kind.curve { "curve" } else { "branch" };
+        columns.push(Column::new(whole, Number, |row: &Row| row.number.into()));
+        columns
+    }
+
+    /// The columns of special points.
+    pub fn special_columns(names: &[(&'static str, Quantity)]) -> Vec<Column<Self>> {
+        type Row = GeneralRow;
+        use Quantity::{Number, Time};
+        let mut columns = vec![
+            Column::new("label", Number, |row: &Row| {
+                row.label.map(Label::name).into()
+            }),
+            Column::new("name", Number, |row: &Row| {
+                row.label.map(Label::meaning).into()
+            }),
+            Column::new("branch", Number, |row: &Row| row.number.into()),
+        ];
+        for (i, &(name, quantity)) in names.iter().enumerate() {
+            let entry = move |row: &Row| row.parameters[i].into();
+            columns.push(Column::uncertain(name, quantity, entry));
+        }
+        columns.extend([
+            Column::uncertain("period", Time, |row: &Row| row.period.into()),
+            criticality(),
+            Column::new("coefficient", Number, |row: &Row| row.coefficient.into()),
+            Column::new("note", Number, |row: &Row| {
+                // A row is a line, whatever the reason says.
+                CellValue::Word(row.note.as_ref().map(|note| note.replace('\n', " ")))
+            }),
+            Column::new("coefficient_uncertainty", Number, |row: &Row| {
+                row.coefficient_uncertainty.into()
+            }),
+        ]);
+        columns
+    }
+
+    /// From the cells of a CSV in the user's units, by the columns that it has.
+    pub fn read(
+        cell: &dyn Fn(&str) -> String,
+        units: &Units,
+        names: &[(&'static str, Quantity)],
+        numbers: &[(String, Quantity)],
+    ) -> Option<Self> {
+        let number = |name: &str| cell(name).parse::<f64>().ok();
+        let inward = |name: &str, quantity| number(name).map(|x| units.inward(quantity, x));
+        let uncertain = |name: &str, quantity| {
+            let value = inward(name, quantity)?;
+            let off = number(&format!("{name}_uncertainty"));
+            let off = off.map_or(f64::INFINITY, |off| off / units.factor(quantity));
+            Some(Uncertain::new(value, off))
+        };
+        let parameters = names
+            .iter()
+            .map(|(name, quantity)| uncertain(name, *quantity));
+        let sides = [
+            Criticality::Supercritical,
+            Criticality::Subcritical,
+            Criticality::Undecided,
+        ];
+        let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
+        let of_whole = [cell("branch"), cell("curve")];
+        let numbers = numbers.iter();
+        Some(GeneralRow {
+            number: of_whole.iter().find_map(|word| word.parse().ok())?,
+            parameters: parameters.collect::<Option<_>>()?,
+            numbers: numbers
+                .map(|(name, quantity)| inward(name, *quantity).unwrap_or(f64::NAN))
+                .collect(),
+            period: uncertain("period", Quantity::Time),
+            // Not shown but in the line itself, which is kept as it stands.
+            exponents: [None; 2],
+            angle_over_pi: number("angle_over_pi"),
+            criticality: sides
+                .into_iter()
+                .find(|side| side.name() == cell("criticality")),
+            coefficient: number("coefficient"),
+            coefficient_uncertainty: number("coefficient_uncertainty"),
+            verdict: verdicts
+                .into_iter()
+                .find(|verdict| verdict.name() == cell("verdict")),
+            label: Label::named(&cell("label")),
+            note: Some(cell("note")).filter(|note| !note.is_empty()),
+        })
+    }
+}
+
+fn criticality() -> Column<GeneralRow> {
+    Column::new("criticality", Quantity::Number, |row: &GeneralRow| {
+        row.criticality.map(Criticality::name).into()
+    })
+}

@@ -1,0 +1,175 @@
+//! A system of one's own, to be continued in any of its parameters.
+
+use super::{RowKind, Subject};
+use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::error::{Error, Result};
+use crate::field::Vector;
+use crate::friction::positive;
+use crate::integrate::AnyField;
+use crate::model::TextSystem;
+use crate::orbit::{
+    ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField, ShootingNodes,
+    find_from, ranges,
+};
+use crate::scene::system::Described;
+use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel};
+use crate::scene::units::{Quantity, Units};
+use serde_json::{Map, Value};
+use std::borrow::Cow;
+
+/// A system of one's own, and where its equilibria and orbits are looked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct TextSubject {
+    /// The system.
+    pub model: TextModel,
+    /// Where equilibria are looked for.
+    pub place: SearchPlace,
+    /// A point at or near an orbit and the period, roughly.
+    pub orbit: Option<(Vector, Option<f64>)>,
+}
+
+impl Described for TextSubject {
+    fn echo(&self) -> &Map<String, Value> {
+        self.model.echo()
+    }
+
+    fn units(&self) -> &Units {
+        self.model.units()
+    }
+}
+
+impl TextSubject {
+    /// Of a system with where its equilibria and orbits are looked for: in a box or near the file's start, and near a point
+    /// with a rough period.
+    ///
+    /// # Errors
+    /// Those of the box and of the start.
+    pub fn new(
+        model: TextModel,
+        within: Option<&str>,
+        start: Option<&str>,
+        period: Option<f64>,
+        orbits: bool,
+    ) -> Result<Self> {
+        let period = period
+            .map(|period| positive("period-guess", period))
+            .transpose()?;
+        let orbit = match start.filter(|_| orbits) {
+            Some(start) => Some((model.start(Some(start))?, period)),
+            None if period.is_some() => {
+                let what = "`period_guess` needs a `start` near the orbit";
+                return Err(Error::Input(what.into()));
+            }
+            None => None,
+        };
+        let near = start.filter(|_| !orbits);
+        let place = match (within, near) {
+            (Some(text), _) => SearchPlace::within(text, &model)?,
+            // Where an orbit is given none is needed.
+            (None, None) if orbit.is_some() && model.start(None).is_err() => {
+                SearchPlace::Near(model.start(start)?)
+            }
+            (None, near) => SearchPlace::Near(model.start(near)?),
+        };
+        Ok(TextSubject {
+            model,
+            place,
+            orbit,
+        })
+    }
+
+    fn at(&self, values: &[(&str, f64)]) -> Result<TextSystem> {
+        let mut system = self.model.system.clone();
+        for &(name, value) in values {
+            system.set(name, value)?;
+        }
+        Ok(system)
+    }
+}
+
+impl Subject for TextSubject {
+    fn parameters(&self) -> Vec<(&'static str, Quantity)> {
+        let names = self.model.system.parameter_names().iter();
+        names.map(|name| (*name, Quantity::Number)).collect()
+    }
+
+    fn value(&self, name: &str) -> Result<f64> {
+        let system = &self.model.system;
+        Ok(system.parameters()[crate::field::place(system.parameter_names(), name)?])
+    }
+
+    fn family<'s>(
+        &'s self,
+        names: &[&str],
+        coordinates: [Coordinate; 2],
+    ) -> Result<Box<dyn ParametrisedField + 's>> {
+        let system = &self.model.system;
+        Ok(match *names {
+            [first, second] => Box::new(OverText::two(system, [first, second], coordinates)?),
+            [only] => Box::new(OverText::one(system, only, coordinates[0])?),
+            _ => return Err(Error::Input("one parameter may vary, or two".into())),
+        })
+    }
+
+    fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
+        let system = self.at(values)?;
+        let model = self.model.with(system);
+        let plan = TextEquilibriaPlan {
+            place: self.place.clone(),
+            model,
+        };
+        let found = match plan.solve() {
+            Ok(found) => found.equilibria,
+            // There need not be one near the start for each value.
+            Err(Error::NotConverged { .. }) => Vec::new(),
+            Err(error) => return Err(error),
+        };
+        let state = found.iter().map(|one| one.state.iter().map(|x| x.value));
+        Ok(state
+            .map(|state| Vector::from_vec(state.collect()))
+            .collect())
+    }
+
+    fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
+        let Some((start, period)) = &self.orbit else {
+            return Ok(None);
+        };
+        let system = self.at(values)?;
+        let field = AnyField::of_text(Cow::Owned(system))?;
+        let accuracy = OrbitAccuracy {
+            checked: false,
+            ..OrbitAccuracy::of(crate::integrate::Choice::Auto)
+        };
+        let found = find_from(&field, start, *period, &accuracy)?;
+        let nodes = found.orbit.nodes.into_iter().map(Vector::from_vec);
+        Ok(Some(ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes: nodes.collect(),
+                durations: found.orbit.durations,
+            },
+            at: [0.0; 2],
+        }))
+    }
+
+    fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
+        let states = self.model.system.states().iter();
+        let named = |name: String| (name, Quantity::Number);
+        match kind.orbits {
+            true => states
+                .flat_map(|name| [format!("{name}_min"), format!("{name}_max")])
+                .map(named)
+                .collect(),
+            false => states.map(|name| named((*name).to_owned())).collect(),
+        }
+    }
+
+    fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
+        match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => Ok(state.as_slice().to_vec()),
+            GeneralSolution::Orbit { shooting, .. } => {
+                let ranges = ranges(&family.field(point.at), shooting)?;
+                Ok(ranges.into_iter().flat_map(|(a, b)| [a, b]).collect())
+            }
+        }
+    }
+}

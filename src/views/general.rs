@@ -1,0 +1,212 @@
+//! Diagrams of branches, and of curves, in any parameters.
+
+use super::diagram::{axis_label, distinct, named_strokes};
+use crate::bifurcation::Label;
+use crate::equilibrium::Verdict;
+use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
+use crate::scene::{
+    Free, GeneralBranchPlan, GeneralLocusPlan, GeneralRow, Quantity, RowKind, Subject, Units,
+};
+
+/// The axis of a parameter: logarithmic where its range spans more than a factor of ten.
+fn axis(free: &Free, units: &Units) -> Axis {
+    /// Of the ends of a range that is shown by its logarithm.
+    const RATIO: f64 = 10.0;
+    let (low, high) = (
+        free.range.0.min(free.range.1),
+        free.range.0.max(free.range.1),
+    );
+    let name = label(free.name, free.quantity, units);
+    if low > 0.0 && high > RATIO * low {
+        Axis::log(name)
+    } else {
+        Axis::linear(name)
+    }
+}
+
+fn label(name: &str, quantity: Quantity, units: &Units) -> String {
+    match units.name(quantity) {
+        // A number without a unit.
+        "" | "1" => name.to_owned(),
+        _ => axis_label(name, quantity, units),
+    }
+}
+
+/// A number of every row against the parameter, stable parts solid, all others dashed; branches in colours of their own.
+fn lines(
+    rows: &[GeneralRow],
+    x: &dyn Fn(&GeneralRow) -> f64,
+    y: &dyn Fn(&GeneralRow) -> f64,
+) -> Vec<PlotSeries> {
+    let mut series = Vec::new();
+    for branch in rows.chunk_by(|a, b| a.number == b.number) {
+        for stable in [true, false] {
+            let belongs = |pair: &[GeneralRow]| solid(&pair[0], &pair[1]) == stable;
+            if !branch.windows(2).any(belongs) {
+                continue;
+            }
+            let stroke = if stable {
+                Stroke::Solid
+            } else {
+                Stroke::Dashed
+            };
+            let (xs, ys) = (branch.iter().map(x), branch.iter().map(y));
+            series.push(PlotSeries {
+                left_out: branch.windows(2).map(|pair| !belongs(pair)).collect(),
+                ..PlotSeries::new("", xs.collect(), ys.collect())
+                    .stroke(stroke)
+                    .colour(branch[0].number)
+            });
+        }
+    }
+    series
+}
+
+/// Between two points: stable if one is, and the other is, or is a bifurcation.
+fn solid(a: &GeneralRow, b: &GeneralRow) -> bool {
+    let verdicts = [a.verdict, b.verdict];
+    verdicts.contains(&Some(Verdict::Stable)) && !verdicts.contains(&Some(Verdict::Unstable))
+}
+
+fn marks(
+    rows: &[GeneralRow],
+    x: &dyn Fn(&GeneralRow) -> f64,
+    y: &dyn Fn(&GeneralRow) -> f64,
+    named: bool,
+) -> Vec<Mark> {
+    let special = rows.iter().filter_map(|row| {
+        let label = row.label.filter(|&label| label != Label::Ep)?;
+        Some((label, x(row), y(row)))
+    });
+    distinct(special, named)
+}
+
+/// What there is to draw of rows: the names and places of numbers, of orbits the least and the largest together.
+fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usize>)> {
+    let numbers = subject.numbers(kind);
+    if !kind.orbits {
+        let all = numbers.into_iter().enumerate();
+        return all
+            .map(|(i, (name, quantity))| (name, quantity, vec![i]))
+            .collect();
+    }
+    let mut pairs = Vec::new();
+    for (i, (name, quantity)) in numbers.iter().enumerate() {
+        if let Some(name) = name.strip_suffix("_min") {
+            let title = format!("least and largest {name}");
+            pairs.push((title, *quantity, vec![i, i + 1]));
+        }
+    }
+    pairs
+}
+
+/// Every number against the parameter, and the period of orbits.
+pub fn general_branches(
+    rows: &[GeneralRow],
+    _: &[GeneralRow],
+    plan: &GeneralBranchPlan<'_>,
+) -> Drawing {
+    /// So many numbers at most, in so many columns.
+    const MOST: usize = 4;
+    let units = plan.subject.units();
+    let x = |row: &GeneralRow| units.outward(plan.free.quantity, row.parameters[0].value);
+    let what = if plan.kind.orbits {
+        "orbits"
+    } else {
+        "equilibria"
+    };
+    let mut panels = Vec::new();
+    let all = drawn(plan.subject, plan.kind).into_iter().take(MOST);
+    for (number, (name, quantity, places)) in all.enumerate() {
+        let (mut series, mut points) = (Vec::new(), Vec::new());
+        for (k, &i) in places.iter().enumerate() {
+            let y = |row: &GeneralRow| units.outward(quantity, row.numbers[i]);
+            series.extend(lines(rows, &x, &y));
+            points.extend(marks(rows, &x, &y, k + 1 == places.len()));
+        }
+        let title = if number == 0 { what } else { "" };
+        panels.push(Panel {
+            strokes: if number == 0 {
+                named_strokes(&series)
+            } else {
+                Vec::new()
+            },
+            series,
+            marks: points,
+            ..Panel::new(
+                title,
+                axis(&plan.free, units),
+                Axis::linear(label(&name, quantity, units)),
+            )
+        });
+    }
+    if plan.kind.orbits {
+        let period = |row: &GeneralRow| {
+            let period = row.period.map_or(f64::NAN, |period| period.value);
+            units.outward(Quantity::Time, period)
+        };
+        panels.push(Panel {
+            series: lines(rows, &x, &period),
+            marks: marks(rows, &x, &period, true),
+            ..Panel::new(
+                "",
+                axis(&plan.free, units),
+                Axis::log(label("period", Quantity::Time, units)),
+            )
+        });
+    }
+    let half = panels.len().div_ceil(2);
+    let second = panels.split_off(half);
+    Drawing::columns(
+        [panels, second]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect(),
+    )
+}
+
+/// The second parameter against the first; where multipliers have an angle, that beside it.
+pub fn general_curves(
+    rows: &[GeneralRow],
+    special: &[GeneralRow],
+    plan: &GeneralLocusPlan<'_>,
+) -> Drawing {
+    let units = plan.subject.units();
+    let of = |i: usize| {
+        let quantity = plan.free[i].quantity;
+        move |row: &GeneralRow| units.outward(quantity, row.parameters[i].value)
+    };
+    let (x, y) = (of(0), of(1));
+    let series = |y: &dyn Fn(&GeneralRow) -> f64| -> Vec<PlotSeries> {
+        let curves = rows.chunk_by(|a, b| a.number == b.number);
+        curves
+            .map(|curve| {
+                let (xs, ys) = (curve.iter().map(&x), curve.iter().map(y));
+                PlotSeries::new("", xs.collect(), ys.collect()).colour(curve[0].number)
+            })
+            .collect()
+    };
+    let plane = Panel {
+        series: series(&y),
+        marks: marks(special, &x, &y, true),
+        ..Panel::new(
+            plan.choice.title,
+            axis(&plan.free[0], units),
+            axis(&plan.free[1], units),
+        )
+    };
+    if rows.iter().all(|row| row.angle_over_pi.is_none()) {
+        return Drawing::columns(vec![vec![plane]]);
+    }
+    let angle = |row: &GeneralRow| row.angle_over_pi.unwrap_or(f64::NAN);
+    let second = Panel {
+        series: series(&angle),
+        marks: marks(rows, &x, &angle, true),
+        ..Panel::new(
+            "angle θ of the multipliers",
+            axis(&plan.free[0], units),
+            Axis::linear("θ/π"),
+        )
+    };
+    Drawing::columns(vec![vec![plane], vec![second]])
+}
