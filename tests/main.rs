@@ -108,4 +108,7 @@ mod text_commands;
 mod text_files;
 mod text_systems;
 mod transport;
+mod unequal;
+mod unequal_commands;
+mod unequal_equilibria;
 mod work_precision;

@@ -4,11 +4,11 @@
 //! bounds, in intervals, and the effect of the rounding of the law's parameters. The verdict does not look at eigenvalues: it is
 //! the Routh-Hurwitz criterion over these bounds, and "undecided" where that can't tell.
 
-use super::interface::{Interface, weighted};
+use super::interface::{Interface, LawOfEach, weighted};
 use super::polynomial::{InexactCoefficients, roots};
 use super::{Equilibrium, OF_31_DIGITS, Symmetry};
 use crate::error::Result;
-use crate::friction::{AnyLaw, effects, positive};
+use crate::friction::{effects, positive};
 use crate::number::{Interval, Jet, Real};
 use nalgebra::Complex;
 
@@ -51,7 +51,11 @@ pub struct Stability {
 ///
 /// # Errors
 /// [`crate::Error::Parameter`] unless K is positive and finite.
-pub fn stability(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Result<Stability> {
+pub fn stability(
+    law: &impl LawOfEach,
+    equilibrium: &Equilibrium,
+    stiffness: f64,
+) -> Result<Stability> {
     positive("stiffness", stiffness)?;
     let known = bounded(law, equilibrium, stiffness);
     let found = sorted(equilibrium, &known);
@@ -67,7 +71,7 @@ pub fn stability(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> Res
 /// # Errors
 /// As of [`stability`].
 pub fn eigenvalues(
-    law: &AnyLaw,
+    law: &impl LawOfEach,
     equilibrium: &Equilibrium,
     stiffness: f64,
 ) -> Result<Vec<Complex<f64>>> {
@@ -90,7 +94,7 @@ const SECOND: usize = 2;
 
 /// All coefficients, over the larger one of K and 1, so that none overflows. Those that are not there are zero.
 fn coefficients<T: Real>(
-    law: &AnyLaw,
+    laws: &impl LawOfEach,
     symmetry: Symmetry,
     rates: &[T],
     stiffness: f64,
@@ -101,7 +105,7 @@ fn coefficients<T: Real>(
     } else {
         (one, T::constant(stiffness))
     };
-    let first = Interface::at(law, rates[0]);
+    let first = Interface::at(laws.law(0), rates[0]);
     // s^2 - s (k_c - k)/F_V + k G_psi/F_V: (14), and P_2 of (26) with 2 k for k
     let quadratic = |k: T| {
         [
@@ -120,7 +124,7 @@ fn coefficients<T: Real>(
         }
         (Symmetry::Asymmetric, _) => {
             // P_3 (30)
-            let second = Interface::at(law, rates[1]);
+            let second = Interface::at(laws.law(1), rates[1]);
             let [p_2, p_1, p_0] = weighted(&first, &second, m, k);
             [zero, zero, p_0, p_1, p_2, m]
         }
@@ -128,21 +132,26 @@ fn coefficients<T: Real>(
 }
 
 /// The same with what they may be off.
-fn bounded(law: &AnyLaw, equilibrium: &Equilibrium, stiffness: f64) -> InexactCoefficients {
+fn bounded(law: &impl LawOfEach, equilibrium: &Equilibrium, stiffness: f64) -> InexactCoefficients {
     let (symmetry, rates) = (equilibrium.symmetry, &equilibrium.slip_rate);
-    let (slow, driving) = (rates[0], equilibrium.driving);
+    let slower = equilibrium.slower();
+    let (slow, driving) = (rates[slower], equilibrium.driving);
     let exact = coefficients(law, symmetry, &equilibrium.precise, stiffness);
     let of_inputs = effects(law, |law| coefficients(law, symmetry, rates, stiffness));
     // both rates, of which the faster one is V_H less the other
     let both = |slow: Jet<Interval, 2>, driving: Jet<Interval, 2>| match symmetry {
         Symmetry::Symmetric => vec![driving / rates.len() as f64; rates.len()],
-        Symmetry::Asymmetric => vec![slow, driving - slow],
+        Symmetry::Asymmetric if slower == 0 => vec![slow, driving - slow],
+        Symmetry::Asymmetric => vec![driving - slow, slow],
     };
     let point = [slow, driving].map(Interval::constant);
     let [at_slow, at_driving] = Jet::variables(point);
     let at_point = coefficients(law, symmetry, &both(at_slow, at_driving), stiffness);
     let apart = driving * f64::EPSILON;
-    let around = [equilibrium.rate_bounds[0], Interval::around(driving, apart)];
+    let around = [
+        equilibrium.rate_bounds[slower],
+        Interval::around(driving, apart),
+    ];
     let [near_slow, near_driving] = Jet::variables(around);
     let around = coefficients(law, symmetry, &both(near_slow, near_driving), stiffness);
     let reach = [equilibrium.radius, apart];

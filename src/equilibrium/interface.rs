@@ -1,7 +1,32 @@
 //! One interface's part of the linearised system, in the paper's letters: what (14), (26) and (30) are made of.
 
-use crate::friction::{Law, steady_log_slope};
+use crate::friction::{AnyLaw, Law, Rounded, ScaledLaw, UnequalLaws, steady_log_slope};
 use crate::number::{Jet, Real};
+
+/// The law of each interface of a system: one for all, or one for each of two.
+pub trait LawOfEach: Rounded {
+    /// Of what kind these are.
+    type Law: Law + Rounded;
+
+    /// That of the interface at this place, 0 or 1.
+    fn law(&self, interface: usize) -> &Self::Law;
+}
+
+impl LawOfEach for AnyLaw {
+    type Law = AnyLaw;
+
+    fn law(&self, _: usize) -> &AnyLaw {
+        self
+    }
+}
+
+impl LawOfEach for UnequalLaws {
+    type Law = ScaledLaw;
+
+    fn law(&self, interface: usize) -> &ScaledLaw {
+        &self.laws()[interface]
+    }
+}
 
 /// An interface that slides steadily.
 #[derive(Debug, Clone, Copy)]

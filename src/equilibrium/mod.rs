@@ -15,18 +15,22 @@ mod pitchfork;
 mod polynomial;
 mod refine;
 mod spectrum;
+mod unequal;
 
 pub use boxes::{Enclosed, IntervalBox, IsolatedZero, ZerosInBox, zero_near, zeros_in_box};
 pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
+pub use interface::LawOfEach;
 pub(crate) use interface::{Interface, routh_hurwitz};
 pub(crate) use isolate::quotient;
 pub use pitchfork::Pitchfork;
 pub(crate) use refine::refined;
 pub use spectrum::spectrum_within;
+pub use unequal::unequal_steady_states;
 
 use crate::error::Result;
 use crate::friction::{
-    AnyLaw, Formulas, Law, positive, rounding, steady_log_activation, steady_slope, steady_stress,
+    AnyLaw, Formulas, Law, Rounded, positive, rounding, steady_log_activation, steady_slope,
+    steady_stress,
 };
 use crate::number::{DoubleDouble, Interval, Jet, Real, Uncertain};
 
@@ -48,7 +52,8 @@ pub enum Solver {
 pub enum Symmetry {
     /// V_1 = V_2 (also said of the one state of a single interface).
     Symmetric,
-    /// V_1 < V_2; exchanging the interfaces gives another equilibrium, which is not listed.
+    /// V_1 < V_2; exchanging the interfaces gives another equilibrium, which is not listed. Also said of every state of interfaces that
+    /// differ, where exchange gives none.
     Asymmetric,
 }
 
@@ -75,7 +80,7 @@ pub struct Equilibrium {
     pub symmetry: Symmetry,
     /// tau, in a sigma.
     pub stress: Uncertain,
-    /// Slip rate of each interface in V*, the slower one first.
+    /// Slip rate of each interface in V*, of equal ones the slower one first.
     pub slip_rate: Vec<f64>,
     /// ln psi of each interface.
     pub log_state: Vec<f64>,
@@ -154,29 +159,31 @@ impl Equilibrium {
 
     /// The largest residual of (19): of the balance of the rates, relative to V_H, and of each evolution, relative to the rate
     /// G_psi at which its state is renewed. Both then are relative errors, of a rate and of a state.
-    pub fn residual(&self, law: &impl Law, driving: f64) -> f64 {
+    pub fn residual(&self, laws: &impl LawOfEach, driving: f64) -> f64 {
         let tau = self.stress.value;
         // v = s(tau) / h(psi), neither of which need have a double
-        let activation = if tau.is_normal() {
-            law.log_activation(tau)
-        } else {
-            let fast = self.slip_rate[self.slip_rate.len() - 1];
-            steady_log_activation(law, fast)
-        };
-        let rate = |psi: f64| {
+        let rate = |(i, psi): (usize, f64)| {
+            let law = laws.law(i);
             if law.damping() != 0.0 {
                 return law.slip_rate(law.activation(tau), psi);
             }
+            let activation = if tau.is_normal() {
+                law.log_activation(tau)
+            } else {
+                let fast = self.slip_rate[self.slip_rate.len() - 1];
+                steady_log_activation(law, fast)
+            };
             (activation - law.log_strength(psi)).exp()
         };
-        let rates: Vec<f64> = self.state().into_iter().map(rate).collect();
+        let rates: Vec<f64> = self.state().into_iter().enumerate().map(rate).collect();
         let balance = (driving - rates.iter().sum::<f64>()).abs() / driving;
-        let evolutions = rates.iter().zip(self.state()).map(|(&v, psi)| {
+        let evolutions = rates.iter().zip(self.state()).enumerate();
+        let evolutions = evolutions.map(|(i, (&v, psi))| {
             let held = Jet {
                 value: v,
                 gradient: [0.0],
             };
-            let rate = law.evolution(held, Jet::variable(psi, 0));
+            let rate = laws.law(i).evolution(held, Jet::variable(psi, 0));
             (rate.value / (rate.gradient[0] * psi)).abs()
         });
         // of what has no value nothing vanishes
@@ -184,19 +191,23 @@ impl Equilibrium {
         evolutions.map(known).fold(known(balance), f64::max)
     }
 
-    fn at(law: &AnyLaw, driving: f64, symmetry: Symmetry, rates: &[(DoubleDouble, f64)]) -> Self {
+    fn at(
+        laws: &impl LawOfEach,
+        driving: f64,
+        symmetry: Symmetry,
+        rates: &[(DoubleDouble, f64)],
+    ) -> Self {
         let bounds = |&(v, r): &(DoubleDouble, f64)| {
             let around = Interval::around(v.to_f64(), r);
             Interval::new(around.lo().max(0.0), around.hi())
         };
         let rate_bounds: Vec<_> = rates.iter().map(bounds).collect();
-        let stresses = rates.iter().zip(&rate_bounds);
-        let stress = stresses
-            .map(|(&(v, radius), &within)| stress(law, v, radius, within))
+        let each = || rates.iter().zip(&rate_bounds).enumerate();
+        let stress = each()
+            .map(|(i, (&(v, radius), &within))| stress(laws.law(i), v, radius, within))
             .min_by(|a, b| a.uncertainty.total_cmp(&b.uncertainty));
-        let states = rates.iter().zip(&rate_bounds);
-        let states: Vec<_> = states
-            .map(|(&(v, _), &within)| state(law, v, within))
+        let states: Vec<_> = each()
+            .map(|(i, (&(v, _), &within))| state(laws.law(i), v, within))
             .collect();
         Equilibrium {
             symmetry,
@@ -206,9 +217,17 @@ impl Equilibrium {
             driving,
             precise: rates.iter().map(|(v, _)| *v).collect(),
             rate_bounds,
-            radius: rates[0].1,
+            radius: rates
+                .iter()
+                .map(|rate| rate.1)
+                .fold(f64::INFINITY, f64::min),
             state_uncertainty: states.iter().map(|(_, both)| *both).collect(),
         }
+    }
+
+    /// The place of the slower interface: the other rate is V_H less that one.
+    fn slower(&self) -> usize {
+        usize::from(matches!(self.slip_rate[..], [first, second] if second < first))
     }
 }
 
@@ -217,7 +236,7 @@ impl Equilibrium {
 const OF_31_DIGITS: f64 = 1e-12;
 
 /// tau_ss at a rate known within bounds.
-fn stress(law: &AnyLaw, v: DoubleDouble, radius: f64, within: Interval) -> Uncertain {
+fn stress(law: &(impl Law + Rounded), v: DoubleDouble, radius: f64, within: Interval) -> Uncertain {
     let rate = v.to_f64();
     let value = steady_stress(law, v).to_f64();
     let bounds = steady_stress(law, Interval::constant(rate));
@@ -237,7 +256,7 @@ fn stress(law: &AnyLaw, v: DoubleDouble, radius: f64, within: Interval) -> Uncer
 }
 
 /// ln psi_ss at a rate known within bounds, with what psi_ss and it may be off.
-fn state(law: &AnyLaw, v: DoubleDouble, within: Interval) -> (f64, [f64; 2]) {
+fn state(law: &(impl Law + Rounded), v: DoubleDouble, within: Interval) -> (f64, [f64; 2]) {
     let log = law.steady_state(v).ln().to_f64();
     let rate = v.to_f64();
     let bounds = law.steady_state(within);

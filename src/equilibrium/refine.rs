@@ -10,14 +10,19 @@ use crate::number::{DoubleDouble, Jet, Real};
 
 /// The slower rate at V_H by Newton's method from one that is nearly right; stops where the corrections no longer shrink.
 pub(crate) fn refined<T: Real>(law: &impl Law, driving: f64, slow: T) -> T {
+    newton(slow, 0.5 * driving, |slow| quotient(law, driving, slow))
+}
+
+/// The zero of a function near a rate, which stays below another one.
+pub(super) fn newton<T: Real>(near: T, below: f64, f: impl Fn(Jet<T, 1>) -> Jet<T, 1>) -> T {
     /// From 15 digits to 30 and a spare one; from 8, as beside a fold, it takes two more.
     const STEPS: usize = 6;
-    let (mut slow, mut last) = (slow, f64::INFINITY);
+    let (mut slow, mut last) = (near, f64::INFINITY);
     for _ in 0..STEPS {
-        let q = quotient(law, driving, Jet::<T, 1>::variable(slow, 0));
+        let q = f(Jet::variable(slow, 0));
         let next = slow - q.value / q.gradient[0];
         let change = (next - slow).leading().abs();
-        let fits = change < 0.1 * slow.leading() && change < last && next.leading() < 0.5 * driving;
+        let fits = change < 0.1 * slow.leading() && change < last && next.leading() < below;
         if !fits {
             break;
         }

@@ -45,7 +45,8 @@ pub fn crosscheck_of(
     first: &Orbit,
     accuracy: &OrbitAccuracy,
 ) -> Result<Crosscheck> {
-    again(None, &Alone(field), first, accuracy)
+    let symmetry = first.symmetry;
+    again(None, &Alone { field, symmetry }, first, accuracy)
 }
 
 fn again(

@@ -48,7 +48,7 @@ fn projection(along: &Vector) -> Matrix {
 }
 
 /// The places of two parameters among all.
-fn places(all: &[&'static str], names: [&str; 2]) -> Result<[usize; 2]> {
+pub(super) fn places(all: &[&'static str], names: [&str; 2]) -> Result<[usize; 2]> {
     let [first, second] = names.map(|name| place(all, name));
     let plane = [first?, second?];
     if plane[0] == plane[1] {

@@ -12,6 +12,14 @@ use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::AnyField;
+use crate::model::Loading;
+
+/// The time in which a loading alone raises the stress by some units: that of a stick-slip cycle, roughly.
+pub(super) fn rough_period(loading: &Loading) -> f64 {
+    /// Typical stress drop of a cycle, in a sigma.
+    const DROP: f64 = 5.0;
+    DROP / (loading.stiffness * loading.driving)
+}
 
 /// Which orbit is wanted.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -105,7 +113,7 @@ fn search(
 ) -> Result<FoundOrbit> {
     let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
     let mut guesses = Guesses::new(space, query.symmetry);
-    let rough = slab.rough_period();
+    let rough = rough_period(&slab.loading);
     match query.begin {
         InitialGuess::At { start, period } => {
             let start = variables(query.symmetry, start);
@@ -127,19 +135,9 @@ fn search(
             guesses.take(shooting);
         }
     }
-    if guesses.closed.is_empty() && tracer.used_up().is_some() {
-        return Err(no_orbit(
-            format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
-            "give a `start` on the orbit and its `period_guess`, or other `driving` and `stiffness`",
-        ));
-    }
     if guesses.closed.is_empty() {
-        return Err(guesses.otherwise.unwrap_or_else(|| {
-            no_orbit(
-                "no periodic orbit of this symmetry was met".into(),
-                "give a `start` near it, or other `driving` and `stiffness`",
-            )
-        }));
+        let used_up = tracer.used_up().is_some();
+        return Err(no_orbit_met(guesses, used_up));
     }
     let whole_cycle = matches!(
         query.begin,
@@ -149,6 +147,22 @@ fn search(
         }
     );
     completed(guesses, Some(slab.steady_stress()), accuracy, whole_cycle)
+}
+
+/// Why there is no orbit.
+pub(super) fn no_orbit_met(guesses: Guesses<'_>, used_up: bool) -> Error {
+    if used_up {
+        return no_orbit(
+            format!("no periodic orbit was met in {SEARCH} steps, as many as a search may take"),
+            "give a `start` on the orbit and its `period_guess`, or other `driving` and `stiffness`",
+        );
+    }
+    guesses.otherwise.unwrap_or_else(|| {
+        no_orbit(
+            "no periodic orbit of this symmetry was met".into(),
+            "give a `start` near it, or other `driving` and `stiffness`",
+        )
+    })
 }
 
 /// The orbits that closed polygons are, a stable one first. Where their period was given they are whole cycles.
@@ -301,7 +315,7 @@ impl<'a> Guesses<'a> {
     }
 
     /// What a run from this start settles on.
-    fn settled(&mut self, rough_period: f64, tracer: &mut Tracer, start: &Vector) {
+    pub fn settled(&mut self, rough_period: f64, tracer: &mut Tracer, start: &Vector) {
         let field = self.space.field();
         let mut polygons = Vec::new();
         let run = settle(

@@ -29,7 +29,10 @@ pub fn find_from(
         ));
     }
     let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
-    let space = Alone(field);
+    let space = Alone {
+        field,
+        symmetry: Symmetry::Symmetric,
+    };
     let mut guesses = Guesses::new(&space, Symmetry::Symmetric);
     match period {
         Some(period) => guesses.over(period, &mut tracer, start)?,

@@ -1,5 +1,6 @@
 //! What slides: one or two interfaces with a law and a loading, and its vector fields.
 
+use super::find::rough_period;
 use crate::error::Result;
 use crate::field::place;
 use crate::friction::{AnyLaw, Formulas, Law, positive, steady_stress};
@@ -122,9 +123,7 @@ impl InterfaceSystem {
 
     /// The time in which the loading alone raises the stress by some units: that of a stick-slip cycle, roughly.
     pub fn rough_period(&self) -> f64 {
-        /// Typical stress drop of a cycle, in a sigma.
-        const DROP: f64 = 5.0;
-        DROP / (self.loading.stiffness * self.loading.driving)
+        rough_period(&self.loading)
     }
 
     /// ln psi of the symmetric equilibrium.

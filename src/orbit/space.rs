@@ -93,23 +93,27 @@ impl Space for Whole<'_> {
 }
 
 /// The space of any field, in which there are no parts that might move alike.
-pub(super) struct Alone<'f, 'a>(pub &'f AnyField<'a>);
+pub(super) struct Alone<'f, 'a> {
+    pub field: &'f AnyField<'a>,
+    /// What is said of all its orbits.
+    pub symmetry: Symmetry,
+}
 
 impl Space for Alone<'_, '_> {
     fn field(&self) -> &AnyField<'_> {
-        self.0
+        self.field
     }
 
     fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
-        loss_along(self.0, tracers, x, duration)
+        loss_along(self.field, tracers, x, duration)
     }
 
     fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
-        Ok(floquet(closed, self.0))
+        Ok(floquet(closed, self.field))
     }
 
     fn symmetry(&self, _: &ShootingNodes) -> Symmetry {
-        Symmetry::Symmetric
+        self.symmetry
     }
 }
 

@@ -127,7 +127,7 @@ impl BranchPlan {
     pub fn new(options: &BranchOptions) -> Result<Self> {
         let of = BranchKind::named(options.of.as_deref())?;
         let along = BranchParameter::named(options.along.as_deref().unwrap_or("driving"))?;
-        let system = System::new(&options.model)?;
+        let system = System::new(&options.model)?.alike("branch")?;
         let units = &system.units;
         let ends = along.ends(options, units)?;
         let loading = loading(&system, &along, ends.0)?;

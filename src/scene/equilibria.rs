@@ -3,7 +3,8 @@
 use super::options::EquilibriaOptions;
 use super::system::System;
 use crate::equilibrium::{
-    Equilibrium, Solver, Stability, SteadyStates, Verdict, stability, steady_states,
+    Equilibrium, LawOfEach, Solver, Stability, SteadyStates, Verdict, stability, steady_states,
+    unequal_steady_states,
 };
 use crate::error::{Error, Result};
 
@@ -57,7 +58,8 @@ impl EquilibriaPlan {
     pub fn new(options: &EquilibriaOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
         let driving = system.needed_driving()?;
-        let (solver_name, solver) = solver(options.solver.as_deref())?;
+        let differ = system.unequal.is_some();
+        let (solver_name, solver) = solver(options.solver.as_deref(), differ)?;
         Ok(EquilibriaPlan {
             system,
             driving,
@@ -69,18 +71,14 @@ impl EquilibriaPlan {
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
         let asymmetric = match self.system.interfaces {
+            _ if self.system.unequal.is_some() => return self.explain_unequal(),
             2 => format!(
                 "{}, from a certain bracket around each solution",
                 self.solver_name
             ),
             _ => "off: one interface has none".to_owned(),
         };
-        let stability = match self.system.stiffness {
-            Some(_) => {
-                "on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials"
-            }
-            None => "off: it depends on the stiffness, which is not given",
-        };
+        let stability = self.explain_stability();
         format!(
             "plan of this command
   symmetric         closed formula at V_H over the number of interfaces
@@ -89,23 +87,54 @@ impl EquilibriaPlan {
         )
     }
 
+    fn explain_unequal(&self) -> String {
+        format!(
+            "plan of this command
+  states            branch and bound in interval arithmetic, then Newton's method in 31 digits; the interfaces differ: none is symmetric
+  stability         {}",
+            self.explain_stability()
+        )
+    }
+
+    fn explain_stability(&self) -> &'static str {
+        match self.system.stiffness {
+            Some(_) => {
+                "on: Routh-Hurwitz in interval arithmetic, eigenvalues from the characteristic polynomials"
+            }
+            None => "off: it depends on the stiffness, which is not given",
+        }
+    }
+
     /// Finds them.
     ///
     /// # Errors
-    /// Those of [`steady_states`] and [`stability`].
+    /// Those of [`steady_states`], [`unequal_steady_states`] and [`stability`].
     pub fn solve(&self) -> Result<ClassifiedEquilibria> {
-        let (law, driving) = (&self.system.law, self.driving);
-        let SteadyStates {
+        match &self.system.unequal {
+            Some(laws) => self.classified(laws, unequal_steady_states(laws, self.driving)?),
+            None => {
+                let (law, interfaces) = (&self.system.law, self.system.interfaces);
+                let found = steady_states(law, self.driving, interfaces, self.solver)?;
+                self.classified(law, found)
+            }
+        }
+    }
+
+    fn classified(
+        &self,
+        laws: &impl LawOfEach,
+        SteadyStates {
             equilibria,
             complete,
-        } = steady_states(law, driving, self.system.interfaces, self.solver)?;
+        }: SteadyStates,
+    ) -> Result<ClassifiedEquilibria> {
         let classified = |equilibrium: Equilibrium| {
             let stiffness = self.system.stiffness;
             let stability = stiffness
-                .map(|k| stability(law, &equilibrium, k))
+                .map(|k| stability(laws, &equilibrium, k))
                 .transpose()?;
             Ok(ClassifiedEquilibrium {
-                residual: equilibrium.residual(law, driving),
+                residual: equilibrium.residual(laws, self.driving),
                 stability,
                 equilibrium,
             })
@@ -118,12 +147,16 @@ impl EquilibriaPlan {
     }
 }
 
-fn solver(name: Option<&str>) -> Result<(&'static str, Solver)> {
+/// What finds the states; those of interfaces that differ are found by Newton's method alone.
+fn solver(name: Option<&str>, differ: bool) -> Result<(&'static str, Solver)> {
     #[cfg(feature = "sundials")]
     const DEFAULT: &str = "kinsol";
     #[cfg(not(feature = "sundials"))]
     const DEFAULT: &str = "newton";
-    match name.unwrap_or(DEFAULT) {
+    match name.unwrap_or(if differ { "newton" } else { DEFAULT }) {
+        "kinsol" if differ => Err(Error::Input(
+            "solver kinsol is for equal interfaces, and these differ; choose newton".into(),
+        )),
         #[cfg(feature = "sundials")]
         "kinsol" => Ok(("kinsol", Solver::Kinsol)),
         #[cfg(not(feature = "sundials"))]

@@ -81,6 +81,9 @@ fn dimension(plan: &Plan) -> String {
         Dimension::Symmetric => {
             "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace (tau, ln psi) for ever".into()
         }
+        Dimension::Full if plan.system.unequal.is_some() => {
+            "3: the interfaces differ, (tau, ln psi1, ln psi2)".into()
+        }
         Dimension::Full => "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)".into(),
     }
 }

@@ -2,13 +2,13 @@
 
 use super::column::Column;
 use super::units::Quantity;
-use crate::friction::{AnyLaw, Formulas};
+use crate::friction::{Formulas, ScaledLaw};
 
 /// A point of a run in the full chart. With one interface, or two equal ones, both entries are the same.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Instant {
-    /// The law of every interface.
-    pub law: AnyLaw,
+    /// The law of each interface.
+    pub laws: [ScaledLaw; 2],
     /// Time.
     pub time: f64,
     /// tau.
@@ -22,7 +22,7 @@ pub struct Instant {
 }
 
 impl Instant {
-    /// The same law and V_H at another point, of tau and ln psi.
+    /// The same laws and V_H at another point, of tau and ln psi.
     pub fn at(&self, time: f64, (stress, log_state): (f64, [f64; 2]), slip: [f64; 2]) -> Self {
         Instant {
             time,
@@ -35,9 +35,8 @@ impl Instant {
 
     /// The slip rate of an interface, 0 or 1, in V*.
     pub fn slip_rate(&self, interface: usize) -> f64 {
-        let activation = self.law.activation(self.stress);
-        self.law
-            .slip_rate(activation, self.log_state[interface].exp())
+        let law = &self.laws[interface];
+        law.slip_rate(law.activation(self.stress), self.log_state[interface].exp())
     }
 }
 

@@ -55,7 +55,7 @@ impl LawPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
-        let system = System::new(&options.model)?;
+        let system = System::new(&options.model)?.alike("law")?;
         let end = |name, value: Option<f64>, default: f64| match value {
             Some(v) => Ok(system.units.inward(Quantity::SlipRate, positive(name, v)?)),
             None => Ok(default),

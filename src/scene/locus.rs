@@ -164,7 +164,7 @@ impl LocusPlan {
     pub fn new(options: &LocusOptions) -> Result<Self> {
         let curve = CurveChoice::named(options.of.as_deref())?;
         not_fixed(options)?;
-        let system = System::new(&options.model)?;
+        let system = System::new(&options.model)?.alike("locus")?;
         let rates = (Quantity::SlipRate, &system.units);
         let stiffnesses = (Quantity::Stiffness, &system.units);
         let driving = ends(

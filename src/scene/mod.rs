@@ -52,6 +52,7 @@ mod stretch;
 mod sweep;
 mod system;
 mod text;
+mod unequal;
 mod units;
 
 pub use branch::{BranchKind, BranchParameter, BranchPlan};

@@ -9,8 +9,8 @@ use clap::builder::{PossibleValue, TypedValueParser};
 use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
-    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1 [default: \
-    near-symmetric]. Of a system from a file: the values of all states in their order [default: its table start]";
+    symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1; where the interfaces differ, \
+    psi of each at its own steady state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of a system from a file: the values of all states in their order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
@@ -321,17 +321,16 @@ pub struct OrbitOptions {
     /// What slides.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// symmetric (both interfaces move alike) or asymmetric
+    /// symmetric (both interfaces move alike) or asymmetric; without meaning where they differ [default: symmetric]
     #[arg(
         long,
         value_name = "NAME",
-        default_value = "symmetric",
         conflicts_with = "system",
         value_parser = Names::of(["symmetric", "asymmetric"]),
         hide_possible_values = true,
         help_heading = "Orbit"
     )]
-    pub symmetry: String,
+    pub symmetry: Option<String>,
     /// At or near the orbit, or at a Hopf point; without it the orbit is looked for.
     #[arg(
         long,

@@ -8,10 +8,11 @@ use super::units::Quantity;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::positive;
-use crate::integrate::Choice;
+use crate::integrate::{AnyField, Choice};
+use crate::model::UnequalInterfaces;
 use crate::orbit::{
     Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
-    find,
+    crosscheck_of, find, find_unequal,
 };
 
 /// A periodic orbit that is asked for, checked.
@@ -19,7 +20,7 @@ use crate::orbit::{
 pub struct OrbitPlan {
     /// What slides.
     pub system: System,
-    /// The same for the search.
+    /// The same for the search; of interfaces that differ with the law of the first.
     pub slab: InterfaceSystem,
     /// Which orbit, and where the search begins.
     pub query: Query,
@@ -45,11 +46,8 @@ impl OrbitPlan {
             interfaces: system.interfaces,
             loading: system.loading()?,
         };
-        let name = options.symmetry.as_str();
-        let symmetry = Symmetry::named(name)
-            .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))?;
         let query = Query {
-            symmetry,
+            symmetry: symmetry(options.symmetry.as_deref(), &system)?,
             begin: begin(options, &system, &slab)?,
         };
         let accuracy = accuracy(options)?;
@@ -67,6 +65,7 @@ impl OrbitPlan {
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
         let dimension = match (self.query.symmetry, self.slab.interfaces) {
+            _ if self.system.unequal.is_some() => "3: the interfaces differ",
             (Symmetry::Asymmetric, _) => "3",
             (Symmetry::Symmetric, 2) => {
                 "2: both interfaces move alike; the multiplier across is a quadrature"
@@ -78,6 +77,7 @@ impl OrbitPlan {
                 period: Some(_), ..
             } => "the start, over the period given",
             InitialGuess::At { .. } => "the returns of the start, else what it settles on",
+            InitialGuess::Anywhere if self.system.unequal.is_some() => "what runs settle on",
             InitialGuess::Anywhere => {
                 "what runs settle on, else the branch from the nearest Hopf point"
             }
@@ -113,9 +113,16 @@ impl OrbitPlan {
     /// Finds the orbit.
     ///
     /// # Errors
-    /// Those of [`find()`].
+    /// Those of [`find()`] and [`find_unequal()`].
     pub fn find(&self) -> Result<FoundOrbit> {
-        find(&self.slab, &self.query, &self.accuracy)
+        match self.unequal() {
+            Some(interfaces) => find_unequal(&interfaces, self.query.begin, &self.accuracy),
+            None => find(&self.slab, &self.query, &self.accuracy),
+        }
+    }
+
+    fn unequal(&self) -> Option<UnequalInterfaces> {
+        self.system.unequal(self.slab.loading)
     }
 
     /// The run over one period of an orbit, from its point back to it: along the arcs between its shooting nodes, each from its own
@@ -177,8 +184,24 @@ impl OrbitPlan {
     /// # Errors
     /// Those of [`crosscheck`].
     pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
-        let again = |second| crosscheck(&self.slab, orbit, second);
+        let again = |second| match self.unequal() {
+            Some(interfaces) => crosscheck_of(&AnyField::of::<3>(&interfaces), orbit, second),
+            None => crosscheck(&self.slab, orbit, second),
+        };
         self.second.as_ref().map(again).transpose()
+    }
+}
+
+/// What is asked for; of interfaces that differ no orbit is symmetric.
+fn symmetry(name: Option<&str>, system: &System) -> Result<Symmetry> {
+    let unknown = |name| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]);
+    let asked = name.map(|name| Symmetry::named(name).ok_or_else(|| unknown(name)));
+    match (system.unequal, asked.transpose()?) {
+        (None, asked) => Ok(asked.unwrap_or(Symmetry::Symmetric)),
+        (Some(_), Some(Symmetry::Symmetric)) => Err(Error::Input(
+            "`symmetry` symmetric: interfaces that differ never move alike; leave it away".into(),
+        )),
+        (Some(_), _) => Ok(Symmetry::Asymmetric),
     }
 }
 

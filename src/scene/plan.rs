@@ -9,7 +9,7 @@ use super::program::{Program, Stretch};
 use super::system::System;
 use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
-use crate::friction::{Formulas, Law, beside, positive, steady_stress};
+use crate::friction::{Formulas, Law, beside, positive};
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 
@@ -40,7 +40,7 @@ impl Dimension {
     pub(super) fn of(system: &System, (_, log_state): &(f64, [f64; 2])) -> Self {
         if system.interfaces == 1 {
             Dimension::Single
-        } else if log_state[0] == log_state[1] {
+        } else if log_state[0] == log_state[1] && system.unequal.is_none() {
             Dimension::Symmetric
         } else {
             Dimension::Full
@@ -334,7 +334,8 @@ pub fn start(text: &str, system: &System, loading: &Loading) -> Result<(f64, [f6
 }
 
 /// The symmetric steady state, with the second interface (the only one, if there is one) moved off it by exp(EPS). Where no EPS
-/// is given, to the side on which the law has states, as the starts of a sweep are.
+/// is given, to the side on which the law has states, as the starts of a sweep are. Of interfaces that differ the states in which each
+/// slides steadily at V_H/2, and the mean of their stresses.
 fn near_symmetric(
     asymmetry: Option<f64>,
     system: &System,
@@ -347,7 +348,7 @@ fn near_symmetric(
         )));
     }
     let v = loading.driving / system.interfaces as f64;
-    let w = system.law.steady_state(v).ln();
+    let [first, w] = system.laws().map(|law| law.steady_state(v).ln());
     let moved = match asymmetry {
         None => beside(&system.law, w, NEAR_SYMMETRIC),
         Some(by) if system.law.bounds_state() && w + by > 0.0 => {
@@ -363,9 +364,9 @@ fn near_symmetric(
     let log_state = if system.interfaces == 1 {
         [moved, moved]
     } else {
-        [w, moved]
+        [first, moved]
     };
-    Ok((steady_stress(&system.law, v), log_state))
+    Ok((system.steady_stress(loading.driving), log_state))
 }
 
 fn bounded(log_state: [f64; 2], system: &System) -> Result<()> {

@@ -143,7 +143,7 @@ struct RunObserver<'a> {
 
 impl<'a> RunObserver<'a> {
     fn new(plan: &'a Plan, sink: &'a mut dyn Sink) -> Self {
-        let (law, driving) = (plan.system.law, plan.loading.driving);
+        let (laws, driving) = (plan.system.laws(), plan.loading.driving);
         let (stress, log_state) = plan.start;
         RunObserver {
             plan,
@@ -154,7 +154,7 @@ impl<'a> RunObserver<'a> {
                 && !plan.picture,
             stretch: Stretch::new((0.0, 0.0), (driving, driving)),
             here: Instant {
-                law,
+                laws,
                 time: 0.0,
                 stress,
                 log_state,

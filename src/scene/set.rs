@@ -1,6 +1,7 @@
 //! `--set NAME=VALUE`: any parameter of the model by its name.
 
 use super::options::{ModelOptions, SlabOptions};
+use super::unequal::of_one;
 use crate::error::{Error, Result};
 
 /// The names of the parameters that interfaces have, V_H and K first.
@@ -71,8 +72,11 @@ impl SlabOptions {
         Ok(slab)
     }
 
-    /// Another value of a parameter that is neither V_H nor K.
+    /// Another value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
     fn put(&mut self, name: &str, value: f64) -> Result<()> {
+        if of_one(name)?.is_some() {
+            return Ok(());
+        }
         if ["slip_length", "normal_stress"].contains(&name) && !self.si {
             let what = format!("`set` {name}: without `si` it is a unit, and 1");
             return Err(Error::Input(what));

@@ -55,9 +55,12 @@ fn one(
             point(plan, &by.along(stretch, &*field, &plane)?)
         }
         (Dimension::Full, true) => {
-            let field = model::two_interfaces(law, loading);
             let from = State::<3>::new(tau, first, second);
-            point(plan, &by.along(stretch, &*field, &from)?)
+            let end = match plan.system.unequal(loading) {
+                Some(field) => by.along(stretch, &field, &from)?,
+                None => by.along(stretch, &*model::two_interfaces(law, loading), &from)?,
+            };
+            point(plan, &end)
         }
         (Dimension::Single, false) => {
             let field = model::alike_on_ramp(law, 1, ramp);
@@ -68,9 +71,15 @@ fn one(
             point(plan, &by.along(stretch, &field, &on_ramp)?)
         }
         (Dimension::Full, false) => {
-            let field = model::two_interfaces_on_ramp(law, ramp);
             let from = State::<4>::new(tau, first, second, driving);
-            point(plan, &by.along(stretch, &field, &from)?)
+            let end = match plan.system.unequal {
+                Some(laws) => {
+                    let field = model::unequal_interfaces_on_ramp(laws, ramp);
+                    by.along(stretch, &field, &from)?
+                }
+                None => by.along(stretch, &model::two_interfaces_on_ramp(law, ramp), &from)?,
+            };
+            point(plan, &end)
         }
     })
 }

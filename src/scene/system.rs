@@ -2,11 +2,12 @@
 
 use super::options::{ModelOptions, SlabOptions};
 use super::program::Program;
+use super::unequal::OfOne;
 use super::units::{Quantity, TimeUnit, Units};
 use crate::error::{Error, Result};
-use crate::friction::{AnyLaw, Law, Parameters, positive};
-use crate::model::Loading;
+use crate::friction::{AnyLaw, Law, Parameters, ScaledLaw, UnequalLaws, positive, steady_stress};
 use crate::model::scales::Scales;
+use crate::model::{Loading, UnequalInterfaces};
 use serde_json::{Map, Value, json};
 
 /// L in m, fitted by the paper to Heslot et al. (1994).
@@ -29,8 +30,10 @@ pub trait Described {
 /// What slides, checked and dimensionless, with the units that lead back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct System {
-    /// The law of every interface.
+    /// The law of every interface; of interfaces that differ that of the first.
     pub law: AnyLaw,
+    /// The laws of two interfaces that differ, where they do.
+    pub unequal: Option<UnequalLaws>,
     /// 1 or 2.
     pub interfaces: usize,
     /// V_H, where given.
@@ -67,6 +70,11 @@ impl System {
         if !(1..=2).contains(&options.interfaces) {
             return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
         }
+        let of_one = OfOne::read(options)?;
+        let first = of_one.first(options);
+        let own = [0, 1].map(|i| of_one.constants(i, common(options, &first)));
+        let differ = options.interfaces == 2 && own[0] != own[1];
+        let (all, options) = (options, &first);
         // Checked in the user's numbers, before any conversion, so that the message shows what was typed.
         for (name, value) in [
             ("driving", driving),
@@ -88,6 +96,25 @@ impl System {
         )?
         .damped(damping / scales.map_or(1.0, |s| s.stress / s.slip_rate))?;
         let law = AnyLaw::named(&options.law, parameters)?;
+        let mut echo = echo(
+            if differ { all } else { options },
+            (driving, stiffness),
+            (healing_time, damping),
+        );
+        let unequal = if differ {
+            of_one.echo(&own, &mut echo);
+            let [_, _, _, _, _, length, stress] = own[0];
+            let constants = own.map(|[r, c, a, b, a_v, l, sigma]| {
+                [r / time, c, a, b, a_v, l / length, sigma / stress].into()
+            });
+            Some(UnequalLaws::new(
+                &options.law,
+                constants,
+                parameters.damping,
+            )?)
+        } else {
+            None
+        };
         let units =
             Units::new(scales, !law.bounds_state()).in_time(TimeUnit::named(&options.time_unit)?);
         let inward = |quantity, name, value: Option<f64>| {
@@ -97,12 +124,13 @@ impl System {
         };
         Ok(System {
             law,
+            unequal,
             interfaces: usize::from(options.interfaces),
             driving: inward(Quantity::SlipRate, "driving", driving)?,
             stiffness: inward(Quantity::Stiffness, "stiffness", stiffness)?,
             units,
             direct_effect: options.direct_effect,
-            echo: echo(options, (driving, stiffness), (healing_time, damping)),
+            echo,
         })
     }
 
@@ -137,6 +165,40 @@ impl System {
             stiffness,
         };
         Ok((system, loading))
+    }
+
+    /// The same for a command that takes equal interfaces alone.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for interfaces that differ.
+    pub(super) fn alike(self, command: &str) -> Result<Self> {
+        match self.unequal {
+            None => Ok(self),
+            Some(_) => Err(Error::Input(format!(
+                "`set`: {command} takes equal interfaces, and these differ; integrate, equilibria, orbit and section take interfaces that differ"
+            ))),
+        }
+    }
+
+    /// Interfaces that differ under this loading, where they do.
+    pub fn unequal(&self, loading: Loading) -> Option<UnequalInterfaces> {
+        self.unequal.map(|laws| UnequalInterfaces { laws, loading })
+    }
+
+    /// The law of each interface in the units of the first.
+    pub fn laws(&self) -> [ScaledLaw; 2] {
+        match &self.unequal {
+            Some(laws) => *laws.laws(),
+            None => [self.law.into(); 2],
+        }
+    }
+
+    /// The steady stress at V_H over the number of interfaces; of interfaces that differ the mean of theirs.
+    pub fn steady_stress(&self, driving: f64) -> f64 {
+        match &self.unequal {
+            Some(laws) => laws.half_driving_stress(driving),
+            None => steady_stress(&self.law, driving / self.interfaces as f64),
+        }
     }
 
     /// V_H and K, both needed.
@@ -178,6 +240,29 @@ impl Described for System {
     fn units(&self) -> &Units {
         &self.units
     }
+}
+
+/// The constants that interfaces have where none has its own, in the user's units; `first` are the options of the first one.
+fn common(options: &SlabOptions, first: &SlabOptions) -> [f64; 7] {
+    let si = |value: Option<f64>, default| {
+        if options.si {
+            value.unwrap_or(default)
+        } else {
+            1.0
+        }
+    };
+    // The default is in L_1/V*.
+    let length = si(first.slip_length, SLIP_LENGTH);
+    let time = length / si(options.reference_rate, REFERENCE_RATE);
+    [
+        options.healing_time.unwrap_or(HEALING_TIME * time),
+        options.residual_strength,
+        options.direct_effect,
+        options.evolution_effect,
+        options.reference_friction,
+        si(options.slip_length, SLIP_LENGTH),
+        si(options.normal_stress, NORMAL_STRESS),
+    ]
 }
 
 fn scales(options: &SlabOptions) -> Result<Scales> {

@@ -23,6 +23,9 @@ pub fn explain_section(plan: &SectionPlan) -> String {
             Dimension::Symmetric => {
                 "2: psi1 = psi2 at the start, so the run stays in the symmetric subspace for ever"
             }
+            Dimension::Full if plan.system.unequal.is_some() => {
+                "3: the interfaces differ, (tau, ln psi1, ln psi2)"
+            }
             Dimension::Full => "3: psi1 and psi2 differ, (tau, ln psi1, ln psi2)",
         }
         .into(),

@@ -8,7 +8,10 @@ use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, Choice, Control};
 use crate::number::Uncertain;
-use crate::orbit::{InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find};
+use crate::orbit::{
+    FoundOrbit, InitialGuess, InterfaceSystem, Kind, Orbit, OrbitAccuracy, Query, find,
+    find_unequal,
+};
 use crate::section::{
     Ended, FEWEST_FOR_EXPONENTS, Periodic, Return, ReturnRecord, at_equilibrium, spectrum_watched,
 };
@@ -71,27 +74,31 @@ pub(super) fn of_orbit(
     plan: &SectionPlan,
     periodic: &Periodic,
 ) -> Option<(Uncertain, CheckedExponents)> {
-    let slab = InterfaceSystem {
-        law: plan.system.law,
-        interfaces: plan.system.interfaces,
-        loading: plan.loading,
-    };
     let y = &periodic.point;
     let begin = InitialGuess::At {
         start: (y[0], [y[1], y[y.len() - 1]]),
         period: Some(periodic.period.value),
     };
     let accuracy = OrbitAccuracy::of(Choice::Taylor);
-    let closed = |symmetry| {
-        let found = find(&slab, &Query { symmetry, begin }, &accuracy).ok()?;
-        let apart = found.orbit.period.value / periodic.period.value - 1.0;
-        (apart.abs() < SAME_PERIOD).then_some(found.orbit)
+    let same = |found: Result<FoundOrbit>| {
+        let orbit = found.ok()?.orbit;
+        let apart = orbit.period.value / periodic.period.value - 1.0;
+        (apart.abs() < SAME_PERIOD).then_some(orbit)
     };
-    // A run in all dimensions may have settled on a symmetric orbit.
-    let asymmetric = (plan.dimension == Dimension::Full).then_some(Symmetry::Asymmetric);
-    let orbit = asymmetric
-        .and_then(closed)
-        .or_else(|| closed(Symmetry::Symmetric))?;
+    let slab = InterfaceSystem {
+        law: plan.system.law,
+        interfaces: plan.system.interfaces,
+        loading: plan.loading,
+    };
+    let closed = |symmetry| same(find(&slab, &Query { symmetry, begin }, &accuracy));
+    let orbit = match (plan.system.unequal(plan.loading), plan.dimension) {
+        (Some(interfaces), _) => same(find_unequal(&interfaces, begin, &accuracy))?,
+        // A run in all dimensions may have settled on a symmetric orbit.
+        (None, Dimension::Full) => {
+            closed(Symmetry::Asymmetric).or_else(|| closed(Symmetry::Symmetric))?
+        }
+        (None, _) => closed(Symmetry::Symmetric)?,
+    };
     Some((orbit.period, of_multipliers(&orbit)?))
 }
 

@@ -21,7 +21,7 @@ use crate::friction::positive;
 use crate::integrate::{Choice, Tolerances};
 use crate::model::Loading;
 use crate::number::polynomial::Crossing;
-use crate::section::{FEWEST_FOR_EXPONENTS, half_driving_stress, usual_patience};
+use crate::section::{FEWEST_FOR_EXPONENTS, usual_patience};
 
 /// The section of the paper.
 const USUAL_SURFACE: &str = "stress=auto";
@@ -141,8 +141,7 @@ fn stress(text: &str, system: &System, loading: &Loading) -> Result<f64> {
     };
     let value = text.strip_prefix("stress=").ok_or_else(unreadable)?;
     if value == "auto" {
-        let auto = half_driving_stress(&system.law, loading.driving, system.interfaces);
-        return Ok(auto);
+        return Ok(system.steady_stress(loading.driving));
     }
     match value.trim().parse::<f64>() {
         Ok(x) if x.is_finite() => Ok(system.units.inward(Quantity::Stress, x)),

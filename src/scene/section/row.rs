@@ -4,7 +4,7 @@ use super::super::column::Column;
 use super::super::run::Sink;
 use super::super::units::Quantity;
 use super::SectionPlan;
-use crate::friction::Formulas;
+use crate::friction::{Formulas, ScaledLaw};
 use crate::integrate::Control;
 use crate::section::Return;
 
@@ -60,6 +60,7 @@ pub fn section_columns(interfaces: usize) -> Vec<Column<SectionRow>> {
 /// Makes a row of each return and the next.
 pub(super) struct RowMaker<'a> {
     plan: &'a SectionPlan,
+    laws: [ScaledLaw; 2],
     columns: Vec<Column<SectionRow>>,
     /// The last return, whose next is not known yet.
     open: Option<SectionRow>,
@@ -70,6 +71,7 @@ impl<'a> RowMaker<'a> {
     pub fn new(plan: &'a SectionPlan) -> Self {
         RowMaker {
             plan,
+            laws: plan.system.laws(),
             columns: section_columns(plan.system.interfaces),
             open: None,
             made: 0,
@@ -78,10 +80,12 @@ impl<'a> RowMaker<'a> {
 
     /// The row of the return before is complete with this one.
     pub fn next(&mut self, at: &Return, sink: &mut dyn Sink) -> Control {
-        let law = &self.plan.system.law;
-        let (activation, y) = (law.activation(at.state[0]), &at.state);
+        let (laws, y) = (&self.laws, &at.state);
         let log_state = [y[1], y[y.len() - 1]];
-        let slip_rate = log_state.map(|w| law.slip_rate(activation, w.exp()));
+        let slip_rate = [0, 1].map(|i| {
+            let law = &laws[i];
+            law.slip_rate(law.activation(y[0]), log_state[i].exp())
+        });
         let sum = slip_rate[..self.plan.system.interfaces].iter().sum();
         let told = self.open.take().map(|mut row| {
             row.next_slip_rate_sum = sum;

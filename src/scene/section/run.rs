@@ -58,7 +58,10 @@ pub(in crate::scene) type Means<'a> =
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`SectionOutcome::failure`].
 pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOutcome> {
     let (law, loading) = (plan.system.law, plan.loading);
-    let whole = || AnyField::new::<3>(model::two_interfaces(law, loading));
+    let whole = || match plan.system.unequal(loading) {
+        Some(field) => AnyField::new::<3>(Box::new(field)),
+        None => AnyField::new::<3>(model::two_interfaces(law, loading)),
+    };
     let field = &match plan.dimension {
         Dimension::Single => AnyField::new::<2>(model::single_interface(law, loading)),
         Dimension::Symmetric => AnyField::new::<2>(model::symmetric(law, loading)),

@@ -76,7 +76,8 @@ impl SweepPlan {
             &options.slab.resolved()?,
             fixed(&driving),
             fixed(&stiffness),
-        )?;
+        )?
+        .alike("sweep")?;
         let units = &system.units;
         let grid = match &states {
             None => Grid::Plane {

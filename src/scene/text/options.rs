@@ -17,7 +17,8 @@ pub struct TextOptions {
         ]
     )]
     pub system: Option<PathBuf>,
-    /// Another value of any parameter, NAME=VALUE, by the names that JSON has; may be given again
+    /// Another value of any parameter, NAME=VALUE, by the names that JSON has; may be given again. With _1 or _2 after the name it is
+    /// that of one interface: residual_strength_2=0.002
     #[arg(
         long,
         value_name = "NAME=VALUE",

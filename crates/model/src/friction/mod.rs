@@ -13,17 +13,21 @@ mod dieterich_ruina;
 mod direct;
 mod regularised_ageing;
 mod rounding;
+mod scaled;
 mod slip;
 mod spinodal;
 mod steady;
+mod unequal;
 
 pub use damped::Damped;
 #[doc(hidden)]
-pub use rounding::{effects, rounding};
+pub use rounding::{Rounded, effects, rounding};
+pub use scaled::ScaledLaw;
 pub use steady::{
     Extremum, ExtremumKind, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
     steady_log_activation, steady_log_slope, steady_slope, steady_stress, steady_stress_within,
 };
+pub use unequal::{InterfaceConstants, UnequalLaws};
 
 use crate::error::{Error, Result};
 use crate::number::{Constant, Free, Real, With};

@@ -60,6 +60,10 @@ impl<L: Law, const N: usize> Equations<N, LOADING> for Logarithmic<L> {
     fn slip_rates<T: Real>(&self, x: [T; N], _: [T; LOADING]) -> [Option<T>; 2] {
         slip_rates(&self.law, x)
     }
+
+    fn lasting(&self) -> Option<&'static str> {
+        self.law.lasts().then(|| self.law.name())
+    }
 }
 
 /// The law's constants as parameters, as far as it has them.

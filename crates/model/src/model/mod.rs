@@ -27,16 +27,18 @@ mod symmetric;
 mod tangent;
 mod text_system;
 mod two_interfaces;
+mod unequal;
 
 #[doc(hidden)]
 pub use batch::{BatchSolution, MAX_LANES, batch_solution};
 pub use difference_chart::{DifferenceChart, from_difference_chart, to_difference_chart};
-pub use ramp::{Ramp, alike_on_ramp, two_interfaces_on_ramp};
+pub use ramp::{Ramp, alike_on_ramp, two_interfaces_on_ramp, unequal_interfaces_on_ramp};
 pub use single_interface::SingleInterface;
 pub use smooth::Smooth;
 pub use symmetric::Symmetric;
 pub use text_system::{TextField, TextSystem};
 pub use two_interfaces::TwoInterfaces;
+pub use unequal::UnequalInterfaces;
 
 use crate::error::Result;
 use crate::field::{Parametrised, State, VectorField};

@@ -2,16 +2,18 @@
 //! derivatives.
 
 use super::logarithmic::{LOADING, Logarithmic};
-use super::{Driven, Smooth};
+use super::unequal::InTargets;
+use super::{Driven, Loading, Smooth, UnequalInterfaces};
 use crate::field::State;
-use crate::friction::{AnyLaw, Law};
+use crate::friction::{AnyLaw, UnequalLaws};
 use crate::number::Real;
 use crate::series::Equations;
 
 /// (11) or (19) in (tau, w_1, ..., V_H), w = ln psi, with dV_H/dt a parameter. Runs along ramps are rare: one code serves all laws.
 #[derive(Debug, Clone, Copy)]
-pub struct Ramp {
-    interfaces: Logarithmic<AnyLaw>,
+pub struct Ramp<E = Logarithmic<AnyLaw>> {
+    /// The equations in V_H and K.
+    interfaces: E,
 }
 
 /// The rate of V_H, and K.
@@ -19,7 +21,7 @@ const PARAMETERS: [&str; LOADING] = ["driving_rate", "stiffness"];
 
 macro_rules! equations {
     ($variables:literal, $interfaces:literal) => {
-        impl Equations<$variables, LOADING> for Ramp {
+        impl<E: Equations<$interfaces, LOADING>> Equations<$variables, LOADING> for Ramp<E> {
             const PARAMETERS: [&'static str; LOADING] = PARAMETERS;
             const KERNELS: bool = false;
 
@@ -48,12 +50,13 @@ macro_rules! equations {
             }
 
             fn lasting(&self) -> Option<&'static str> {
-                let law = &self.interfaces.law;
-                law.lasts().then(|| law.name())
+                self.interfaces.lasting()
             }
         }
 
-        impl Driven<$variables> for Smooth<Ramp, $variables, LOADING> {
+        impl<E: Equations<$interfaces, LOADING>> Driven<$variables>
+            for Smooth<Ramp<E>, $variables, LOADING>
+        {
             fn slip_rates(&self, y: &State<$variables>) -> [f64; 2] {
                 let x = y.data.0[0];
                 let [first, second] = Equations::slip_rates(&self.equations, x, self.parameters);
@@ -83,6 +86,23 @@ pub fn two_interfaces_on_ramp(
     (rate, stiffness): (f64, f64),
 ) -> Smooth<Ramp, 4, LOADING> {
     ramp(law, 1, [rate, stiffness])
+}
+
+/// Two interfaces that differ, likewise.
+pub fn unequal_interfaces_on_ramp(
+    laws: UnequalLaws,
+    (rate, stiffness): (f64, f64),
+) -> Smooth<Ramp<InTargets<LOADING>>, 4, LOADING> {
+    // V_H itself is a variable.
+    let loading = Loading {
+        driving: f64::NAN,
+        stiffness,
+    };
+    let interfaces = UnequalInterfaces { laws, loading }.in_loading().equations;
+    Smooth {
+        equations: Ramp { interfaces },
+        parameters: [rate, stiffness],
+    }
 }
 
 fn ramp<const N: usize>(
