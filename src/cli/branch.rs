@@ -5,7 +5,9 @@ use super::rows::{SlabRow, special_row};
 use super::{Ending, general, say, special};
 use crate::bifurcation::{BranchRow, Special, orbits};
 use crate::error::Result;
-use crate::scene::{BranchKind, BranchOptions, BranchPlan, Described, TextModel, TextSubject};
+use crate::scene::{
+    BranchKind, BranchOptions, BranchPlan, Described, SlabSubject, System, TextModel, TextSubject,
+};
 use crate::views;
 use std::ops::ControlFlow;
 
@@ -19,6 +21,12 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
             search.period_guess,
             options.of.as_deref() == Some("orbits"),
         )?;
+        return general::branch(options, &subject, words);
+    }
+    let along = options.along.as_deref().unwrap_or("driving");
+    let system = System::new(&options.model)?;
+    if system.unequal.is_some() || !["driving", "stiffness"].contains(&along) {
+        let subject = SlabSubject::new(system, &[along])?;
         return general::branch(options, &subject, words);
     }
     let plan = BranchPlan::new(options)?;

@@ -6,7 +6,7 @@ use super::{Ending, say, special};
 use crate::error::Result;
 use crate::scene::{
     BranchOptions, Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow,
-    LocusOptions, OutputOptions, Quantity, RowKind, Subject,
+    LocusOptions, OutputOptions, Quantity, RowKind, Subject, shown,
 };
 use crate::views;
 use serde_json::Value;
@@ -72,7 +72,7 @@ struct Frame<'s> {
 
 impl<'s> Frame<'s> {
     fn new(subject: &'s dyn Subject, kind: RowKind, free: &[&Free]) -> Self {
-        let names: Vec<_> = free.iter().map(|free| (free.name, free.quantity)).collect();
+        let names = shown(subject, free);
         let numbers = subject.numbers(kind);
         let (of_rows, of_special, of_lines) = (names.clone(), names.clone(), names.clone());
         let units = subject.units();

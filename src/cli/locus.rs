@@ -5,7 +5,10 @@ use super::rows::{SlabRow, special_row};
 use super::{Ending, general, say, special};
 use crate::bifurcation::{LocusRow, Special, orbits};
 use crate::error::Result;
-use crate::scene::{CurveChoice, Described, LocusOptions, LocusPlan, TextModel, TextSubject};
+use crate::scene::{
+    CurveChoice, Described, LocusOptions, LocusPlan, SlabSubject, System, TextModel, TextSubject,
+    plane,
+};
 use crate::views;
 use std::ops::ControlFlow;
 
@@ -19,6 +22,13 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
             search.period_guess,
             CurveChoice::named(options.of.as_deref())?.of_orbits(),
         )?;
+        return general::locus(options, &subject, words);
+    }
+    let names = plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?;
+    let system = System::new(&options.model)?;
+    let loading = names.contains(&"driving") && names.contains(&"stiffness");
+    if system.unequal.is_some() || !loading {
+        let subject = SlabSubject::new(system, &names)?;
         return general::locus(options, &subject, words);
     }
     let plan = LocusPlan::new(options)?;

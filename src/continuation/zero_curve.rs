@@ -14,8 +14,6 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const NARROW: f64 = 1e-4;
 /// Slopes of test functions are differences over this part of the step.
 const BESIDE: f64 = 1e-7;
-/// For the eye no step is made shorter than this part of the longest.
-const FINE: f64 = 0.01;
 /// Two points are one if they differ by no more than this many tolerances.
 const SAME: f64 = 1e5;
 
@@ -204,7 +202,7 @@ impl SolutionCurve for ZeroCurve<'_> {
         let missed = (&x - &straight).norm() / distance;
         let next = point(&x, tangent(self.problem, &x, along)?, arclength + distance);
         // Farther aside there is another part of the curve, or another curve.
-        let fine = distance < FINE * self.settings.longest_step;
+        let fine = distance < self.watch.finest() * self.settings.longest_step;
         if missed > self.settings.largest_turn || !fine && self.watch.too_far(&from.point, &next) {
             return Err(failed(0, missed, self.settings.largest_turn));
         }

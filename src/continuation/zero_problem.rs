@@ -92,7 +92,13 @@ pub trait CurveObserver {
         false
     }
 
-    /// Whether two points are too far apart for the eye: the step is then shortened, but not below a hundredth of the longest.
+    /// The part of the longest step below which no step is shortened because its points are too far apart.
+    fn finest(&self) -> f64 {
+        0.01
+    }
+
+    /// Whether two points are too far apart, for the eye or because something lies between them: the step is then shortened, but
+    /// not below [`CurveObserver::finest`].
     fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
         let _ = (from, to);
         false

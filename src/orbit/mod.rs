@@ -54,7 +54,7 @@ pub use orbit_curve::{DirectedPoint, OrbitCurve, Palc, PalcSettings, WatchedFunc
 pub use over_text::{Coordinate, OverText};
 pub use over_unequal::OverUnequal;
 pub(crate) use periodic_schur::LogEigenvalue;
-pub use profile::{Profile, profile};
+pub use profile::{Profile, profile, profile_of};
 pub use shooting::{Closed, close};
 pub use shooting_nodes::ShootingNodes;
 pub(crate) use shooting_nodes::of_digits;

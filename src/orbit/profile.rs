@@ -29,30 +29,42 @@ pub struct Profile {
 /// # Errors
 /// [`Error::Dimension`] for nodes of other dimensions; those of the flow.
 pub fn profile(slab: &InterfaceSystem, shooting: &ShootingNodes) -> Result<Profile> {
+    let whole = slab.whole();
+    let field = if shooting.dimension() == 3 {
+        AnyField::of::<3>(&*whole)
+    } else {
+        AnyField::new::<2>(slab.plane())
+    };
+    profile_of(&field, &|y| whole.slip_rates(y), shooting)
+}
+
+/// The same of any interfaces: by their field, and their slip rates in (tau, ln psi_1, ln psi_2).
+///
+/// # Errors
+/// As of [`profile`].
+pub fn profile_of(
+    field: &AnyField<'_>,
+    slip_rates: &dyn Fn(&State<3>) -> [f64; 2],
+    shooting: &ShootingNodes,
+) -> Result<Profile> {
     /// Tolerance of the run.
     const ROUGH: f64 = 1e-7;
     let dimension = shooting.dimension();
     let known = matches!(dimension, 2 | 3);
     Error::dimension_unless(known, "a cycle of a slab", "2 or 3", dimension)?;
-    shooting.checked(dimension)?;
+    shooting.checked(field.dimension())?;
     let mut seen = Extent {
         top: (f64::NEG_INFINITY, [0.0; 2]),
         bottom: f64::INFINITY,
         integral: 0.0,
     };
-    let whole = slab.whole();
-    let field = if dimension == 3 {
-        AnyField::of::<3>(&*whole)
-    } else {
-        AnyField::new::<2>(slab.plane())
-    };
-    seen.go(&field, shooting, &mut Tracer::taylor(ROUGH)?)?;
+    seen.go(field, shooting, &mut Tracer::taylor(ROUGH)?)?;
     let (top, w) = seen.top;
     Ok(Profile {
         mean_stress: seen.integral / shooting.period(),
         stress_range: (seen.bottom, top),
         state: w.map(f64::exp),
-        slip_rate: whole.slip_rates(&State::<3>::new(top, w[0], w[1])),
+        slip_rate: slip_rates(&State::<3>::new(top, w[0], w[1])),
     })
 }
 

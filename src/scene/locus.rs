@@ -2,6 +2,7 @@
 
 use super::continuation::LocusOptions;
 use super::following::{self, Following, landings, number, range};
+use super::general::by_name;
 use super::system::System;
 use super::units::{Quantity, Units};
 use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits};
@@ -156,12 +157,28 @@ fn not_fixed(options: &LocusOptions) -> Result<()> {
     }
 }
 
+/// The options with what `range` and `at` say of V_H and K in the flags that are of these alone.
+fn by_flags(options: &LocusOptions) -> Result<LocusOptions> {
+    let names = ["driving", "stiffness"];
+    let [driving_range, stiffness_range] = by_name("range", &options.range, names)?;
+    let [at_driving, at_stiffness] = by_name("at", &options.at, names)?;
+    let range = |text: Option<&str>| text.map(|text| text.replacen(',', ":", 1));
+    let list = |text: Option<&str>| text.map(str::to_owned);
+    let mut options = options.clone();
+    options.driving_range = range(driving_range).or(options.driving_range);
+    options.stiffness_range = range(stiffness_range).or(options.stiffness_range);
+    options.at_driving = list(at_driving).or(options.at_driving);
+    options.at_stiffness = list(at_stiffness).or(options.at_stiffness);
+    Ok(options)
+}
+
 impl LocusPlan {
     /// Checks the options.
     ///
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LocusOptions) -> Result<Self> {
+        let options = &by_flags(options)?;
         let curve = CurveChoice::named(options.of.as_deref())?;
         not_fixed(options)?;
         let system = System::new(&options.model)?.alike("locus")?;

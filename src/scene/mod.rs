@@ -65,8 +65,8 @@ pub use explain::{Keeping, explain};
 pub use file::SceneFile;
 pub use following::Following;
 pub use general::{
-    Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, Subject,
-    TextSubject,
+    Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, SlabSubject,
+    Subject, TextSubject, plane, shown,
 };
 pub use instant::{Instant, run_columns};
 pub use law::{LawLandmarks, LawPlan, LawPoint};

@@ -5,7 +5,9 @@ use super::program::Program;
 use super::unequal::OfOne;
 use super::units::{Quantity, TimeUnit, Units};
 use crate::error::{Error, Result};
-use crate::friction::{AnyLaw, Law, Parameters, ScaledLaw, UnequalLaws, positive, steady_stress};
+use crate::friction::{
+    AnyLaw, InterfaceConstants, Law, Parameters, ScaledLaw, UnequalLaws, positive, steady_stress,
+};
 use crate::model::scales::Scales;
 use crate::model::{Loading, UnequalInterfaces};
 use serde_json::{Map, Value, json};
@@ -34,6 +36,8 @@ pub struct System {
     pub law: AnyLaw,
     /// The laws of two interfaces that differ, where they do.
     pub unequal: Option<UnequalLaws>,
+    /// The constants of each interface.
+    pub constants: [InterfaceConstants; 2],
     /// 1 or 2.
     pub interfaces: usize,
     /// V_H, where given.
@@ -101,12 +105,12 @@ impl System {
             (driving, stiffness),
             (healing_time, damping),
         );
+        let [_, _, _, _, _, length, stress] = own[0];
+        let constants = own.map(|[r, c, a, b, a_v, l, sigma]| {
+            InterfaceConstants::from([r / time, c, a, b, a_v, l / length, sigma / stress])
+        });
         let unequal = if differ {
             of_one.echo(&own, &mut echo);
-            let [_, _, _, _, _, length, stress] = own[0];
-            let constants = own.map(|[r, c, a, b, a_v, l, sigma]| {
-                [r / time, c, a, b, a_v, l / length, sigma / stress].into()
-            });
             Some(UnequalLaws::new(
                 &options.law,
                 constants,
@@ -125,6 +129,7 @@ impl System {
         Ok(System {
             law,
             unequal,
+            constants,
             interfaces: usize::from(options.interfaces),
             driving: inward(Quantity::SlipRate, "driving", driving)?,
             stiffness: inward(Quantity::Stiffness, "stiffness", stiffness)?,

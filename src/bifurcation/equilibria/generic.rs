@@ -9,9 +9,10 @@
 //! Limits: two sums of eigenvalues that vanish together, and several branches through one point, are not untangled.
 
 use super::bialternate::{bialternate, lyapunov};
+use super::generic_crossing::branch_point;
 use crate::bifurcation::Label;
 use crate::continuation::{
-    Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, ZeroProblem, follow,
+    Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, Stop, ZeroProblem, follow,
 };
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, place};
@@ -50,6 +51,8 @@ pub struct FoundEquilibrium {
     pub state: Vector,
     /// The varied parameter.
     pub parameter: f64,
+    /// It may be off by this; known of branch points.
+    pub uncertainty: Option<f64>,
     /// By real part, the largest first.
     pub eigenvalues: Vec<Complex<f64>>,
     /// `LP`, `BP`, `HB`, `UZ`, `EP`, where the point is one of these.
@@ -114,6 +117,16 @@ impl<'a> FieldEquilibria<'a> {
         self.field(p).jacobian(y)
     }
 
+    /// f.
+    pub(super) fn rates(&self, y: &Vector, p: f64) -> Vector {
+        self.field(p).f(y)
+    }
+
+    /// D2f along two directions.
+    pub(super) fn second(&self, y: &Vector, p: f64, (u, v): (&Vector, &Vector)) -> Vector {
+        self.field(p).second_derivative(y, u, v)
+    }
+
     fn eigenvalues(&self, y: &Vector, p: f64) -> Vec<Complex<f64>> {
         let all = self.jacobian(y, p).complex_eigenvalues();
         let mut all: Vec<_> = all.iter().copied().collect();
@@ -152,8 +165,18 @@ impl<'a> FieldEquilibria<'a> {
             family: self,
             dimension,
         };
-        let mut look = EquilibriumObserver { family: self, seen };
-        follow(&problem, &start, settings, &mut look)
+        let mut look = EquilibriumObserver {
+            family: self,
+            jumped: false,
+            seen,
+        };
+        let mut branch = follow(&problem, &start, settings, &mut look)?;
+        if look.jumped {
+            branch.stopped = Stop::Failed(
+                "another branch comes so near that steps can't keep to this one".into(),
+            );
+        }
+        Ok(branch)
     }
 
     /// The two ways that leave a branch point, on the branch that crosses the one it was found on.
@@ -191,7 +214,7 @@ impl<'a> FieldEquilibria<'a> {
     }
 
     /// The derivatives of f in (state, parameter).
-    fn extended(&self, y: &Vector, p: f64) -> Matrix {
+    pub(super) fn extended(&self, y: &Vector, p: f64) -> Matrix {
         let n = y.len();
         let mut all = self.jacobian(y, p).insert_column(n, 0.0);
         all.set_column(n, &self.in_parameter(y, p));
@@ -254,37 +277,68 @@ const LABELS: [Label; 3] = [Label::Lp, Label::Bp, Label::Hb];
 
 struct EquilibriumObserver<'a, 'b> {
     family: &'a FieldEquilibria<'b>,
+    /// Whether a step has come onto another branch.
+    jumped: bool,
     seen: &'a mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
 }
 
 impl EquilibriumObserver<'_, '_> {
     /// Whether the derivatives in state and parameter together lose a rank: at a branch point.
     fn crosses(&self, y: &Vector, p: f64) -> bool {
-        /// What is left of a singular value that is zero, against the largest.
-        const ZERO: f64 = 1e-7;
-        let values = self.family.extended(y, p).singular_values();
-        values.min() < ZERO * values.max()
+        /// What is left of a singular value that is zero, of rows of length 1.
+        const ZERO: f64 = 1e-5;
+        let mut rows = self.family.extended(y, p);
+        for mut row in rows.row_iter_mut() {
+            let length = row.norm();
+            if length > 0.0 {
+                row /= length;
+            }
+        }
+        rows.singular_values().min() < ZERO
+    }
+
+    /// Its sign changes at branch points, and where a step has come onto another branch.
+    fn side(&self, point: &CurvePoint) -> f64 {
+        let square = self.family.bordered(&point.u, point.lambda, &point.tangent);
+        square.determinant()
     }
 }
 
 impl CurveObserver for EquilibriumObserver<'_, '_> {
     fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
         let (y, p) = (&point.u, point.lambda);
-        let square = self.family.bordered(y, p, &point.tangent);
         /// Below this a component of the unit tangent is rounding: that of the difference in p.
         const SLOPE: f64 = 1e-12;
         Ok(vec![
             certain(point.lambda_slope(), SLOPE),
-            square.determinant(),
+            self.side(point),
             sums(&self.family.jacobian(y, p)),
         ])
     }
 
+    fn finest(&self) -> f64 {
+        1e-5
+    }
+
+    /// Short steps tell a branch that crosses from one that comes near.
+    fn too_far(&self, from: &CurvePoint, to: &CurvePoint) -> bool {
+        self.side(from) * self.side(to) < 0.0
+    }
+
     fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         let (y, p) = (&point.u, point.lambda);
-        // Where another branch crosses, a turn of this one is no fold.
-        if mark == PointKind::Zero(0) && self.crosses(y, p) {
-            return ControlFlow::Continue(());
+        let mut crossing = None;
+        match mark {
+            // Where another branch crosses, a turn of this one is no fold.
+            PointKind::Zero(0) if self.crosses(y, p) => return ControlFlow::Continue(()),
+            PointKind::Zero(1) => match branch_point(self.family, y, p) {
+                Some(sharp) => crossing = Some(sharp),
+                None => {
+                    self.jumped = true;
+                    return ControlFlow::Break(());
+                }
+            },
+            _ => {}
         }
         let label = match mark {
             PointKind::Step => None,
@@ -292,9 +346,13 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
             PointKind::Wanted(_) => Some(Label::Uz),
             PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
         };
+        let (y, p) = crossing
+            .as_ref()
+            .map_or((y, p), |sharp| (&sharp.state, sharp.parameter));
         let mut found = FoundEquilibrium {
             state: y.clone(),
             parameter: p,
+            uncertainty: crossing.as_ref().map(|sharp| sharp.uncertainty),
             eigenvalues: self.family.eigenvalues(y, p),
             label,
             period: None,

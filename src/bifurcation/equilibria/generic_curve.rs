@@ -431,6 +431,8 @@ impl Observer<'_, '_> {
     fn off(&self, i: usize, point: &CurvePoint) -> Option<[f64; 2]> {
         const BESIDE: f64 = 1e-5;
         const TRIED: usize = 4;
+        /// To which points of a curve are corrected.
+        const TOLERANCE: f64 = 1e-13;
         let n = point.u.len() - 1;
         let u = point.u.push(point.lambda);
         let of = |u: &Vector| self.functions(u, &point.tangent).ok().map(|all| all[i]);
@@ -448,7 +450,10 @@ impl Observer<'_, '_> {
         let along = noise / slope.abs();
         let across = (0..2).filter_map(|k| self.problem.budget(&u, n + k));
         let across = across.min_by(|a, b| a.amax().total_cmp(&b.amax()))?;
-        let off = [0, 1].map(|k| across[n + k] + along * point.tangent[n + k].abs());
+        let off = [0, 1].map(|k| {
+            let corrected = TOLERANCE * (1.0 + u[n + k].abs());
+            across[n + k] + along * point.tangent[n + k].abs() + corrected
+        });
         off.iter().all(|x| x.is_finite()).then_some(off)
     }
 }

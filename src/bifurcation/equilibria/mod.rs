@@ -10,6 +10,7 @@ mod crossing;
 mod cubic;
 mod curves;
 pub mod generic;
+mod generic_crossing;
 pub mod generic_curve;
 pub(crate) mod hopf;
 mod hopf_curve;

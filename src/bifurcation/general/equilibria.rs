@@ -12,7 +12,9 @@ use std::f64::consts::TAU;
 use std::ops::ControlFlow::{self, Continue};
 
 /// Longest steps, as parts of the range and of 1 + |state|.
-const LONGEST: f64 = 0.05;
+const LONGEST: f64 = 0.02;
+/// Parts of the range at which branches are looked for that do not come to its ends.
+const INSIDE: [f64; 7] = [0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875];
 /// The first step onto a branch that crosses, in units of 1 + |state|.
 const ASIDE: f64 = 1e-3;
 /// Points nearer to each other than this, in units of 1 + |x|, are one.
@@ -67,6 +69,14 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 }
             }
         }
+        for begin in self.inside_values() {
+            for state in (self.branch.system.equilibria)([begin, held])? {
+                if !self.is_known(&state, begin) && self.both_ways(&state, begin, seen)?.is_break()
+                {
+                    return Ok(());
+                }
+            }
+        }
         // The list grows as it is gone through.
         let mut i = 0;
         while i < self.crossings.len() {
@@ -111,16 +121,68 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         self.ends.iter().any(|end| near(end, &here))
     }
 
+    /// The values inside the range at which branches are looked for.
+    fn inside_values(&self) -> [f64; INSIDE.len()] {
+        let (from, to) = self.branch.range;
+        INSIDE.map(|part| from + (to - from) * part)
+    }
+
+    /// The branch through an equilibrium inside the range, from its end on.
+    fn both_ways(
+        &mut self,
+        state: &Vector,
+        begin: f64,
+        seen: PointObserver<'_>,
+    ) -> Result<ControlFlow<()>> {
+        let mut back = Vec::new();
+        let number = self.count;
+        let onward = Onward::along(state.clone(), begin, false);
+        let closed = self.half(&onward, number, &mut |point, special| {
+            back.push((point, special));
+            Continue(())
+        })?;
+        self.count += 1;
+        let beginning = back.first().cloned();
+        for (point, special) in back.into_iter().rev() {
+            if seen(point, special).is_break() {
+                return Ok(ControlFlow::Break(()));
+            }
+        }
+        if closed.stopped == Some(Stop::Closed) {
+            return Ok(Continue(()));
+        }
+        let onward = Onward::along(state.clone(), begin, true);
+        let mut first = beginning.is_some();
+        let forth = self.half(&onward, number, &mut |point, special| {
+            // Both ways begin with the same point.
+            if std::mem::replace(&mut first, false) {
+                return Continue(());
+            }
+            seen(point, special)
+        })?;
+        Ok(forth.told)
+    }
+
     /// One branch, both ways round from a branch point being two.
     fn follow(&mut self, onward: &Onward, seen: PointObserver<'_>) -> Result<ControlFlow<()>> {
         let number = self.count;
-        self.count += 1;
+        let half = self.half(onward, number, seen)?;
+        // What was thought to be an equilibrium may be none.
+        self.count += usize::from(half.stopped.is_some());
+        Ok(half.told)
+    }
+
+    /// One way from an equilibrium.
+    fn half(&mut self, onward: &Onward, number: usize, seen: PointObserver<'_>) -> Result<Half> {
         let GeneralBranch { range, at, .. } = self.branch;
         let (low, high) = (range.0.min(range.1), range.0.max(range.1));
+        let inside = self.inside_values();
+        let more = inside.iter().filter(|value| !at.contains(value));
+        let wanted: Vec<f64> = at.iter().chain(more).copied().collect();
         let size = (high - low) + 1.0 + onward.state.amax();
         let longest = LONGEST * size * self.branch.following.step;
         let settings = Settings {
-            wanted: at.clone(),
+            wanted,
             max_points: self.branch.following.max_points + 1,
             ..Settings::new((low, high), longest)?
         };
@@ -131,8 +193,15 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             let here = found.state.push(found.parameter);
             // From a branch point a branch begins without a label of its own.
             let first = !std::mem::replace(&mut begun, true);
-            let label = found.label.filter(|_| !(first && onward.across));
-            if label == Some(Label::Ep) {
+            let begins = first && (onward.across || inside.contains(&onward.parameter));
+            let asked = |label: &Label| match label {
+                Label::Uz => at.contains(&found.parameter),
+                // A closed branch ends where it began.
+                Label::Ep => [low, high].contains(&found.parameter),
+                _ => true,
+            };
+            let label = found.label.filter(|label| !begins && asked(label));
+            if matches!(found.label, Some(Label::Ep | Label::Uz)) {
                 ends.push(here);
             }
             if label == Some(Label::Bp) {
@@ -148,8 +217,10 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             Ok(followed) => followed,
             // What was thought to be an equilibrium is none.
             Err(_) if onward.across => {
-                self.count -= 1;
-                return Ok(Continue(()));
+                return Ok(Half {
+                    told: Continue(()),
+                    stopped: None,
+                });
             }
             Err(error) => return Err(error),
         };
@@ -157,7 +228,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         for found in crossings {
             self.cross(found);
         }
-        match followed.stopped {
+        match &followed.stopped {
             Stop::Observer | Stop::RangeEnd | Stop::Closed => {}
             other => {
                 if let Some(mut point) = last {
@@ -167,7 +238,10 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 }
             }
         }
-        Ok(told)
+        Ok(Half {
+            told,
+            stopped: Some(followed.stopped),
+        })
     }
 
     /// One more branch passes a branch point.
@@ -199,6 +273,10 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             Some(Label::Lp) => EquilibriumBifurcation::Fold,
             Some(Label::Hb) => EquilibriumBifurcation::Hopf,
             Some(Label::Uz | Label::Ep) => return rough.placed(system.family, [0.0; 2]),
+            Some(Label::Bp) => {
+                let off = found.uncertainty.unwrap_or(f64::INFINITY);
+                return rough.placed(system.family, [off, 0.0]);
+            }
             _ => return rough.placed(system.family, [f64::INFINITY, 0.0]),
         };
         let curve = EquilibriumCurve {
@@ -222,6 +300,14 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             _ => rough.placed(system.family, [f64::INFINITY, 0.0]),
         }
     }
+}
+
+/// What one way along a branch came to.
+struct Half {
+    /// Whether to go on.
+    told: ControlFlow<()>,
+    /// Why it ended; `None` where it did not begin.
+    stopped: Option<Stop>,
 }
 
 /// Whether two points of (state, coordinate) are one.

@@ -1,6 +1,6 @@
 //! Branches along any parameter, from options.
 
-use super::following::{Free, general, numbers, without_crosscheck};
+use super::following::{Free, general, numbers, shown, without_crosscheck};
 use super::{GeneralRow, RowKind, Subject};
 use crate::bifurcation::general::{
     GeneralBranch, GeneralEvent, GeneralPoint, GeneralSystem, equilibria, orbits,
@@ -46,15 +46,20 @@ impl<'s> GeneralBranchPlan<'s> {
     pub fn new(options: &BranchOptions, subject: &'s dyn Subject) -> Result<Self> {
         let of = BranchKind::named(options.of.as_deref())?;
         let known = subject.parameters();
-        let Some(along) = options.along.as_deref() else {
-            let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
-            return Err(Error::Input(format!(
-                "say which parameter varies: `along` one of {}",
-                names.join(", ")
-            )));
+        let along = match options.along.as_deref() {
+            Some(along) => along,
+            None if known.iter().any(|(name, _)| *name == "driving") => "driving",
+            None => {
+                let names: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+                return Err(Error::Input(format!(
+                    "say which parameter varies: `along` one of {}",
+                    names.join(", ")
+                )));
+            }
         };
-        let end = |name: &str, given: Option<f64>| {
-            given.ok_or_else(|| {
+        let default = subject.default_range(along);
+        let end = |name: &str, given: Option<f64>, default: Option<f64>| {
+            given.or(default).ok_or_else(|| {
                 Error::Input(format!(
                     "`{name}` is missing, and has no default along {along}"
                 ))
@@ -65,7 +70,10 @@ impl<'s> GeneralBranchPlan<'s> {
         // A name that is none is told of first.
         let range = match (options.from, options.to) {
             _ if !known.iter().any(|(name, _)| *name == along) => (0.0, 1.0),
-            (from, to) => (end("from", from)?, end("to", to)?),
+            (from, to) => (
+                end("from", from, default.map(|range| range.0))?,
+                end("to", to, default.map(|range| range.1))?,
+            ),
         };
         let free = Free::new(subject, ("along", along), range, &at)?;
         let orbits = of == BranchKind::Orbits;
@@ -210,6 +218,7 @@ pub(super) fn found(
     free: &[&Free],
     event: GeneralEvent,
 ) -> Result<GeneralFound> {
+    let names = shown(subject, free);
     let exactly = |mut point: GeneralPoint| {
         for (i, free) in free.iter().enumerate() {
             // As it was given, and not the exponential of its logarithm.
@@ -217,7 +226,7 @@ pub(super) fn found(
                 point.parameters[i] = Uncertain::new(given, 0.0);
             }
         }
-        GeneralRow::of(subject, family, kind, point)
+        GeneralRow::of(subject, family, (kind, &names), point)
     };
     Ok(match event {
         GeneralEvent::Row(point) => GeneralFound::Row(exactly(point)?),

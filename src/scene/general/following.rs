@@ -60,7 +60,7 @@ impl Free {
         Ok(Free {
             name,
             quantity,
-            coordinate: Coordinate::of(&[range.0, range.1]),
+            coordinate: subject.coordinate(name, [range.0, range.1])?,
             range,
             at: at.iter().map(|&x| inward(x)).collect(),
         })
@@ -83,6 +83,17 @@ impl Free {
         let mut all = ends.into_iter().chain(self.at.iter().copied());
         all.find(|&x| self.coordinate.inward(x) == coordinate)
     }
+}
+
+/// The parameters that rows show: those that vary, and those that are always told.
+pub fn shown(subject: &dyn Subject, free: &[&Free]) -> Vec<(&'static str, Quantity)> {
+    let mut shown: Vec<_> = free.iter().map(|free| (free.name, free.quantity)).collect();
+    for one in subject.always_told() {
+        if !shown.contains(&one) {
+            shown.push(one);
+        }
+    }
+    shown
 }
 
 /// Numbers, comma-separated.

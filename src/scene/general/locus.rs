@@ -47,7 +47,11 @@ pub fn plane(text: &str) -> Result<[&str; 2]> {
 }
 
 /// What options of the form NAME=... say of each of the two names.
-fn by_name<'o>(option: &str, all: &'o [String], names: [&str; 2]) -> Result<[Option<&'o str>; 2]> {
+pub(in crate::scene) fn by_name<'o>(
+    option: &str,
+    all: &'o [String],
+    names: [&str; 2],
+) -> Result<[Option<&'o str>; 2]> {
     let mut of = [None; 2];
     for text in all {
         let pair = text.split_once('=');
@@ -80,12 +84,37 @@ impl<'s> GeneralLocusPlan<'s> {
                 )));
             }
         };
-        let text = options.plane.as_deref().ok_or_else(|| {
+        let slab = subject
+            .parameters()
+            .iter()
+            .any(|(name, _)| *name == "driving");
+        let default = slab.then_some("driving,stiffness");
+        let text = options.plane.as_deref().or(default).ok_or_else(|| {
             Error::Input("say which two parameters vary: `in` NAME1,NAME2".into())
         })?;
         let names = plane(text)?;
-        let ranges = by_name("range", &options.range, names)?;
-        let at = by_name("at", &options.at, names)?;
+        let mut ranges = by_name("range", &options.range, names)?;
+        let mut at = by_name("at", &options.at, names)?;
+        // The old flags are shorthands; their ranges have a colon.
+        let shorthands = [
+            ("driving", &options.driving_range, &options.at_driving),
+            ("stiffness", &options.stiffness_range, &options.at_stiffness),
+        ];
+        for (name, range, values) in shorthands {
+            let place = names.iter().position(|known| *known == name);
+            match (place, range.is_some() || values.is_some()) {
+                (Some(i), _) => {
+                    ranges[i] = ranges[i].or(range.as_deref());
+                    at[i] = at[i].or(values.as_deref());
+                }
+                (None, true) => {
+                    return Err(Error::Input(format!(
+                        "`{name}_range` and `at_{name}` are of {name}, which does not vary in the plane of {text}"
+                    )));
+                }
+                (None, false) => {}
+            }
+        }
         let free = |i: usize| {
             let known = subject
                 .parameters()
@@ -94,13 +123,16 @@ impl<'s> GeneralLocusPlan<'s> {
             let range = match ranges[i] {
                 // A name that is none is told of first.
                 _ if !known => (0.0, 1.0),
+                None if subject.default_range(names[i]).is_some() => {
+                    subject.default_range(names[i]).unwrap_or_default()
+                }
                 None => {
                     return Err(Error::Input(format!(
                         "`range` {}=A,B is missing, and has no default",
                         names[i]
                     )));
                 }
-                Some(text) => match numbers("range", text)?[..] {
+                Some(text) => match numbers("range", &text.replace(':', ","))?[..] {
                     [a, b] => (a.min(b), a.max(b)),
                     _ => {
                         return Err(Error::Input(format!(

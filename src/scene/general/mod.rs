@@ -4,12 +4,15 @@ mod branch;
 mod following;
 mod locus;
 mod row;
+mod slab;
 mod text;
 
 pub use branch::{GeneralBranchPlan, GeneralFound};
-pub use following::Free;
-pub use locus::GeneralLocusPlan;
+pub use following::{Free, shown};
+pub(super) use locus::by_name;
+pub use locus::{GeneralLocusPlan, plane};
 pub use row::{GeneralRow, RowKind};
+pub use slab::SlabSubject;
 pub use text::TextSubject;
 
 use super::system::Described;
@@ -51,6 +54,18 @@ pub trait Subject: Described + Sync {
     /// # Errors
     /// As of [`crate::orbit::find_from`].
     fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>>;
+
+    /// The coordinate in which a parameter is followed between these values.
+    ///
+    /// # Errors
+    /// [`crate::Error::Parameter`] for values outside its domain.
+    fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate>;
+
+    /// The range of a parameter where none is given, in the user's units; `None` where one must be given.
+    fn default_range(&self, name: &str) -> Option<(f64, f64)>;
+
+    /// The parameters that every row tells, held or not.
+    fn always_told(&self) -> Vec<(&'static str, Quantity)>;
 
     /// What rows tell of a state or an orbit: names and quantities.
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)>;

@@ -24,7 +24,7 @@ pub struct RowKind {
 pub struct GeneralRow {
     /// The number of the branch or curve.
     pub number: usize,
-    /// The free parameters: one of a branch, two of a curve.
+    /// The free parameters, one of a branch, two of a curve, and those that are told though they are held.
     pub parameters: Vec<Uncertain>,
     /// What the system tells of the state or the orbit.
     pub numbers: Vec<f64>,
@@ -56,7 +56,7 @@ impl GeneralRow {
     pub fn of(
         subject: &dyn Subject,
         family: &dyn ParametrisedField,
-        kind: RowKind,
+        (kind, names): (RowKind, &[(&'static str, Quantity)]),
         point: GeneralPoint,
     ) -> Result<Self> {
         let numbers = subject.told(family, &point)?;
@@ -69,9 +69,13 @@ impl GeneralRow {
             } => log_multipliers.clone(),
         };
         let free = if kind.curve { 2 } else { 1 };
+        let mut parameters = point.parameters[..free].to_vec();
+        for (name, _) in &names[free..] {
+            parameters.push(Uncertain::new(subject.value(name)?, 0.0));
+        }
         Ok(GeneralRow {
             number: point.number,
-            parameters: point.parameters[..free].to_vec(),
+            parameters,
             numbers,
             period: point.period,
             exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),

@@ -151,6 +151,18 @@ impl Subject for TextSubject {
         }))
     }
 
+    fn coordinate(&self, _: &str, ends: [f64; 2]) -> Result<Coordinate> {
+        Ok(Coordinate::of(&ends))
+    }
+
+    fn default_range(&self, _: &str) -> Option<(f64, f64)> {
+        None
+    }
+
+    fn always_told(&self) -> Vec<(&'static str, Quantity)> {
+        Vec::new()
+    }
+
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {
         let states = self.model.system.states().iter();
         let named = |name: String| (name, Quantity::Number);
