@@ -27,8 +27,17 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     let system = System::new(&options.model)?;
     if system.unequal.is_some() || !["driving", "stiffness"].contains(&along) {
         let subject = SlabSubject::new(system, &[along])?;
+        let search = &options.search;
+        let subject = match options.of.as_deref() {
+            Some("orbits") => subject.beginning(search.start.as_deref(), search.period_guess)?,
+            _ => {
+                search.unused()?;
+                subject
+            }
+        };
         return general::branch(options, &subject, words);
     }
+    options.search.unused()?;
     let plan = BranchPlan::new(options)?;
     let units = plan.system.units();
     let again = |one: &Special| {

@@ -29,8 +29,11 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     let loading = names.contains(&"driving") && names.contains(&"stiffness");
     if system.unequal.is_some() || !loading {
         let subject = SlabSubject::new(system, &names)?;
+        let search = &options.search;
+        let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
         return general::locus(options, &subject, words);
     }
+    options.search.unused()?;
     let plan = LocusPlan::new(options)?;
     let units = plan.system.units();
     let again = |one: &Special| {

@@ -1,6 +1,7 @@
 //! Continuation points and tangent vectors: an orbit with both parameters, and how its nodes, durations and parameters change.
 
 use super::shooting_nodes::ShootingNodes;
+use super::solve::Orbit;
 use crate::field::Vector;
 
 /// A displacement of an orbit, or a direction in which it can be displaced.
@@ -63,6 +64,19 @@ impl TangentVector {
     pub(crate) fn normalised(self) -> Option<Self> {
         let length = self.dot(&self).sqrt();
         (length.is_finite() && length > 0.0).then(|| self.scaled(1.0 / length))
+    }
+}
+
+impl Orbit {
+    /// Where a continuation of this orbit begins; the coordinates of the parameters are yet to be set.
+    pub fn beginning(self) -> ContinuationPoint {
+        ContinuationPoint {
+            shooting: ShootingNodes {
+                nodes: self.nodes.into_iter().map(Vector::from_vec).collect(),
+                durations: self.durations,
+            },
+            at: [0.0; 2],
+        }
     }
 }
 

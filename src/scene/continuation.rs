@@ -6,6 +6,7 @@ use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
 use crate::bifurcation::MAX_POINTS;
+use crate::error::{Error, Result};
 use crate::integrate::Choice;
 use std::path::PathBuf;
 
@@ -28,7 +29,7 @@ pub struct ContinuationOptions {
     pub crosscheck: Option<String>,
 }
 
-/// Where branches of a system from a file begin.
+/// Where branches begin, but for those of equal interfaces in V_H and K, which all are found.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchOptions {
@@ -41,18 +42,26 @@ pub struct SearchOptions {
         allow_hyphen_values = true
     )]
     pub within: Option<String>,
-    /// With --system: they begin near these values of all states, in their order; those of orbits at or near an orbit at --from
-    /// [default: the file's table start]
-    #[arg(
-        long,
-        value_name = "START",
-        requires = "system",
-        allow_hyphen_values = true
-    )]
+    /// Branches of orbits begin at or near this point of an orbit, at --from: TAU,PSI1,PSI2, with --system the values of all states
+    /// in their order. Branches of equilibria of a --system begin near it [default: the file's table start]
+    #[arg(long, value_name = "START", allow_hyphen_values = true)]
     pub start: Option<String>,
     /// With --start of an orbit: its period, roughly
     #[arg(long, value_name = "T", value_parser = number, requires = "start", allow_negative_numbers = true)]
     pub period_guess: Option<f64>,
+}
+
+impl SearchOptions {
+    /// # Errors
+    /// [`Error::Input`] where a start is given: all branches are found without one.
+    pub fn unused(&self) -> Result<()> {
+        match self.start {
+            None => Ok(()),
+            Some(_) => Err(Error::Input(
+                "`start` has no meaning here: all branches are found from equilibria and Hopf points".into(),
+            )),
+        }
+    }
 }
 
 /// `branch`: equilibria or periodic orbits as a parameter varies.

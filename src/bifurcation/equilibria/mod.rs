@@ -12,6 +12,8 @@ mod curves;
 pub mod generic;
 mod generic_crossing;
 pub mod generic_curve;
+mod generic_curve_observer;
+mod generic_curve_problem;
 pub(crate) mod hopf;
 mod hopf_curve;
 pub(crate) mod hopf_special;

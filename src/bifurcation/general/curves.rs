@@ -1,4 +1,4 @@
-//! Curves of folds and of Hopf points in the plane of two parameters.
+//! Curves of folds, of Hopf points and of pitchforks in the plane of two parameters.
 
 use super::equilibria::{EquilibriumBranches, criticality};
 use super::{
@@ -88,6 +88,7 @@ impl EquilibriumCurves<'_, '_> {
         let wanted = match self.kind {
             EquilibriumBifurcation::Fold => Label::Lp,
             EquilibriumBifurcation::Hopf => Label::Hb,
+            EquilibriumBifurcation::Pitchfork => Label::Bp,
         };
         let branch = along_first(self.curve, held);
         let mut found = Vec::new();

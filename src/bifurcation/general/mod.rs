@@ -32,6 +32,8 @@ pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sy
 pub struct GeneralSystem<'a> {
     /// Its fields.
     pub family: &'a dyn ParametrisedField,
+    /// Of two equal parts the family of states in which they move alike, in the same coordinates.
+    pub alike: Option<&'a dyn ParametrisedField>,
     /// The names of the parameters, by which fields know their derivatives.
     pub names: [&'a str; 2],
     /// Where branches of equilibria begin.

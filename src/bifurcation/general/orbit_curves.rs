@@ -4,14 +4,14 @@ use super::curves::{along_first, scanned};
 use super::orbits::{classified, new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
 use super::{GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
 use crate::bifurcation::Label;
-use crate::bifurcation::orbits::LONGEST;
 use crate::bifurcation::orbits::normal_form::Form;
+use crate::bifurcation::orbits::{LONGEST, middle};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::{
-    Condition, ContinuationPoint, DirectedPoint, Goal, Palc, PalcSettings, Regular, TangentVector,
-    TestFunction, WatchedFunction,
+    Condition, ContinuationPoint, DirectedPoint, Goal, Palc, PalcSettings, ParametrisedField,
+    Regular, TangentVector, TestFunction, WatchedFunction,
 };
 use std::f64::consts::PI;
 use std::ops::ControlFlow::{self, Break, Continue};
@@ -37,7 +37,6 @@ pub fn orbit_curves(
     test_function: TestFunction,
     seen: GeneralObserver<'_>,
 ) -> Result<()> {
-    test_function.checked(curve.system.family.dimension())?;
     let mut teller = Teller::new(seen, &curve.following);
     let mut curves = OrbitCurves {
         curve,
@@ -45,6 +44,7 @@ pub fn orbit_curves(
         count: 0,
         passes: Vec::new(),
     };
+    test_function.checked(curves.family().dimension())?;
     let given = curve.orbit.iter().map(|orbit| orbit.at[1]);
     let scan: Vec<f64> = given.chain(scanned(curve)).collect();
     for held in scan {
@@ -72,7 +72,16 @@ fn pass(site: &ContinuationPoint) -> [f64; 3] {
     [site.at[0], site.at[1], site.shooting.period().ln()]
 }
 
-impl OrbitCurves<'_, '_> {
+impl<'a> OrbitCurves<'_, 'a> {
+    /// The fields in which the curve is followed: of pitchforks those of states in which both parts move alike.
+    fn family(&self) -> &'a dyn ParametrisedField {
+        let system = self.curve.system;
+        let alike = system
+            .alike
+            .filter(|_| self.test_function == TestFunction::Transverse);
+        alike.unwrap_or(system.family)
+    }
+
     /// The bifurcations along the first parameter at a value of the second.
     fn seeds(&self, held: f64) -> Result<Vec<ContinuationPoint>> {
         let wanted = match self.test_function {
@@ -90,7 +99,11 @@ impl OrbitCurves<'_, '_> {
                 && let GeneralSolution::Orbit { shooting, .. } = point.solution
             {
                 let at = point.at;
-                found.push(ContinuationPoint { shooting, at });
+                let site = ContinuationPoint { shooting, at };
+                found.push(match self.test_function {
+                    TestFunction::Transverse => middle(&site),
+                    _ => site,
+                });
             }
             Continue(())
         })?;
@@ -112,7 +125,7 @@ impl OrbitCurves<'_, '_> {
         self.passes.push(pass(&seed));
         let step = self.curve.following.step;
         let settings = PalcSettings::locus(self.test_function, LONGEST * step);
-        let mut corrector = new_corrector(self.curve.system.family)?;
+        let mut corrector = new_corrector(self.family())?;
         let held = settings.and(Condition::Parameter(1, seed.at[1]));
         let Ok(closed) = corrector.correct(seed, &settings.free, &held, Goal::STEP) else {
             return Ok(Continue(()));
@@ -148,7 +161,7 @@ impl OrbitCurves<'_, '_> {
 
     fn watches(&self) -> Vec<WatchedFunction> {
         let mut watches = Vec::new();
-        let dimension = self.curve.system.family.dimension();
+        let dimension = self.family().dimension();
         match self.test_function {
             TestFunction::Torus => watches.extend(
                 RESONANCES.map(|(_, sum)| WatchedFunction::TestFunction(TestFunction::Trace(sum))),
@@ -177,7 +190,7 @@ impl OrbitCurves<'_, '_> {
         way: f64,
         seen: &mut dyn FnMut(GeneralPoint, bool) -> ControlFlow<()>,
     ) -> Result<()> {
-        let mut corrector = new_corrector(self.curve.system.family)?;
+        let mut corrector = new_corrector(self.family())?;
         let direction = direction.clone().scaled(way);
         let palc = Palc::from(
             &mut corrector,
@@ -253,7 +266,7 @@ impl OrbitCurves<'_, '_> {
             WatchedFunction::Turn(_) => return Continue(()),
         };
         let meets = [WatchedFunction::TestFunction(self.test_function), watch];
-        let family = self.curve.system.family;
+        let family = self.family();
         let settings = &palc.curve.settings;
         let (point, orbit) = special_orbit(family, (number, label), near, (&settings.free, &meets));
         let orbit = orbit.as_ref().unwrap_or(near);
@@ -267,7 +280,7 @@ impl OrbitCurves<'_, '_> {
         const LEFT: f64 = 0.05;
         let off = LEFT * orbit.residual + 100.0 * crate::bifurcation::orbits::ROUGH;
         let point = self.angled(orbit_point(number, orbit, label), orbit);
-        let point = point.placed(self.curve.system.family, [off; 2]);
+        let point = point.placed(self.family(), [off; 2]);
         let period = orbit.site.shooting.period();
         GeneralPoint {
             period: Some(Uncertain::new(period, f64::INFINITY)),
@@ -290,6 +303,6 @@ impl OrbitCurves<'_, '_> {
             TestFunction::Torus => Form::Torus,
             _ => return point,
         };
-        classified(point, self.curve.system.family, &orbit.site, form)
+        classified(point, self.family(), &orbit.site, form)
     }
 }

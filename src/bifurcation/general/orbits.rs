@@ -5,9 +5,10 @@ use super::hopf::GeneralHopf;
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
-use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, refined};
+use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, embedded, middle, refined};
 use crate::continuation::Met;
 use crate::error::Result;
+use crate::field::Vector;
 use crate::number::Uncertain;
 use crate::orbit::{
     Condition, ContinuationPoint, Corrector, DirectedPoint, Goal, Palc, PalcSettings,
@@ -359,6 +360,32 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         found.is_some()
     }
 
+    /// A pitchfork, where the branch's own condition has no simple zero: in the states in which two equal parts move alike, where
+    /// there are such.
+    fn pitchfork(&self, near: &Regular) -> GeneralPoint {
+        /// Parts of an orbit that differ by less move alike.
+        const ALIKE: f64 = 1e-6;
+        let rough = self.set.row(self.number, near, Some(Label::Pf));
+        let system = self.set.branch.system;
+        let apart = |x: &Vector| (x[x.len() - 2] - x[x.len() - 1]).abs();
+        let nodes = near.site.shooting.nodes.iter();
+        let Some(family) = system.alike.filter(|_| nodes.map(apart).all(|x| x < ALIKE)) else {
+            return rough;
+        };
+        let across = [WatchedFunction::TestFunction(TestFunction::Transverse)];
+        let Some(sharp) = refined(family, &middle(&near.site), &[FREE], &across) else {
+            return rough;
+        };
+        let site = embedded(&sharp.orbit.site);
+        let point = GeneralPoint {
+            at: site.at,
+            parameters: sharp.at,
+            period: Some(sharp.period),
+            ..rough
+        };
+        classified(point, system.family, &site, Form::Pitchfork)
+    }
+
     /// Something that is watched is zero here.
     fn zero(
         &mut self,
@@ -396,8 +423,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let family = branch.system.family;
         let meets = (&palc.curve.settings.free[..], &[watch][..]);
         let (mut point, orbit) = match label {
-            // There the condition has no simple zero.
-            Label::Pf => (self.set.row(self.number, near, Some(label)), None),
+            Label::Pf => (self.pitchfork(near), None),
             _ => special_orbit(family, (self.number, label), near, meets),
         };
         let form = match label {

@@ -111,7 +111,7 @@ fn asymmetry(site: &ContinuationPoint) -> f64 {
 }
 
 /// The symmetric orbit in the middle of one in (tau, ln psi_1, ln psi_2).
-pub(super) fn middle(site: &ContinuationPoint) -> ContinuationPoint {
+pub(in crate::bifurcation) fn middle(site: &ContinuationPoint) -> ContinuationPoint {
     let nodes = site.shooting.nodes.iter();
     let node = |x: &Vector| {
         let state = [x[0], 0.5 * (x[1] + x[x.len() - 1])];
@@ -121,7 +121,7 @@ pub(super) fn middle(site: &ContinuationPoint) -> ContinuationPoint {
 }
 
 /// A symmetric orbit among all.
-pub(super) fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
+pub(in crate::bifurcation) fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
     let nodes = site.shooting.nodes.iter();
     let node = |x: &Vector| Vector::from_column_slice(&[x[0], x[1], x[1]]);
     site.with_nodes(nodes.map(node).collect())

@@ -17,6 +17,7 @@ mod vertical;
 
 pub use branch::branch;
 pub(super) use branch::{ARC, LONGEST, ROUGH, WORK};
+pub(super) use chart::{embedded, middle};
 pub use crosscheck::crosscheck;
 pub use locus::{loci, locus};
 pub use refine::SpecialOrbit;

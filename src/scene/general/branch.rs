@@ -144,6 +144,7 @@ impl<'s> GeneralBranchPlan<'s> {
         let name = self.free.name;
         let coordinates = [self.free.coordinate, Coordinate::Logarithm];
         let family = self.subject.family(&[name], coordinates)?;
+        let alike = self.subject.alike(&[name]);
         let equilibria_at = |at: [f64; 2]| {
             let value = family.parameters(at)[0];
             self.subject
@@ -152,6 +153,7 @@ impl<'s> GeneralBranchPlan<'s> {
         let mut branch = GeneralBranch {
             system: GeneralSystem {
                 family: &*family,
+                alike: alike.as_deref(),
                 names: [name; 2],
                 equilibria: &equilibria_at,
             },

@@ -74,7 +74,13 @@ impl<'s> GeneralLocusPlan<'s> {
         let choice = CurveChoice::named(options.of.as_deref())?;
         let bifurcation = match choice.name {
             "saddle-node" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Fold),
+            "pitchfork" if subject.has_equal_parts() => {
+                GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Pitchfork)
+            }
             "hopf" => GeneralBifurcation::Equilibrium(EquilibriumBifurcation::Hopf),
+            "orbit-pitchfork" if subject.has_equal_parts() => {
+                GeneralBifurcation::Orbit(TestFunction::Transverse)
+            }
             "orbit-saddle-node" => GeneralBifurcation::Orbit(TestFunction::Fold),
             "period-doubling" => GeneralBifurcation::Orbit(TestFunction::Doubling),
             "torus" => GeneralBifurcation::Orbit(TestFunction::Torus),
@@ -214,6 +220,7 @@ impl<'s> GeneralLocusPlan<'s> {
         let names = [self.free[0].name, self.free[1].name];
         let coordinates = self.free.each_ref().map(|free| free.coordinate);
         let family = self.subject.family(&names, coordinates)?;
+        let alike = self.subject.alike(&names);
         let equilibria = |at: [f64; 2]| {
             let values = family.parameters(at);
             let value = |i: usize| self.free[i].asked(at[i]).unwrap_or(values[i]);
@@ -236,6 +243,7 @@ impl<'s> GeneralLocusPlan<'s> {
         let curve = GeneralCurve {
             system: GeneralSystem {
                 family: &*family,
+                alike: alike.as_deref(),
                 names,
                 equilibria: &equilibria,
             },

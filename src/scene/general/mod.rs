@@ -43,6 +43,11 @@ pub trait Subject: Described + Sync {
         coordinates: [Coordinate; 2],
     ) -> Result<Box<dyn ParametrisedField + 's>>;
 
+    /// Of equal parts the same for states in which they move alike, where there is such a family over these parameters.
+    fn alike(&self, _names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
+        None
+    }
+
     /// The equilibria that are known at these values of parameters, the others being held.
     ///
     /// # Errors
@@ -60,6 +65,11 @@ pub trait Subject: Described + Sync {
     /// # Errors
     /// [`crate::Error::Parameter`] for values outside its domain.
     fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate>;
+
+    /// Whether it is of three variables, the last two of equal parts: then it has pitchforks.
+    fn has_equal_parts(&self) -> bool {
+        false
+    }
 
     /// The range of a parameter where none is given, in the user's units; `None` where one must be given.
     fn default_range(&self, name: &str) -> Option<(f64, f64)>;

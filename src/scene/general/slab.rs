@@ -2,16 +2,18 @@
 
 use super::{RowKind, Subject};
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
-use crate::equilibrium::unequal_steady_states;
+use crate::equilibrium::{Symmetry, unequal_steady_states};
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Parametrised, State, Vector};
-use crate::friction::{Law, UnequalLaws, positive};
-use crate::integrate::AnyField;
+use crate::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
+use crate::integrate::{AnyField, Choice};
 use crate::model::{Driven, Loading, UnequalInterfaces};
 use crate::orbit::{
-    ContinuationPoint, Coordinate, OverUnequal, ParametrisedField, Profile, profile_of,
+    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverLogarithms,
+    OverUnequal, ParametrisedField, Profile, ShootingNodes, find_unequal, profile_of,
 };
 use crate::scene::following;
+use crate::scene::plan::{self, Point};
 use crate::scene::system::{Described, System};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
@@ -23,6 +25,10 @@ pub struct SlabSubject {
     pub system: System,
     /// The same; what varies has any value.
     interfaces: UnequalInterfaces,
+    /// Whether both are equal, whatever varies.
+    equal: bool,
+    /// A point at or near an orbit and the period, roughly.
+    orbit: Option<(Point, Option<f64>)>,
 }
 
 impl SlabSubject {
@@ -67,8 +73,48 @@ impl SlabSubject {
         };
         Ok(SlabSubject {
             interfaces: UnequalInterfaces { laws, loading },
+            equal: system.unequal.is_none() && free.iter().all(|name| !of_one(name)),
             system,
+            orbit: None,
         })
+    }
+
+    /// The same with a point at or near an orbit, where branches of orbits begin.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a text that is no point, and for a period without one.
+    pub fn beginning(self, start: Option<&str>, period: Option<f64>) -> Result<Self> {
+        let inward = |t| {
+            let period = positive("period-guess", t)?;
+            Ok(self.units().inward(Quantity::Time, period))
+        };
+        let period = period.map(inward).transpose()?;
+        let orbit = match start {
+            Some(text) => {
+                let point = plan::start(text, &self.system, &self.interfaces.loading)?;
+                Some((point, period))
+            }
+            None if period.is_some() => {
+                let what = "`period_guess` needs a `start` near the orbit";
+                return Err(Error::Input(what.into()));
+            }
+            None => None,
+        };
+        Ok(SlabSubject { orbit, ..self })
+    }
+
+    /// The law of both, with the damping that may vary.
+    fn law(&self) -> Result<AnyLaw> {
+        let damping = self.interfaces.laws.damping();
+        let constants = self.interfaces.laws.constants()[0];
+        let parameters = Parameters::new(
+            constants.direct_effect,
+            constants.evolution_effect,
+            constants.reference_friction,
+            constants.healing_time,
+            constants.residual_strength,
+        )?;
+        AnyLaw::named(self.interfaces.laws.name(), parameters.damped(damping)?)
     }
 
     fn at(&self, values: &[(&str, f64)]) -> Result<UnequalInterfaces> {
@@ -82,6 +128,20 @@ impl SlabSubject {
 
 /// Parameters whose SI units have no place here.
 const WITHOUT_UNITS: [&str; 3] = ["damping", "slip_length_2", "normal_stress_2"];
+
+/// A parameter that is held where this one varies.
+fn other_than(name: &str) -> &'static str {
+    if name == "driving" {
+        "stiffness"
+    } else {
+        "driving"
+    }
+}
+
+/// Whether a parameter is of one of the interfaces.
+fn of_one(name: &str) -> bool {
+    name.ends_with("_1") || name.ends_with("_2")
+}
 
 fn quantity(name: &str) -> Quantity {
     match name {
@@ -143,6 +203,29 @@ impl Subject for SlabSubject {
         })
     }
 
+    fn alike(&self, names: &[&str]) -> Option<Box<dyn ParametrisedField + '_>> {
+        if !self.equal {
+            return None;
+        }
+        let slab = InterfaceSystem {
+            law: self.law().ok()?,
+            interfaces: 2,
+            loading: self.interfaces.loading,
+        };
+        let over = |names| OverLogarithms::new(slab, Symmetry::Symmetric, names).ok();
+        Some(match *names {
+            [first, second] => Box::new(over([first, second])?),
+            [only] => {
+                let other = other_than(only);
+                Box::new(Held {
+                    at: self.value(other).ok()?.ln(),
+                    family: over([only, other])?,
+                })
+            }
+            _ => return None,
+        })
+    }
+
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
         let interfaces = self.at(values)?;
         let found = unequal_steady_states(&interfaces.laws, interfaces.loading.driving)?;
@@ -152,8 +235,17 @@ impl Subject for SlabSubject {
         Ok(found.equilibria.iter().map(state).collect())
     }
 
-    fn orbit(&self, _: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
-        Ok(None)
+    fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>> {
+        let Some((start, period)) = self.orbit else {
+            return Ok(None);
+        };
+        let begin = InitialGuess::At { start, period };
+        let accuracy = OrbitAccuracy {
+            checked: false,
+            ..OrbitAccuracy::of(Choice::Auto)
+        };
+        let found = find_unequal(&self.at(values)?, begin, &accuracy)?;
+        Ok(Some(found.orbit.beginning()))
     }
 
     fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate> {
@@ -161,6 +253,10 @@ impl Subject for SlabSubject {
             positive(name, end)?;
         }
         Ok(Coordinate::Logarithm)
+    }
+
+    fn has_equal_parts(&self) -> bool {
+        self.equal
     }
 
     fn default_range(&self, name: &str) -> Option<(f64, f64)> {
@@ -211,7 +307,13 @@ impl Subject for SlabSubject {
             }
             GeneralSolution::Orbit { shooting, .. } => {
                 let field = AnyField::of::<3>(&interfaces);
-                profile_of(&field, &|y| interfaces.slip_rates(y), shooting)?
+                // In the states in which both move alike there is one state for both.
+                let whole = |x: &Vector| Vector::from_vec(vec![x[0], x[1], x[x.len() - 1]]);
+                let shooting = ShootingNodes {
+                    nodes: shooting.nodes.iter().map(whole).collect(),
+                    durations: shooting.durations.clone(),
+                };
+                profile_of(&field, &|y| interfaces.slip_rates(y), &shooting)?
             }
         };
         let Profile {

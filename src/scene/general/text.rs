@@ -8,8 +8,7 @@ use crate::friction::positive;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use crate::orbit::{
-    ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField, ShootingNodes,
-    find_from, ranges,
+    ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField, find_from, ranges,
 };
 use crate::scene::system::Described;
 use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel};
@@ -141,14 +140,7 @@ impl Subject for TextSubject {
             ..OrbitAccuracy::of(crate::integrate::Choice::Auto)
         };
         let found = find_from(&field, start, *period, &accuracy)?;
-        let nodes = found.orbit.nodes.into_iter().map(Vector::from_vec);
-        Ok(Some(ContinuationPoint {
-            shooting: ShootingNodes {
-                nodes: nodes.collect(),
-                durations: found.orbit.durations,
-            },
-            at: [0.0; 2],
-        }))
+        Ok(Some(found.orbit.beginning()))
     }
 
     fn coordinate(&self, _: &str, ends: [f64; 2]) -> Result<Coordinate> {

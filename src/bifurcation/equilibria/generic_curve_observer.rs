@@ -1,0 +1,194 @@
+//! What is special on a curve of bifurcations of equilibria: cusps, degenerate Hopf points, double and triple eigenvalues.
+
+use super::bialternate::{bialternate, lyapunov};
+use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurvePoint, FirstCoordinate};
+use super::generic_curve_problem::{Extended, alike, determinant_slope, frequency, sign};
+use crate::bifurcation::Label;
+use crate::continuation::{CurveObserver, CurvePoint, PointKind};
+use crate::error::Result;
+use crate::field::{Matrix, Vector};
+use nalgebra::Complex;
+use std::ops::ControlFlow;
+
+pub(super) struct Observer<'a, 'b> {
+    pub problem: &'a Extended<'b>,
+    pub first: &'a FirstCoordinate,
+    pub seen: &'a mut dyn FnMut(&EquilibriumCurvePoint) -> ControlFlow<()>,
+}
+
+/// The vector that the matrix maps to nearly zero, with a positive product with another one.
+fn kernel(matrix: &Matrix, along: &Vector) -> Option<Vector> {
+    let decomposed = matrix.clone().svd(false, true);
+    let smallest = decomposed.singular_values.imin();
+    let kernel = decomposed.v_t?.row(smallest).transpose();
+    Some(if kernel.dot(along) < 0.0 {
+        -kernel
+    } else {
+        kernel
+    })
+}
+
+/// So many functions tell what is special on a curve.
+const FUNCTIONS: usize = 2;
+
+impl Observer<'_, '_> {
+    /// Of folds: how the determinant changes along the kernel, zero at cusps, and the product of the sums of two eigenvalues. Of
+    /// Hopf points: the first Lyapunov coefficient, and the determinant.
+    fn functions(&self, u: &Vector, tangent: &Vector) -> Result<[f64; 2]> {
+        /// The least part of a unit tangent that tells the sign of a vector.
+        const ORIENTED: f64 = 1e-6;
+        let n = u.len() - 2;
+        let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
+        let field = self.problem.0.family.field(at);
+        let jacobian = field.jacobian(&state);
+        Ok(match self.problem.0.kind {
+            EquilibriumBifurcation::Fold => {
+                let along = tangent.rows(0, n).into_owned();
+                let kernel = kernel(&jacobian, &along).unwrap_or_else(|| Vector::zeros(n));
+                // Its sign is that of the way along the curve, which has one near cusps.
+                let oriented = kernel.dot(&along).abs() > ORIENTED;
+                let unknown = if oriented { 1.0 } else { f64::NAN };
+                let unit = |i: usize| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k)));
+                let columns = (0..n).map(|i| field.second_derivative(&state, &kernel, &unit(i)));
+                let change = Matrix::from_columns(&columns.collect::<Vec<_>>());
+                [
+                    determinant_slope(&jacobian)?(&change) * unknown,
+                    bialternate(&jacobian).determinant(),
+                ]
+            }
+            EquilibriumBifurcation::Hopf => {
+                let omega = frequency(&jacobian);
+                let coefficient = omega.and_then(|omega| lyapunov(&field, &state, omega));
+                [coefficient.unwrap_or(f64::NAN), jacobian.determinant()]
+            }
+            // The sum and the product of both eigenvalues of what moves alike.
+            EquilibriumBifurcation::Pitchfork => {
+                let alike = alike(&jacobian);
+                [alike.trace(), alike.determinant()]
+            }
+        })
+    }
+
+    /// What the i-th function's zero is; `None` where it is nothing.
+    fn label(&self, i: usize, omega: Option<f64>, jacobian: &Matrix) -> Option<Label> {
+        /// Against the matrix: of a pair that is a double zero, and so known to half of the digits.
+        const DOUBLE: f64 = 1e-4;
+        let all = jacobian.complex_eigenvalues();
+        let zero = |z: &&Complex<f64>| z.norm() < DOUBLE * jacobian.amax();
+        let near = all.iter().filter(zero).count();
+        match (self.problem.0.kind, i) {
+            (EquilibriumBifurcation::Pitchfork, 0) => frequency(jacobian).map(|_| Label::Zh),
+            (EquilibriumBifurcation::Pitchfork, _) => Some(Label::Bt),
+            (EquilibriumBifurcation::Fold, 0) => Some(Label::Cp),
+            (EquilibriumBifurcation::Hopf, 0) => Some(Label::Gh),
+            _ if near >= 2 => Some(Label::Bt),
+            (EquilibriumBifurcation::Fold, _) => frequency(jacobian).map(|_| Label::Zh),
+            // On a curve of neutral saddles an eigenvalue zero is nothing.
+            (EquilibriumBifurcation::Hopf, _) => omega.map(|_| Label::Zh),
+        }
+    }
+
+    /// How far the coordinates of a zero of the i-th function may be off: by the curve's own rounding, and along it by what is
+    /// left of the function and its noise over its slope.
+    fn off(&self, i: usize, point: &CurvePoint) -> Option<[f64; 2]> {
+        const BESIDE: f64 = 1e-5;
+        const TRIED: usize = 4;
+        /// To which points of a curve are corrected.
+        const TOLERANCE: f64 = 1e-13;
+        let n = point.u.len() - 1;
+        let u = point.u.push(point.lambda);
+        let of = |u: &Vector| self.functions(u, &point.tangent).ok().map(|all| all[i]);
+        let step = BESIDE * (1.0 + u.amax());
+        let ahead = of(&(&u + &point.tangent * step))?;
+        let slope = (ahead - of(&(&u - &point.tangent * step))?) / (2.0 * step);
+        let here = of(&u)?;
+        let mut noise = here.abs();
+        for time in 0..TRIED {
+            let moved = Vector::from_fn(u.len(), |k, _| {
+                u[k] * (1.0 + sign(k, time) * 4.0 * f64::EPSILON)
+            });
+            noise += (of(&moved)? - here).abs();
+        }
+        let along = noise / slope.abs();
+        let across = (0..2).filter_map(|k| self.problem.budget(&u, n + k));
+        let across = across.min_by(|a, b| a.amax().total_cmp(&b.amax()))?;
+        let off = [0, 1].map(|k| {
+            let corrected = TOLERANCE * (1.0 + u[n + k].abs());
+            across[n + k] + along * point.tangent[n + k].abs() + corrected
+        });
+        off.iter().all(|x| x.is_finite()).then_some(off)
+    }
+}
+
+impl CurveObserver for Observer<'_, '_> {
+    fn tests(&self, point: &CurvePoint) -> Result<Vec<f64>> {
+        let mut all = self
+            .functions(&point.u.push(point.lambda), &point.tangent)?
+            .to_vec();
+        let (first, FirstCoordinate { range, wanted }) = (point.u[point.u.len() - 1], self.first);
+        let ends = [range.0, range.1].into_iter();
+        let values = ends.chain(wanted.iter().copied());
+        // An infinite end is never met.
+        all.extend(values.map(|value| {
+            if value.is_finite() {
+                first - value
+            } else {
+                f64::NAN
+            }
+        }));
+        Ok(all)
+    }
+
+    fn ends(&self, test: usize) -> bool {
+        (FUNCTIONS..FUNCTIONS + 2).contains(&test)
+    }
+
+    fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
+        /// Of the coordinates of a special point.
+        const KNOWN: f64 = 1e-3;
+        let (state, at) = self.problem.at(&point.u, point.lambda);
+        let n = point.u.len() - 1;
+        let field = self.problem.0.family.field(at);
+        let jacobian = field.jacobian(&state);
+        let hopf = self.problem.0.kind == EquilibriumBifurcation::Hopf;
+        let frequency = frequency(&jacobian).filter(|_| hopf);
+        let label = match mark {
+            PointKind::Step => None,
+            PointKind::Zero(i) if self.ends(i) => Some(Label::Ep),
+            PointKind::Zero(i) if i > FUNCTIONS => Some(Label::Uz),
+            PointKind::Zero(i) => match self.label(i, frequency, &jacobian) {
+                None => return ControlFlow::Continue(()),
+                label => label,
+            },
+            PointKind::Wanted(_) => Some(Label::Uz),
+            PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
+        };
+        let uncertainty = match mark {
+            PointKind::Zero(i) if i < FUNCTIONS => match self.off(i, point) {
+                // What is not known to some digits is no zero: of a function that jumps, or has a pole.
+                Some(off) if off.iter().all(|&off| off < KNOWN) => Some(off),
+                _ => return ControlFlow::Continue(()),
+            },
+            PointKind::Zero(_) => {
+                let u = point.u.push(point.lambda);
+                let budget = self.problem.budget(&u, n);
+                budget.map(|budget| [0.0, budget[n + 1]])
+            }
+            PointKind::Step => None,
+            _ => {
+                let u = point.u.push(point.lambda);
+                let budget = self.problem.budget(&u, point.u.len());
+                budget.map(|budget| [budget[n], 0.0])
+            }
+        };
+        let coefficient = frequency.and_then(|omega| lyapunov(&field, &state, omega));
+        (self.seen)(&EquilibriumCurvePoint {
+            state,
+            at,
+            frequency,
+            coefficient,
+            label,
+            uncertainty,
+        })
+    }
+}

@@ -1,0 +1,193 @@
+//! The equations of a curve of bifurcations of equilibria, and what rounding makes of their solutions.
+
+use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
+use crate::continuation::ZeroProblem;
+use crate::error::{Error, Result};
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
+use crate::number::Uncertain;
+
+/// f and the determinant as functions of the state and the first coordinate, and of the second.
+pub(super) struct Extended<'a>(pub &'a EquilibriumCurve<'a>);
+
+/// A correction by Newton's method that may be left to rounding.
+pub(super) const SMALL: f64 = 1e-9;
+
+/// The largest component in units of 1 + |u|.
+pub(super) fn relative(step: &Vector, u: &Vector) -> f64 {
+    let parts = step.iter().zip(u).map(|(d, x)| (d / (1.0 + x.abs())).abs());
+    parts.fold(
+        0.0,
+        |most: f64, part| if part.is_nan() { part } else { most.max(part) },
+    )
+}
+
+impl Extended<'_> {
+    /// The derivatives in all of (state, coordinates) but one.
+    pub fn square(&self, u: &Vector, held: usize) -> Option<Matrix> {
+        let n = u.len() - 2;
+        let all = self
+            .jacobian(&u.rows(0, n + 1).into_owned(), u[n + 1])
+            .ok()?;
+        Some(all.remove_column(held))
+    }
+
+    /// omega at a Hopf point whose unknowns may be off by so much.
+    pub fn frequency_within(&self, u: &Vector, off: &Vector) -> Option<Uncertain> {
+        /// So many points are looked at, and what their largest distance counts.
+        const TRIED: usize = 4;
+        const SAFETY: f64 = 2.0;
+        let of = |u: &Vector| {
+            let (state, at) = self.at(&u.rows(0, u.len() - 1).into_owned(), u[u.len() - 1]);
+            frequency(&self.0.family.field(at).jacobian(&state))
+        };
+        let here = of(u).filter(|_| self.0.kind == EquilibriumBifurcation::Hopf)?;
+        let mut far = 0.0_f64;
+        for time in 0..TRIED {
+            let moved = Vector::from_fn(u.len(), |i, _| u[i] + sign(i, time) * off[i]);
+            far = far.max((of(&moved)? - here).abs());
+        }
+        Some(Uncertain::new(
+            here,
+            SAFETY * far + 8.0 * f64::EPSILON * here,
+        ))
+    }
+
+    /// What rounding makes of a solution: the residuals that are met when the unknowns are changed in their last digit, as the
+    /// equations carry them to the unknowns.
+    pub fn budget(&self, u: &Vector, held: usize) -> Option<Vector> {
+        /// So many changes, and what their largest residual counts.
+        const TRIED: usize = 8;
+        const SAFETY: f64 = 4.0;
+        let n = u.len() - 2;
+        let mut noise = Vector::zeros(n + 1);
+        for time in 0..TRIED {
+            let moved = Vector::from_fn(n + 2, |i, _| {
+                u[i] + sign(i, time) * f64::EPSILON * u[i].abs()
+            });
+            let left = self
+                .residual(&moved.rows(0, n + 1).into_owned(), moved[n + 1])
+                .ok()?;
+            noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
+        }
+        let inverse = self.square(u, held)?.try_inverse()?;
+        let off = inverse.abs() * noise * SAFETY;
+        let off = off.insert_row(held, 0.0);
+        let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
+        budget.iter().all(|x| x.is_finite()).then_some(budget)
+    }
+
+    /// The state of some unknowns, which may be followed by coordinates.
+    pub fn state(&self, u: &Vector) -> Vector {
+        let last = self.0.unknowns() - 1;
+        Vector::from_fn(self.0.family.dimension(), |i, _| u[i.min(last)])
+    }
+
+    pub fn at(&self, u: &Vector, lambda: f64) -> (Vector, [f64; 2]) {
+        (self.state(u), [u[self.0.unknowns()], lambda])
+    }
+}
+
+/// The derivative of det A along a change of A: the trace of the adjugate times it, which exists where A is singular.
+pub(super) fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + use<>> {
+    let decomposed = a.clone().svd(true, true);
+    let (Some(u), Some(v_t)) = (decomposed.u, decomposed.v_t) else {
+        return Err(Error::NotConverged {
+            what: "the adjugate of a Jacobian",
+            iterations: 0,
+            residual: f64::INFINITY,
+            tolerance: 0.0,
+        });
+    };
+    let sign = u.determinant() * v_t.determinant();
+    let sigma = decomposed.singular_values;
+    Ok(move |change: &Matrix| {
+        let turned = u.transpose() * change * v_t.transpose();
+        let others = |i: usize| (0..sigma.len()).filter(move |&j| j != i);
+        let term = |i: usize| turned[(i, i)] * others(i).map(|j| sigma[j]).product::<f64>();
+        sign * (0..sigma.len()).map(term).sum::<f64>()
+    })
+}
+
+/// That a field can be differentiated in parameters.
+pub(super) fn parametrised(field: &AnyField<'_>) -> Result<()> {
+    if !field.parameter_names().is_empty() {
+        return Ok(());
+    }
+    Err(Error::parameter(
+        "the family",
+        "fields without parameters",
+        "fields with named ones",
+    ))
+}
+
+impl ZeroProblem for Extended<'_> {
+    fn dimension(&self) -> usize {
+        self.0.unknowns() + 1
+    }
+
+    fn residual(&self, u: &Vector, lambda: f64) -> Result<Vector> {
+        let (y, at) = self.at(u, lambda);
+        let field = self.0.family.field(at);
+        let singular = self.0.singular(&field.jacobian(&y));
+        let rates = field.f(&y).rows(0, self.0.unknowns()).into_owned();
+        Ok(rates.push(singular.determinant()))
+    }
+
+    fn jacobian(&self, u: &Vector, lambda: f64) -> Result<Matrix> {
+        let (y, at) = self.at(u, lambda);
+        let field = self.0.family.field(at);
+        parametrised(&field)?;
+        let (all, n) = (y.len(), self.0.unknowns());
+        let j = field.jacobian(&y);
+        let slope = determinant_slope(&self.0.singular(&j))?;
+        let units = (0..all).map(|i| Vector::from_fn(all, |k, _| f64::from(u8::from(i == k))));
+        let units: Vec<_> = units.collect();
+        let mut matrix = Matrix::zeros(n + 1, n + 2);
+        let mut put = |column: usize, f: &Vector, of_jacobian: &Matrix| {
+            let rates = f.rows(0, n);
+            matrix.column_mut(column).rows_mut(0, n).copy_from(&rates);
+            matrix[(n, column)] = slope(&self.0.singular(of_jacobian));
+        };
+        for (i, along) in self.0.directions().column_iter().enumerate() {
+            let along = along.into_owned();
+            let columns = units.iter().map(|v| field.second_derivative(&y, &along, v));
+            let columns = Matrix::from_columns(&columns.collect::<Vec<_>>());
+            put(i, &(&j * along), &columns);
+        }
+        let scale = self.0.family.scale(at);
+        for (k, place) in self.0.family.plane().into_iter().enumerate() {
+            let f = field.parameter_derivative(&y, place) * scale[k];
+            let of_jacobian = field.parameter_jacobian(&y, place) * scale[k];
+            put(n + k, &f, &of_jacobian);
+        }
+        Ok(matrix)
+    }
+}
+
+/// Signs that differ from one time to the next.
+pub(super) fn sign(i: usize, time: usize) -> f64 {
+    if ((i + 2) * (2 * time + 3) / 2).is_multiple_of(2) {
+        1.0
+    } else {
+        -1.0
+    }
+}
+
+/// omega of the pair that is on the imaginary axis.
+pub(super) fn frequency(jacobian: &Matrix) -> Option<f64> {
+    /// What is left of the real part, over the imaginary one.
+    const AXIS: f64 = 1e-6;
+    let all = jacobian.complex_eigenvalues();
+    let pairs = all.iter().filter(|z| z.re.abs() < AXIS * z.im);
+    let nearest = pairs.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
+    nearest.map(|z| z.im)
+}
+
+/// What of a Jacobian acts on states whose last two variables are the same.
+pub(super) fn alike(jacobian: &Matrix) -> Matrix {
+    Matrix::from_fn(2, 2, |i, k| match k {
+        0 => jacobian[(i, 0)],
+        _ => jacobian[(i, 1)] + jacobian[(i, 2)],
+    })
+}
