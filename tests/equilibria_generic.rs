@@ -282,6 +282,7 @@ fn a_conservative_system_has_no_hopf_points() {
     let family = FieldEquilibria {
         fields: &|p| AnyField::new::<2>(Box::new(Conservative { p })),
         along: "p",
+        scale: None,
     };
     for longest in [0.3, 0.05, 0.01] {
         let settings = Settings::new((-2.0, 2.0), longest).unwrap();

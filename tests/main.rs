@@ -11,6 +11,8 @@ mod command;
 mod common;
 mod drawn;
 
+mod any_parameter;
+mod any_parameter_slab;
 mod arcs;
 mod batch;
 mod boxes;

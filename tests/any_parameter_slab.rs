@@ -1,0 +1,216 @@
+//! Branches and curves of two interfaces in any parameter, equal or not, against numbers known to 28 digits.
+
+use crate::command;
+use crate::common::{data, number as of_reference};
+use command::{number, object, refused_in_one_line};
+use serde_json::Value;
+
+/// The special points of a label.
+fn special<'o>(made: &'o Value, label: &str) -> Vec<&'o Value> {
+    let all = made["result"]["special"].as_array().expect("a list");
+    all.iter().filter(|one| one["label"] == label).collect()
+}
+
+/// One of these holds the exact number in its budget, which is sharp.
+#[track_caller]
+fn one_holds(all: &[&Value], name: &str, exact: f64, sharp: f64) {
+    let holds = |one: &&Value| {
+        let [value, uncertainty] =
+            ["value", "uncertainty"].map(|part| one[name][part].as_f64().unwrap_or(f64::INFINITY));
+        (value - exact).abs() <= uncertainty + f64::EPSILON * exact && uncertainty <= sharp * exact
+    };
+    assert!(
+        all.iter().any(holds),
+        "{name} = {exact} is not among {:?}",
+        all.iter().map(|one| &one[name]).collect::<Vec<_>>()
+    );
+}
+
+#[test]
+fn hopf_points_and_pitchforks_along_a_constant_of_the_law() {
+    let known = data("parameters.json");
+    let known = &known["vary_one"];
+    let at = "--driving 10 --stiffness 0.14";
+    let along_c = object(&format!(
+        "branch equilibria {at} --along residual_strength --from 1e-5 --to 0.2"
+    ));
+    one_holds(
+        &special(&along_c, "HB"),
+        "residual_strength",
+        of_reference(&known["hopf_symmetric_in_c"][0]["value"]),
+        1e-12,
+    );
+    one_holds(
+        &special(&along_c, "BP"),
+        "residual_strength",
+        of_reference(&known["pitchfork_in_c"][0]["value"]),
+        1e-12,
+    );
+    let along_r = object(&format!(
+        "branch equilibria {at} --along healing_time --from 0.1 --to 1000"
+    ));
+    one_holds(
+        &special(&along_r, "BP"),
+        "healing_time",
+        of_reference(&known["pitchfork_in_R"][0]["value"]),
+        1e-11,
+    );
+    for one in special(&along_r, "BP") {
+        assert_eq!(number(one, "/driving/value"), 10.0);
+        assert_eq!(number(one, "/stiffness/uncertainty"), 0.0);
+    }
+}
+
+#[test]
+fn curves_in_the_plane_of_the_driving_velocity_and_a_constant() {
+    let known = data("parameters.json");
+    let ranges =
+        "--stiffness 0.14 --range residual_strength=4e-4,1e-3 --at residual_strength=0.0005,0.0008";
+    let curve = |kind: &str| {
+        let made = object(&format!(
+            "locus {kind} --in driving,residual_strength {ranges}"
+        ));
+        let landed = special(&made, "UZ").into_iter().cloned();
+        landed.collect::<Vec<Value>>()
+    };
+    let (hopf, pitchforks) = (curve("hopf"), curve("pitchfork"));
+    for case in known["hopf_and_pitchforks_at_four_c"]
+        .as_array()
+        .expect("cases")
+    {
+        let c = of_reference(&case["c"]);
+        let here = |all: &'_ [Value]| -> Vec<Value> {
+            let landed = all
+                .iter()
+                .filter(|one| one["residual_strength"]["value"] == c);
+            landed.cloned().collect()
+        };
+        let (hopf, pitchforks) = (here(&hopf), here(&pitchforks));
+        let [hopf, pitchforks] = [&hopf, &pitchforks].map(|all| all.iter().collect::<Vec<_>>());
+        for one in case["hopf"].as_array().expect("points") {
+            one_holds(&hopf, "driving", of_reference(&one["V_H"]), 1e-11);
+        }
+        for one in case["pitchforks_V_H"].as_array().expect("points") {
+            one_holds(&pitchforks, "driving", of_reference(one), 1e-11);
+        }
+    }
+}
+
+#[test]
+fn folds_and_hopf_points_of_interfaces_that_differ() {
+    let known = data("unequal.json");
+    for (case, set) in [
+        ("U1_c2=0.0011", "residual_strength_2=0.0011"),
+        (
+            "U4_all_three",
+            "residual_strength_2=0.0011,slip_length_2=1.05,evolution_effect_2=0.0485",
+        ),
+    ] {
+        let made = object(&format!("branch equilibria --stiffness 0.14 --set {set}"));
+        let known = &known["cases"][case];
+        for (label, name) in [("LP", "folds"), ("HB", "hopf")] {
+            let found = special(&made, label);
+            let exact = known[name].as_array().expect("a list");
+            assert_eq!(found.len(), exact.len(), "{case}: {label}");
+            for one in exact {
+                one_holds(&found, "driving", of_reference(&one["V_H"]), 1e-11);
+            }
+        }
+        // The pitchforks have unfolded.
+        assert!(special(&made, "BP").is_empty());
+    }
+}
+
+/// As the difference delta goes to zero the fold goes to the pitchfork as delta^(2/3), on the curve that has its cusp there.
+#[test]
+fn folds_go_to_the_pitchforks_with_the_two_thirds_power() {
+    let differences = [1e-2, 1e-4, 1e-6, 1e-8, 1e-10];
+    let values: Vec<String> = differences
+        .iter()
+        .map(|delta| format!("{:?}", 1e-3 * (1.0 + delta)))
+        .collect();
+    let made = object(&format!(
+        "locus saddle-node --in driving,residual_strength_2 --stiffness 0.14 --range driving=0.04,0.06 --range residual_strength_2=9e-4,1.1e-3 --at residual_strength_2={}",
+        values.join(",")
+    ));
+    let cusps = special(&made, "CP");
+    assert_eq!(cusps.len(), 1);
+    let known = data("unequal.json");
+    let exact = of_reference(&known["cusps_VH_c2"][0]["V_H"]);
+    one_holds(&cusps, "driving", exact, 1e-11);
+    one_holds(&cusps, "residual_strength_2", 1e-3, 1e-11);
+    let landed = special(&made, "UZ");
+    let fold = |value: &str| {
+        let c: f64 = value.parse().expect("a number");
+        let here = |one: &&&Value| one["residual_strength_2"]["value"] == c;
+        let one = landed.iter().find(here).expect("a fold");
+        number(one, "/driving/value") - exact
+    };
+    let shifts: Vec<f64> = values.iter().map(|value| fold(value)).collect();
+    for pair in shifts.windows(2) {
+        // From one to the next delta falls by a hundred.
+        let power = (pair[0] / pair[1]).ln() / 100.0_f64.ln();
+        assert!((power - 2.0 / 3.0).abs() < 0.02, "{power}: {shifts:?}");
+    }
+}
+
+#[test]
+fn near_misses_are_no_branch_points() {
+    // Nearer than steps can tell: said, and no pitchfork is made of it.
+    let ended = command::twinslip(
+        "branch equilibria --stiffness 0.14 --from 0.01 --to 1 --set residual_strength_2=1.000000001e-3 --format json -q",
+    );
+    assert!([0, 1].contains(&ended.code), "{}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    assert!(special(&made, "BP").is_empty());
+    let folds = special(&made, "LP");
+    let exact = of_reference(&data("unequal.json")["cusps_VH_c2"][0]["V_H"]);
+    assert!(!folds.is_empty());
+    for fold in folds {
+        assert!((number(fold, "/driving/value") / exact - 1.0).abs() < 1e-6);
+    }
+    // Of equal interfaces it is one.
+    let made = object(
+        "branch equilibria --stiffness 0.14 --driving 10 --along residual_strength --from 0.05 --to 0.1",
+    );
+    assert!(!special(&made, "BP").is_empty());
+}
+
+#[test]
+fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
+    let branch = "branch equilibria --driving 10 --stiffness 0.14";
+    for (words, sentence) in [
+        (
+            "--along residual_strenght --from 1 --to 2",
+            "did you mean \"residual_strength\"",
+        ),
+        (
+            "--along residual_strength --from 0 --to 2",
+            "residual_strength is 0",
+        ),
+        ("--along residual_strength --from 0.1", "--to is missing"),
+        (
+            "--along residual_strength --from 0.1 --to 0.2 --interfaces 1",
+            "a single interface",
+        ),
+        ("--along driving --set residual_strength_2=2e-3", "driving"),
+        (
+            "--along residual_strength --from 0.1 --to 0.2 --start 1,1,1",
+            "--start has no meaning",
+        ),
+    ] {
+        refused_in_one_line(&format!("{branch} {words}"), sentence);
+    }
+    refused_in_one_line(
+        "locus pitchfork --in driving,residual_strength_2 --stiffness 0.14 --range residual_strength_2=1e-4,1e-2",
+        "needs a symmetry",
+    );
+    refused_in_one_line(
+        "locus hopf --in driving,residual_strength --range residual_strength=1e-4,1e-2",
+        "stiffness",
+    );
+    refused_in_one_line(
+        "locus hopf --in driving,residual_strength --stiffness 0.14 --stiffness-range 0.1:0.2 --range residual_strength=1e-4,1e-2",
+        "does not vary in the plane",
+    );
+}
