@@ -304,3 +304,19 @@ fn what_makes_no_branch_is_refused_in_one_sentence() {
     assert_eq!(ended.code, 1, "{}", ended.err);
     assert!(ended.err.contains("no Hopf point is met"), "{}", ended.err);
 }
+
+#[test]
+fn a_scene_has_the_ranges_in_a_table() {
+    let place = folder("general_scene");
+    let scene = place.join("scene.toml");
+    let text = "command = \"locus\"\nof = \"hopf\"\nsystem = \"brusselator\"\nin = \"b,a\"\nrange = { b = [0.5, 9], a = [0.5, 2.5] }\nat = { a = [1, 2] }\nformat = \"json\"\n";
+    fs::write(&scene, text).expect("a file");
+    let ended = command::run(&["run", scene.to_str().expect("a path"), "-q"]);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let flags = object(
+        "locus hopf --system brusselator --in b,a --range b=0.5,9 --range a=0.5,2.5 --at a=1,2",
+    );
+    assert_eq!(made["result"], flags["result"]);
+    assert_eq!(special(&made, "UZ").len(), 2);
+}

@@ -9,7 +9,7 @@ use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeArray, DeTable, DeValue};
 
 /// No scene is longer, in bytes.
 const LONGEST: u64 = 1 << 18;
@@ -226,21 +226,25 @@ impl Reader<'_> {
             DeValue::Integer(number) if number.radix() == 10 => number.as_str().to_owned(),
             DeValue::Float(number) => number.as_str().to_owned(),
             DeValue::String(text) if !numeric => text.to_string(),
-            // What may be given again: NAME=VALUE for each.
+            // What may be given again: NAME=VALUE for each, or NAME=V1,V2,... where that has commas of its own.
             DeValue::Table(entries) if matches!(option.get_action(), ArgAction::Append) => {
+                let lists = option.get_value_delimiter().is_none();
                 let pair = |(name, value): (&Spanned<_>, &Spanned<DeValue<'_>>)| {
                     let name: &std::borrow::Cow<'_, str> = name.get_ref();
-                    Some(format!("{name}={}", scalar(value.get_ref())?))
+                    let value = match value.get_ref() {
+                        DeValue::Array(items) if lists => list(items)?,
+                        value => scalar(value)?,
+                    };
+                    Some(format!("{name}={value}"))
                 };
                 let pairs: Option<Vec<String>> = entries.iter().map(pair).collect();
-                pairs.ok_or_else(|| wrong("a table of numbers"))?.join(",")
+                let separator = if lists { ";" } else { "," };
+                pairs
+                    .ok_or_else(|| wrong("a table of numbers"))?
+                    .join(separator)
             }
             DeValue::Array(items) if !numeric => {
-                let items: Option<Vec<String>> =
-                    items.iter().map(|item| scalar(item.get_ref())).collect();
-                items
-                    .ok_or_else(|| wrong("a list of numbers or names"))?
-                    .join(",")
+                list(items).ok_or_else(|| wrong("a list of numbers or names"))?
             }
             _ => return Err(wrong(if numeric { "a number" } else { "a text" })),
         };
@@ -264,6 +268,12 @@ fn key_of(arg: &Arg) -> Option<&str> {
     } else {
         arg.get_long()
     }
+}
+
+/// Numbers or names, with commas between.
+fn list(items: &DeArray<'_>) -> Option<String> {
+    let items: Option<Vec<String>> = items.iter().map(|item| scalar(item.get_ref())).collect();
+    Some(items?.join(","))
 }
 
 fn scalar(value: &DeValue<'_>) -> Option<String> {

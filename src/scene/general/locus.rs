@@ -53,7 +53,7 @@ pub(in crate::scene) fn by_name<'o>(
     names: [&str; 2],
 ) -> Result<[Option<&'o str>; 2]> {
     let mut of = [None; 2];
-    for text in all {
+    for text in all.iter().flat_map(|text| text.split(';')) {
         let pair = text.split_once('=');
         let (name, rest) =
             pair.ok_or_else(|| Error::Input(format!("`{option}` {text:?} must begin with NAME=")))?;
