@@ -232,7 +232,7 @@ fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
         let at = place(names, name).unwrap();
         // Both move together where there is no index, each from its own value.
         let of_first = || two.parameter(&format!("{name}_1"));
-        let step = 1e-6 * two.parameter(name).or_else(|_| of_first()).unwrap();
+        let step = 3e-5 * two.parameter(name).or_else(|_| of_first()).unwrap();
         let mut end = |change: f64| {
             let indexed = [format!("{name}_1"), format!("{name}_2")];
             let moved = match two.parameter(name) {
@@ -246,7 +246,7 @@ fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
         };
         let slope = (end(step) - end(-step)) / (2.0 * step);
         let error = apart(&slope.into(), exact);
-        assert!(error < 1e-7, "{name}: {error:e}");
+        assert!(error < 1e-6, "{name}: {error:e}");
         // Of the rates themselves.
         let f = |change: f64| match two.parameter(name) {
             Ok(value) => Some(two.with(name, value + change).unwrap().f(&y)),
@@ -291,25 +291,25 @@ fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
 
 #[test]
 fn flows_are_differentiated_in_every_parameter() {
-    check_derivatives(&unlike("spinodal", 0.0), State::<3>::new(9.7, -1.2, -0.4));
-    check_derivatives(&unlike("spinodal", 0.02), State::<3>::new(9.7, -1.2, -0.4));
+    check_derivatives(&unlike("spinodal", 0.0), State::<3>::new(9.7, -5.0, -4.0));
+    check_derivatives(&unlike("spinodal", 0.02), State::<3>::new(9.7, -5.0, -4.0));
     check_derivatives(
         &unlike("regularised-ageing", 0.02),
-        State::<3>::new(11.0, -1.2, -0.4),
+        State::<3>::new(11.0, -0.5, 0.3),
     );
-    check_derivatives(&unlike("slip", 0.0), State::<3>::new(9.7, -1.2, -0.4));
+    check_derivatives(&unlike("slip", 0.0), State::<3>::new(9.7, -5.0, -4.0));
 }
 
 #[test]
 fn derivatives_of_the_jacobian_in_parameters() {
     let two = unlike("spinodal", 0.02);
-    let y = State::<3>::new(9.7, -1.2, -0.4);
+    let y = State::<3>::new(9.7, -5.0, -4.0);
     let names = two.names();
     for (place, name) in names.iter().enumerate() {
         let Ok(value) = two.parameter(name) else {
             continue;
         };
-        let step = 1e-6 * value;
+        let step = 1e-5 * value;
         let at = |change: f64| two.with(name, value + change).unwrap().jacobian(&y);
         let slope = (at(step) - at(-step)) / (2.0 * step);
         let made = two.parameter_jacobian(&y, place);
