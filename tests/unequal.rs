@@ -297,7 +297,7 @@ fn flows_are_differentiated_in_every_parameter() {
         &unlike("regularised-ageing", 0.02),
         State::<3>::new(11.0, -0.5, 0.3),
     );
-    check_derivatives(&unlike("slip", 0.0), State::<3>::new(9.7, -5.0, -4.0));
+    check_derivatives(&unlike("slip", 0.0), State::<3>::new(11.0, -0.5, 0.3));
 }
 
 #[test]
