@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use twinslip::Error;
 use twinslip::equilibrium::{Symmetry, Verdict};
-use twinslip::field::{Parametrised, State, VectorField, place};
+use twinslip::field::{Parametrised, State, VectorField};
 use twinslip::friction::{AnyLaw, Formulas, InterfaceConstants, Law, Parameters, UnequalLaws};
 use twinslip::integrate::{AnyField, Choice, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Driven, Loading, UnequalInterfaces, two_interfaces};
