@@ -244,7 +244,7 @@ fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
                 two.with(name, value + change).unwrap()
             }),
         };
-        let step = 1e-4
+        let step = 1e-3
             * two
                 .parameter(name)
                 .or_else(|_| two.parameter(&of_both[0]))
