@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use serde_json::Value;
 use twinslip::Error;
 use twinslip::equilibrium::{Symmetry, Verdict};
-use twinslip::field::{Parametrised, State, VectorField, place};
+use twinslip::field::{Parametrised, State, VectorField};
 use twinslip::friction::{AnyLaw, Formulas, InterfaceConstants, Law, Parameters, UnequalLaws};
 use twinslip::integrate::{AnyField, Choice, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Driven, Loading, UnequalInterfaces, two_interfaces};
@@ -221,51 +221,56 @@ fn apart(made: &[f64; 3], exact: &[f64; 3]) -> f64 {
     (made - exact).amax() / exact.amax()
 }
 
+/// The derivative of a function at 0 by differences of fourth order.
+fn difference_quotient<const N: usize>(step: f64, mut of: impl FnMut(f64) -> State<N>) -> State<N> {
+    let mut across = |step: f64| of(step) - of(-step);
+    (across(step) * 8.0 - across(2.0 * step)) / (12.0 * step)
+}
+
 /// All derivatives of a flow: in 31 digits against differences, and by the methods against these.
 fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
-    let span = (0.0, 0.7);
+    let span = (0.0, 0.05);
     let mut reference = Taylor::reference(MAX_STEPS).unwrap();
     let names = two.names();
     let free: Vec<usize> = (0..names.len()).collect();
-    let (_, exact) = reference.derivatives(two, span, &y, &free).unwrap();
-    for (&name, exact) in names.iter().zip(&exact.parameters) {
-        let at = place(names, name).unwrap();
+    // Two at a time, as continuation asks for them.
+    let mut exact = reference.derivatives(two, span, &y, &[]).unwrap().1;
+    for pair in free.chunks(2) {
+        let (_, made) = reference.derivatives(two, span, &y, pair).unwrap();
+        exact.parameters.extend(made.parameters);
+    }
+    for ((&name, exact), &at) in names.iter().zip(&exact.parameters).zip(&free) {
         // Both move together where there is no index, each from its own value.
-        let of_first = || two.parameter(&format!("{name}_1"));
-        let step = 1e-6 * two.parameter(name).or_else(|_| of_first()).unwrap();
-        let mut end = |change: f64| {
-            let indexed = [format!("{name}_1"), format!("{name}_2")];
-            let moved = match two.parameter(name) {
-                Ok(value) => two.with(name, value + change).unwrap(),
-                Err(_) => indexed.iter().fold(*two, |two, name| {
-                    let value = two.parameter(name).unwrap();
-                    two.with(name, value + change).unwrap()
-                }),
-            };
-            reference.flow(&moved, span, &y, None).unwrap()
+        let of_both = [format!("{name}_1"), format!("{name}_2")];
+        let moved = |change: f64| match two.parameter(name) {
+            Ok(value) => two.with(name, value + change).unwrap(),
+            Err(_) => of_both.iter().fold(*two, |two, name| {
+                let value = two.parameter(name).unwrap();
+                two.with(name, value + change).unwrap()
+            }),
         };
-        let slope = (end(step) - end(-step)) / (2.0 * step);
+        let step = 1e-3
+            * two
+                .parameter(name)
+                .or_else(|_| two.parameter(&of_both[0]))
+                .unwrap();
+        let slope = difference_quotient(step, |change| {
+            reference.flow(&moved(change), span, &y, None).unwrap()
+        });
         let error = apart(&slope.into(), exact);
-        assert!(error < 1e-7, "{name}: {error:e}");
-        // Of the rates themselves.
-        let f = |change: f64| match two.parameter(name) {
-            Ok(value) => Some(two.with(name, value + change).unwrap().f(&y)),
-            Err(_) => None,
-        };
-        if let (Some(more), Some(less)) = (f(step), f(-step)) {
-            let slope = (more - less) / (2.0 * step);
-            let made = two.parameter_derivative(&y, at);
-            assert!(
-                (slope - made).amax() < 1e-6 * made.amax(),
-                "{name}: {slope} {made}"
-            );
-        }
+        assert!(error < 1e-6, "{name}: {error:e}");
+        let slope = difference_quotient(step, |change| moved(change).f(&y));
+        let made = two.parameter_derivative(&y, at);
+        assert!(
+            (slope - made).amax() <= 1e-6 * made.amax(),
+            "{name}: {slope} {made}"
+        );
     }
     let mut taylor = Taylor::new(Tolerances::equal(1e-14).unwrap(), MAX_STEPS).unwrap();
-    let pairs = free.windows(2).map(<[usize]>::to_vec).chain([free.clone()]);
-    for free in pairs {
-        let (_, made) = taylor.derivatives(two, span, &y, &free).unwrap();
-        for (made, &place) in made.parameters.iter().zip(&free) {
+    let several = [free[0], free[5], free[3], free[4]];
+    for free in free.windows(2).chain([&several[..]]) {
+        let (_, made) = taylor.derivatives(two, span, &y, free).unwrap();
+        for (made, &place) in made.parameters.iter().zip(free) {
             let error = apart(made, &exact.parameters[place]);
             assert!(error < 1e-11, "{}: {error:e}", names[place]);
         }
@@ -291,25 +296,25 @@ fn check_derivatives(two: &UnequalInterfaces, y: State<3>) {
 
 #[test]
 fn flows_are_differentiated_in_every_parameter() {
-    check_derivatives(&unlike("spinodal", 0.0), State::<3>::new(9.7, -1.2, -0.4));
-    check_derivatives(&unlike("spinodal", 0.02), State::<3>::new(9.7, -1.2, -0.4));
+    check_derivatives(&unlike("spinodal", 0.0), State::<3>::new(9.7, -5.0, -4.0));
+    check_derivatives(&unlike("spinodal", 0.02), State::<3>::new(9.7, -5.0, -4.0));
     check_derivatives(
         &unlike("regularised-ageing", 0.02),
-        State::<3>::new(11.0, -1.2, -0.4),
+        State::<3>::new(11.0, -0.5, 0.3),
     );
-    check_derivatives(&unlike("slip", 0.0), State::<3>::new(9.7, -1.2, -0.4));
+    check_derivatives(&unlike("slip", 0.0), State::<3>::new(11.0, -0.5, 0.3));
 }
 
 #[test]
 fn derivatives_of_the_jacobian_in_parameters() {
     let two = unlike("spinodal", 0.02);
-    let y = State::<3>::new(9.7, -1.2, -0.4);
+    let y = State::<3>::new(9.7, -5.0, -4.0);
     let names = two.names();
     for (place, name) in names.iter().enumerate() {
         let Ok(value) = two.parameter(name) else {
             continue;
         };
-        let step = 1e-6 * value;
+        let step = 1e-5 * value;
         let at = |change: f64| two.with(name, value + change).unwrap().jacobian(&y);
         let slope = (at(step) - at(-step)) / (2.0 * step);
         let made = two.parameter_jacobian(&y, place);
