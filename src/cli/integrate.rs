@@ -18,7 +18,13 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    // A program may say itself which V_H is the first.
+    let free: &[&str] = if options.program.is_some() {
+        &["driving"]
+    } else {
+        &[]
+    };
+    if let Some(model) = TextModel::of(&options.model, free)? {
         return text::integrate::run(options, model, words);
     }
     let plan = Plan::new(options)?;

@@ -20,7 +20,7 @@ use std::io::Write;
 use std::path::Path;
 
 pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(&options.model, &[])? {
         return text::section::run(options, model, words);
     }
     let plan = SectionPlan::new(options)?;

@@ -7,9 +7,7 @@ use crate::cli::stream::StreamOut;
 use crate::cli::{Ending, say, written};
 use crate::error::Result;
 use crate::output::{Format, RowList, object, plot};
-use crate::scene::{
-    Described, IntegrateOptions, TextModel, TextOutcome, TextPlan, run_text, text_columns,
-};
+use crate::scene::{Described, IntegrateOptions, TextModel, TextOutcome, TextPlan, run_text};
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -25,7 +23,7 @@ pub fn run(options: &IntegrateOptions, model: TextModel, words: &[String]) -> Re
         say(plan.explain());
     }
     let columns = views::names(&plan.columns, false);
-    let pictured = views::names(&text_columns(&plan.model), false);
+    let pictured = views::names(&plan.pictured(), false);
     let numbers = numerics(&plan);
     let kept = report.format == Format::Json;
     let remarks = report.remarks(&plan.model, &numbers);
