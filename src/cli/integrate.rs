@@ -209,7 +209,7 @@ fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> Integrati
 }
 
 /// The changes of V_H, as they were given.
-fn changes(program: &Program) -> Vec<Value> {
+pub fn changes(program: &Program) -> Vec<Value> {
     let one = |change: &Change| json!({"time": change.time, "until": change.until, "driving": change.driving});
     program.changes.iter().map(one).collect()
 }

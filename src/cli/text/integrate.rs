@@ -1,6 +1,6 @@
 //! `twinslip integrate --system`.
 
-use crate::cli::integrate::summary_of;
+use crate::cli::integrate::{changes, summary_of};
 use crate::cli::interrupt;
 use crate::cli::report::{self, Report};
 use crate::cli::stream::StreamOut;
@@ -87,6 +87,8 @@ struct RunResult<'a> {
     rows: &'a RowList,
     #[serde(rename = "final")]
     last: Option<Map<String, Value>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    program: Option<Vec<Value>>,
 }
 
 fn result<'a>(plan: &TextPlan, rows: &'a RowList, outcome: &TextOutcome) -> RunResult<'a> {
@@ -99,5 +101,9 @@ fn result<'a>(plan: &TextPlan, rows: &'a RowList, outcome: &TextOutcome) -> RunR
         }
         last
     });
-    RunResult { rows, last }
+    RunResult {
+        rows,
+        last,
+        program: plan.program.as_ref().map(changes),
+    }
 }

@@ -100,6 +100,10 @@ impl TextLawPlan {
             let of = |slopes: Slopes<Interval>| slopes.relative.value;
             let v = zero_of(&friction, ends, |slopes| slopes.relative)?;
             let (around, radius) = enclosure(&friction, v, of);
+            // Where no sign is certain the stress is flat, or nearly so.
+            if !radius.is_finite() {
+                continue;
+            }
             let steady = friction.steady(v)?;
             let [stress, _] = friction.enclosed(around, steady);
             extrema.push(Extremum::new(kind, Uncertain::new(v, radius), stress));
@@ -205,6 +209,9 @@ fn largest_stiffness(
         let v = maximum_of_stiffness(friction, ends)?;
         let of = |slopes: Slopes<Interval>| slopes.critical.gradient[0];
         let (around, radius) = enclosure(friction, v, of);
+        if !radius.is_finite() {
+            continue;
+        }
         let stiffness = slopes_at(friction, v, friction.steady(v)?).critical.value;
         let error = slopes_within(friction, around).map_or(f64::INFINITY, |all| {
             all.critical.value.distance_from(stiffness)
