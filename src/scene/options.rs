@@ -299,7 +299,7 @@ pub struct EquilibriaOptions {
     )]
     pub within: Option<String>,
     /// With --system: near which values of all states, in their order [default: its table start]. With a --law from a file TAU,PSI1,PSI2
-    /// or near-symmetric[:EPS]
+    /// or near-symmetric:EPS
     #[arg(
         long,
         value_name = "START",
