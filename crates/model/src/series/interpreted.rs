@@ -9,7 +9,7 @@ use super::linearised::longest_of_columns;
 use super::program::Program;
 use super::program_rows::ProgramRows;
 use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
-use super::{Accuracy, MAX_ORDER, usual_order};
+use super::{Accuracy, usual_order};
 use crate::number::DoubleDouble;
 use pulp::NullaryFnOnce;
 
@@ -345,12 +345,13 @@ fn finite<T: Element>(x: &[T]) -> bool {
 }
 
 impl<T: Element> Trajectory for Interpreted<'_, T> {
-    /// An order takes the more time the less there is to add up, and there is no code for each.
+    /// Orders beyond the highest of these gain nothing, and come nearer to where a formula has no value before they are past it.
     fn order(&self, rtol: f64) -> usize {
         /// Tolerances above which lower orders win.
-        const FROM: [(f64, usize); 3] = [(1e-6, 12), (1e-9, 16), (1e-11, 20)];
+        const FROM: [(f64, usize); 2] = [(1e-6, 12), (1e-9, 16)];
+        const HIGHEST: usize = 20;
         let least = FROM.iter().find(|(above, _)| rtol > *above);
-        least.map_or(MAX_ORDER, |(_, order)| *order)
+        least.map_or(HIGHEST, |(_, order)| *order)
     }
 
     fn start(&mut self, y: &[f64]) {

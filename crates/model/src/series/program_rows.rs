@@ -156,10 +156,10 @@ impl<T: Element> ProgramRows<T> {
                     self.aside[result] = any.like(1.0) / self.get(b, 0);
                     a / self.get(b, 0)
                 } else {
-                    let inverse = self.aside[result];
-                    let older = self.inner(result, b, k) * inverse;
-                    let of_b = self.get(result, 0) * inverse;
-                    a.mul_add(inverse, -self.get(b, k).mul_add(of_b, older))
+                    // The difference first: where b_0 is tiny it may cancel to the last digit.
+                    let rest = a - self.inner(result, b, k);
+                    let by_newest = -self.get(result, 0);
+                    by_newest.mul_add(self.get(b, k), rest) * self.aside[result]
                 }
             }
             Operation::Exponential(a) => {
@@ -251,9 +251,8 @@ impl<T: Element> ProgramRows<T> {
     /// (k a_k - sum of s_j u_(k-j) over 0 < j < k) / (k u_0), with s_j = j y_j, of y' = a' / u.
     #[inline(always)]
     fn of_slopes(&mut self, a: usize, (u, y, slopes): (usize, usize, usize), k: usize) -> T {
-        let inverse = self.aside[y];
-        let older = self.inner(slopes, u, k).scale(self.one_over(k)) * inverse;
-        let new = self.get(a, k).mul_add(inverse, -older);
+        let older = self.inner(slopes, u, k).scale(self.one_over(k));
+        let new = (self.get(a, k) - older) * self.aside[y];
         self.set(slopes, k, new.scale(DoubleDouble::from(k as f64)));
         new
     }
@@ -279,14 +278,13 @@ impl<T: Element> ProgramRows<T> {
             self.aside[y] = any.like(1.0) / self.get(a, 0);
             return self.get(a, 0).powf(p);
         }
-        let inverse = self.aside[y];
         let one_and_p = DoubleDouble::of_finite(1.0, p);
         let p = DoubleDouble::from(p);
         let [plain, weighted] = self.inners(a, [y, slopes], k);
         let weighted = weighted.scale(one_and_p).scale(self.one_over(k));
-        let older = (plain.scale(p) - weighted) * inverse;
-        let by_newest = self.get(y, 0).scale(p) * inverse;
-        let new = self.get(a, k).mul_add(by_newest, older);
+        let by_newest = self.get(y, 0).scale(p);
+        let rest = plain.scale(p) - weighted;
+        let new = self.get(a, k).mul_add(by_newest, rest) * self.aside[y];
         self.set(slopes, k, new.scale(DoubleDouble::from(k as f64)));
         new
     }
