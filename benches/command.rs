@@ -2,20 +2,17 @@
 //! the paper take.
 //!
 //! `first-row/...`: from the start of the process to the end of its first row of numbers. `final-only/...`: one run of 64,000 time units,
-//! by the command, which counts slips, and by the library. `from-file/...`: Lorenz' equations read from a file, and compiled, by
-//! Taylor's method. `whole/...`: with all cores.
+//! by the command, which counts slips, and by the library. `whole/...`: with all cores.
 #![allow(missing_docs)]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
-use twinslip::field::{State, VectorField};
+use twinslip::field::State;
 use twinslip::friction::Parameters;
 use twinslip::integrate::{Integrator, Taylor, Tolerances};
-use twinslip::model::classics::Lorenz;
-use twinslip::model::{Loading, Smooth, TwoInterfaces};
-use twinslip::scene::SystemFile;
+use twinslip::model::{Loading, TwoInterfaces};
 
 fn begin(arguments: &str) -> Child {
     let mut command = Command::new(env!("CARGO_BIN_EXE_twinslip"));
@@ -104,36 +101,6 @@ fn final_only(criterion: &mut Criterion) {
     group.finish();
 }
 
-fn from_file(criterion: &mut Criterion) {
-    let mut group = criterion.benchmark_group("from-file");
-    group
-        .sample_size(20)
-        .measurement_time(Duration::from_secs(3));
-    let text = include_str!("../scenes/systems/lorenz.toml");
-    let read = SystemFile::parse("lorenz", text).expect("a system").system;
-    let (read, equations) = (read.field::<3>().expect("three"), Lorenz::classical());
-    let compiled = Smooth {
-        equations,
-        parameters: [28.0, 8.0 / 3.0],
-    };
-    let fields: [(&str, &dyn VectorField<3>); 2] = [("read", &read), ("compiled", &compiled)];
-    for tolerance in [1e-8, 1e-14] {
-        let tolerances = Tolerances::equal(tolerance).expect("positive");
-        let mut taylor = Taylor::new(tolerances, 10_000_000).expect("steps");
-        let start = State::<3>::new(1.0, 1.0, 20.0);
-        for (name, field) in fields {
-            group.bench_function(format!("{name}/{tolerance:e}"), |bencher| {
-                bencher.iter(|| {
-                    taylor
-                        .flow(field, (0.0, 50.0), &start, None)
-                        .expect("a run")
-                });
-            });
-        }
-    }
-    group.finish();
-}
-
 fn processes(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("whole");
     group
@@ -156,5 +123,5 @@ fn processes(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, first_rows, final_only, from_file, processes);
+criterion_group!(benches, first_rows, final_only, processes);
 criterion_main!(benches);

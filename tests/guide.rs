@@ -43,7 +43,9 @@ fn run_all(lines: &[&str], place: &Path) {
         let named = line
             .split_whitespace()
             .skip_while(|word| !word.starts_with('-'));
-        let file = |word: &&str| word.contains('.') && !word.contains('=');
+        // Those in TOML it reads.
+        let file =
+            |word: &&str| word.contains('.') && !word.contains('=') && !word.ends_with(".toml");
         for file in named
             .filter(file)
             .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))

@@ -108,6 +108,7 @@ mod tableaus;
 mod taylor;
 mod text_commands;
 mod text_files;
+mod text_laws;
 mod text_systems;
 mod transport;
 mod unequal;

@@ -388,3 +388,47 @@ fn a_run_that_begins_on_a_kink_leaves_it_to_its_own_side() {
         near(number(&made, "/result/final/z"), 0.5, 1e-14);
     }
 }
+
+#[test]
+fn the_block_with_inertia_loses_its_stability_where_its_polynomial_says() {
+    // With g = gamma^2/xi the eigenvalues of steady sliding solve x^3 + (1 + g) x^2 + (gamma^2 - eps g) x + gamma^2 = 0, of which two are
+    // imaginary at eps = g xi/(1 + g).
+    let (gamma, xi): (f64, f64) = (0.8, 0.5);
+    let g = gamma * gamma / xi;
+    let hopf = g * xi / (1.0 + g);
+    let at = |eps: f64| {
+        let ended = twinslip(&format!(
+            "equilibria --system inertial-block --set eps={eps} --start 0,0,0 --format json -q"
+        ));
+        let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+        made["result"]["equilibria"][0].clone()
+    };
+    let one = at(hopf);
+    near(number(&one, "/eigenvalues/0/0"), 0.0, 1e-14);
+    let frequency = (gamma * gamma / (1.0 + g)).sqrt();
+    near(number(&one, "/eigenvalues/0/1"), frequency, 1e-14);
+    assert_eq!(one["verdict"], "undecided");
+    assert_eq!(at(0.999 * hopf)["verdict"], "stable");
+    assert_eq!(at(1.001 * hopf)["verdict"], "unstable");
+}
+
+#[test]
+fn equal_blocks_slip_as_one_that_falls_from_static_to_sliding_friction() {
+    // From the static friction 1 a block swings about that of sliding, 1/phi, to 2/phi - 1.
+    let made = object(
+        "integrate --system two-blocks --set beta=1,nu=1e-3,delta=3e-5,weakening=5e-4 --start 0.5,0.5,0.01,0.01 --until 1500 --points 150001 --columns time,y1,y2",
+    );
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let of = |name: &str| -> Vec<f64> {
+        let late = rows.iter().filter(|row| number(row, "/time") > 600.0);
+        late.map(|row| row[name].as_f64().expect("a number"))
+            .collect()
+    };
+    let (first, second) = (of("y1"), of("y2"));
+    let most = first.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let least = first.iter().copied().fold(f64::INFINITY, f64::min);
+    near(most, 1.0, 0.01);
+    near(least, 2.0 / 1.25 - 1.0, 0.01);
+    // Both start alike.
+    assert!(first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-3));
+}

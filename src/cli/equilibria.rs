@@ -14,7 +14,7 @@ use nalgebra::Complex;
 use serde_json::{Value, json};
 
 pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(&options.model, &[])? {
         return text::equilibria::run(options, model, words);
     }
     let plan = EquilibriaPlan::new(options)?;

@@ -18,7 +18,13 @@ use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    // A program may say itself which V_H is the first.
+    let free: &[&str] = if options.program.is_some() {
+        &["driving"]
+    } else {
+        &[]
+    };
+    if let Some(model) = TextModel::of(&options.model, free)? {
         return text::integrate::run(options, model, words);
     }
     let plan = Plan::new(options)?;
@@ -203,7 +209,7 @@ fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> Integrati
 }
 
 /// The changes of V_H, as they were given.
-fn changes(program: &Program) -> Vec<Value> {
+pub fn changes(program: &Program) -> Vec<Value> {
     let one = |change: &Change| json!({"time": change.time, "until": change.until, "driving": change.driving});
     program.changes.iter().map(one).collect()
 }

@@ -1,30 +1,49 @@
 //! `twinslip law`.
 
 use super::report::{self, Report};
+use super::text;
 use super::{Ending, say, written};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::friction::ExtremumKind;
 use crate::number::Uncertain;
 use crate::output::{Format, plot};
-use crate::scene::{LawLandmarks, LawOptions, LawPlan, LawPoint, Quantity, Units};
+use crate::scene::{
+    Column, Described, LawLandmarks, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Units,
+};
 use crate::views;
 use serde_json::{Value, json};
 
 pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
+    match TextModel::of(&options.model, &["driving", "stiffness"])? {
+        Some(model) if model.slab.is_some() => return text::law::run(options, model, words),
+        _ => {}
+    }
     let plan = LawPlan::new(options)?;
+    let report = begun(options, words, || plan.explain())?;
+    let (points, landmarks) = (plan.points(), plan.landmarks()?);
+    let (system, curve) = (&plan.system, (points.as_slice(), &landmarks));
+    if let Some(path) = &options.plot {
+        let drawing = picture(&system.units, Some(system.direct_effect), curve);
+        plot::write(path, &drawing)?;
+    }
+    write(&report, system, &views::law_columns(), curve, None)
+}
+
+/// Checks where results and pictures go, and says what will be computed.
+pub fn begun<'a>(
+    options: &LawOptions,
+    words: &'a [String],
+    explain: impl FnOnce() -> String,
+) -> Result<Report<'a>> {
     if let Some(path) = &options.plot {
         plot::PictureFormat::of(path)?;
     }
     let plots: Vec<&std::path::Path> = options.plot.as_deref().into_iter().collect();
     let report = Report::new(&options.output, words, &plots)?;
     if options.output.explain {
-        say(plan.explain());
+        say(explain());
     }
-    let (points, landmarks) = (plan.points(), plan.landmarks()?);
-    if let Some(path) = &options.plot {
-        plot::write(path, &picture(&plan, &points, &landmarks))?;
-    }
-    write(&report, &plan, &points, &landmarks)
+    Ok(report)
 }
 
 /// Extrema and the maximum of k_c, in the user's units.
@@ -53,14 +72,14 @@ fn kind(kind: ExtremumKind) -> &'static str {
     }
 }
 
-fn write(
+pub fn write<R>(
     report: &Report<'_>,
-    plan: &LawPlan,
-    points: &[LawPoint],
-    landmarks: &LawLandmarks,
+    system: &dyn Described,
+    columns: &[Column<R>],
+    (points, landmarks): (&[R], &LawLandmarks),
+    failure: Option<&Error>,
 ) -> Result<Ending> {
-    let (system, columns) = (&plan.system, views::law_columns());
-    let units = &system.units;
+    let units = system.units();
     let (extrema, maximum) = objects(landmarks, units);
     let transition = landmarks
         .transition_rate
@@ -68,7 +87,7 @@ fn write(
     if report.format == Format::Json {
         let rows = points.iter();
         let rows: Vec<Value> = rows
-            .map(|point| Value::Object(views::object(&columns, point, units)))
+            .map(|point| Value::Object(views::object(columns, point, units)))
             .collect();
         let result = json!({
             "extrema": extrema,
@@ -77,13 +96,13 @@ fn write(
             "rows": rows,
         });
         let work = json!({"evaluations": points.len()});
-        let bytes = report.envelope(system, json!({}), result, work, None);
+        let bytes = report.envelope(system, json!({}), result, work, failure);
         return written(report.place.write(&bytes), &report.place);
     }
     let found = landmark_lines(&extrema, &maximum, transition);
     let mut remarks = report.remarks(system, &Value::Null);
     remarks.extend(found.iter().cloned());
-    let ending = report.write_all(units, remarks, &columns, points)?;
+    let ending = report.write_all(units, remarks, columns, points)?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)
 }
@@ -122,8 +141,13 @@ fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -
     lines
 }
 
-fn picture(plan: &LawPlan, points: &[LawPoint], landmarks: &LawLandmarks) -> plot::Drawing {
-    let units = &plan.system.units;
+/// tau_ss, as a coefficient of friction where a is known, and k_c against V.
+pub fn picture(
+    units: &Units,
+    direct_effect: Option<f64>,
+    (points, landmarks): (&[LawPoint], &LawLandmarks),
+) -> plot::Drawing {
+    let scale = direct_effect.unwrap_or(1.0);
     let out = |quantity, x| units.outward(quantity, x);
     let unit = |quantity| units.short_name(quantity);
     let each = |number: &dyn Fn(&LawPoint) -> f64| points.iter().map(number).collect::<Vec<f64>>();
@@ -134,12 +158,16 @@ fn picture(plan: &LawPlan, points: &[LawPoint], landmarks: &LawLandmarks) -> plo
             ExtremumKind::Minimum => ("minimum V_m", plot::Side::Below),
         };
         let at = out(Quantity::SlipRate, extremum.slip_rate.value);
-        let friction = plan.system.direct_effect * extremum.stress.value;
+        let friction = scale * extremum.stress.value;
         plot::Mark::new(at, friction, name).side(side)
     });
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
-    let coefficient = plot::Axis::linear("friction coefficient τₛₛ/σ");
-    let curve = plot::PlotSeries::new("", slip_rates.clone(), each(&|at| at.friction));
+    let coefficient = plot::Axis::linear(match direct_effect {
+        Some(_) => "friction coefficient τₛₛ/σ",
+        None => "steady stress τₛₛ",
+    });
+    let friction = each(&|at| scale * at.stress);
+    let curve = plot::PlotSeries::new("", slip_rates.clone(), friction);
     let friction = plot::Panel {
         series: vec![curve],
         marks: marks.collect(),

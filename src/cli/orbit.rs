@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 use std::path::Path;
 
 pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(&options.model, &[])? {
         return text::orbit::run(options, model, words);
     }
     let plan = OrbitPlan::new(options)?;

@@ -20,51 +20,79 @@ use std::io::Write;
 use std::path::Path;
 
 pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(&options.model, &[])? {
         return text::section::run(options, model, words);
     }
     let plan = SectionPlan::new(options)?;
-    if let Some(path) = &options.plot {
-        plot::PictureFormat::of(path)?;
-    }
-    let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
-    let report = Report::new(&options.output, words, &others)?;
-    if options.output.explain {
-        say(explain_section(&plan).trim_end());
-    }
-    let columns = views::names(&section_columns(plan.system.interfaces), false);
-    let numbers = numerics(&plan);
-    let drawn = options.plot.is_some();
-    let remarks = report.remarks(&plan.system, &numbers);
-    let columns = (columns, &plan.system.units);
-    let mut out = match StreamOut::new(&report, remarks, columns, drawn) {
-        Ok(out) => out.counting(),
-        Err(error) => return written(Err(error), &report.place),
+    let columns = section_columns(plan.system.interfaces);
+    let map = ReturnMap {
+        system: &plan.system,
+        explanation: explain_section(&plan),
+        columns: views::names(&columns, false),
+        numerics: numerics(&plan),
     };
-    interrupt::watch();
-    let outcome = run_section(&plan, &mut out)?;
-    interrupt::unwatch();
-    let seconds = out.progress.finish().as_secs_f64();
-    let StreamOut { rows, broken, .. } = out;
-    if let Some(error) = broken {
-        return written(Err(error), &report.place);
-    }
-    let asked = (numbers, plan.lyapunov);
-    let ending = write(&plan.system, asked, &report, &rows, &outcome)?;
-    match &options.plot {
-        Some(path) if rows.iter().len() > 0 => plot::write(path, &picture(&plan, &rows))?,
-        Some(_) => report.say("there is no return to draw"),
-        None => {}
-    }
-    report.say(summary(&plan.system.units, &outcome, seconds));
-    report.ended(match outcome.failure {
-        Some(error) => Err(error),
-        None if interrupt::asked() => Ok(Ending::Interrupted),
-        None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
-            Ok(Ending::Undecided)
+    let picture = |rows: &RowList| (rows.iter().len() > 0).then(|| picture(&plan, rows));
+    map.run(options, words, |out| run_section(&plan, out), picture)
+}
+
+/// A return map that is asked for, of whatever slides or turns.
+pub struct ReturnMap<'a> {
+    pub system: &'a dyn Described,
+    pub explanation: String,
+    pub columns: Vec<(String, Quantity)>,
+    pub numerics: Value,
+}
+
+impl ReturnMap<'_> {
+    /// Runs it, and writes its rows, its verdict and its picture, of which there is none where there are too few rows.
+    pub fn run(
+        self,
+        options: &SectionOptions,
+        words: &[String],
+        run: impl FnOnce(&mut StreamOut) -> Result<SectionOutcome>,
+        picture: impl FnOnce(&RowList) -> Option<plot::Drawing>,
+    ) -> Result<Ending> {
+        if let Some(path) = &options.plot {
+            plot::PictureFormat::of(path)?;
         }
-        None => Ok(ending),
-    })
+        let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
+        let report = Report::new(&options.output, words, &others)?;
+        if options.output.explain {
+            say(self.explanation.trim_end());
+        }
+        let units = self.system.units();
+        let remarks = report.remarks(self.system, &self.numerics);
+        let drawn = options.plot.is_some();
+        let mut out = match StreamOut::new(&report, remarks, (self.columns, units), drawn) {
+            Ok(out) => out.counting(),
+            Err(error) => return written(Err(error), &report.place),
+        };
+        interrupt::watch();
+        let outcome = run(&mut out)?;
+        interrupt::unwatch();
+        let seconds = out.progress.finish().as_secs_f64();
+        let StreamOut { rows, broken, .. } = out;
+        if let Some(error) = broken {
+            return written(Err(error), &report.place);
+        }
+        let asked = (self.numerics, options.lyapunov);
+        let ending = write(self.system, asked, &report, &rows, &outcome)?;
+        if let Some(path) = &options.plot {
+            match picture(&rows) {
+                Some(picture) => plot::write(path, &picture)?,
+                None => report.say("there are too few returns to draw"),
+            }
+        }
+        report.say(summary(units, &outcome, seconds));
+        report.ended(match outcome.failure {
+            Some(error) => Err(error),
+            None if interrupt::asked() => Ok(Ending::Interrupted),
+            None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
+                Ok(Ending::Undecided)
+            }
+            None => Ok(ending),
+        })
+    }
 }
 
 fn numerics(plan: &SectionPlan) -> Value {
@@ -85,7 +113,7 @@ fn numerics(plan: &SectionPlan) -> Value {
 }
 
 /// The object, or in a table the verdict after the rows.
-pub fn write(
+fn write(
     system: &dyn Described,
     (numerics, lyapunov): (Value, bool),
     report: &Report<'_>,
@@ -183,7 +211,7 @@ fn result<'a>(
 }
 
 /// What was found, and at which cost.
-pub fn summary(units: &Units, outcome: &SectionOutcome, seconds: f64) -> String {
+fn summary(units: &Units, outcome: &SectionOutcome, seconds: f64) -> String {
     let work = &outcome.work;
     let mut text = format!(
         "{} steps ({} rejected), {} evaluations of f, {}, {}: {}",

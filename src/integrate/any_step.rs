@@ -69,6 +69,10 @@ pub trait StepSeries {
     fn variable(&self, i: usize) -> &[f64];
     /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
     fn slip_rates(&self) -> [&[f64]; 2];
+    /// The slips of both interfaces up to a time after the beginning of the step ([`Expansion::slips`]).
+    fn slips(&self, time: f64) -> [f64; 2];
+    /// The time from the beginning of the step to a time of the solution ([`Expansion::since_begin`]).
+    fn since_begin(&self, time: f64) -> f64;
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
     fn crossings(
         &self,
@@ -102,6 +106,14 @@ impl<const N: usize> StepSeries for Expansion<N> {
 
     fn slip_rates(&self) -> [&[f64]; 2] {
         self.slip_rates.each_ref().map(|rates| &rates[..self.order])
+    }
+
+    fn slips(&self, time: f64) -> [f64; 2] {
+        self.slips(time)
+    }
+
+    fn since_begin(&self, time: f64) -> f64 {
+        self.since_begin(time)
     }
 
     fn crossings(

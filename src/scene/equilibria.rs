@@ -57,6 +57,13 @@ impl EquilibriaPlan {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &EquilibriaOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
+        for (name, given) in [("box", &options.within), ("start", &options.start)] {
+            if given.is_some() {
+                return Err(Error::Input(format!(
+                    "`{name}` is where steady states of a `system` or a `law` from a file are looked for; of built-in laws all are found without it"
+                )));
+            }
+        }
         let driving = system.needed_driving()?;
         let differ = system.unequal.is_some();
         let (solver_name, solver) = solver(options.solver.as_deref(), differ)?;

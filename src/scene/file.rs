@@ -38,9 +38,11 @@ impl SceneFile {
     pub fn read(path: &Path, program: &Command) -> Result<Self> {
         let text = read_bounded(path, LONGEST)?;
         let mut scene = Self::parse(&path.display().to_string(), &text, program)?;
-        // Where a file is, its systems are; those that are built in have no place.
+        // Where a file is, its systems and laws are; those that are built in have no place.
         for (flag, value, _) in &mut scene.flags {
-            if let ("system", Some(value), Some(folder)) = (flag.as_str(), value, path.parent()) {
+            if let ("system" | "law", Some(value), Some(folder)) =
+                (flag.as_str(), value, path.parent())
+            {
                 let beside = folder.join(value.as_str());
                 if beside.exists() {
                     *value = beside.display().to_string();

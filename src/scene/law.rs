@@ -2,7 +2,7 @@
 
 use super::options::LawOptions;
 use super::system::System;
-use super::units::Quantity;
+use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
 use crate::friction::{
     Extremum, Formulas, Law, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
@@ -30,8 +30,8 @@ pub struct LawPoint {
     pub slip_rate: f64,
     /// tau_ss(V).
     pub stress: f64,
-    /// The friction coefficient a tau_ss.
-    pub friction: f64,
+    /// The friction coefficient a tau_ss; `None` for a law without an a.
+    pub friction: Option<f64>,
     /// psi_ss(V).
     pub state: f64,
     /// k_c(V): a single interface on a stiffer spring slides steadily.
@@ -56,29 +56,8 @@ impl LawPlan {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
         let system = System::new(&options.model)?.alike("law")?;
-        let end = |name, value: Option<f64>, default: f64| match value {
-            Some(v) => Ok(system.units.inward(Quantity::SlipRate, positive(name, v)?)),
-            None => Ok(default),
-        };
-        let from = end("from", options.from, GRID.0)?;
-        let to = end("to", options.to, GRID.1)?;
-        if from >= to {
-            return Err(Error::Input("`from` must be less than `to`".into()));
-        }
-        let n = options.points;
-        if !(2..=MOST_POINTS).contains(&n) {
-            return Err(Error::parameter("points", n, "from 2 to 1e7"));
-        }
-        let ratio = (to / from).ln();
-        let slip_rate = |i| match i {
-            0 => from,
-            _ if i + 1 == n => to,
-            _ => from * (ratio * i as f64 / (n - 1) as f64).exp(),
-        };
-        Ok(LawPlan {
-            slip_rates: (0..n).map(slip_rate).collect(),
-            system,
-        })
+        let slip_rates = slip_rates(options, &system.units)?;
+        Ok(LawPlan { slip_rates, system })
     }
 
     /// The plan, one subject a line.
@@ -97,7 +76,7 @@ impl LawPlan {
             LawPoint {
                 slip_rate: v,
                 stress,
-                friction: self.system.direct_effect * stress,
+                friction: Some(self.system.direct_effect * stress),
                 state: law.steady_state(v),
                 critical_stiffness: critical_stiffness(law, v),
             }
@@ -117,4 +96,28 @@ impl LawPlan {
             transition_rate: law.transition_rate(),
         })
     }
+}
+
+/// The slip rates of the grid, ascending, in V*.
+pub(super) fn slip_rates(options: &LawOptions, units: &Units) -> Result<Vec<f64>> {
+    let end = |name, value: Option<f64>, default: f64| match value {
+        Some(v) => Ok(units.inward(Quantity::SlipRate, positive(name, v)?)),
+        None => Ok(default),
+    };
+    let from = end("from", options.from, GRID.0)?;
+    let to = end("to", options.to, GRID.1)?;
+    if from >= to {
+        return Err(Error::Input("`from` must be less than `to`".into()));
+    }
+    let n = options.points;
+    if !(2..=MOST_POINTS).contains(&n) {
+        return Err(Error::parameter("points", n, "from 2 to 1e7"));
+    }
+    let ratio = (to / from).ln();
+    let slip_rate = |i| match i {
+        0 => from,
+        _ if i + 1 == n => to,
+        _ => from * (ratio * i as f64 / (n - 1) as f64).exp(),
+    };
+    Ok((0..n).map(slip_rate).collect())
 }

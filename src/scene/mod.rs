@@ -88,8 +88,9 @@ pub use shipped::{about, shipped, shipped_names};
 pub use sweep::{Shard, SweepOptions, SweepPlan};
 pub use system::{Described, System};
 pub use text::{
-    SearchPlace, SystemFile, TextEquilibria, TextEquilibriaPlan, TextEquilibrium, TextInstant,
-    TextModel, TextOptions, TextOrbitPlan, TextOutcome, TextPlan, TextReturn, TextSectionPlan,
-    run_text, run_text_section, text_columns, text_section_columns,
+    Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,
+    TextEquilibrium, TextInstant, TextLawPlan, TextLawPoint, TextModel, TextOptions, TextOrbitPlan,
+    TextOutcome, TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section,
+    text_columns, text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};

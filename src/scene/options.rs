@@ -23,7 +23,8 @@ fn laws() -> String {
         .map(|(name, source)| format!("{name} {source}"))
         .collect();
     format!(
-        "Friction law, by the paper's equations or others: {}",
+        "Friction law, by the paper's equations or others: {}. Or a law of one's own: FILE.toml with its slip_rate, in tau and psi, \
+         its evolution, in v and psi, and its parameters",
         listed(&laws)
     )
 }
@@ -68,18 +69,18 @@ pub struct SlabOptions {
     /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     pub healing_time: Option<f64>,
-    /// Residual strength c of the spinodal law
-    #[arg(long, value_name = "c", default_value = "1e-3", value_parser = number, allow_negative_numbers = true)]
-    pub residual_strength: f64,
-    /// Direct effect a
-    #[arg(long, value_name = "a", default_value_t = 0.0349, value_parser = number, allow_negative_numbers = true)]
-    pub direct_effect: f64,
-    /// Evolution effect b
-    #[arg(long, value_name = "b", default_value_t = 0.0489, value_parser = number, allow_negative_numbers = true)]
-    pub evolution_effect: f64,
-    /// Friction coefficient a_v at V*
-    #[arg(long, value_name = "a_v", default_value_t = 0.369, value_parser = number, allow_negative_numbers = true)]
-    pub reference_friction: f64,
+    /// Residual strength c of the spinodal law [default: 1e-3]
+    #[arg(long, value_name = "c", value_parser = number, allow_negative_numbers = true)]
+    pub residual_strength: Option<f64>,
+    /// Direct effect a [default: 0.0349]
+    #[arg(long, value_name = "a", value_parser = number, allow_negative_numbers = true)]
+    pub direct_effect: Option<f64>,
+    /// Evolution effect b [default: 0.0489]
+    #[arg(long, value_name = "b", value_parser = number, allow_negative_numbers = true)]
+    pub evolution_effect: Option<f64>,
+    /// Friction coefficient a_v at V* [default: 0.369]
+    #[arg(long, value_name = "a_v", value_parser = number, allow_negative_numbers = true)]
+    pub reference_friction: Option<f64>,
     /// Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law [default: 0; eta in Pa s/m with --si]
     #[arg(long, value_name = "ETA", value_parser = number, allow_negative_numbers = true, conflicts_with_all = ["shear_modulus", "shear_wave_speed"])]
     pub damping: Option<f64>,
@@ -251,7 +252,7 @@ pub struct SectionOptions {
     )]
     pub start: Option<String>,
     /// The section of the return map: stress=VALUE, or stress=auto for the steady stress at the mean slip rate, tau_ss(V_H/2)
-    /// of two interfaces [default: stress=auto]. With --system STATE=VALUE, which must be given
+    /// of two interfaces [default: stress=auto]. With --system STATE=VALUE, which must be given, and with a --law from a file either
     #[arg(long, value_name = "SURFACE", help_heading = "Run")]
     pub surface: Option<String>,
     /// Count returns where the stress (with --system the state) rises through the section, instead of where it falls
@@ -287,21 +288,21 @@ pub struct EquilibriaOptions {
     /// What slides; without --stiffness there are no eigenvalues and no verdict.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// With --system: all steady states in a box, a range for every state: x=-10:10,y=0:5
+    /// With --system, or a --law from a file: all steady states in a box, a range for every state: x=-10:10,y=0:5 [default of a law:
+    /// what its steady states have at rates from V_H/1e6 to V_H]
     #[arg(
         id = "box",
         long = "box",
         value_name = "RANGES",
-        requires = "system",
         allow_hyphen_values = true,
         help_heading = "Model"
     )]
     pub within: Option<String>,
-    /// With --system: near which values of all states, in their order [default: its table start]
+    /// With --system: near which values of all states, in their order [default: its table start]. With a --law from a file TAU,PSI1,PSI2
+    /// or near-symmetric:EPS
     #[arg(
         long,
         value_name = "START",
-        requires = "system",
         conflicts_with = "box",
         allow_hyphen_values = true,
         help_heading = "Model"

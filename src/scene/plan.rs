@@ -16,7 +16,7 @@ use crate::model::Loading;
 /// How a run starts where nobody says otherwise.
 pub(super) const USUAL_START: &str = "near-symmetric";
 /// The asymmetry of `--start near-symmetric` where none is given.
-const NEAR_SYMMETRIC: f64 = 0.01;
+pub(super) const NEAR_SYMMETRIC: f64 = 0.01;
 /// Total slip rate over V_H from which on an excursion counts as a stick-slip event.
 const EVENT_THRESHOLD: f64 = 2.0;
 /// More rows than this are a slip of the pen.

@@ -87,10 +87,10 @@ impl SlabOptions {
                 self.damping = Some(value);
             }
             "healing_time" => self.healing_time = Some(value),
-            "residual_strength" => self.residual_strength = value,
-            "direct_effect" => self.direct_effect = value,
-            "evolution_effect" => self.evolution_effect = value,
-            "reference_friction" => self.reference_friction = value,
+            "residual_strength" => self.residual_strength = Some(value),
+            "direct_effect" => self.direct_effect = Some(value),
+            "evolution_effect" => self.evolution_effect = Some(value),
+            "reference_friction" => self.reference_friction = Some(value),
             "slip_length" => self.slip_length = Some(value),
             "normal_stress" => self.normal_stress = Some(value),
             _ => return Err(Error::unknown("set", name, &NAMES)),

@@ -12,9 +12,18 @@ pub fn shipped(name: &str) -> Option<&'static str> {
 
 /// The text of the system of one's own that is built in under that name: `lorenz`, `lorenz.toml` or the path that its file has.
 pub(super) fn shipped_system(path: &Path) -> Option<&'static str> {
+    shipped_in("systems", path)
+}
+
+/// The same of a friction law of one's own.
+pub(super) fn shipped_law(path: &Path) -> Option<&'static str> {
+    shipped_in("laws", path)
+}
+
+fn shipped_in(folder: &str, path: &Path) -> Option<&'static str> {
     let path = path.strip_prefix("scenes").unwrap_or(path);
-    let path = path.strip_prefix("systems").unwrap_or(path);
-    let file = Path::new("systems").join(path).with_extension("toml");
+    let path = path.strip_prefix(folder).unwrap_or(path);
+    let file = Path::new(folder).join(path).with_extension("toml");
     SCENES.get_file(file)?.contents_utf8()
 }
 

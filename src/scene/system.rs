@@ -11,6 +11,7 @@ use crate::friction::{
 use crate::model::scales::Scales;
 use crate::model::{Loading, UnequalInterfaces};
 use serde_json::{Map, Value, json};
+use std::path::Path;
 
 /// L in m, fitted by the paper to Heslot et al. (1994).
 const SLIP_LENGTH: f64 = 0.9e-6;
@@ -20,6 +21,52 @@ const REFERENCE_RATE: f64 = 1e-6;
 const NORMAL_STRESS: f64 = 1e6;
 /// R of the paper.
 const HEALING_TIME: f64 = 100.0;
+/// c of the paper.
+const RESIDUAL_STRENGTH: f64 = 1e-3;
+/// a, b and a_v of the paper.
+const DIRECT_EFFECT: f64 = 0.0349;
+const EVOLUTION_EFFECT: f64 = 0.0489;
+const REFERENCE_FRICTION: f64 = 0.369;
+
+impl SlabOptions {
+    /// c
+    pub(super) fn c(&self) -> f64 {
+        self.residual_strength.unwrap_or(RESIDUAL_STRENGTH)
+    }
+
+    /// a
+    pub(super) fn a(&self) -> f64 {
+        self.direct_effect.unwrap_or(DIRECT_EFFECT)
+    }
+
+    /// b
+    pub(super) fn b(&self) -> f64 {
+        self.evolution_effect.unwrap_or(EVOLUTION_EFFECT)
+    }
+
+    /// The file of a law of one's own; `None` where the law is built in.
+    pub(super) fn law_file(&self) -> Option<&Path> {
+        let path = Path::new(&self.law);
+        let is_file = path.extension().is_some_and(|ending| ending == "toml") || path.is_file();
+        (!AnyLaw::NAMES.contains(&self.law.as_str()) && is_file).then_some(path)
+    }
+
+    /// How many interfaces there are.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] where that are neither 1 nor 2.
+    pub(super) fn checked_interfaces(&self) -> Result<usize> {
+        if (1..=2).contains(&self.interfaces) {
+            return Ok(usize::from(self.interfaces));
+        }
+        Err(Error::parameter("interfaces", self.interfaces, "1 or 2"))
+    }
+
+    /// a_v
+    pub(super) fn a_v(&self) -> f64 {
+        self.reference_friction.unwrap_or(REFERENCE_FRICTION)
+    }
+}
 
 /// What a result is of, as the output tells it.
 pub trait Described {
@@ -71,13 +118,17 @@ impl System {
                 "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section and orbit take it".into(),
             ));
         }
-        if !(1..=2).contains(&options.interfaces) {
-            return Err(Error::parameter("interfaces", options.interfaces, "1 or 2"));
+        if options.law_file().is_some() {
+            return Err(Error::Input(format!(
+                "`law` {} is a law from a file; law, integrate, equilibria, section and orbit take it",
+                options.law
+            )));
         }
+        let interfaces = options.checked_interfaces()?;
         let of_one = OfOne::read(options)?;
         let first = of_one.first(options);
         let own = [0, 1].map(|i| of_one.constants(i, common(options, &first)));
-        let differ = options.interfaces == 2 && own[0] != own[1];
+        let differ = interfaces == 2 && own[0] != own[1];
         let (all, options) = (options, &first);
         // Checked in the user's numbers, before any conversion, so that the message shows what was typed.
         for (name, value) in [
@@ -92,11 +143,11 @@ impl System {
         let damping = damping(options)?;
         let healing_time = options.healing_time.unwrap_or(HEALING_TIME * time);
         let parameters = Parameters::new(
-            options.direct_effect,
-            options.evolution_effect,
-            options.reference_friction,
+            options.a(),
+            options.b(),
+            options.a_v(),
             positive("healing-time", healing_time / time)?,
-            options.residual_strength,
+            options.c(),
         )?
         .damped(damping / scales.map_or(1.0, |s| s.stress / s.slip_rate))?;
         let law = AnyLaw::named(&options.law, parameters)?;
@@ -130,11 +181,11 @@ impl System {
             law,
             unequal,
             constants,
-            interfaces: usize::from(options.interfaces),
+            interfaces,
             driving: inward(Quantity::SlipRate, "driving", driving)?,
             stiffness: inward(Quantity::Stiffness, "stiffness", stiffness)?,
             units,
-            direct_effect: options.direct_effect,
+            direct_effect: options.a(),
             echo,
         })
     }
@@ -261,10 +312,10 @@ fn common(options: &SlabOptions, first: &SlabOptions) -> [f64; 7] {
     let time = length / si(options.reference_rate, REFERENCE_RATE);
     [
         options.healing_time.unwrap_or(HEALING_TIME * time),
-        options.residual_strength,
-        options.direct_effect,
-        options.evolution_effect,
-        options.reference_friction,
+        options.c(),
+        options.a(),
+        options.b(),
+        options.a_v(),
         si(options.slip_length, SLIP_LENGTH),
         si(options.normal_stress, NORMAL_STRESS),
     ]
@@ -272,7 +323,7 @@ fn common(options: &SlabOptions, first: &SlabOptions) -> [f64; 7] {
 
 fn scales(options: &SlabOptions) -> Result<Scales> {
     Scales::new(
-        options.direct_effect,
+        options.a(),
         options.slip_length.unwrap_or(SLIP_LENGTH),
         options.reference_rate.unwrap_or(REFERENCE_RATE),
         options.normal_stress.unwrap_or(NORMAL_STRESS),
@@ -311,10 +362,10 @@ fn echo(
         ("driving", json!(driving)),
         ("stiffness", json!(stiffness)),
         ("healing_time", json!(healing_time)),
-        ("residual_strength", json!(options.residual_strength)),
-        ("direct_effect", json!(options.direct_effect)),
-        ("evolution_effect", json!(options.evolution_effect)),
-        ("reference_friction", json!(options.reference_friction)),
+        ("residual_strength", json!(options.c())),
+        ("direct_effect", json!(options.a())),
+        ("evolution_effect", json!(options.b())),
+        ("reference_friction", json!(options.a_v())),
         ("damping", json!(damping)),
         ("si", json!(options.si)),
     ];

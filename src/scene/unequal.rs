@@ -90,10 +90,10 @@ impl OfOne {
         let in_si = |own: Option<f64>| own.filter(|_| options.si);
         SlabOptions {
             healing_time: healing_time.or(options.healing_time),
-            residual_strength: c.unwrap_or(options.residual_strength),
-            direct_effect: a.unwrap_or(options.direct_effect),
-            evolution_effect: b.unwrap_or(options.evolution_effect),
-            reference_friction: a_v.unwrap_or(options.reference_friction),
+            residual_strength: c.or(options.residual_strength),
+            direct_effect: a.or(options.direct_effect),
+            evolution_effect: b.or(options.evolution_effect),
+            reference_friction: a_v.or(options.reference_friction),
             slip_length: in_si(slip_length).or(options.slip_length),
             normal_stress: in_si(normal_stress).or(options.normal_stress),
             ..options.clone()

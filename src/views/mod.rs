@@ -26,7 +26,9 @@ pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
 pub use sweep::{GridSide, PointOutcome, basin_map, regime_map};
-pub use text::{text_equilibria_columns, text_orbit_columns, text_return_map, text_run};
+pub use text::{
+    text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
+};
 
 /// The names as written, error budgets in columns of their own but in tables.
 pub fn names<R>(columns: &[Column<R>], table: bool) -> Vec<(String, Quantity)> {

@@ -2,10 +2,35 @@
 
 use super::orbit::multiplier_columns;
 use crate::orbit::Orbit;
-use crate::output::plot::{Axis, Drawing, Panel, PlotSeries};
+use crate::output::plot::{Axis, Drawing, Panel, PlotSeries, Stroke};
 use crate::output::{self, RowList};
-use crate::scene::{Column, Quantity, TextEquilibrium, TextModel, TextPlan, TextSectionPlan};
+use crate::scene::{
+    Column, Quantity, TextEquilibrium, TextLawPoint, TextModel, TextPlan, TextSectionPlan, TextSlab,
+};
 use Quantity::Number;
+
+/// The columns of the steady-state friction of a law from a file: those of a law that is built in, and error budgets.
+pub fn text_law_columns() -> Vec<Column<TextLawPoint>> {
+    type Row = TextLawPoint;
+    let known = |x: f64| Some(x).filter(|x| x.is_finite());
+    vec![
+        Column::new("slip_rate", Number, |at: &Row| at.point.slip_rate.into()),
+        Column::new("stress", Number, |at: &Row| at.point.stress.into()),
+        Column::new("friction", Number, |at: &Row| at.point.friction.into()),
+        Column::new("state", Number, |at: &Row| at.point.state.into()),
+        Column::new("critical_stiffness", Number, |at: &Row| {
+            at.point.critical_stiffness.into()
+        }),
+        Column::new("stress_uncertainty", Number, move |at: &Row| {
+            known(at.stress.uncertainty).into()
+        })
+        .not_in_table(),
+        Column::new("state_uncertainty", Number, move |at: &Row| {
+            known(at.state.uncertainty).into()
+        })
+        .not_in_table(),
+    ]
+}
 
 /// The columns of equilibria; a table has room for the leading eigenvalue.
 pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>> {
@@ -14,6 +39,11 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
     let mut columns: Vec<Column<Row>> = states
         .map(|(i, name)| Column::uncertain(*name, Number, move |row: &Row| row.state[i].into()))
         .collect();
+    let interfaces = model.slab.as_ref().map_or(0, |slab| slab.interfaces());
+    for (i, rate) in (1..=interfaces).enumerate() {
+        let v = move |row: &Row| row.slip_rate.get(i).copied().into();
+        columns.push(Column::new(format!("slip_rate_{rate}"), Number, v));
+    }
     for i in 0..model.system.states().len() {
         let value = move |row: &Row| row.stability.eigenvalues.get(i).copied();
         let place = i + 1;
@@ -80,12 +110,15 @@ pub fn text_orbit_columns(model: &TextModel) -> Vec<Column<Orbit>> {
 /// The states in time, and beside them the first two against each other.
 pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
     let column = |name: &str| rows.column(name).unwrap_or_default();
+    if let Some(slab) = &plan.model.slab {
+        return sliding(slab, rows);
+    }
     let states = plan.model.system.states();
     let in_time = states.iter().enumerate().map(|(i, name)| Panel {
         series: vec![PlotSeries::new("", column("time"), column(name))],
         ..Panel::new(
             if i == 0 {
-                name_of(&plan.model)
+                plan.model.name().to_owned()
             } else {
                 String::new()
             },
@@ -103,10 +136,52 @@ pub fn text_run(plan: &TextPlan, rows: &RowList) -> Drawing {
     Drawing::columns(columns)
 }
 
-fn name_of(model: &TextModel) -> String {
-    use crate::scene::Described;
-    let name = model.echo().get("system").and_then(|name| name.as_str());
-    name.unwrap_or_default().to_owned()
+/// Stress, states and slip rates of interfaces in time, and beside them the stress against the slip rates.
+fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
+    let column = |name: &str| rows.column(name).unwrap_or_default();
+    let each = |symbol: &str, x: Option<&str>, y: Option<&str>| -> Vec<PlotSeries> {
+        let one = |i: usize| {
+            let of = |name: Option<&str>, other: &str| match name {
+                Some(name) => column(&format!("{name}_{i}")),
+                None => column(other),
+            };
+            let name = if slab.interfaces() == 1 {
+                String::new()
+            } else {
+                format!("{symbol} {i}")
+            };
+            PlotSeries::new(name, of(x, "time"), of(y, "stress"))
+        };
+        (1..=slab.interfaces()).map(one).collect()
+    };
+    let panel = |title: &str, x: Axis, y: Axis, series| Panel {
+        series,
+        ..Panel::new(title, x, y)
+    };
+    let time = || Axis::linear("time t");
+    let mut rates = each("v", None, Some("slip_rate"));
+    rates.extend(
+        rows.column("driving")
+            .map(|driving| PlotSeries::new("V_H", column("time"), driving).stroke(Stroke::Dotted)),
+    );
+    let stress = vec![PlotSeries::new("", column("time"), column("stress"))];
+    let in_time = vec![
+        panel(slab.law_name(), time(), Axis::linear("stress τ"), stress),
+        panel(
+            "state",
+            time(),
+            Axis::log("state ψ"),
+            each("ψ", None, Some("state")),
+        ),
+        panel("slip rate", time(), Axis::log("slip rate v"), rates),
+    ];
+    let plane = panel(
+        "phase plane",
+        Axis::log("slip rate v"),
+        Axis::linear("stress τ"),
+        each("v", Some("slip_rate"), None),
+    );
+    Drawing::columns(vec![in_time, vec![plane]])
 }
 
 /// A state at each return against itself at the next, and where there is one more the states at the returns.
@@ -125,7 +200,7 @@ pub fn text_return_map(plan: &TextSectionPlan, rows: &RowList) -> Drawing {
         "return map at {} = {}, {}",
         names[plan.state],
         output::seven_digits(plan.value),
-        name_of(&plan.model)
+        plan.model.name()
     );
     let map = Panel {
         series: vec![

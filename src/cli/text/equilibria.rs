@@ -50,8 +50,11 @@ fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria)
         SearchPlace::Near(_) => "near a start",
         SearchPlace::Within(_) => "in a box",
     };
-    let numerics = json!({"search": search});
     let model = &plan.model;
+    let mut numerics = json!({"search": search});
+    if let SearchPlace::Within(all) = &plan.place {
+        numerics["box"] = Value::Object(ends(model, all));
+    }
     if report.format == Format::Json {
         let list: Vec<Value> = found
             .equilibria
@@ -59,13 +62,8 @@ fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria)
             .map(|one| object(one, model))
             .collect();
         let work = json!({"equilibria": list.len()});
-        let ends = |part: &Vec<Interval>| -> Map<String, Value> {
-            let states = model.system.states().iter().zip(part);
-            let pair =
-                |(name, x): (&&str, &Interval)| ((*name).to_owned(), json!([x.lo(), x.hi()]));
-            states.map(pair).collect()
-        };
-        let undecided: Vec<_> = found.undecided.iter().map(ends).collect();
+        let undecided = found.undecided.iter();
+        let undecided: Vec<_> = undecided.map(|part| ends(model, part)).collect();
         let result = json!({
             "equilibria": list,
             "complete": matches!(plan.place, SearchPlace::Within(_)) && undecided.is_empty(),
@@ -82,6 +80,13 @@ fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria)
     )
 }
 
+/// The ends of a box by the names of the states.
+fn ends(model: &TextModel, part: &[Interval]) -> Map<String, Value> {
+    let states = model.system.states().iter().zip(part);
+    let pair = |(name, x): (&&str, &Interval)| ((*name).to_owned(), json!([x.lo(), x.hi()]));
+    states.map(pair).collect()
+}
+
 fn object(found: &TextEquilibrium, model: &TextModel) -> Value {
     let states = model.system.states().iter().zip(&found.state);
     let mut all = Map::new();
@@ -90,6 +95,11 @@ fn object(found: &TextEquilibrium, model: &TextModel) -> Value {
             (*name).to_owned(),
             crate::output::uncertain((x.value, x.uncertainty)),
         );
+    }
+    if model.slab.is_some() {
+        let psi: Vec<f64> = found.state[1..].iter().map(|w| w.value.exp()).collect();
+        all.insert("state".into(), json!(psi));
+        all.insert("slip_rate".into(), json!(found.slip_rate));
     }
     let eigenvalues = found.stability.eigenvalues.iter();
     all.insert(

@@ -1,15 +1,13 @@
 //! `twinslip integrate --system`.
 
-use crate::cli::integrate::summary_of;
+use crate::cli::integrate::{changes, summary_of};
 use crate::cli::interrupt;
 use crate::cli::report::{self, Report};
 use crate::cli::stream::StreamOut;
 use crate::cli::{Ending, say, written};
 use crate::error::Result;
 use crate::output::{Format, RowList, object, plot};
-use crate::scene::{
-    Described, IntegrateOptions, TextModel, TextOutcome, TextPlan, run_text, text_columns,
-};
+use crate::scene::{Described, IntegrateOptions, TextModel, TextOutcome, TextPlan, run_text};
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::path::Path;
@@ -25,7 +23,7 @@ pub fn run(options: &IntegrateOptions, model: TextModel, words: &[String]) -> Re
         say(plan.explain());
     }
     let columns = views::names(&plan.columns, false);
-    let pictured = views::names(&text_columns(&plan.model), false);
+    let pictured = views::names(&plan.pictured(), false);
     let numbers = numerics(&plan);
     let kept = report.format == Format::Json;
     let remarks = report.remarks(&plan.model, &numbers);
@@ -89,6 +87,8 @@ struct RunResult<'a> {
     rows: &'a RowList,
     #[serde(rename = "final")]
     last: Option<Map<String, Value>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    program: Option<Vec<Value>>,
 }
 
 fn result<'a>(plan: &TextPlan, rows: &'a RowList, outcome: &TextOutcome) -> RunResult<'a> {
@@ -101,5 +101,9 @@ fn result<'a>(plan: &TextPlan, rows: &'a RowList, outcome: &TextOutcome) -> RunR
         }
         last
     });
-    RunResult { rows, last }
+    RunResult {
+        rows,
+        last,
+        program: plan.program.as_ref().map(changes),
+    }
 }

@@ -2,5 +2,6 @@
 
 pub mod equilibria;
 pub mod integrate;
+pub mod law;
 pub mod orbit;
 pub mod section;

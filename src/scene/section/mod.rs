@@ -24,7 +24,7 @@ use crate::number::polynomial::Crossing;
 use crate::section::{FEWEST_FOR_EXPONENTS, usual_patience};
 
 /// The section of the paper.
-const USUAL_SURFACE: &str = "stress=auto";
+pub(super) const USUAL_SURFACE: &str = "stress=auto";
 /// More returns than this are a slip of the pen.
 const MOST_RETURNS: usize = 100_000_000;
 

@@ -41,6 +41,8 @@ impl SearchPlace {
 pub struct TextEquilibrium {
     /// The values of all states; their uncertainties are infinite where no box certainly holds exactly one equilibrium.
     pub state: Vec<Uncertain>,
+    /// The slip rates of interfaces; none where nothing slides.
+    pub slip_rate: Vec<f64>,
     /// Eigenvalues and verdict.
     pub stability: Stability,
     /// The largest rate there.
@@ -72,8 +74,16 @@ impl TextEquilibriaPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &EquilibriaOptions, model: TextModel) -> Result<Self> {
+        if options.solver.is_some() {
+            return Err(Error::Input(
+                "`solver` is of built-in laws; steady states of a `system` or a `law` from a file are found in boxes".into(),
+            ));
+        }
         let place = match &options.within {
             Some(text) => SearchPlace::within(text, &model)?,
+            None if options.start.is_none() && model.slab.is_some() => {
+                SearchPlace::Within(model.steady_box()?)
+            }
             None => SearchPlace::Near(model.start(options.start.as_deref())?),
         };
         Ok(TextEquilibriaPlan { model, place })
@@ -170,6 +180,7 @@ impl TextEquilibriaPlan {
             stability.uncertainty.fill(f64::INFINITY);
         }
         TextEquilibrium {
+            slip_rate: system.slip_rates(at),
             state: state
                 .map(|(i, &x)| Uncertain::new(x, error(i, x)))
                 .collect(),

@@ -17,7 +17,7 @@ const MOST: usize = 200;
 /// What stands in rows beside the states, and so can't be one.
 const COLUMNS: [&str; 6] = ["time", "return", "period", "verdict", "residual", "point"];
 
-type Key<'a> = Spanned<Cow<'a, str>>;
+pub(super) type Key<'a> = Spanned<Cow<'a, str>>;
 
 /// A system as a file has it.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,12 +37,17 @@ impl SystemFile {
     /// [`Error::Input`] with file, line and column for what is wrong in it.
     pub fn parse(file: &str, text: &str) -> Result<Self> {
         let reader = Reader { name: file, text };
-        let table = DeTable::parse(text).map_err(|error| {
-            let place = error.span().unwrap_or(0..0);
-            reader.misplaced(place.start, error.message().replace('\n', ", "))
-        })?;
-        Tables::of(reader, table.get_ref())?.system()
+        let table = parsed(&reader)?;
+        Tables::of_system(reader, table.get_ref())?.system()
     }
+}
+
+/// The text as TOML.
+pub(super) fn parsed<'a>(reader: &Reader<'a>) -> Result<Spanned<DeTable<'a>>> {
+    DeTable::parse(reader.text).map_err(|error| {
+        let place = error.span().unwrap_or(0..0);
+        reader.misplaced(place.start, error.message().replace('\n', ", "))
+    })
 }
 
 /// A formula with the place of its text in the file.
@@ -65,10 +70,10 @@ pub(super) enum Meaning {
 
 /// All that a file has.
 pub(super) struct Tables<'a> {
-    reader: Reader<'a>,
-    name: String,
-    states: Vec<&'a str>,
-    parameters: Vec<(&'a str, f64)>,
+    pub reader: Reader<'a>,
+    pub name: String,
+    pub states: Vec<&'a str>,
+    pub parameters: Vec<(&'a str, f64)>,
     pub rates: Vec<Formula<'a>>,
     pub defined: Vec<Formula<'a>>,
     start: Vec<Option<f64>>,
@@ -76,41 +81,13 @@ pub(super) struct Tables<'a> {
 }
 
 impl<'a> Tables<'a> {
-    fn of(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Self> {
+    fn of_system(reader: Reader<'a>, table: &'a DeTable<'_>) -> Result<Self> {
         const KEYS: [&str; 6] = ["name", "states", "parameters", "rates", "where", "start"];
-        for (key, _) in table {
-            let name = key.get_ref().as_ref();
-            if !KEYS.contains(&name) {
-                let hint = did_you_mean(name, KEYS.into_iter());
-                let what = format!("unknown key {name:?}, there are {}{hint}", KEYS.join(", "));
-                return Err(reader.misplaced(key.span().start, what));
-            }
-        }
-        let mut tables = Tables {
-            name: String::new(),
-            states: Vec::new(),
-            parameters: Vec::new(),
-            rates: Vec::new(),
-            defined: Vec::new(),
-            start: Vec::new(),
-            meanings: BTreeMap::new(),
-            reader,
-        };
+        let mut tables = Self::with_keys(reader, table, &KEYS)?;
         tables.read_name(table)?;
         tables.read_states(table)?;
-        let numbers = tables.table(table, "parameters")?;
-        for (key, value) in numbers {
-            let number = tables.number(value)?;
-            let place = tables.parameters.len();
-            tables.declare(key, Meaning::Parameter(place))?;
-            tables.parameters.push((key.get_ref(), number));
-        }
-        for (key, value) in tables.table(table, "where")? {
-            let place = tables.defined.len();
-            tables.declare(key, Meaning::Defined(place))?;
-            let formula = tables.formula(key, value)?;
-            tables.defined.push(formula);
-        }
+        tables.read_parameters(table)?;
+        tables.read_where(table)?;
         tables.read_rates(table)?;
         tables.start = vec![None; tables.states.len()];
         for (key, value) in tables.table(table, "start")? {
@@ -120,10 +97,51 @@ impl<'a> Tables<'a> {
         Ok(tables)
     }
 
-    fn read_name(&mut self, table: &'a DeTable<'_>) -> Result<()> {
+    /// Nothing yet of a file that has no other keys than these.
+    pub fn with_keys(reader: Reader<'a>, table: &DeTable<'_>, keys: &[&str]) -> Result<Self> {
+        for (key, _) in table {
+            let name = key.get_ref().as_ref();
+            if !keys.contains(&name) {
+                let hint = did_you_mean(name, keys.iter().copied());
+                let what = format!("unknown key {name:?}, there are {}{hint}", keys.join(", "));
+                return Err(reader.misplaced(key.span().start, what));
+            }
+        }
+        Ok(Tables {
+            name: String::new(),
+            states: Vec::new(),
+            parameters: Vec::new(),
+            rates: Vec::new(),
+            defined: Vec::new(),
+            start: Vec::new(),
+            meanings: BTreeMap::new(),
+            reader,
+        })
+    }
+
+    pub fn read_parameters(&mut self, table: &'a DeTable<'_>) -> Result<()> {
+        for (key, value) in self.table(table, "parameters")? {
+            let number = self.number(value)?;
+            let place = self.parameters.len();
+            self.declare(key, Meaning::Parameter(place))?;
+            self.parameters.push((key.get_ref(), number));
+        }
+        Ok(())
+    }
+
+    pub fn read_where(&mut self, table: &'a DeTable<'_>) -> Result<()> {
+        for (key, value) in self.table(table, "where")? {
+            let place = self.defined.len();
+            self.declare(key, Meaning::Defined(place))?;
+            let formula = self.formula(key, value)?;
+            self.defined.push(formula);
+        }
+        Ok(())
+    }
+
+    pub fn read_name(&mut self, table: &'a DeTable<'_>) -> Result<()> {
         let Some(value) = table.get("name") else {
-            let what = "the key name is missing: what is the system called?";
-            return Err(self.reader.misplaced(0, what));
+            return Err(self.missing("name", "what is the system called?"));
         };
         let name = value.get_ref().as_str().unwrap_or_default();
         if name.is_empty() || name.len() > MOST {
@@ -134,10 +152,15 @@ impl<'a> Tables<'a> {
         Ok(())
     }
 
+    /// That a key is missing, and what it would say.
+    pub fn missing(&self, key: &str, what: &str) -> Error {
+        let what = format!("the key {key} is missing: {what}");
+        self.reader.misplaced(0, what)
+    }
+
     fn read_states(&mut self, table: &'a DeTable<'_>) -> Result<()> {
         let Some(value) = table.get("states") else {
-            let what = "the key states is missing, the list of the names of all states";
-            return Err(self.reader.misplaced(0, what));
+            return Err(self.missing("states", "which are the names of all states?"));
         };
         let at = value.span().start;
         let most = TextSystem::LARGEST;
@@ -250,7 +273,7 @@ impl<'a> Tables<'a> {
     }
 
     /// Gives a name its meaning.
-    fn declare_at(&mut self, name: &'a str, at: usize, meaning: Meaning) -> Result<()> {
+    pub fn declare_at(&mut self, name: &'a str, at: usize, meaning: Meaning) -> Result<()> {
         let wrong = |what: &str| Err(self.reader.misplaced(at, format!("{name:?} {what}")));
         let mut letters = name.chars();
         if !(letters.next().is_some_and(begins_name) && letters.all(continues_name)) {
@@ -267,7 +290,11 @@ impl<'a> Tables<'a> {
         Ok(())
     }
 
-    fn formula(&self, key: &'a Key<'_>, value: &'a Spanned<DeValue<'_>>) -> Result<Formula<'a>> {
+    pub fn formula(
+        &self,
+        key: &'a Key<'_>,
+        value: &'a Spanned<DeValue<'_>>,
+    ) -> Result<Formula<'a>> {
         let Range { start, end } = value.span();
         let Some(text) = value.get_ref().as_str() else {
             let kind = value.get_ref().type_str();

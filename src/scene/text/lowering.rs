@@ -7,14 +7,28 @@ use crate::expression::{Builder, Expressions, Function, Place};
 
 /// The operations of all rates.
 pub(super) fn lowered(tables: &Tables<'_>) -> Result<Expressions> {
-    let mut lowering = Lowering::of(tables);
-    // Also those that nothing uses: they may have mistakes.
-    for i in 0..tables.defined.len() {
-        lowering.define(i)?;
-    }
+    let states: Vec<_> = (0..tables.states.len()).map(Some).collect();
+    let mut lowering = Lowering::of(tables, &states);
+    lowering.check()?;
     let rates = tables.rates.iter();
     let rates: Result<Vec<Place>> = rates.map(|rate| lowering.place(rate)).collect();
     Ok(lowering.builder.complete(rates?))
+}
+
+/// The operations of each rate on its own, in those states that have a place for it.
+pub(super) fn lowered_apart(
+    tables: &Tables<'_>,
+    states: &[&[Option<usize>]],
+) -> Result<Vec<Expressions>> {
+    let all: Vec<_> = (0..tables.states.len()).map(Some).collect();
+    Lowering::of(tables, &all).check()?;
+    let each = tables.rates.iter().zip(states);
+    let one = |(rate, states): (&Formula<'_>, &&[Option<usize>])| {
+        let mut lowering = Lowering::of(tables, states);
+        let place = lowering.place(rate)?;
+        Ok(lowering.builder.complete(vec![place]))
+    };
+    each.map(one).collect()
 }
 
 /// How far a formula of `[where]` is.
@@ -28,17 +42,25 @@ enum Progress {
 /// From formulas to operations.
 struct Lowering<'t, 'a> {
     tables: &'t Tables<'a>,
+    /// The place of each state among the variables, where the formula may name it.
+    states: &'t [Option<usize>],
     builder: Builder,
     defined: Vec<Progress>,
 }
 
 impl<'t, 'a> Lowering<'t, 'a> {
-    fn of(tables: &'t Tables<'a>) -> Self {
+    fn of(tables: &'t Tables<'a>, states: &'t [Option<usize>]) -> Self {
         Lowering {
             tables,
+            states,
             builder: Builder::default(),
             defined: vec![Progress::Open; tables.defined.len()],
         }
+    }
+
+    /// Looks at all formulas of `[where]`, also those that nothing uses: they may have mistakes.
+    fn check(&mut self) -> Result<()> {
+        (0..self.tables.defined.len()).try_for_each(|i| self.define(i).map(|_| ()))
     }
 
     /// The value of a formula of `[where]`, which is not in the making.
@@ -88,7 +110,10 @@ impl<'t, 'a> Lowering<'t, 'a> {
 
     fn named(&mut self, formula: &Formula<'_>, at: usize, name: &str) -> Result<Place> {
         let made = match self.tables.meanings.get(name) {
-            Some(&Meaning::State(i)) => self.builder.variable(i),
+            Some(&Meaning::State(i)) => match self.states[i] {
+                Some(i) => self.builder.variable(i),
+                None => return Err(self.wrong(formula, at, self.out_of_place(name))),
+            },
             Some(&Meaning::Parameter(i)) => self.builder.parameter(i),
             Some(&Meaning::Defined(i)) if self.defined[i] == Progress::Begun => {
                 let what = match formula.name {
@@ -102,6 +127,15 @@ impl<'t, 'a> Lowering<'t, 'a> {
             None => return Err(self.wrong(formula, at, self.unknown(name))),
         };
         made.map_err(|error| self.wrong(formula, at, error.to_string()))
+    }
+
+    fn out_of_place(&self, name: &str) -> String {
+        let names = self.tables.states.iter().zip(self.states);
+        let known: Vec<&str> = names.filter_map(|(name, at)| at.map(|_| *name)).collect();
+        format!(
+            "{name:?} has no value in what this formula is part of, which is in {}",
+            known.join(" and ")
+        )
     }
 
     fn unknown(&self, name: &str) -> String {

@@ -1,21 +1,30 @@
-//! Systems of one's own, from a file: their equations read, and what the commands make of them.
+//! Systems and friction laws of one's own, from a file: their equations read, and what the commands make of them.
 
 mod equilibria;
 mod file;
+mod friction;
 mod grammar;
+mod law;
+mod law_file;
 mod lowering;
 mod model;
+mod observer;
 mod options;
 mod orbit;
 mod plan;
 mod run;
 mod section;
+mod slab;
 
 pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium};
 pub use file::SystemFile;
+pub use friction::{Friction, Steady};
+pub use law::{TextLawPlan, TextLawPoint};
+pub use law_file::LawFile;
 pub use model::TextModel;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
 pub use plan::{TextInstant, TextPlan, text_columns};
 pub use run::{TextOutcome, run_text};
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};
+pub use slab::TextSlab;

@@ -1,14 +1,18 @@
 //! A system of one's own with what the command line says about it.
 
 use super::file::SystemFile;
+use super::law_file::{DRIVING, LawFile};
 use super::options::TextOptions;
+use super::slab::TextSlab;
 use crate::error::{Error, Result, did_you_mean};
 use crate::field::Vector;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
+use crate::number::Interval;
 use crate::scene::file::read_bounded;
+use crate::scene::options::ModelOptions;
 use crate::scene::set::assignments;
-use crate::scene::shipped::{shipped_system, shipped_system_names};
+use crate::scene::shipped::{shipped_law, shipped_system, shipped_system_names};
 use crate::scene::system::Described;
 use crate::scene::units::Units;
 use serde_json::{Map, Value, json};
@@ -18,17 +22,38 @@ use std::path::Path;
 /// No file is longer, in bytes.
 const LONGEST: u64 = 1 << 16;
 
-/// A system of one's own, its parameters as they were set.
+/// A system of one's own, or interfaces with a law of one's own; its parameters as they were set.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextModel {
-    /// Its equations.
+    /// Its equations. Of interfaces the states are the stress and ln psi of each, and the first two parameters V_H and K.
     pub system: TextSystem,
+    /// The interfaces, where it is these.
+    pub slab: Option<TextSlab>,
     start: Vec<Option<f64>>,
     units: Units,
     echo: Map<String, Value>,
 }
 
 impl TextModel {
+    /// The system that the options name, or the interfaces with the law that they name; `None` where all of that is built in. Of V_H and
+    /// K those that are `free` need not be given: they then have values that must be set before they count.
+    ///
+    /// # Errors
+    /// As [`TextModel::named`], and those of the options of interfaces.
+    pub fn of(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
+        let Some(path) = options.slab.law_file() else {
+            return Self::named(&options.slab.text);
+        };
+        let (slab, system) = TextSlab::new(read_law(path)?, options, free)?;
+        Ok(Some(TextModel {
+            echo: slab.echo(&system),
+            start: Vec::new(),
+            units: Units::none(),
+            slab: Some(slab),
+            system,
+        }))
+    }
+
     /// The system that the options name; `None` where they name none.
     ///
     /// # Errors
@@ -60,6 +85,7 @@ impl TextModel {
         echo.insert("parameters".into(), Value::Object(parameters));
         Ok(Some(TextModel {
             system: read.system,
+            slab: None,
             start: read.start,
             units: Units::none(),
             echo,
@@ -74,6 +100,32 @@ impl TextModel {
         }
     }
 
+    /// Gives interfaces another V_H, which may be 0.
+    pub(super) fn drive(&mut self, driving: f64) -> Result<()> {
+        let name = self.system.parameter_names()[DRIVING];
+        self.system.set(name, driving)
+    }
+
+    /// V_H of interfaces; 0 where nothing is driven.
+    pub(super) fn driving(&self) -> f64 {
+        let of_slab = self
+            .slab
+            .as_ref()
+            .map(|_| self.system.parameters()[DRIVING]);
+        of_slab.unwrap_or(0.0)
+    }
+
+    /// What it is called.
+    pub fn name(&self) -> &str {
+        let of = |key: &str| self.echo.get(key).and_then(Value::as_str);
+        of("system").or(of("law")).unwrap_or_default()
+    }
+
+    /// Puts down something more that a result is of.
+    pub(super) fn tell(&mut self, name: &str, value: Value) {
+        self.echo.insert(name.to_owned(), value);
+    }
+
     /// Its field.
     ///
     /// # Errors
@@ -82,11 +134,16 @@ impl TextModel {
         AnyField::of_text(Cow::Borrowed(&self.system))
     }
 
-    /// The values of all states: those of a text, or of the file where none is given.
+    /// The values of all states: those of a text, or of the file where none is given. Of interfaces the text has tau and psi, as that of
+    /// those that are built in, or says that they start near the symmetric steady state, as where none is given.
     ///
     /// # Errors
-    /// [`Error::Input`] for a text that can't be read, and for a state without a start.
+    /// [`Error::Input`] for a text that can't be read, and for a state without a start; [`Error::Parameter`] for a psi that is not positive,
+    /// and [`Error::NotConverged`] where the law has no steady state.
     pub fn start(&self, text: Option<&str>) -> Result<Vector> {
+        if let Some(slab) = &self.slab {
+            return Ok(Vector::from_vec(slab.start(text, &self.system)?));
+        }
         let states = self.system.states();
         let Some(text) = text else {
             let start = states.iter().zip(&self.start);
@@ -116,6 +173,14 @@ impl TextModel {
             )));
         }
         Ok(Vector::from_vec(start))
+    }
+
+    /// A box with the steady states of interfaces: what stress and states have at rates from a small part of V_H to all of it.
+    pub(super) fn steady_box(&self) -> Result<Vec<Interval>> {
+        match &self.slab {
+            Some(slab) => slab.steady_box(&self.system),
+            None => Ok(Vec::new()),
+        }
     }
 
     /// The place of the state of this name.
@@ -159,4 +224,13 @@ fn read(path: &Path) -> Result<SystemFile> {
         "`system` {name}: there is no such file, and no built-in system of this name; those are {}{hint}",
         known.join(", ")
     )))
+}
+
+/// The file of a law, or where there is none of that name the one that the program carries.
+fn read_law(path: &Path) -> Result<LawFile> {
+    let name = path.display().to_string();
+    match shipped_law(path) {
+        Some(text) if !path.exists() => LawFile::parse(&name, text),
+        _ => LawFile::parse(&name, &read_bounded(path, LONGEST)?),
+    }
 }

@@ -1,6 +1,7 @@
 //! A periodic orbit of a system of one's own.
 
 use super::model::TextModel;
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
@@ -42,7 +43,7 @@ impl TextOrbitPlan {
         };
         let guess = |period| positive("period-guess", period);
         Ok(TextOrbitPlan {
-            start: model.start(options.start.as_deref())?,
+            start: start(options, &model)?,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), accuracy.method)?,
             accuracy,
@@ -93,5 +94,19 @@ impl TextOrbitPlan {
         let field = self.model.field()?;
         let again = |second| crosscheck_of(&field, orbit, second);
         self.second.as_ref().map(again).transpose()
+    }
+}
+
+/// Where the search begins. Interfaces that start alike stay so: their symmetric orbits are found from such a start, and others from one
+/// beside it.
+fn start(options: &OrbitOptions, model: &TextModel) -> Result<Vector> {
+    let name = options.symmetry.as_deref().unwrap_or("symmetric");
+    let symmetry = Symmetry::named(name)
+        .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))?;
+    match (&model.slab, &options.start) {
+        (Some(slab), None) if symmetry == Symmetry::Symmetric => {
+            Ok(Vector::from_vec(slab.alike(&model.system)?))
+        }
+        _ => model.start(options.start.as_deref()),
     }
 }

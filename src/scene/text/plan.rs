@@ -1,21 +1,28 @@
 //! A run of a system of one's own from options: what is integrated, when there are rows, and what they hold.
 
 use super::model::TextModel;
+use super::slab::TextSlab;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::{Choice, Tolerances};
+use crate::model::TextSystem;
 use crate::scene::column::Column;
 use crate::scene::estimate::Companion;
 use crate::scene::options::{IntegrateOptions, NumericsOptions};
 use crate::scene::plan::{Sampling, sampling, until};
+use crate::scene::program::{Program, Stretch};
 use crate::scene::system::Described;
 use crate::scene::units::Quantity;
+use serde_json::json;
+use std::borrow::Cow;
 
 /// A run of a system of one's own, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextPlan {
     /// The system.
     pub model: TextModel,
+    /// How V_H changes on the way, of interfaces, where it does.
+    pub program: Option<Program>,
     /// Where it starts.
     pub start: Vector,
     /// End of the run.
@@ -45,11 +52,20 @@ pub struct TextInstant {
     pub time: f64,
     /// The values of all states.
     pub state: Vec<f64>,
+    /// The slip of each interface since the start; zeros where nothing slides.
+    pub slip: [f64; 2],
+    /// V_H; 0 where nothing is driven.
+    pub driving: f64,
 }
 
-/// The columns of a run: the time, and every state by its name.
+/// The columns of a run: the time, and every state by its name; of interfaces those of interfaces that are built in.
 pub fn text_columns(model: &TextModel) -> Vec<Column<TextInstant>> {
     let time = Column::new("time", Quantity::Number, |at: &TextInstant| at.time.into());
+    if let Some(slab) = &model.slab {
+        let mut columns = vec![time];
+        columns.extend(interface_columns(slab, &model.system));
+        return columns;
+    }
     let states = model.system.states().iter().enumerate();
     let state = |(i, name): (usize, &&'static str)| {
         Column::new(*name, Quantity::Number, move |at: &TextInstant| {
@@ -57,6 +73,28 @@ pub fn text_columns(model: &TextModel) -> Vec<Column<TextInstant>> {
         })
     };
     std::iter::once(time).chain(states.map(state)).collect()
+}
+
+fn interface_columns(slab: &TextSlab, system: &TextSystem) -> Vec<Column<TextInstant>> {
+    use Quantity::{Length, Number};
+    let each = |name: &str, quantity, entry: fn(&TextInstant, &TextSystem, usize) -> f64| {
+        let column = |i: usize| {
+            let system = system.clone();
+            let entry = move |at: &TextInstant| entry(at, &system, i).into();
+            Column::new(format!("{name}_{}", i + 1), quantity, entry)
+        };
+        (0..slab.interfaces()).map(column).collect::<Vec<_>>()
+    };
+    let mut columns = vec![Column::new("stress", Number, |at: &TextInstant| {
+        at.state[0].into()
+    })];
+    columns.extend(each("state", Number, |at, _, i| at.state[i + 1].exp()));
+    columns.extend(each("log_state", Number, |at, _, i| at.state[i + 1]));
+    columns.extend(each("slip_rate", Number, |at, system, i| {
+        system.slip_rates(&at.state)[i]
+    }));
+    columns.extend(each("slip", Length, |at, _, i| at.slip[i]));
+    columns
 }
 
 /// The method and the tolerances, checked.
@@ -74,21 +112,27 @@ impl TextPlan {
     ///
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
-    pub fn new(options: &IntegrateOptions, model: TextModel) -> Result<Self> {
+    pub fn new(options: &IntegrateOptions, mut model: TextModel) -> Result<Self> {
         if options.events.is_some() {
             return Err(Error::Input(
-                "`events` are stick-slip events, which need interfaces; a `system` of one's own has none".into(),
+                "`events` are stick-slip events, which need interfaces that are built in; a `system` or a `law` of one's own has none".into(),
             ));
         }
-        let start = model.start(options.start.as_deref())?;
         let until = until(options)?;
+        let program = options.program.as_deref();
+        let program = program
+            .map(|text| programmed(text, until, &mut model))
+            .transpose()?;
+        let start = model.start(options.start.as_deref())?;
         let sampling = sampling(options, model.units(), until)?;
         let mut columns = text_columns(&model);
+        columns.extend(program.as_ref().map(|_| driving_column()));
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
         }
         let (method, tolerances) = numerics(&options.numerics)?;
         Ok(TextPlan {
+            program,
             start,
             until,
             sampling,
@@ -104,9 +148,46 @@ impl TextPlan {
         })
     }
 
+    /// The columns of the points of a picture.
+    pub fn pictured(&self) -> Vec<Column<TextInstant>> {
+        let mut columns = text_columns(&self.model);
+        columns.retain(|column| column.quantity != Quantity::Length);
+        columns.extend(self.program.as_ref().map(|_| driving_column()));
+        columns
+    }
+
+    /// Whether a column needs the slip.
+    pub fn needs_slip(&self) -> bool {
+        let lengths = |column: &Column<TextInstant>| column.quantity == Quantity::Length;
+        self.columns.iter().any(lengths)
+    }
+
     /// Whether anything must be seen between start and end.
     pub fn observed(&self) -> bool {
-        self.sampling != Sampling::FinalOnly || self.picture
+        self.sampling != Sampling::FinalOnly || self.picture || self.needs_slip()
+    }
+
+    /// The stretches of the run, one after the other.
+    pub(super) fn stretches(&self) -> Result<Vec<Stretch>> {
+        let driving = self.model.driving();
+        match &self.program {
+            Some(program) => program.stretches(driving, self.until, self.model.units()),
+            None => Ok(vec![Stretch::new((0.0, self.until), (driving, driving))]),
+        }
+    }
+
+    /// The equations of a stretch: on a ramp V_H is their last state.
+    pub(super) fn system_on(&self, stretch: &Stretch) -> Result<Cow<'_, TextSystem>> {
+        let Some(slab) = self.model.slab.as_ref().filter(|_| self.program.is_some()) else {
+            return Ok(Cow::Borrowed(&self.model.system));
+        };
+        let rate = stretch.rate();
+        if rate != 0.0 {
+            return slab.on_ramp(&self.model.system, rate).map(Cow::Owned);
+        }
+        let mut model = self.model.clone();
+        model.drive(stretch.driving.0)?;
+        Ok(Cow::Owned(model.system))
     }
 
     /// The plan, one subject a line.
@@ -143,4 +224,31 @@ impl TextPlan {
             crate::error::count(self.max_steps)
         )
     }
+}
+
+/// V_H, of runs in which it changes.
+fn driving_column() -> Column<TextInstant> {
+    Column::new("driving", Quantity::Number, |at: &TextInstant| {
+        at.driving.into()
+    })
+}
+
+/// The changes of V_H, whose first value the model then has.
+fn programmed(text: &str, until: f64, model: &mut TextModel) -> Result<Program> {
+    let Some(slab) = &model.slab else {
+        return Err(Error::Input(
+            "`program` changes the driving velocity of interfaces; a `system` of one's own has none".into(),
+        ));
+    };
+    let program = Program::read(text, until)?;
+    let Some(first) = slab.driving.or(program.first()) else {
+        return Err(Error::Input(
+            "`driving` V_H is missing: which velocity is it before the first change of `program`?"
+                .into(),
+        ));
+    };
+    model.drive(first)?;
+    model.tell("driving", json!(first + 0.0));
+    model.tell("program", json!(program.told()));
+    Ok(program)
 }

@@ -1,14 +1,15 @@
 //! A run of a system of one's own: from a plan to rows.
 
-use super::plan::{TextInstant, TextPlan, text_columns};
+use super::observer::TextObserver;
+use super::plan::TextPlan;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances, Work};
-use crate::scene::column::Column;
+use crate::model::TextSystem;
 use crate::scene::estimate::{Companion, GROWTH, MARGIN, PIECES, ROUNDING, TIME_SPACINGS};
-use crate::scene::plan::Sampling;
-use crate::scene::run::{PICTURED, RESTS, Sink};
-use crate::scene::system::Described;
+use crate::scene::program::Stretch;
+use crate::scene::run::Sink;
+use std::borrow::Cow;
 
 /// What a run came to.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,26 +36,45 @@ pub struct TextOutcome {
 /// # Errors
 /// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`TextOutcome::failure`].
 pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<TextOutcome> {
-    let field = plan.model.field()?;
-    let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?;
     let mut watch = TextObserver::new(plan, &mut *sink);
-    watch.start();
-    let span = (0.0, plan.until);
-    let end = if plan.observed() {
-        let mut observer = |step: &AnyStep<'_>| Ok(watch.see(step));
-        integrator.flow(&field, span, &plan.start, Some(&mut observer))
-    } else {
-        integrator.flow(&field, span, &plan.start, None)
-    };
+    let mut work = Work::default();
+    let end = along(plan, |part, from| {
+        watch.begin(part.stretch);
+        if part.is_empty() {
+            return Ok((from, false));
+        }
+        let left = steps_left(plan, part.stretch, &work)?;
+        let mut integrator = AnyIntegrator::new(plan.method, plan.tolerances, left)?;
+        let end = if plan.observed() {
+            let mut observer = |step: &AnyStep<'_>| Ok(watch.see(part.system, step));
+            integrator.flow(&part.field, part.stretch.span, &from, Some(&mut observer))
+        } else {
+            integrator.flow(&part.field, part.stretch.span, &from, None)
+        };
+        work += integrator.work();
+        Ok((end?, watch.stopped()))
+    });
+    let end = end.map_err(|error| of_run(plan, error));
+    if let Err(error @ Error::Parameter { .. }) = end {
+        return Err(error);
+    }
     let mut outcome = watch.finish(&end);
-    outcome.work = integrator.work();
+    outcome.work = work;
     match (end, plan.estimate) {
         (Ok(end), Some(companion)) if !outcome.stopped => {
-            let second = second_run(companion, plan, &field, &mut outcome, sink);
-            match second.and_then(|second| errors(plan, &field, &end, &second, &mut outcome)) {
+            let second = second_run(companion, plan, &mut outcome, sink);
+            match second.and_then(|second| errors(plan, &end, &second, &mut outcome)) {
                 Ok(errors) => {
-                    let sizes = errors.iter().zip(&end).map(|(e, x)| e / (1.0 + x.abs()));
-                    outcome.error_estimate = Some(sizes.fold(0.0, f64::max));
+                    let sizes = errors.iter().zip(&end).enumerate();
+                    let slides = plan.model.slab.is_some();
+                    // The stress relatively; what ln psi errs by is the relative error of psi.
+                    let size = |(i, (error, x)): (usize, (&f64, &f64))| match (slides, i) {
+                        (false, _) => error / (1.0 + x.abs()),
+                        (true, 0) => error / x.abs(),
+                        (true, _) => *error,
+                    };
+                    let largest = sizes.map(size).fold(0.0, f64::max);
+                    outcome.error_estimate = Some(largest).filter(|x| x.is_finite());
                     outcome.errors = Some(errors);
                 }
                 Err(Error::Interrupted) => outcome.stopped = true,
@@ -63,7 +83,7 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<TextOutcome> {
         }
         (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
             let companion = Companion::of(plan.tolerances, false);
-            let second = second_run(companion, plan, &field, &mut outcome, sink);
+            let second = second_run(companion, plan, &mut outcome, sink);
             outcome.failure = Some(timed(error, second.err()));
         }
         _ => {}
@@ -71,34 +91,102 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<TextOutcome> {
     Ok(outcome)
 }
 
+/// A stretch of a run with its equations.
+struct Part<'a> {
+    stretch: &'a Stretch,
+    system: &'a TextSystem,
+    field: AnyField<'a>,
+}
+
+impl Part<'_> {
+    /// A run that ends with a change has an end on the far side of that.
+    fn is_empty(&self) -> bool {
+        self.stretch.span.0 == self.stretch.span.1
+    }
+}
+
+/// Goes along all stretches of a run, on each from where the last has ended, to the bit; `by` says where a stretch ends, and whether to
+/// go no further.
+fn along(
+    plan: &TextPlan,
+    mut by: impl FnMut(&Part<'_>, Vector) -> Result<(Vector, bool)>,
+) -> Result<Vector> {
+    let count = plan.start.len();
+    let mut here = plan.start.clone();
+    for stretch in plan.stretches()? {
+        let system = plan.system_on(&stretch)?;
+        let part = Part {
+            stretch: &stretch,
+            system: &system,
+            field: AnyField::of_text(Cow::Borrowed(&*system))?,
+        };
+        // On a ramp V_H is a state more.
+        if part.field.dimension() > count {
+            here = here.push(stretch.driving.0);
+        }
+        let (end, stopped) = by(&part, here)?;
+        here = end.rows(0, count).into_owned();
+        if stopped {
+            break;
+        }
+    }
+    Ok(here)
+}
+
+/// How many steps a run may still take that comes to this stretch.
+fn steps_left(plan: &TextPlan, stretch: &Stretch, work: &Work) -> Result<usize> {
+    match plan.max_steps.saturating_sub(work.steps) {
+        0 => Err(Error::TooManySteps {
+            t: stretch.span.0,
+            end: plan.until,
+            limit: plan.max_steps,
+        }),
+        left => Ok(left),
+    }
+}
+
+/// The error of a stretch as one of the run.
+fn of_run(plan: &TextPlan, error: Error) -> Error {
+    match error {
+        Error::TooManySteps { t, .. } => Error::TooManySteps {
+            t,
+            end: plan.until,
+            limit: plan.max_steps,
+        },
+        other => other,
+    }
+}
+
 /// The end of the run by another method.
 fn second_run(
     companion: Companion,
     plan: &TextPlan,
-    field: &AnyField<'_>,
     outcome: &mut TextOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Vector> {
-    let mut integrator = companion.any_integrator(plan.max_steps)?;
-    let mut stopped = false;
-    let mut observer = |step: &AnyStep<'_>| {
-        let told = sink.reached(step.t1 / plan.until);
-        stopped |= told == Control::Stop;
-        Ok(told)
-    };
-    let end = integrator.flow(field, (0.0, plan.until), &plan.start, Some(&mut observer));
-    outcome.work += integrator.work();
-    if stopped {
-        Err(Error::Interrupted)
-    } else {
-        end
-    }
+    along(plan, |part, from| {
+        if part.is_empty() {
+            return Ok((from, false));
+        }
+        let mut integrator = companion.any_integrator(plan.max_steps)?;
+        let mut stopped = false;
+        let mut observer = |step: &AnyStep<'_>| {
+            let told = sink.reached(step.t1 / plan.until);
+            stopped |= told == Control::Stop;
+            Ok(told)
+        };
+        let end = integrator.flow(&part.field, part.stretch.span, &from, Some(&mut observer));
+        outcome.work += integrator.work();
+        if stopped {
+            return Err(Error::Interrupted);
+        }
+        Ok((end?, false))
+    })
 }
 
 /// The error of every state at the end: what the second run says, and what becomes of the rounding of the start.
 fn errors(
     plan: &TextPlan,
-    field: &AnyField<'_>,
     end: &Vector,
     second: &Vector,
     outcome: &mut TextOutcome,
@@ -106,15 +194,25 @@ fn errors(
     let tolerances = Tolerances::equal(GROWTH)?;
     let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, plan.max_steps)?;
     let count = plan.start.len();
-    let (mut y, mut tangent) = (plan.start.clone(), Matrix::identity(count, count));
-    let time = |piece: usize| plan.until * (piece as f64 / PIECES as f64);
-    for piece in 0..PIECES {
-        let span = (time(piece), time(piece + 1));
-        let (next, part) = integrator.derivatives(field, span, &y, &[])?;
-        outcome.work += integrator.work();
-        y = next;
-        tangent = part.start * tangent;
-    }
+    let mut tangent = Matrix::identity(count, count);
+    let pieces = (PIECES / plan.stretches()?.len()).max(1);
+    along(plan, |part, from| {
+        let (begin, end) = part.stretch.span;
+        let time = |piece: usize| begin + (end - begin) * (piece as f64 / pieces as f64);
+        let mut y = from;
+        for piece in 0..pieces {
+            if part.is_empty() {
+                break;
+            }
+            let span = (time(piece), time(piece + 1));
+            let (next, grown) = integrator.derivatives(&part.field, span, &y, &[])?;
+            outcome.work += integrator.work();
+            y = next;
+            // V_H is exact, where it is a state.
+            tangent = grown.start.view((0, 0), (count, count)) * &tangent;
+        }
+        Ok((y, false))
+    })?;
     let rounded = plan.start.map(|x| 0.5 * f64::EPSILON * x.abs());
     let moved = tangent.abs() * rounded;
     let error =
@@ -131,133 +229,4 @@ fn timed(mut error: Error, second: Option<Error>) -> Error {
         *uncertainty = Some(MARGIN * (again - *t).abs() + rounding);
     }
     error
-}
-
-/// Sees the steps of a run and makes rows of them.
-struct TextObserver<'a> {
-    plan: &'a TextPlan,
-    sink: &'a mut dyn Sink,
-    pictured: Vec<Column<TextInstant>>,
-    here: TextInstant,
-    row: Vec<f64>,
-    /// Rows at fixed times made so far.
-    sampled: usize,
-    stopped: bool,
-}
-
-impl<'a> TextObserver<'a> {
-    fn new(plan: &'a TextPlan, sink: &'a mut dyn Sink) -> Self {
-        TextObserver {
-            plan,
-            sink,
-            pictured: text_columns(&plan.model),
-            here: TextInstant {
-                time: 0.0,
-                state: plan.start.as_slice().to_vec(),
-            },
-            row: Vec::new(),
-            sampled: 0,
-            stopped: false,
-        }
-    }
-
-    fn start(&mut self) {
-        let here = self.here.clone();
-        if self.plan.picture {
-            self.draw(&here);
-        }
-        if self.plan.sampling != Sampling::FinalOnly {
-            self.emit(&here);
-            self.sampled = 1;
-        }
-    }
-
-    fn see(&mut self, step: &AnyStep<'_>) -> Control {
-        let instant = |t: f64| TextInstant {
-            time: t,
-            state: if t == step.t1 {
-                step.y1.to_vec()
-            } else {
-                step.dense(t).as_slice().to_vec()
-            },
-        };
-        let plan = self.plan;
-        let next = |sampled: usize| plan.sampling.time(sampled, plan.until, plan.until);
-        while let Some(t) = next(self.sampled).filter(|&t| t <= step.t1) {
-            self.emit(&instant(t));
-            self.sampled += 1;
-        }
-        if plan.picture {
-            for part in 1..=PICTURED {
-                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&instant(t));
-            }
-        }
-        self.here.time = step.t1;
-        self.here.state.copy_from_slice(step.y1);
-        if plan.sampling == Sampling::EveryStep {
-            let here = self.here.clone();
-            self.emit(&here);
-        }
-        if self.sink.reached(step.t1 / plan.until) == Control::Stop {
-            self.stopped = true;
-        }
-        match (
-            self.stopped,
-            plan.sampling == Sampling::FinalOnly && !plan.picture,
-        ) {
-            (true, _) => Control::Stop,
-            (false, true) => Control::Rest(RESTS),
-            (false, false) => Control::Continue,
-        }
-    }
-
-    fn draw(&mut self, at: &TextInstant) {
-        fill(&mut self.row, &self.pictured, self.plan, at);
-        self.sink.drawn(&self.row);
-    }
-
-    fn emit(&mut self, at: &TextInstant) {
-        fill(&mut self.row, &self.plan.columns, self.plan, at);
-        if self.sink.row(&self.row) == Control::Stop {
-            self.stopped = true;
-        }
-    }
-
-    fn finish(mut self, end: &Result<Vector>) -> TextOutcome {
-        let plan = self.plan;
-        if let Ok(y) = end
-            && !self.stopped
-        {
-            self.here = TextInstant {
-                time: plan.until,
-                state: y.as_slice().to_vec(),
-            };
-            if plan.sampling == Sampling::FinalOnly {
-                let here = self.here.clone();
-                self.emit(&here);
-            }
-        }
-        let known = end.is_ok() || plan.observed();
-        fill(&mut self.row, &plan.columns, plan, &self.here);
-        TextOutcome {
-            last: known.then_some(self.row),
-            work: Work::default(),
-            errors: None,
-            error_estimate: None,
-            estimate_failure: None,
-            failure: end.as_ref().err().cloned(),
-            stopped: self.stopped,
-        }
-    }
-}
-
-/// Fills a row with the columns at an instant.
-fn fill(row: &mut Vec<f64>, columns: &[Column<TextInstant>], plan: &TextPlan, at: &TextInstant) {
-    row.clear();
-    row.extend(
-        columns
-            .iter()
-            .map(|column| column.number(at, plan.model.units())),
-    );
 }

@@ -13,12 +13,12 @@ use crate::scene::column::Column;
 use crate::scene::options::SectionOptions;
 use crate::scene::run::Sink;
 use crate::scene::section::{
-    CheckedExponents, Means, SAME_PERIOD, SectionOutcome, Settling, counted, of_multipliers,
-    of_record,
+    CheckedExponents, Means, SAME_PERIOD, SectionOutcome, Settling, USUAL_SURFACE, counted,
+    of_multipliers, of_record,
 };
 use crate::scene::system::Described;
 use crate::scene::units::Quantity;
-use crate::section::{Periodic, SeriesVariables, Surface, Watching};
+use crate::section::{Periodic, SeriesVariables, Surface, Watching, usual_patience};
 
 /// The longest time to wait for a return where nobody says otherwise.
 const PATIENCE: f64 = 1e4;
@@ -107,7 +107,7 @@ impl TextSectionPlan {
             },
             skip: options.skip,
             returns: options.returns,
-            patience: positive("patience", options.patience.unwrap_or(PATIENCE))?,
+            patience: positive("patience", options.patience.unwrap_or(patience(&model)))?,
             lyapunov: options.lyapunov,
             asked_method: options.numerics.method.clone(),
             method,
@@ -157,8 +157,20 @@ impl TextSectionPlan {
     }
 }
 
-/// STATE=VALUE
+fn patience(model: &TextModel) -> f64 {
+    match (&model.slab, model.system.parameters()) {
+        (Some(_), [driving, stiffness, ..]) => usual_patience(*driving, *stiffness),
+        _ => PATIENCE,
+    }
+}
+
+/// STATE=VALUE, and of interfaces stress=auto.
 fn surface(text: Option<&str>, model: &TextModel) -> Result<(usize, f64)> {
+    if let Some(slab) = &model.slab
+        && text.is_none_or(|text| text == USUAL_SURFACE)
+    {
+        return Ok((0, slab.mean_stress(&model.system)?));
+    }
     let Some(text) = text else {
         let states = model.system.states().join(", ");
         return Err(Error::Input(format!(

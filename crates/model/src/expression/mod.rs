@@ -2,6 +2,7 @@
 //!
 //! What occurs twice is there once. Nothing in it can do more than arithmetic.
 
+mod factor;
 mod function;
 
 pub use function::Function;
@@ -40,6 +41,36 @@ enum Operation {
     Call(Function, Place),
     Lesser(Place, Place),
     Greater(Place, Place),
+}
+
+impl Operation {
+    /// The same of operands that stand elsewhere.
+    fn moved(self, mut at: impl FnMut(Place) -> Place) -> Self {
+        use Operation::*;
+        let mut sorted = |a, b| {
+            let (a, b) = (at(a), at(b));
+            (a.min(b), a.max(b))
+        };
+        match self {
+            Variable(_) | Parameter(_) | Number(_) | Pi => self,
+            Sum(a, b) => {
+                let (a, b) = sorted(a, b);
+                Sum(a, b)
+            }
+            Product(a, b) => {
+                let (a, b) = sorted(a, b);
+                Product(a, b)
+            }
+            Difference(a, b) => Difference(at(a), at(b)),
+            Quotient(a, b) => Quotient(at(a), at(b)),
+            Negative(a) => Negative(at(a)),
+            Whole(a, n) => Whole(at(a), n),
+            Power(a, b) => Power(at(a), at(b)),
+            Call(function, a) => Call(function, at(a)),
+            Lesser(a, b) => Lesser(at(a), at(b)),
+            Greater(a, b) => Greater(at(a), at(b)),
+        }
+    }
 }
 
 /// Two operands and what is made of them.
@@ -100,6 +131,37 @@ impl Expressions {
             values.push(value);
         }
         self.outputs.iter().map(|&place| values[place]).collect()
+    }
+
+    /// How many formulas there are.
+    pub fn count(&self) -> usize {
+        self.outputs.len()
+    }
+
+    /// The same without the operations that no formula needs.
+    fn pruned(self) -> Self {
+        let mut needed = vec![false; self.operations.len()];
+        self.outputs.iter().for_each(|&place| needed[place] = true);
+        for (place, operation) in self.operations.iter().enumerate().rev() {
+            if needed[place] {
+                let _ = operation.moved(|operand| {
+                    needed[operand] = true;
+                    operand
+                });
+            }
+        }
+        let mut places = vec![0; self.operations.len()];
+        let mut operations = Vec::new();
+        for (place, operation) in self.operations.iter().enumerate() {
+            if needed[place] {
+                places[place] = operations.len();
+                operations.push(operation.moved(|operand| places[operand]));
+            }
+        }
+        Expressions {
+            operations,
+            outputs: self.outputs.iter().map(|&place| places[place]).collect(),
+        }
     }
 }
 
@@ -221,12 +283,55 @@ impl Builder {
         }
     }
 
+    /// The formulas of others, with what stands at these places for their variables and parameters.
+    ///
+    /// # Errors
+    /// As of [`Builder::variable`].
+    ///
+    /// # Panics
+    /// Where there are fewer variables or parameters than they name.
+    pub fn insert(
+        &mut self,
+        of: &Expressions,
+        variables: &[Place],
+        parameters: &[Place],
+    ) -> Result<Vec<Place>> {
+        let mut places: Vec<Place> = Vec::with_capacity(of.operations.len());
+        for operation in &of.operations {
+            let place = match *operation {
+                Operation::Variable(i) => variables[i],
+                Operation::Parameter(i) => parameters[i],
+                operation => self.place(operation.moved(|place| places[place]))?,
+            };
+            places.push(place);
+        }
+        Ok(of.outputs.iter().map(|&place| places[place]).collect())
+    }
+
     /// The formulas whose values stand at these places.
     pub fn complete(self, outputs: Vec<Place>) -> Expressions {
-        Expressions {
+        let all = Expressions {
             operations: self.operations,
             outputs,
-        }
+        };
+        all.pruned()
+    }
+
+    /// Two lists of formulas whose values stand at these places.
+    pub fn complete_both(
+        self,
+        outputs: Vec<Place>,
+        others: Vec<Place>,
+    ) -> (Expressions, Expressions) {
+        let first = Expressions {
+            operations: self.operations,
+            outputs,
+        };
+        let second = Expressions {
+            outputs: others,
+            ..first.clone()
+        };
+        (first.pruned(), second.pruned())
     }
 
     /// The number at a place, where it is one.

@@ -95,6 +95,15 @@ pub struct Extremum {
 }
 
 impl Extremum {
+    /// Of a steady stress that is known otherwise than by a [`Law`].
+    pub fn new(kind: ExtremumKind, slip_rate: Uncertain, stress: Uncertain) -> Self {
+        Extremum {
+            kind,
+            slip_rate,
+            stress,
+        }
+    }
+
     /// All extrema of a law, by slip rate ascending, each enclosed by certain signs of the slope on either side.
     pub fn all(law: &impl Law) -> Vec<Extremum> {
         law.steady_extrema()
@@ -120,6 +129,16 @@ pub struct StiffnessMaximum {
     pub slip_rate: Uncertain,
     /// The largest critical stiffness.
     pub stiffness: Uncertain,
+}
+
+impl StiffnessMaximum {
+    /// Likewise.
+    pub fn new(slip_rate: Uncertain, stiffness: Uncertain) -> Self {
+        StiffnessMaximum {
+            slip_rate,
+            stiffness,
+        }
+    }
 }
 
 /// The largest critical stiffness; `None` where k_c has no maximum.

@@ -6,7 +6,7 @@ use super::tangent::tangent;
 use super::{Loading, Parameter, Smooth};
 use crate::field::{Analytic, Jacobian, Parametrised, State};
 use crate::friction::Law;
-use crate::series::{Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
+use crate::series::{ByRecording, Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
 /// A system of interfaces under one stress.
 pub trait Slab<const N: usize> {

@@ -5,8 +5,8 @@ use crate::number::Jet;
 #[cfg(target_arch = "x86_64")]
 use crate::series::Four;
 use crate::series::{
-    Both, COMPILED, Equations, FREE, Jet3, Plain, Recorded, Solution, Tangent, TaylorMap,
-    Variational, is_small,
+    Both, ByRecording, COMPILED, Equations, FREE, Jet3, Plain, Recorded, Solution, Tangent,
+    TaylorMap, Variational, is_small,
 };
 
 /// Equations at given parameters.

@@ -4,7 +4,7 @@ use crate::error::{Error, Result};
 use crate::expression::Expressions;
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::number::{DoubleDouble, Interval, Jet, Real};
-use crate::series::{Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
+use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
 use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::sync::{Arc, Mutex};
@@ -16,6 +16,7 @@ const AT_ONCE: usize = 4;
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSystem {
     rates: Arc<Expressions>,
+    slip_rates: Option<Arc<Expressions>>,
     states: Vec<&'static str>,
     names: Vec<&'static str>,
     parameters: Vec<f64>,
@@ -36,9 +37,25 @@ impl TextSystem {
         }
         Ok(TextSystem {
             rates: Arc::new(rates),
+            slip_rates: None,
             states: states.iter().map(|name| kept(name)).collect(),
             names: parameters.iter().map(|(name, _)| kept(name)).collect(),
             parameters: parameters.iter().map(|(_, value)| *value).collect(),
+        })
+    }
+
+    /// The same of interfaces that slide, one or two, with their slip rates in the same states and parameters.
+    ///
+    /// # Errors
+    /// As of [`TextSystem::new`].
+    pub fn sliding(
+        (rates, slip_rates): (Expressions, Expressions),
+        states: &[&str],
+        parameters: &[(&str, f64)],
+    ) -> Result<Self> {
+        Ok(TextSystem {
+            slip_rates: Some(Arc::new(slip_rates)),
+            ..Self::new(rates, states, parameters)?
         })
     }
 
@@ -90,6 +107,13 @@ impl TextSystem {
     pub fn rates<T: Real>(&self, x: &[T]) -> Vec<T> {
         let parameters: Vec<T> = self.parameters.iter().map(|&p| T::constant(p)).collect();
         self.rates.evaluate(x, &parameters)
+    }
+
+    /// The slip rates of all interfaces, in numbers of any kind; none where nothing slides.
+    pub fn slip_rates<T: Real>(&self, x: &[T]) -> Vec<T> {
+        let parameters: Vec<T> = self.parameters.iter().map(|&p| T::constant(p)).collect();
+        let of = |formulas: &Arc<Expressions>| formulas.evaluate(x, &parameters);
+        self.slip_rates.as_ref().map_or_else(Vec::new, of)
     }
 
     /// The Jacobian, row by row, in numbers of any kind.
@@ -208,6 +232,7 @@ impl<'a, const N: usize> TextField<'a, N> {
     fn recorded(&self) -> RecordedExpressions<'_, N> {
         RecordedExpressions {
             rates: &self.0.rates,
+            slip_rates: self.0.slip_rates.as_deref(),
             parameters: &self.0.parameters,
         }
     }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField, place};
 use crate::friction::{Formulas, InterfaceConstants, Law, ScaledLaw, UnequalLaws, positive};
 use crate::number::{Free, Real, With};
-use crate::series::{Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
+use crate::series::{ByRecording, Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 use std::sync::LazyLock;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g_i(v_i, w_i), in the state (tau, w_1, w_2), w = ln psi, with v_i and g_i by the law of

@@ -3,20 +3,25 @@
 //! Steps as [`super::Stepper`] makes them, for one trajectory; the series come from a [`Program`]. Where the formula takes the
 //! sign of a quantity, no step leads further than just behind a zero of that.
 
-use super::Accuracy;
 use super::cubic::Jet3;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::linearised::longest_of_columns;
 use super::program::Program;
 use super::program_rows::ProgramRows;
 use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
+use super::{Accuracy, usual_order};
 use crate::number::DoubleDouble;
+use pulp::NullaryFnOnce;
 
 /// Records the formula at a state.
 pub(super) type RecordFormula<'a> = Box<dyn Fn(&[f64]) -> Program + 'a>;
 
 /// A solution on its way, in a number of dimensions known when the program runs.
 pub(super) trait Trajectory {
+    /// As [`super::Solution::order`].
+    fn order(&self, rtol: f64) -> usize {
+        usual_order(rtol)
+    }
     /// Begins at y.
     fn start(&mut self, y: &[f64]);
     /// As [`super::Solution::advance`].
@@ -45,6 +50,8 @@ pub(super) trait Trajectory {
 
 /// A solution on its way, in numbers T. What the program gives first are the rates of the variables; what it gives after them
 /// as many slip rates as `watched` says, one or two, are kept with its series.
+///
+/// In two lanes ([`Program::in_two_lanes`]) two variables share a row, and x is as many numbers less.
 pub struct Interpreted<'a, T> {
     record: RecordFormula<'a>,
     program: Program,
@@ -71,7 +78,18 @@ impl<'a, T: Element> Interpreted<'a, T> {
         any: T,
     ) -> Self {
         let program = record(&vec![1.0; variables]);
-        let zero = any.like(0.0);
+        Self::of_program(record, program, watched, room, any)
+    }
+
+    /// The same of a program that is recorded already.
+    pub(super) fn of_program(
+        record: RecordFormula<'a>,
+        program: Program,
+        watched: usize,
+        room: usize,
+        any: T,
+    ) -> Self {
+        let (zero, variables) = (any.like(0.0), program.variables());
         Interpreted {
             rows: ProgramRows::new(&program, room, any),
             probe: ProgramRows::new(&program, 1, any),
@@ -94,18 +112,19 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.record_here();
         self.rows.level(&self.program, 0);
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
-        let sizes = || self.x.iter().map(|x| x.first().abs());
-        let largest = sizes().fold(0.0, f64::max);
-        let least = f64::max(LEAST, largest * f64::EPSILON);
-        let rate = |(i, size): (usize, f64)| {
-            let rate = self.rows.coefficient(self.program.outputs[i], 0).first();
-            (rate / f64::max(size, least)).abs()
+        let sizes = || self.x.iter().map(|x| x.abs());
+        let largest = sizes().map(|x| x.largest_lane()).fold(0.0, f64::max);
+        let least = self.any.like(f64::max(LEAST, largest * f64::EPSILON));
+        let rate = |(i, size): (usize, T)| {
+            let rate = self.rows.coefficient(self.program.outputs[i], 0);
+            (rate / size.max(least)).abs().largest_lane()
         };
         let rate = sizes().enumerate().map(rate).fold(0.0, f64::max);
         self.next_unit = 1.0 / f64::max(rate, f64::MIN_POSITIVE);
     }
 
     /// The formula as it is here, if it is not the same everywhere, and the first coefficients of the variables.
+    #[inline(always)]
     fn record_here(&mut self) {
         if self.program.branches {
             let x: Vec<f64> = self.x.iter().map(|x| x.first()).collect();
@@ -129,16 +148,18 @@ impl<'a, T: Element> Interpreted<'a, T> {
     }
 
     /// Makes the series at the state reached.
+    #[inline(always)]
     pub(super) fn expand(&mut self, order: usize) {
         self.unit = self.next_unit;
         self.record_here();
         for _ in 0..=SHORTER_UNITS {
             for k in 0..order {
                 self.rows.level(&self.program, k);
-                let share = self.rows.one_over(k + 1) * self.unit;
+                let one_over = self.rows.one_over(k + 1);
+                let unit = DoubleDouble::from(self.unit);
                 for i in 0..self.x.len() {
                     let rate = self.rows.coefficient(self.program.outputs[i], k);
-                    self.rows.set(i, k + 1, rate.scale(share));
+                    self.rows.set(i, k + 1, rate.scale(one_over).scale(unit));
                 }
             }
             // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the
@@ -152,6 +173,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// The step, in units of the series, at which the last two terms of the series reach what may err (Jorba & Zou 2005, section
     /// 3.2, in the norm that the tolerances make).
+    #[inline(always)]
     pub(super) fn longest(&self, accuracy: &Accuracy) -> f64 {
         let order = accuracy.order;
         let log_of = |j: usize| rough_log2(self.largest(j, accuracy.tolerances));
@@ -167,9 +189,11 @@ impl<'a, T: Element> Interpreted<'a, T> {
     }
 
     /// The largest j-th coefficient, in what may err.
+    #[inline(always)]
     fn largest(&self, j: usize, (rtol, atol): (f64, f64)) -> f64 {
         let relative = |(i, x): (usize, &T)| {
-            (self.rows.row(i)[j].first() / (atol + rtol * x.first().abs())).abs()
+            let may_err = x.abs().mul_add(x.like(rtol), x.like(atol));
+            (self.rows.row(i)[j] / may_err).abs().largest_lane()
         };
         self.x.iter().enumerate().map(relative).fold(0.0, f64::max)
     }
@@ -178,6 +202,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
     ///
     /// Small terms bound the rest of the series only where they fall. Those of an exponential of 30 h are small and grow up to
     /// the thirtieth if its factor is small enough.
+    #[inline(always)]
     fn while_terms_fall(&self, accuracy: &Accuracy, log: f64) -> f64 {
         /// Coefficients below two to this say nothing.
         const NONE: f64 = -900.0;
@@ -199,6 +224,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// Goes on by h > 0, counted in units of the series, at most `limit`, and returns the time that this took: not a number if
     /// there is no step.
+    #[inline(always)]
     pub(super) fn advance_by(&mut self, order: usize, h: f64, limit: DoubleDouble) -> DoubleDouble {
         let in_units = limit / self.unit;
         let whole = h >= in_units.hi().abs();
@@ -226,6 +252,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
     /// A part of the step h that leads where all is finite, and no further than just behind a kink; not a number where there is
     /// none.
     #[cold]
+    #[inline(never)]
     fn shortened(&mut self, order: usize, mut h: DoubleDouble) -> DoubleDouble {
         let mut halvings = 0;
         while !finite(&self.evaluate(order, h).0) {
@@ -252,6 +279,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
     }
 
     /// Whether a quantity whose sign the formula takes has another one there.
+    #[inline(always)]
     fn passes_kink(&mut self, x: &[T]) -> bool {
         if self.program.kinks.is_empty() {
             return false;
@@ -261,14 +289,15 @@ impl<'a, T: Element> Interpreted<'a, T> {
         }
         self.probe.level(&self.program, 0);
         // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
-        let signs = |&row: &usize| {
-            let before = 1_f64.copysign(self.rows.row(row)[0].first());
-            before * self.probe.row(row)[0].first()
+        let changes = |&row: &usize| {
+            let signs = self.rows.row(row)[0].sign() * self.probe.row(row)[0];
+            (0..T::LANES).any(|lane| signs.lane(lane) < 0.0)
         };
-        self.program.kinks.iter().map(signs).any(|sign| sign < 0.0)
+        self.program.kinks.iter().any(changes)
     }
 
     /// The state after h units, and what rounding took from it.
+    #[inline(always)]
     fn evaluate(&self, order: usize, h: DoubleDouble) -> (Vec<T>, Vec<T>) {
         let h = self.any.like_exact(h);
         let (mut x, mut lost) = (self.x.clone(), self.lost.clone());
@@ -287,23 +316,68 @@ impl<'a, T: Element> Interpreted<'a, T> {
     }
 }
 
+/// A step.
+struct Advance<'s, 'a, T> {
+    solution: &'s mut Interpreted<'a, T>,
+    accuracy: &'s Accuracy,
+    limit: DoubleDouble,
+}
+
+impl<T: Element> NullaryFnOnce for Advance<'_, '_, T> {
+    type Output = DoubleDouble;
+
+    #[inline(always)]
+    fn call(self) -> DoubleDouble {
+        let Advance {
+            solution,
+            accuracy,
+            limit,
+        } = self;
+        solution.expand(accuracy.order);
+        let h = solution.longest(accuracy);
+        solution.advance_by(accuracy.order, h, limit)
+    }
+}
+
+#[inline(always)]
 fn finite<T: Element>(x: &[T]) -> bool {
     x.iter().all(|x| x.all_finite())
 }
 
 impl<T: Element> Trajectory for Interpreted<'_, T> {
+    /// Orders beyond the highest of these gain nothing, and come nearer to where a formula has no value before they are past it.
+    fn order(&self, rtol: f64) -> usize {
+        /// Tolerances above which lower orders win.
+        const FROM: [(f64, usize); 2] = [(1e-6, 12), (1e-9, 16)];
+        const HIGHEST: usize = 20;
+        let least = FROM.iter().find(|(above, _)| rtol > *above);
+        least.map_or(HIGHEST, |(_, order)| *order)
+    }
+
     fn start(&mut self, y: &[f64]) {
-        let x: Vec<T> = y.iter().map(|&y| self.any.like(y)).collect();
+        let mut x = self.x.clone();
+        for (&(row, lane), &y) in self.program.places.iter().zip(y) {
+            // The first lane fills all, as of rows that have but one number.
+            x[row] = if lane == 0 {
+                self.any.like(y)
+            } else {
+                x[row].with_lane(lane, y)
+            };
+        }
         self.begin(&x);
     }
 
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
-        self.expand(accuracy.order);
-        self.advance_by(accuracy.order, self.longest(accuracy), limit)
+        self.any.run(Advance {
+            accuracy,
+            limit,
+            solution: self,
+        })
     }
 
     fn state(&self, i: usize) -> f64 {
-        self.x[i].first()
+        let (row, lane) = self.program.places[i];
+        self.x[row].lane(lane)
     }
 
     fn unit(&self) -> f64 {
@@ -311,8 +385,9 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
     }
 
     fn series(&self, i: usize, into: &mut [f64]) {
-        for (to, x) in into.iter_mut().zip(self.rows.row(i)) {
-            *to = x.first();
+        let (row, lane) = self.program.places[i];
+        for (to, x) in into.iter_mut().zip(self.rows.row(row)) {
+            *to = x.lane(lane);
         }
     }
 
@@ -321,9 +396,10 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
             return;
         }
         // A single interface stands in both places.
-        let rate = self.program.outputs[self.x.len() + interface.min(self.watched - 1)];
+        let at = self.x.len() + interface.min(self.watched - 1);
+        let (rate, lane) = (self.program.outputs[at], self.program.lanes[at]);
         for (k, to) in into.iter_mut().enumerate() {
-            *to = self.rows.coefficient(rate, k).first();
+            *to = self.rows.coefficient(rate, k).lane(lane);
         }
     }
 }

@@ -26,8 +26,10 @@ mod handle;
 mod interpreted;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes;
+mod later;
 mod linearised;
 mod plain;
+mod products;
 mod program;
 mod program_rows;
 mod real;
@@ -37,6 +39,8 @@ mod stepper;
 mod tape;
 mod trace;
 mod transport;
+#[cfg(target_arch = "x86_64")]
+mod twins;
 mod variational;
 mod vectors;
 
@@ -54,7 +58,7 @@ pub(crate) use handle::{Series, value};
 pub(crate) use lanes::{Eight, Four, Pair};
 pub(crate) use linearised::longest_of_terms;
 pub(crate) use plain::Both;
-pub(crate) use recorded::{Recorded, RecordedExpressions};
+pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
 pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
 pub(crate) use tape::{Order, ROOM};
 pub use transport::TaylorMap;

@@ -4,6 +4,7 @@
 //! operations ([`super::program_rows`]) instead of compiled one by one: for any number of variables, for numbers of any kind, and no
 //! code for each formula.
 
+use super::later::LaterOrders;
 use super::trace::{Graph, Node, NodeIndex, Traced};
 use crate::number::{Balance, DoubleDouble, Real};
 
@@ -15,8 +16,10 @@ pub(super) enum Source {
 }
 
 /// How a row comes from others.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operation {
+    /// One lane of a row, in both.
+    Lane(usize, usize),
     Sum(usize, usize),
     Difference(usize, usize),
     Negative(usize),
@@ -59,7 +62,7 @@ pub(super) enum Operation {
 
 impl Operation {
     /// The rows whose coefficients it needs at the order of its result.
-    fn operands(self) -> [Option<usize>; 3] {
+    pub fn operands(self) -> [Option<usize>; 3] {
         let row = |source: Source| match source {
             Source::Row(row) => Some(row),
             Source::Number(_) => None,
@@ -90,7 +93,67 @@ impl Operation {
             | Operation::Circular(a, _)
             | Operation::HyperbolicTangent(a, _)
             | Operation::Power(a, _)
-            | Operation::Sign(a) => [Some(a), None, None],
+            | Operation::Sign(a)
+            | Operation::Lane(a, _) => [Some(a), None, None],
+        }
+    }
+
+    /// The same of rows that stand elsewhere.
+    pub fn moved(self, mut at: impl FnMut(usize) -> usize) -> Self {
+        use Operation::*;
+        let mut source = |source: Source| match source {
+            Source::Row(row) => Source::Row(at(row)),
+            number => number,
+        };
+        match self {
+            Balanced(x, g) => {
+                let x = source(x);
+                return Balanced(x, g.map(source));
+            }
+            Quotient(a, b) => {
+                let a = source(a);
+                return Quotient(a, at(b));
+            }
+            _ => {}
+        }
+        match self {
+            Sum(a, b) => Sum(at(a), at(b)),
+            Difference(a, b) => Difference(at(a), at(b)),
+            Product(a, b) => Product(at(a), at(b)),
+            ExponentialLessOne(a, b) => ExponentialLessOne(at(a), at(b)),
+            LogarithmOfOneMore(a, b) => LogarithmOfOneMore(at(a), at(b)),
+            Arctangent(a, b) => Arctangent(at(a), at(b)),
+            InverseHyperbolicSine(a, b) => InverseHyperbolicSine(at(a), at(b)),
+            Signed(a, b) => Signed(at(a), at(b)),
+            Hyperbolic(a, b) => Hyperbolic(at(a), at(b)),
+            Circular(a, b) => Circular(at(a), at(b)),
+            HyperbolicTangent(a, b) => HyperbolicTangent(at(a), at(b)),
+            Negative(a) => Negative(at(a)),
+            Shifted(a, x) => Shifted(at(a), x),
+            Complement(x, a) => Complement(x, at(a)),
+            Scaled(a, x) => Scaled(at(a), x),
+            Over(a, x) => Over(at(a), x),
+            Exponential(a) => Exponential(at(a)),
+            Logarithm(a) => Logarithm(at(a)),
+            Power(a, p) => Power(at(a), p),
+            Sign(a) => Sign(at(a)),
+            Lane(a, lane) => Lane(at(a), lane),
+            Balanced(..) | Quotient(..) => unreachable!("moved above"),
+        }
+    }
+
+    /// Whether this makes what the other one would, of the same operands; the row that either makes beside its result does not count.
+    pub fn is_like(self, other: Self) -> bool {
+        use Operation::*;
+        match (self, other) {
+            (Balanced(..), _) => false,
+            (Hyperbolic(a, _), Hyperbolic(b, _))
+            | (Circular(a, _), Circular(b, _))
+            | (HyperbolicTangent(a, _), HyperbolicTangent(b, _)) => a == b,
+            (Sum(a, b), Sum(c, d)) | (Product(a, b), Product(c, d)) => {
+                (a, b) == (c, d) || (a, b) == (d, c)
+            }
+            _ => self == other,
         }
     }
 }
@@ -105,7 +168,7 @@ pub(super) struct Instruction {
 
 impl Instruction {
     /// The row that it makes beside its result.
-    fn second_result(self) -> Option<usize> {
+    pub fn second_result(self) -> Option<usize> {
         match self.operation {
             Operation::Hyperbolic(_, row)
             | Operation::Circular(_, row)
@@ -127,6 +190,12 @@ pub(super) struct Program {
     rows: usize,
     /// What the formula gives, in the order in which it was asked for.
     pub outputs: Vec<Source>,
+    /// The lane of each of these, of those that have but one.
+    pub lanes: Vec<usize>,
+    /// The row of each variable, and its lane there.
+    pub places: Vec<(usize, usize)>,
+    /// What is carried out at all orders but the first.
+    pub later: LaterOrders,
     /// The rows whose signs it takes.
     pub kinks: Vec<usize>,
     /// Whether it holds only where it was recorded, as the formula asks for values.
@@ -144,12 +213,8 @@ impl Program {
         let nodes = graph.nodes();
         let mut assembly = Assembly {
             program: Program {
-                instructions: Vec::with_capacity(nodes.len()),
-                variables,
-                rows: variables,
-                outputs: Vec::new(),
-                kinks: Vec::new(),
                 branches: graph.branches(),
+                ..Program::empty(variables)
             },
             sources: Vec::with_capacity(nodes.len()),
             nodes: &nodes,
@@ -167,8 +232,40 @@ impl Program {
         }
         let mut program = assembly.program;
         program.outputs = outputs.iter().map(|&at| assembly.sources[at]).collect();
-        program.interleave();
+        program.lanes = vec![0; program.outputs.len()];
+        program.order();
         program
+    }
+
+    /// Nothing yet, in so many variables.
+    pub fn empty(variables: usize) -> Self {
+        Program {
+            instructions: Vec::new(),
+            variables,
+            rows: variables,
+            outputs: Vec::new(),
+            lanes: Vec::new(),
+            places: (0..variables).map(|i| (i, 0)).collect(),
+            later: LaterOrders::default(),
+            kinks: Vec::new(),
+            branches: false,
+        }
+    }
+
+    /// How many variables there are, which have the first rows.
+    pub fn variables(&self) -> usize {
+        self.variables
+    }
+
+    /// A row more.
+    pub fn take_row(&mut self) -> usize {
+        self.rows += 1;
+        self.rows - 1
+    }
+
+    /// An operation more.
+    pub fn push(&mut self, instruction: Instruction) {
+        self.instructions.push(instruction);
     }
 
     /// The operations, in an order in which they can be carried out.
@@ -177,8 +274,8 @@ impl Program {
     }
 
     /// Puts operations that need the same number of others before them side by side: none of these waits for another, which would
-    /// take most of the time.
-    fn interleave(&mut self) {
+    /// take most of the time. What is carried out at later orders then follows.
+    pub fn order(&mut self) {
         let mut depths = vec![0; self.rows];
         for instruction in &self.instructions {
             let operands = instruction.operation.operands().into_iter().flatten();
@@ -190,6 +287,7 @@ impl Program {
         }
         self.instructions
             .sort_by_key(|instruction| depths[instruction.result]);
+        self.later = LaterOrders::of(self);
     }
 
     /// Rows that it takes.
@@ -254,8 +352,7 @@ struct Assembly<'a> {
 
 impl Assembly<'_> {
     fn row(&mut self) -> usize {
-        self.program.rows += 1;
-        self.program.rows - 1
+        self.program.take_row()
     }
 
     /// The row that an operation makes.

@@ -11,7 +11,7 @@ use super::{
     Accuracy, Derivatives, Expansion, MAX_ORDER, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
 };
 #[cfg(target_arch = "x86_64")]
-use super::{Four, avx2};
+use super::{Four, Pair, avx2};
 use crate::expression::Expressions;
 use crate::number::{DoubleDouble, Real};
 use std::ops::{Deref, DerefMut};
@@ -33,7 +33,7 @@ pub struct Recorded<S, const N: usize, const P: usize> {
 }
 
 /// A recorded formula: its variables, the slip rates among its outputs, the parameters in which it has derivatives.
-struct Recording<'a> {
+pub struct Recording<'a> {
     record: RecordFormula<'a>,
     variables: usize,
     slip_rates: usize,
@@ -50,6 +50,15 @@ impl<'a> Recording<'a> {
 
     fn solution(self) -> Box<dyn Trajectory + 'a> {
         let shape = self.shape();
+        #[cfg(target_arch = "x86_64")]
+        if let Some(simd) = avx2() {
+            let program = (self.record)(&vec![1.0; self.variables]);
+            if let Some(program) = program.in_two_lanes() {
+                let any = Pair::new(simd, [0.0; 2]);
+                let (record, watched) = (self.record, self.slip_rates);
+                return Box::new(Interpreted::of_program(record, program, watched, ROOM, any));
+            }
+        }
         Box::new(Interpreted::new(self.record, shape, ROOM, 0.0))
     }
 
@@ -86,6 +95,10 @@ impl<'a> Recording<'a> {
 struct Known<T, const N: usize>(T);
 
 impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Known<T, N> {
+    fn order(&self, rtol: f64) -> usize {
+        self.0.order(rtol)
+    }
+
     fn start(&mut self, y: &[f64; N]) {
         self.0.start(y);
     }
@@ -135,34 +148,41 @@ impl<const N: usize> TaylorMap<N> for Known<Box<Transported<'_>>, N> {
     }
 }
 
-impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> Recorded<S, N, P> {
+/// Equations whose solutions are made by a recorded formula.
+pub trait ByRecording<'a, const N: usize>: Sized {
+    /// The formula; with the places of parameters its derivatives in the variables and in these.
+    fn recording(self, free: Option<&[usize]>) -> Recording<'a>;
+
     /// A solution.
-    pub fn solution(self) -> Box<dyn Solution<N> + 'a> {
+    fn solution(self) -> Box<dyn Solution<N> + 'a> {
         Box::new(Known(self.recording(None).solution()))
     }
 
     /// A solution in 31 digits.
-    pub fn reference(self) -> Box<dyn Solution<N> + 'a> {
+    fn reference(self) -> Box<dyn Solution<N> + 'a> {
         Box::new(Known(self.recording(None).reference()))
     }
 
     /// A solution with its derivatives in its start and in the parameters of these places.
-    pub fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+    fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
         Box::new(Known(self.recording(Some(free)).tangent()))
     }
 
     /// The same in 31 digits.
-    pub fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
+    fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
         Box::new(Known(self.recording(Some(free)).reference_tangent()))
     }
 
     /// A solution to third order in two variations, which are those of this start.
-    pub fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
+    fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
         let recording = self.recording(None);
         Box::new(Known(Box::new(recording.transport(&start))))
     }
+}
 
-    /// The formula; with the places of parameters its derivatives in the variables and in these.
+impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> ByRecording<'a, N>
+    for Recorded<S, N, P>
+{
     fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
         let free = free.map(<[usize]>::to_vec);
         let constant = self.parameters.map(f64::constant);
@@ -195,53 +215,29 @@ impl<'a, S: Equations<N, P> + 'a, const N: usize, const P: usize> Recorded<S, N,
 pub struct RecordedExpressions<'a, const N: usize> {
     /// The right-hand sides, N of them in N variables.
     pub rates: &'a Expressions,
+    /// The slip rates of the interfaces, where there are any: one or two.
+    pub slip_rates: Option<&'a Expressions>,
     /// The parameters.
     pub parameters: &'a [f64],
 }
 
-impl<'a, const N: usize> RecordedExpressions<'a, N> {
-    /// A solution.
-    pub fn solution(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(None).solution()))
-    }
-
-    /// A solution in 31 digits.
-    pub fn reference(self) -> Box<dyn Solution<N> + 'a> {
-        Box::new(Known(self.recording(None).reference()))
-    }
-
-    /// A solution with its derivatives in its start and in the parameters of these places.
-    pub fn tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
-        Box::new(Known(self.recording(Some(free)).tangent()))
-    }
-
-    /// The same in 31 digits.
-    pub fn reference_tangent(self, free: &[usize]) -> Box<dyn Tangent<N> + 'a> {
-        Box::new(Known(self.recording(Some(free)).reference_tangent()))
-    }
-
-    /// A solution to third order in two variations, which are those of this start.
-    pub fn transport(self, start: [Jet3; N]) -> Box<dyn TaylorMap<N> + 'a> {
-        let recording = self.recording(None);
-        Box::new(Known(Box::new(recording.transport(&start))))
-    }
-
+impl<'a, const N: usize> ByRecording<'a, N> for RecordedExpressions<'a, N> {
     fn recording(self, free: Option<&[usize]>) -> Recording<'a> {
-        Recording::of_expressions(self.rates, N, self.parameters, free)
+        Recording::of_expressions((self.rates, self.slip_rates), N, self.parameters, free)
     }
 }
 
 impl<'a> Recording<'a> {
-    /// As of [`Recorded::recording`].
+    /// As of [`ByRecording::recording`].
     fn of_expressions(
-        rates: &'a Expressions,
+        (rates, slip_rates): (&'a Expressions, Option<&'a Expressions>),
         variables: usize,
         parameters: &'a [f64],
         free: Option<&[usize]>,
     ) -> Self {
         let free = free.map(<[usize]>::to_vec);
         Recording {
-            slip_rates: 0,
+            slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
             variables,
             free: free.as_ref().map_or(0, Vec::len),
@@ -252,7 +248,10 @@ impl<'a> Recording<'a> {
                 let beside = |(q, &value): (usize, &f64)| graph.variable(variables + q, value);
                 let p: Vec<_> = parameters.iter().enumerate().map(beside).collect();
                 let rates = rates.evaluate(&x, &p);
-                assemble(&graph, parameters, (&rates, &[]), free.as_deref())
+                // The same nodes as of the rates, as far as these have them.
+                let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
+                let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
+                assemble(&graph, parameters, (&rates, &slip_rates), free.as_deref())
             }),
         }
     }

@@ -1,0 +1,224 @@
+//! What is seen of a run of a system of one's own: rows, slips and the points of a picture.
+
+use super::plan::{TextInstant, TextPlan};
+use super::run::TextOutcome;
+use crate::error::Result;
+use crate::field::Vector;
+use crate::integrate::{AnyStep, Control, Work};
+use crate::model::TextSystem;
+use crate::number::DoubleDouble;
+use crate::scene::column::Column;
+use crate::scene::plan::Sampling;
+use crate::scene::program::Stretch;
+use crate::scene::run::{PICTURED, RESTS, Sink};
+use crate::scene::slip::{GAUSS, Slips, sum};
+use crate::scene::system::Described;
+
+/// Sees the steps of a run and makes rows of them.
+pub(super) struct TextObserver<'a> {
+    plan: &'a TextPlan,
+    sink: &'a mut dyn Sink,
+    pictured: Vec<Column<TextInstant>>,
+    /// How V_H is here.
+    stretch: Stretch,
+    here: TextInstant,
+    /// The slips there, in all digits.
+    slips: Slips,
+    row: Vec<f64>,
+    /// Rows at fixed times made so far.
+    sampled: usize,
+    /// How many stretches have begun.
+    begun: usize,
+    /// The time of the last row.
+    shown: Option<f64>,
+    stopped: bool,
+}
+
+impl<'a> TextObserver<'a> {
+    pub fn new(plan: &'a TextPlan, sink: &'a mut dyn Sink) -> Self {
+        let driving = plan.model.driving();
+        TextObserver {
+            plan,
+            sink,
+            pictured: plan.pictured(),
+            stretch: Stretch::new((0.0, 0.0), (driving, driving)),
+            here: TextInstant {
+                time: 0.0,
+                state: plan.start.as_slice().to_vec(),
+                slip: [0.0; 2],
+                driving,
+            },
+            slips: [DoubleDouble::ZERO; 2],
+            row: Vec::new(),
+            sampled: 0,
+            begun: 0,
+            shown: None,
+            stopped: false,
+        }
+    }
+
+    /// Whether the sink stopped the run.
+    pub fn stopped(&self) -> bool {
+        self.stopped
+    }
+
+    /// A stretch begins: the first one with the first row, the others with one at either side of a change.
+    pub fn begin(&mut self, stretch: &Stretch) {
+        let first = self.begun == 0;
+        self.begun += 1;
+        let rows = self.plan.sampling != Sampling::FinalOnly;
+        if rows && !first && self.shown != Some(stretch.span.0) {
+            let before = self.here.clone();
+            self.emit(&before);
+        }
+        let jumps = stretch.driving.0 != self.stretch.driving.1;
+        self.stretch = *stretch;
+        self.here.time = stretch.span.0;
+        self.here.driving = stretch.driving.0;
+        let here = self.here.clone();
+        if self.plan.picture {
+            self.draw(&here);
+        }
+        if rows && (first || jumps) {
+            self.emit(&here);
+        }
+        if first && rows {
+            self.sampled = 1;
+        }
+    }
+
+    pub fn see(&mut self, system: &TextSystem, step: &AnyStep<'_>) -> Control {
+        let (plan, stretch, before) = (self.plan, self.stretch, self.slips);
+        let needs_slip = plan.needs_slip();
+        let slip = |t: f64| {
+            if needs_slip {
+                slips(system, step, &before, t)
+            } else {
+                before
+            }
+        };
+        let count = plan.start.len();
+        let instant = |t: f64, slips: Slips| {
+            let mut state = if t == step.t1 {
+                step.y1.to_vec()
+            } else {
+                step.dense(t).as_slice().to_vec()
+            };
+            state.truncate(count);
+            TextInstant {
+                time: t,
+                state,
+                slip: slips.map(DoubleDouble::hi),
+                driving: stretch.driving_at(t),
+            }
+        };
+        while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
+            self.emit(&instant(t, slip(t)));
+            self.sampled += 1;
+        }
+        if plan.picture {
+            for part in 1..=PICTURED {
+                let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
+                self.draw(&instant(t, before));
+            }
+        }
+        self.slips = slip(step.t1);
+        self.here.time = step.t1;
+        self.here.state.copy_from_slice(&step.y1[..count]);
+        self.here.slip = self.slips.map(DoubleDouble::hi);
+        self.here.driving = stretch.driving_at(step.t1);
+        if plan.sampling == Sampling::EveryStep {
+            let here = self.here.clone();
+            self.emit(&here);
+        }
+        if self.sink.reached(step.t1 / plan.until) == Control::Stop {
+            self.stopped = true;
+        }
+        let only_end = plan.sampling == Sampling::FinalOnly && !plan.picture && !needs_slip;
+        match (self.stopped, only_end) {
+            (true, _) => Control::Stop,
+            (false, true) => Control::Rest(RESTS),
+            (false, false) => Control::Continue,
+        }
+    }
+
+    /// The next fixed time of a row.
+    fn next_sample(&self) -> Option<f64> {
+        let plan = self.plan;
+        let end = match plan.program {
+            Some(_) => self.stretch.span.1,
+            None => plan.until,
+        };
+        plan.sampling.time(self.sampled, plan.until, end)
+    }
+
+    fn draw(&mut self, at: &TextInstant) {
+        fill(&mut self.row, &self.pictured, self.plan, at);
+        self.sink.drawn(&self.row);
+    }
+
+    fn emit(&mut self, at: &TextInstant) {
+        fill(&mut self.row, &self.plan.columns, self.plan, at);
+        self.shown = Some(at.time);
+        if self.sink.row(&self.row) == Control::Stop {
+            self.stopped = true;
+        }
+    }
+
+    pub fn finish(mut self, end: &Result<Vector>) -> TextOutcome {
+        let plan = self.plan;
+        if let Ok(y) = end
+            && !self.stopped
+        {
+            self.here.time = plan.until;
+            self.here.state.copy_from_slice(y.as_slice());
+            self.here.driving = self.stretch.driving.1;
+            if plan.sampling == Sampling::FinalOnly {
+                let here = self.here.clone();
+                self.emit(&here);
+            }
+        }
+        let known = end.is_ok() || plan.observed();
+        fill(&mut self.row, &plan.columns, plan, &self.here);
+        TextOutcome {
+            last: known.then_some(self.row),
+            work: Work::default(),
+            errors: None,
+            error_estimate: None,
+            estimate_failure: None,
+            failure: end.as_ref().err().cloned(),
+            stopped: self.stopped,
+        }
+    }
+}
+
+/// The slips at t, from those at the beginning of the step: term by term where the step is a series, else by quadrature.
+fn slips(system: &TextSystem, step: &AnyStep<'_>, before: &Slips, t: f64) -> Slips {
+    let within = match step.series() {
+        // The ends of steps are known better than to the rounding of t.
+        Some(series) if t == step.t1 => series.slips(series.length()),
+        Some(series) => series.slips(series.since_begin(t)),
+        None => {
+            let h = t - step.t0;
+            let mut slips = [0.0; 2];
+            for (node, weight) in GAUSS {
+                let rates = system.slip_rates(step.dense(step.t0 + node * h).as_slice());
+                for (slip, v) in slips.iter_mut().zip(rates) {
+                    *slip += weight * h * v;
+                }
+            }
+            slips
+        }
+    };
+    sum(before, within)
+}
+
+/// Fills a row with the columns at an instant.
+fn fill(row: &mut Vec<f64>, columns: &[Column<TextInstant>], plan: &TextPlan, at: &TextInstant) {
+    row.clear();
+    row.extend(
+        columns
+            .iter()
+            .map(|column| column.number(at, plan.model.units())),
+    );
+}
