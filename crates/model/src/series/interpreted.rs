@@ -155,11 +155,10 @@ impl<'a, T: Element> Interpreted<'a, T> {
         for _ in 0..=SHORTER_UNITS {
             for k in 0..order {
                 self.rows.level(&self.program, k);
-                let one_over = self.rows.one_over(k + 1);
-                let unit = DoubleDouble::from(self.unit);
+                let share = self.rows.one_over(k + 1) * self.unit;
                 for i in 0..self.x.len() {
                     let rate = self.rows.coefficient(self.program.outputs[i], k);
-                    self.rows.set(i, k + 1, rate.scale(one_over).scale(unit));
+                    self.rows.set(i, k + 1, rate.scale(share));
                 }
             }
             // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the

@@ -138,7 +138,6 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
         Operation::Negative(a) | Operation::Complement(_, a) => vec![term(a, -one)],
         Operation::Shifted(a, _) => vec![term(a, one)],
         Operation::Scaled(a, x) => vec![term(a, x)],
-        Operation::Over(a, x) => vec![term(a, one / x)],
         Operation::Lane(a, lane) => vec![Term {
             lane: Some(lane),
             ..term(a, one)
@@ -151,17 +150,19 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
     })
 }
 
-/// A multiple of a multiple; `None` where that takes two signs, or the sign of another lane.
+/// A multiple of a multiple; `None` where that takes two signs, or the sign of another lane, or a factor that is no double: rounded it would
+/// be another one at all orders of all steps.
 fn joined(outer: Term, inner: Term) -> Option<Term> {
     let sign = match (outer.sign, inner.sign) {
         (Some(_), Some(_)) => return None,
         (_, Some(_)) if outer.lane.is_some() => return None,
         (outer, inner) => outer.or(inner),
     };
-    Some(Term {
+    let factor = outer.factor * inner.factor;
+    (factor.lo() == 0.0).then_some(Term {
         row: inner.row,
         lane: inner.lane.or(outer.lane),
-        factor: outer.factor * inner.factor,
+        factor,
         sign,
     })
 }
@@ -171,7 +172,9 @@ fn add(all: &mut Vec<Term>, term: Term) {
     let alike =
         |known: &&mut Term| (known.row, known.lane, known.sign) == (term.row, term.lane, term.sign);
     match all.iter_mut().find(alike) {
-        Some(known) => known.factor = known.factor + term.factor,
-        None => all.push(term),
+        Some(known) if (known.factor + term.factor).lo() == 0.0 => {
+            known.factor = known.factor + term.factor;
+        }
+        _ => all.push(term),
     }
 }
