@@ -12,7 +12,10 @@ use crate::views;
 use std::ops::ControlFlow;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(
+        &options.model,
+        &[options.along.as_deref().unwrap_or("driving")],
+    )? {
         let search = &options.search;
         let subject = TextSubject::new(
             model,

@@ -13,7 +13,10 @@ use crate::views;
 use std::ops::ControlFlow;
 
 pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::named(&options.model.slab.text)? {
+    if let Some(model) = TextModel::of(
+        &options.model,
+        &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
+    )? {
         let search = &options.search;
         let subject = TextSubject::new(
             model,

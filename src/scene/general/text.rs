@@ -21,8 +21,8 @@ use std::borrow::Cow;
 pub struct TextSubject {
     /// The system.
     pub model: TextModel,
-    /// Where equilibria are looked for.
-    pub place: SearchPlace,
+    /// Where equilibria are looked for; of interfaces, where nothing is said, among all their steady states.
+    pub place: Option<SearchPlace>,
     /// A point at or near an orbit and the period, roughly.
     pub orbit: Option<(Vector, Option<f64>)>,
 }
@@ -63,12 +63,13 @@ impl TextSubject {
         };
         let near = start.filter(|_| !orbits);
         let place = match (within, near) {
-            (Some(text), _) => SearchPlace::within(text, &model)?,
+            (Some(text), _) => Some(SearchPlace::within(text, &model)?),
+            (None, None) if model.slab.is_some() => None,
             // Where an orbit is given none is needed.
             (None, None) if orbit.is_some() && model.start(None).is_err() => {
-                SearchPlace::Near(model.start(start)?)
+                Some(SearchPlace::Near(model.start(start)?))
             }
-            (None, near) => SearchPlace::Near(model.start(near)?),
+            (None, near) => Some(SearchPlace::Near(model.start(near)?)),
         };
         Ok(TextSubject {
             model,
@@ -113,10 +114,11 @@ impl Subject for TextSubject {
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
         let system = self.at(values)?;
         let model = self.model.with(system);
-        let plan = TextEquilibriaPlan {
-            place: self.place.clone(),
-            model,
+        let place = match &self.place {
+            Some(place) => place.clone(),
+            None => SearchPlace::Within(model.steady_box()?),
         };
+        let plan = TextEquilibriaPlan { place, model };
         let found = match plan.solve() {
             Ok(found) => found.equilibria,
             // There need not be one near the start for each value.

@@ -176,7 +176,7 @@ impl TextModel {
     }
 
     /// A box with the steady states of interfaces: what stress and states have at rates from a small part of V_H to all of it.
-    pub(super) fn steady_box(&self) -> Result<Vec<Interval>> {
+    pub(in crate::scene) fn steady_box(&self) -> Result<Vec<Interval>> {
         match &self.slab {
             Some(slab) => slab.steady_box(&self.system),
             None => Ok(Vec::new()),
