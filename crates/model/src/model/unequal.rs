@@ -16,7 +16,7 @@ use std::sync::LazyLock;
 /// together.
 ///
 /// ```
-/// use twinslip::field::{Parametrised, State};
+/// use twinslip::field::Parametrised;
 /// use twinslip::friction::{InterfaceConstants, UnequalLaws};
 /// use twinslip::model::{Loading, UnequalInterfaces};
 /// # fn main() -> twinslip::Result<()> {
