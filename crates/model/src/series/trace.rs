@@ -146,7 +146,13 @@ impl Graph {
 
     /// The derivatives of these numbers in a variable, by the rules of differentiation node after node (forward mode).
     pub(super) fn derivatives(&self, of: &[Traced<'_>], variable: usize) -> Vec<Traced<'_>> {
-        let nodes = self.nodes();
+        let mut nodes = self.nodes();
+        // What other derivatives have added is no part of these numbers.
+        let part = |x: &Traced<'_>| match x {
+            Constant(_) => 0,
+            Traced::Node(_, place) => place + 1,
+        };
+        nodes.truncate(of.iter().map(part).max().unwrap_or(0));
         let zero = Constant(DoubleDouble::ZERO);
         let mut slopes: Vec<Traced<'_>> = Vec::with_capacity(nodes.len());
         for (place, node) in nodes.iter().enumerate() {
