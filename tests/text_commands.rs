@@ -127,10 +127,6 @@ fn what_makes_no_sense_with_a_system_is_refused() {
             ended.err
         );
     }
-    for command in ["branch orbits", "locus hopf", "sweep"] {
-        let ended = twinslip(&format!("{command} --system lorenz"));
-        assert_eq!(ended.code, 2, "{command}: {}", ended.err);
-    }
     refused_in_one_line(
         "integrate --system lorenz --until 1 --events",
         "which need interfaces",

@@ -422,13 +422,7 @@ fn what_is_wrong_is_refused_in_one_sentence() {
         &format!("{orbit} --start hopf {differ}"),
         "for equal interfaces",
     );
-    for command in [
-        "branch orbits --stiffness 0.14",
-        "branch equilibria --stiffness 0.14",
-        "locus hopf",
-        "sweep --driving 1:2:2 --stiffness 0.1:0.2:2",
-        "law",
-    ] {
+    for command in ["sweep --driving 1:2:2 --stiffness 0.1:0.2:2", "law"] {
         refused_in_one_line(
             &format!("{command} {differ}"),
             "takes equal interfaces, and these differ",

@@ -26,7 +26,7 @@ pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
     let ending = write(&report, &plan, &found)?;
     if !found.complete {
         report.say(
-            "the number of steady states is undecided: V_H is within rounding of a bifurcation",
+            "the number of steady states is undecided: V_H is within rounding of a bifurcation, or a slip rate is no number that doubles have",
         );
     }
     if ending == Ending::Done && found.undecided() {
