@@ -167,7 +167,7 @@ fn curves_of_folds_and_hopf_points_go_where_closed_forms_say() {
     for made in [
         made,
         object(&format!(
-            "locus saddle-node --system {path} --in q,p {ranges}"
+            "locus saddle-node --system {path} --in p,q {ranges}"
         )),
     ] {
         let ends = special(&made, "BT");

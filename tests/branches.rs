@@ -394,7 +394,7 @@ fn wrong_branches_are_refused() {
         ),
         (
             "branch orbits --along period --driving 1",
-            "along is period, but must be driving or stiffness",
+            "along is period, but must be one of driving, stiffness",
         ),
         (
             "branch orbits --interfaces 1 --stiffness 0.2 --symmetry asymmetric",

@@ -88,35 +88,58 @@ impl Observer<'_, '_> {
         }
     }
 
-    /// How far the coordinates of a zero of the i-th function may be off: by the curve's own rounding, and along it by what is
-    /// left of the function and its noise over its slope.
-    fn off(&self, i: usize, point: &CurvePoint) -> Option<[f64; 2]> {
+    /// The zero of the i-th function near a point of the curve, in the last digits, and how far its coordinates may be off: by the
+    /// curve's own rounding, and along it by what is left of the function and its noise over its slope.
+    fn sharp(&self, i: usize, point: &CurvePoint) -> Option<(Vector, [f64; 2])> {
+        const ITERATIONS: usize = 8;
         const BESIDE: f64 = 1e-5;
+        const DONE: f64 = 1e-13;
         const TRIED: usize = 4;
-        /// To which points of a curve are corrected.
-        const TOLERANCE: f64 = 1e-13;
+        let along = &point.tangent;
         let n = point.u.len() - 1;
-        let u = point.u.push(point.lambda);
-        let of = |u: &Vector| self.functions(u, &point.tangent).ok().map(|all| all[i]);
-        let step = BESIDE * (1.0 + u.amax());
-        let ahead = of(&(&u + &point.tangent * step))?;
-        let slope = (ahead - of(&(&u - &point.tangent * step))?) / (2.0 * step);
-        let here = of(&u)?;
+        let start = point.u.push(point.lambda);
+        // The point of the curve at a distance along the tangent, and the function there.
+        let at = |s: f64| {
+            let u = self.problem.across(&(&start + along * s), along)?;
+            let value = self.functions(&u, &self.problem.tangent(&u, along)?).ok()?[i];
+            value.is_finite().then_some((u, value))
+        };
+        let beside = BESIDE * (1.0 + start.amax());
+        let ((_, mut last), mut s_last) = (at(-beside)?, -beside);
+        let ((mut u, mut here), mut s) = (at(beside)?, beside);
+        for _ in 0..ITERATIONS {
+            let slope = (here - last) / (s - s_last);
+            let step = -here / slope;
+            // Within rounding the slope is noise.
+            if !step.is_finite() || step.abs() > 10.0 * beside {
+                break;
+            }
+            (s_last, last) = (s, here);
+            s += step;
+            (u, here) = at(s)?;
+            if step.abs() < DONE * (1.0 + start.amax()) {
+                break;
+            }
+        }
+        let ((_, ahead), (_, behind)) = (at(s + beside)?, at(s - beside)?);
+        let slope = (ahead - behind) / (2.0 * beside);
+        let tangent = self.problem.tangent(&u, along)?;
         let mut noise = here.abs();
         for time in 0..TRIED {
             let moved = Vector::from_fn(u.len(), |k, _| {
                 u[k] * (1.0 + sign(k, time) * 4.0 * f64::EPSILON)
             });
-            noise += (of(&moved)? - here).abs();
+            noise += (self.functions(&moved, &tangent).ok()?[i] - here).abs();
         }
-        let along = noise / slope.abs();
+        let off_along = noise / slope.abs();
+        let bend = (self.problem.tangent(&at(s + beside)?.0, along)? - &tangent) / beside;
         let across = (0..2).filter_map(|k| self.problem.budget(&u, n + k));
         let across = across.min_by(|a, b| a.amax().total_cmp(&b.amax()))?;
         let off = [0, 1].map(|k| {
-            let corrected = TOLERANCE * (1.0 + u[n + k].abs());
-            across[n + k] + along * point.tangent[n + k].abs() + corrected
+            let by_bend = bend[n + k].abs() * off_along * off_along;
+            across[n + k] + off_along * tangent[n + k].abs() + by_bend
         });
-        off.iter().all(|x| x.is_finite()).then_some(off)
+        off.iter().all(|x| x.is_finite()).then_some((u, off))
     }
 }
 
@@ -146,8 +169,22 @@ impl CurveObserver for Observer<'_, '_> {
     fn seen(&mut self, point: &CurvePoint, mark: PointKind) -> ControlFlow<()> {
         /// Of the coordinates of a special point.
         const KNOWN: f64 = 1e-3;
-        let (state, at) = self.problem.at(&point.u, point.lambda);
         let n = point.u.len() - 1;
+        let mut special = None;
+        if let PointKind::Zero(i) = mark
+            && i < FUNCTIONS
+        {
+            match self.sharp(i, point) {
+                // What is not known to some digits is no zero: of a function that jumps, or has a pole.
+                Some((u, off)) if off.iter().all(|&off| off < KNOWN) => special = Some((u, off)),
+                _ => return ControlFlow::Continue(()),
+            }
+        }
+        let u = match &special {
+            Some((u, _)) => u.clone(),
+            None => point.u.push(point.lambda),
+        };
+        let (state, at) = self.problem.at(&u, u[n + 1]);
         let field = self.problem.0.family.field(at);
         let jacobian = field.jacobian(&state);
         let hopf = self.problem.0.kind == EquilibriumBifurcation::Hopf;
@@ -164,20 +201,14 @@ impl CurveObserver for Observer<'_, '_> {
             PointKind::Begin | PointKind::Lowest | PointKind::Highest => Some(Label::Ep),
         };
         let uncertainty = match mark {
-            PointKind::Zero(i) if i < FUNCTIONS => match self.off(i, point) {
-                // What is not known to some digits is no zero: of a function that jumps, or has a pole.
-                Some(off) if off.iter().all(|&off| off < KNOWN) => Some(off),
-                _ => return ControlFlow::Continue(()),
-            },
+            PointKind::Step => None,
+            PointKind::Zero(i) if i < FUNCTIONS => special.map(|(_, off)| off),
             PointKind::Zero(_) => {
-                let u = point.u.push(point.lambda);
                 let budget = self.problem.budget(&u, n);
                 budget.map(|budget| [0.0, budget[n + 1]])
             }
-            PointKind::Step => None,
             _ => {
-                let u = point.u.push(point.lambda);
-                let budget = self.problem.budget(&u, point.u.len());
+                let budget = self.problem.budget(&u, n + 1);
                 budget.map(|budget| [budget[n], 0.0])
             }
         };

@@ -32,6 +32,42 @@ impl Extended<'_> {
         Some(all.remove_column(held))
     }
 
+    /// The unit tangent of the curve, with a positive product with another one.
+    pub fn tangent(&self, u: &Vector, along: &Vector) -> Option<Vector> {
+        let n = u.len() - 2;
+        let rows = self
+            .jacobian(&u.rows(0, n + 1).into_owned(), u[n + 1])
+            .ok()?;
+        let last = along.transpose();
+        let mut square = rows.insert_row(n + 1, 0.0);
+        square.set_row(n + 1, &last);
+        let mut right = Vector::zeros(n + 2);
+        right[n + 1] = 1.0;
+        let tangent = square.lu().solve(&right)?;
+        Some(&tangent / tangent.norm())
+    }
+
+    /// The point of the curve near another one, across a direction.
+    pub fn across(&self, near: &Vector, along: &Vector) -> Option<Vector> {
+        /// Corrections, which end in the last digits.
+        const ITERATIONS: usize = 6;
+        let n = near.len() - 2;
+        let mut u = near.clone();
+        for _ in 0..ITERATIONS {
+            let (inner, last) = (u.rows(0, n + 1).into_owned(), u[n + 1]);
+            let mut square = self.jacobian(&inner, last).ok()?.insert_row(n + 1, 0.0);
+            square.set_row(n + 1, &along.transpose());
+            let left = self.residual(&inner, last).ok()?;
+            let step = square.lu().solve(&left.push(along.dot(&(&u - near))))?;
+            let size = relative(&step, &u);
+            u -= step;
+            if size < f64::EPSILON {
+                break;
+            }
+        }
+        u.iter().all(|x| x.is_finite()).then_some(u)
+    }
+
     /// omega at a Hopf point whose unknowns may be off by so much.
     pub fn frequency_within(&self, u: &Vector, off: &Vector) -> Option<Uncertain> {
         /// So many points are looked at, and what their largest distance counts.

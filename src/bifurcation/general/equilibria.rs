@@ -200,7 +200,11 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 Label::Ep => [low, high].contains(&found.parameter),
                 _ => true,
             };
-            let label = found.label.filter(|label| !begins && asked(label));
+            let label = match begins {
+                // Inside the range a value may have been asked for.
+                true => at.contains(&found.parameter).then_some(Label::Uz),
+                false => found.label.filter(asked),
+            };
             if matches!(found.label, Some(Label::Ep | Label::Uz)) {
                 ends.push(here);
             }

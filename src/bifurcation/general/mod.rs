@@ -186,20 +186,26 @@ impl GeneralPoint {
 
     /// Stability.
     pub fn verdict(&self) -> Verdict {
-        /// What rounding and the continuation's accuracy leave of what is zero.
-        const NEUTRAL: f64 = 1e-6;
-        let (largest, size) = match &self.solution {
+        /// What rounding and the continuation's accuracy leave of what is zero: of eigenvalues against the largest, of orbits of ln |mu|.
+        const NEUTRAL: (f64, f64) = (1e-12, 1e-6);
+        let (largest, neutral) = match &self.solution {
             GeneralSolution::Equilibrium { eigenvalues, .. } => {
                 let most = eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max);
-                (eigenvalues.first().map_or(f64::NAN, |z| z.re), 1e-3 * most)
+                (
+                    eigenvalues.first().map_or(f64::NAN, |z| z.re),
+                    NEUTRAL.0 * most,
+                )
             }
             GeneralSolution::Orbit {
                 log_multipliers, ..
-            } => (log_multipliers.first().copied().unwrap_or(f64::NAN), 1.0),
+            } => (
+                log_multipliers.first().copied().unwrap_or(f64::NAN),
+                NEUTRAL.1,
+            ),
         };
-        if largest > NEUTRAL * size {
+        if largest > neutral {
             Verdict::Unstable
-        } else if largest < -NEUTRAL * size {
+        } else if largest < -neutral {
             Verdict::Stable
         } else {
             Verdict::Undecided

@@ -149,14 +149,32 @@ impl<'a> OrbitCurves<'_, 'a> {
                 return Ok(Break(()));
             }
         }
-        let first = self.row(number, &here, None);
-        if teller.point(first, false).is_break() {
+        let (first, special) = self.first(number, &here);
+        if teller.point(first, special).is_break() {
             return Ok(Break(()));
         }
         self.half(begin, &settings, number, -1.0, &mut |point, special| {
             teller.point(point, special)
         })?;
         Ok(teller.told)
+    }
+
+    /// Where both ways begin, which neither comes to again: as a value that was asked for, if it is that.
+    fn first(&self, number: usize, here: &Regular) -> (GeneralPoint, bool) {
+        let at = here.site.at;
+        let wanted = (0..2).find_map(|i| {
+            let mut values = self.curve.at[i].iter();
+            let value = values.find(|&&x| (x - at[i]).abs() < SAME)?;
+            Some(WatchedFunction::Value(i, *value))
+        });
+        let Some(watch) = wanted else {
+            return (self.row(number, here, None), false);
+        };
+        let meets = [WatchedFunction::TestFunction(self.test_function), watch];
+        let special = (number, Label::Uz);
+        let (point, orbit) = special_orbit(self.family(), special, here, (&[0, 1], &meets));
+        let orbit = orbit.as_ref().unwrap_or(here);
+        (self.classified(self.angled(point, orbit), orbit), true)
     }
 
     fn watches(&self) -> Vec<WatchedFunction> {

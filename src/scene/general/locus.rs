@@ -99,6 +99,11 @@ impl<'s> GeneralLocusPlan<'s> {
             Error::Input("say which two parameters vary: `in` NAME1,NAME2".into())
         })?;
         let names = plane(text)?;
+        let known = subject.parameters();
+        let known: Vec<&str> = known.iter().map(|(name, _)| *name).collect();
+        if let Some(name) = names.iter().find(|name| !known.contains(name)) {
+            return Err(Error::unknown("in", name, &known));
+        }
         let mut ranges = by_name("range", &options.range, names)?;
         let mut at = by_name("at", &options.at, names)?;
         // The old flags are shorthands; their ranges have a colon.

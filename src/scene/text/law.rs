@@ -98,7 +98,10 @@ impl TextLawPlan {
                 ExtremumKind::Minimum
             };
             let of = |slopes: Slopes<Interval>| slopes.relative.value;
-            let v = zero_of(&friction, ends, |slopes| slopes.relative)?;
+            // Where the signs are rounding's, and others at the ends of the search, the stress is flat too.
+            let Ok(v) = zero_of(&friction, ends, |slopes| slopes.relative) else {
+                continue;
+            };
             let (around, radius) = enclosure(&friction, v, of);
             // Where no sign is certain the stress is flat, or nearly so.
             if !radius.is_finite() {
@@ -206,7 +209,9 @@ fn largest_stiffness(
         if !(left > 0.0 && right < 0.0) {
             continue;
         }
-        let v = maximum_of_stiffness(friction, ends)?;
+        let Ok(v) = maximum_of_stiffness(friction, ends) else {
+            continue;
+        };
         let of = |slopes: Slopes<Interval>| slopes.critical.gradient[0];
         let (around, radius) = enclosure(friction, v, of);
         if !radius.is_finite() {
