@@ -155,7 +155,7 @@ fn curves_of_folds_and_hopf_points_go_where_closed_forms_say() {
     // Two crossings of q = 0.5 and one of p = 0.25.
     assert_eq!(special(&made, "UZ").len(), 3);
     let path = file("takens_curve", TAKENS);
-    let ranges = "--range q=-1,1 --range p=-1,0.5 --box x=-3:3,y=-3:3";
+    let ranges = "--range q=-1,1.3 --range p=-1,0.5 --box x=-3:3,y=-3:3";
     let made = object(&format!("locus hopf --system {path} --in q,p {ranges}"));
     let rows = made["result"]["rows"].as_array().expect("rows");
     assert!(rows.len() > 5);

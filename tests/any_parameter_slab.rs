@@ -138,7 +138,8 @@ fn folds_go_to_the_pitchforks_with_the_two_thirds_power() {
     let known = data("unequal.json");
     let exact = of_reference(&known["cusps_VH_c2"][0]["V_H"]);
     one_holds(&cusps, "driving", exact, 1e-11);
-    one_holds(&cusps, "residual_strength_2", 1e-3, 1e-11);
+    // Where the state is 0.29 the strength hardly knows c: rounding of the rates is 2e4 times as much of it.
+    one_holds(&cusps, "residual_strength_2", 1e-3, 1e-9);
     let landed = special(&made, "UZ");
     let fold = |value: &str| {
         let c: f64 = value.parse().expect("a number");

@@ -235,6 +235,13 @@ pub(super) fn same(earlier: &Head, remarks: &[String], columns: &[String]) -> Re
         return Err(format!("it was written by {theirs}, but this is {ours}"));
     }
     for subject in ["model", "numerics", "units"] {
+        // Systems without units have no such line.
+        if [&earlier.remarks[..], remarks]
+            .iter()
+            .all(|all| pairs(all, subject).is_none())
+        {
+            continue;
+        }
         let (Some(theirs), Some(ours)) =
             (pairs(&earlier.remarks, subject), pairs(remarks, subject))
         else {

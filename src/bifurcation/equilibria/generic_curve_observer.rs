@@ -69,6 +69,14 @@ impl Observer<'_, '_> {
         })
     }
 
+    /// The function that is zero at a point, if there is one.
+    fn zero_at(&self, point: &CurvePoint) -> Option<usize> {
+        const ZERO: f64 = 1e-14;
+        let all = self.functions(&point.u.push(point.lambda), &point.tangent);
+        let found = all.ok()?.iter().position(|value| value.abs() < ZERO)?;
+        self.sharp(found, point).map(|_| found)
+    }
+
     /// What the i-th function's zero is; `None` where it is nothing.
     fn label(&self, i: usize, omega: Option<f64>, jacobian: &Matrix) -> Option<Label> {
         /// Against the matrix: of a pair that is a double zero, and so known to half of the digits.
@@ -133,8 +141,7 @@ impl Observer<'_, '_> {
         }
         let off_along = noise / slope.abs();
         let bend = (self.problem.tangent(&at(s + beside)?.0, along)? - &tangent) / beside;
-        let across = (0..2).filter_map(|k| self.problem.budget(&u, n + k));
-        let across = across.min_by(|a, b| a.amax().total_cmp(&b.amax()))?;
+        let across = self.problem.budget_across(&u, &tangent)?;
         let off = [0, 1].map(|k| {
             let by_bend = bend[n + k].abs() * off_along * off_along;
             across[n + k] + off_along * tangent[n + k].abs() + by_bend
@@ -170,6 +177,11 @@ impl CurveObserver for Observer<'_, '_> {
         /// Of the coordinates of a special point.
         const KNOWN: f64 = 1e-3;
         let n = point.u.len() - 1;
+        // No sign changes where a curve begins at a special point.
+        let mark = match mark {
+            PointKind::Begin => self.zero_at(point).map_or(mark, PointKind::Zero),
+            mark => mark,
+        };
         let mut special = None;
         if let PointKind::Zero(i) = mark
             && i < FUNCTIONS

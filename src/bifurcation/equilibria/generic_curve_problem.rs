@@ -89,12 +89,38 @@ impl Extended<'_> {
         ))
     }
 
-    /// What rounding makes of a solution: the residuals that are met when the unknowns are changed in their last digit, as the
-    /// equations carry them to the unknowns.
+    /// What rounding makes of a solution of which one unknown is held.
     pub fn budget(&self, u: &Vector, held: usize) -> Option<Vector> {
-        /// So many changes, and what their largest residual counts.
-        const TRIED: usize = 8;
+        let off = self.carried(&self.square(u, held)?, &self.noise(u)?)?;
+        let off = off.insert_row(held, 0.0);
+        let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
+        budget.iter().all(|x| x.is_finite()).then_some(budget)
+    }
+
+    /// The same across a direction.
+    pub fn budget_across(&self, u: &Vector, along: &Vector) -> Option<Vector> {
+        let n = u.len() - 2;
+        let rows = self
+            .jacobian(&u.rows(0, n + 1).into_owned(), u[n + 1])
+            .ok()?;
+        let mut square = rows.insert_row(n + 1, 0.0);
+        square.set_row(n + 1, &along.transpose());
+        let off = self.carried(&square, &self.noise(u)?.push(0.0))?;
+        let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
+        budget.iter().all(|x| x.is_finite()).then_some(budget)
+    }
+
+    /// The residuals as the equations carry them to the unknowns.
+    fn carried(&self, square: &Matrix, residuals: &Vector) -> Option<Vector> {
+        /// What the largest residual of a few counts.
         const SAFETY: f64 = 4.0;
+        Some(square.clone().try_inverse()?.abs() * residuals * SAFETY)
+    }
+
+    /// The residuals that are met when the unknowns are changed in their last digit.
+    fn noise(&self, u: &Vector) -> Option<Vector> {
+        /// So many changes.
+        const TRIED: usize = 8;
         let n = u.len() - 2;
         let mut noise = Vector::zeros(n + 1);
         for time in 0..TRIED {
@@ -106,11 +132,7 @@ impl Extended<'_> {
                 .ok()?;
             noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
         }
-        let inverse = self.square(u, held)?.try_inverse()?;
-        let off = inverse.abs() * noise * SAFETY;
-        let off = off.insert_row(held, 0.0);
-        let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
-        budget.iter().all(|x| x.is_finite()).then_some(budget)
+        Some(noise)
     }
 
     /// The state of some unknowns, which may be followed by coordinates.

@@ -195,7 +195,7 @@ impl EquilibriumCurves<'_, '_> {
                 seen(point, label.is_some())?;
                 // Beyond it there are neutral saddles.
                 match (self.kind, label) {
-                    (EquilibriumBifurcation::Hopf, Some(Label::Bt)) => Break(()),
+                    (EquilibriumBifurcation::Hopf, Some(Label::Bt)) if !begins => Break(()),
                     _ => Continue(()),
                 }
             })?;

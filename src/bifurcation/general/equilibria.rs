@@ -13,6 +13,8 @@ use std::ops::ControlFlow::{self, Continue};
 
 /// Longest steps, as parts of the range and of 1 + |state|.
 const LONGEST: f64 = 0.02;
+/// Points nearer to the last one, in longest steps, are no rows.
+const SHOWN: f64 = 1e-2;
 /// Parts of the range at which branches are looked for that do not come to its ends.
 const INSIDE: [f64; 7] = [0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875];
 /// The first step onto a branch that crosses, in units of 1 + |state|.
@@ -186,7 +188,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             max_points: self.branch.following.max_points + 1,
             ..Settings::new((low, high), longest)?
         };
-        let (mut told, mut last) = (Continue(()), None);
+        let (mut told, mut last, mut place) = (Continue(()), None, None::<Vector>);
         let (mut ends, mut crossings) = (Vec::new(), Vec::new());
         let mut begun = false;
         let mut look = |found: &FoundEquilibrium| {
@@ -206,11 +208,19 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 false => found.label.filter(asked),
             };
             if matches!(found.label, Some(Label::Ep | Label::Uz)) {
-                ends.push(here);
+                ends.push(here.clone());
             }
             if label == Some(Label::Bp) {
                 crossings.push(found.clone());
             }
+            // The short steps that tell a crossing from a near miss are none to show.
+            let short = place
+                .as_ref()
+                .is_some_and(|last| (last - &here).norm() < SHOWN * longest);
+            if label.is_none() && short {
+                return Continue(());
+            }
+            place = Some(here.clone());
             let point = self.point(number, found, label);
             last = Some(point.clone());
             told = seen(point, label.is_some());
