@@ -85,7 +85,10 @@ fn marks(
 fn drawn(subject: &dyn Subject, kind: RowKind) -> Vec<(String, Quantity, Vec<usize>)> {
     let numbers = subject.numbers(kind);
     if !kind.orbits {
+        // An equilibrium has no least and largest.
+        let range = |name: &str| name.ends_with("_min") || name.ends_with("_max");
         let all = numbers.into_iter().enumerate();
+        let all = all.filter(|(_, (name, _))| !range(name));
         return all
             .map(|(i, (name, quantity))| (name, quantity, vec![i]))
             .collect();
