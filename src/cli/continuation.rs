@@ -27,6 +27,9 @@ pub type Recheck<'a, S> = (Choice, &'a dyn Fn(&S) -> Result<Option<[f64; 3]>>);
 /// Whether to go on.
 pub type FoundObserver<'a, R> = &'a mut dyn FnMut(Found<R>) -> ControlFlow<()>;
 
+/// What a table says of special points, in lines.
+pub type SpecialLines<'a, S> = &'a dyn Fn(&[S], &special::Checks) -> Vec<String>;
+
 /// Everything that a run needs.
 pub struct Task<'a, R: CurveRow> {
     /// What the rows are of.
@@ -40,7 +43,7 @@ pub struct Task<'a, R: CurveRow> {
     /// Rows and special points from the cells of an earlier run.
     pub read: (ReadRow<'a, R>, ReadRow<'a, R::Special>),
     /// Special points in lines of a table.
-    pub lines: &'a dyn Fn(&[R::Special], &special::Checks) -> Vec<String>,
+    pub lines: SpecialLines<'a, R::Special>,
     /// What was asked for.
     pub numerics: Value,
     /// How special points are computed once more, where they are.

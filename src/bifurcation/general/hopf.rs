@@ -1,6 +1,6 @@
 //! Hopf points of any field, and the small orbits beside them.
 
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
 use crate::orbit::{
@@ -57,7 +57,7 @@ impl GeneralHopf {
     ) -> Result<Palc<'c, 'f>> {
         let size = FIRST * (1.0 + self.state.amax());
         let shooting = self.ellipse(&corrector.family.field(self.at), size);
-        let shooting = shooting.ok_or_else(|| crate::error::Error::NotConverged {
+        let shooting = shooting.ok_or(Error::NotConverged {
             what: "the plane of the small orbits beside a Hopf point",
             iterations: 0,
             residual: f64::INFINITY,

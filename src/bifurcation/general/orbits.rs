@@ -94,11 +94,11 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
 
     fn all(&mut self, teller: &mut Teller<'_>) -> Result<()> {
         if let Some(site) = &self.branch.orbit {
-            self.from_orbit(site.clone(), teller)?;
+            self.along_orbit(site.clone(), teller)?;
         }
         for i in 0..self.hopfs.len() {
             if !std::mem::replace(&mut self.reached[i], true) && teller.told.is_continue() {
-                self.from_hopf(i, teller)?;
+                self.along_hopf(i, teller)?;
             }
         }
         // The list grows as it is gone through.
@@ -126,7 +126,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
     }
 
     /// From an orbit at the beginning of the range to its end; both ways from one that lies within.
-    fn from_orbit(&mut self, site: ContinuationPoint, teller: &mut Teller<'_>) -> Result<()> {
+    fn along_orbit(&mut self, site: ContinuationPoint, teller: &mut Teller<'_>) -> Result<()> {
         let mut corrector = new_corrector(self.branch.system.family)?;
         let held = [Condition::Parameter(FREE, site.at[FREE])];
         let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;
@@ -152,7 +152,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         Ok(())
     }
 
-    fn from_hopf(&mut self, i: usize, teller: &mut Teller<'_>) -> Result<()> {
+    fn along_hopf(&mut self, i: usize, teller: &mut Teller<'_>) -> Result<()> {
         let number = self.next();
         let (hopf, point) = self.hopfs[i].clone();
         let point = GeneralPoint { number, ..point };
