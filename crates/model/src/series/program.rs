@@ -19,6 +19,7 @@ pub(super) enum Source {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) enum Operation {
     /// One lane of a row, in both.
+    #[cfg_attr(not(target_arch = "x86_64"), allow(dead_code))]
     Lane(usize, usize),
     Sum(usize, usize),
     Difference(usize, usize),
@@ -99,6 +100,7 @@ impl Operation {
     }
 
     /// The same of rows that stand elsewhere.
+    #[cfg(target_arch = "x86_64")]
     pub fn moved(self, mut at: impl FnMut(usize) -> usize) -> Self {
         use Operation::*;
         let mut source = |source: Source| match source {
@@ -143,6 +145,7 @@ impl Operation {
     }
 
     /// Whether this makes what the other one would, of the same operands; the row that either makes beside its result does not count.
+    #[cfg(target_arch = "x86_64")]
     pub fn is_like(self, other: Self) -> bool {
         use Operation::*;
         match (self, other) {
@@ -264,6 +267,7 @@ impl Program {
     }
 
     /// An operation more.
+    #[cfg(target_arch = "x86_64")]
     pub fn push(&mut self, instruction: Instruction) {
         self.instructions.push(instruction);
     }
