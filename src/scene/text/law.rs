@@ -99,8 +99,9 @@ impl TextLawPlan {
             };
             let of = |slopes: Slopes<Interval>| slopes.relative.value;
             // Where the signs are rounding's, and others at the ends of the search, the stress is flat too.
-            let Ok(v) = zero_of(&friction, ends, |slopes| slopes.relative) else {
-                continue;
+            let v = match zero_of(&friction, ends, |slopes| slopes.relative) {
+                Err(Error::NotConverged { iterations: 0, .. }) => continue,
+                found => found?,
             };
             let (around, radius) = enclosure(&friction, v, of);
             // Where no sign is certain the stress is flat, or nearly so.
@@ -209,8 +210,9 @@ fn largest_stiffness(
         if !(left > 0.0 && right < 0.0) {
             continue;
         }
-        let Ok(v) = maximum_of_stiffness(friction, ends) else {
-            continue;
+        let v = match maximum_of_stiffness(friction, ends) {
+            Err(Error::NotConverged { iterations: 0, .. }) => continue,
+            found => found?,
         };
         let of = |slopes: Slopes<Interval>| slopes.critical.gradient[0];
         let (around, radius) = enclosure(friction, v, of);
