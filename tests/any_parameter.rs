@@ -154,27 +154,6 @@ fn curves_of_folds_and_hopf_points_go_where_closed_forms_say() {
     }
     // Two crossings of q = 0.5 and one of p = 0.25.
     assert_eq!(special(&made, "UZ").len(), 3);
-    let path = file("takens_curve", TAKENS);
-    let ranges = "--range q=-1,1.3 --range p=-1,0.5 --box x=-3:3,y=-3:3";
-    let made = object(&format!("locus hopf --system {path} --in q,p {ranges}"));
-    let rows = made["result"]["rows"].as_array().expect("rows");
-    assert!(rows.len() > 5);
-    for row in rows {
-        let [p, q] = ["p", "q"].map(|name| number(row, &format!("/{name}/value")));
-        near(p, -q * q, 1e-12);
-        assert!(q > -1e-9, "beyond the end there are neutral saddles: {q}");
-    }
-    for made in [
-        made,
-        object(&format!(
-            "locus saddle-node --system {path} --in p,q {ranges}"
-        )),
-    ] {
-        let ends = special(&made, "BT");
-        assert_eq!(ends.len(), 1);
-        holds(ends[0], "p", 0.0, 1e-11);
-        holds(ends[0], "q", 0.0, 1e-11);
-    }
     // b = 1 + a^2, the brusselator's.
     let made = object(
         "locus hopf --system brusselator --in b,a --range b=0.5,9 --range a=0.5,2.5 --at a=1,2",
@@ -185,6 +164,42 @@ fn curves_of_folds_and_hopf_points_go_where_closed_forms_say() {
         assert_eq!(row["criticality"], "supercritical");
     }
     assert_eq!(special(&made, "UZ").len(), 2);
+}
+
+#[test]
+fn curves_that_lie_along_a_parameter_and_begin_at_a_special_point_are_followed() {
+    let path = file("takens_curve", TAKENS);
+    // In the last range a curve is looked for at q = 0, exactly at the point where both begin.
+    for from in [-1.0, -0.7, -0.4967] {
+        let to = if from == -1.0 { 1.0 } else { from + 1.0 };
+        let ranges = format!("--range q={from},{to} --range p=-1,0.5 --box x=-3:3,y=-3:3");
+        for plane in ["p,q", "q,p"] {
+            let made = |curve: &str| {
+                object(&format!(
+                    "locus {curve} --system {path} --in {plane} {ranges}"
+                ))
+            };
+            let (folds, hopf) = (made("saddle-node"), made("hopf"));
+            for (made, ends) in [(&folds, 2), (&hopf, 1)] {
+                let double = special(made, "BT");
+                assert_eq!(double.len(), 1, "{plane} {ranges}");
+                holds(double[0], "p", 0.0, 1e-11);
+                holds(double[0], "q", 0.0, 1e-11);
+                assert_eq!(special(made, "EP").len(), ends, "{plane} {ranges}");
+                assert!(special(made, "MX").is_empty(), "{plane} {ranges}");
+            }
+            let rows = |made: &Value| made["result"]["rows"].as_array().expect("rows").clone();
+            for row in rows(&folds) {
+                near(number(&row, "/p/value"), 0.0, 1e-12);
+            }
+            assert!(rows(&hopf).len() > 5);
+            for row in rows(&hopf) {
+                let [p, q] = ["p", "q"].map(|name| number(&row, &format!("/{name}/value")));
+                near(p, -q * q, 1e-12);
+                assert!(q > -1e-9, "beyond the end there are neutral saddles: {q}");
+            }
+        }
+    }
 }
 
 /// Shil'nikov, A., Nicolis, G. and Nicolis, C. (1995). Bifurcation and predictability analysis of a low-order atmospheric circulation

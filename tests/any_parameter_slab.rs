@@ -177,6 +177,55 @@ fn near_misses_are_no_branch_points() {
     assert!(!special(&made, "BP").is_empty());
 }
 
+/// K_c = k_c(V_H) of one interface, which `law` computes by its closed form.
+#[test]
+fn a_single_interface_is_followed_in_every_constant_of_its_law() {
+    for (name, from, to) in [
+        ("residual_strength", 1e-4, 1e-2),
+        ("healing_time", 50.0, 500.0),
+        ("direct_effect", 0.03, 0.04),
+        ("evolution_effect", 0.045, 0.055),
+        ("reference_friction", 0.3, 0.5),
+    ] {
+        let made = object(&format!(
+            "locus hopf --interfaces 1 --driving 10 --in stiffness,{name} --range {name}={from},{to}"
+        ));
+        let rows = made["result"]["rows"].as_array().expect("rows");
+        assert!(rows.len() > 3, "{name}");
+        for row in [&rows[0], &rows[rows.len() / 2]] {
+            let [k, at] = ["stiffness", name].map(|name| number(row, &format!("/{name}/value")));
+            let flag = name.replace('_', "-");
+            let law = object(&format!("law --from 10 --to 20 --points 2 --{flag} {at}"));
+            let exact = number(&law, "/result/rows/0/critical_stiffness");
+            assert!(
+                (k / exact - 1.0).abs() < 1e-12,
+                "{name} = {at}: {k} for {exact}"
+            );
+        }
+    }
+}
+
+#[test]
+fn orbits_of_a_single_interface_are_those_that_orbit_finds() {
+    let at = "--interfaces 1 --driving 10 --stiffness 0.2";
+    let made = object(&format!(
+        "branch orbits {at} --along direct_effect --from 0.03 --to 0.05 --at 0.036"
+    ));
+    let hopf = special(&made, "HB");
+    assert_eq!(hopf.len(), 1);
+    let landed = special(&made, "UZ");
+    let found = object(&format!("orbit {at} --direct-effect 0.036"));
+    let exact = number(&found, "/result/orbit/period/value");
+    assert!((number(landed[0], "/period/value") / exact - 1.0).abs() < 1e-10);
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let row = rows.iter().find(|row| row["label"] == "UZ").expect("a row");
+    let exact = number(&found, "/result/orbit/log_multipliers/0/ln_abs/value");
+    assert!((number(row, "/ln_abs_multiplier_1") / exact - 1.0).abs() < 1e-6);
+    let exact = number(&found, "/result/orbit/stress_max/value");
+    assert!((number(row, "/stress_max") / exact - 1.0).abs() < 1e-6);
+    assert!(row.get("state_2").is_none());
+}
+
 #[test]
 fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
     let branch = "branch equilibria --driving 10 --stiffness 0.14";
@@ -191,8 +240,8 @@ fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
         ),
         ("--along residual_strength --from 0.1", "--to is missing"),
         (
-            "--along residual_strength --from 0.1 --to 0.2 --interfaces 1",
-            "a single interface",
+            "--along residual_strength_2 --from 0.1 --to 0.2 --interfaces 1",
+            "residual_strength",
         ),
         ("--along driving --set residual_strength_2=2e-3", "driving"),
         (

@@ -13,7 +13,8 @@ use twinslip::integrate::{AnyField, Choice, Integrator, MAX_STEPS, Taylor, Toler
 use twinslip::model::{Driven, Loading, UnequalInterfaces, two_interfaces};
 use twinslip::number::Uncertain;
 use twinslip::orbit::{
-    InitialGuess, Orbit, OrbitAccuracy, OverUnequal, ParametrisedField, crosscheck_of, find_unequal,
+    InitialGuess, Orbit, OrbitAccuracy, OverInterfaces, ParametrisedField, crosscheck_of,
+    find_unequal,
 };
 
 /// Interfaces of which the second one differs in what is given.
@@ -367,7 +368,7 @@ proptest! {
 #[test]
 fn fields_over_two_parameters() {
     let two = unlike("spinodal", 0.0);
-    let over = OverUnequal::new(&two, ["driving", "residual_strength_2"]).unwrap();
+    let over = OverInterfaces::new(&two, ["driving", "residual_strength_2"]).unwrap();
     let at = [3.0_f64.ln(), 2e-3_f64.ln()];
     let there = over.at(at).unwrap();
     assert_close(there.loading.driving, 3.0, 1e-15, "V_H");
@@ -383,7 +384,7 @@ fn fields_over_two_parameters() {
         over.plane().map(|place| names[place]),
         ["driving", "residual_strength_2"]
     );
-    let refused = |names| OverUnequal::new(&two, names).unwrap_err().to_string();
+    let refused = |names| OverInterfaces::new(&two, names).unwrap_err().to_string();
     assert!(refused(["driving", "residual_strength_3"]).contains("residual_strength_2"));
     assert!(refused(["driving", "driving"]).contains("different"));
     assert!(refused(["driving", "healing_time"]).contains("healing_time_1"));

@@ -165,8 +165,8 @@ impl EquilibriumCurve<'_> {
         None
     }
 
-    /// The curve from near a point of it, with the second coordinate growing or falling at first, until that leaves the range of
-    /// the settings.
+    /// The curve from near a point of it, with the second coordinate growing or falling at first, or the first one where that stays,
+    /// until the second leaves the range of the settings.
     ///
     /// # Errors
     /// Those of [`follow`]; [`Error::Parameter`] for fields without named parameters or a start of another dimension than theirs.
@@ -195,15 +195,14 @@ impl EquilibriumCurve<'_> {
         self.checked()?;
         of_dimension(state.len(), self.family.dimension())?;
         let n = self.unknowns();
-        let mut direction = Vector::zeros(n + 2);
-        direction[n + 1] = if growing { 1.0 } else { -1.0 };
-        let start = Start {
-            u: state.rows(0, n).into_owned().push(at[0]),
-            lambda: at[1],
-            direction,
-            across: false,
-        };
         let problem = Extended(self);
+        let u = state.rows(0, n).into_owned().push(at[0]);
+        let start = Start {
+            direction: problem.direction(&u, at[1], growing)?,
+            u,
+            lambda: at[1],
+            across: true,
+        };
         follow(
             &problem,
             &start,

@@ -32,6 +32,32 @@ impl Extended<'_> {
         Some(all.remove_column(held))
     }
 
+    /// The unit tangent of the curve at a point, along which the second coordinate grows or falls, or the first where that stays.
+    ///
+    /// # Errors
+    /// Those of the derivatives.
+    pub fn direction(&self, u: &Vector, lambda: f64, growing: bool) -> Result<Vector> {
+        /// A smaller part of a unit tangent has no sign.
+        const STAYS: f64 = 1e-8;
+        let rows = self.jacobian(u, lambda)?;
+        let n = rows.ncols();
+        // One more row of zeros for the vector that all others are across.
+        let decomposed = rows.insert_row(n - 1, 0.0).svd(false, true);
+        let least = decomposed.singular_values.imin();
+        let unit = |i: usize| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k)));
+        let tangent = decomposed.v_t.map(|v_t| v_t.row(least).transpose());
+        let tangent = tangent.unwrap_or_else(|| unit(n - 1));
+        let leading = match tangent[n - 1].abs() > STAYS {
+            true => tangent[n - 1],
+            false => tangent[n - 2],
+        };
+        Ok(if (leading > 0.0) == growing {
+            tangent
+        } else {
+            -tangent
+        })
+    }
+
     /// The unit tangent of the curve, with a positive product with another one.
     pub fn tangent(&self, u: &Vector, along: &Vector) -> Option<Vector> {
         let n = u.len() - 2;

@@ -3,7 +3,7 @@
 use super::equilibria::{EquilibriumBranches, criticality};
 use super::{
     GeneralBifurcation, GeneralBranch, GeneralCurve, GeneralObserver, GeneralPoint,
-    GeneralSolution, Teller,
+    GeneralSolution, GeneralSystem, Teller,
 };
 use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::{
@@ -11,13 +11,16 @@ use crate::bifurcation::equilibria::generic_curve::{
 };
 use crate::continuation::{Settings, Stop};
 use crate::error::Result;
-use crate::field::Vector;
+use crate::field::{Matrix, Vector};
+use crate::integrate::AnyField;
 use crate::number::Uncertain;
+use crate::orbit::ParametrisedField;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow::{self, Break, Continue};
 
-/// Where in the range of the second coordinate the bifurcations along the first are looked for.
-pub(super) const SCAN: [f64; 5] = [0.5, 0.22, 0.78, 0.06, 0.94];
+/// Where in the range of a coordinate the bifurcations along the other one are looked for. These are no round parts: at the middle
+/// of a symmetric range there is often something that is special.
+const SCAN: [f64; 5] = [0.4967, 0.2203, 0.7811, 0.0607, 0.9409];
 /// The longest step, as a part of both ranges and of 1 + |state|.
 const LONGEST: f64 = 0.03;
 /// Points nearer to each other than this, in units of 1 + |x|, are one.
@@ -39,30 +42,51 @@ pub fn equilibrium_curves(
         count: 0,
         passes: Vec::new(),
     };
-    for held in scanned(curve) {
-        for (state, at) in curves.seeds(held)? {
-            if curves.is_known(&state, at) {
-                continue;
-            }
-            if curves.follow(&state, at, &mut teller)?.is_break() {
-                return teller.end();
+    // A curve along which the second is the same is not met along the first.
+    for along in [0, 1] {
+        for held in scanned(curve, 1 - along) {
+            for (state, at) in curves.seeds(along, held)? {
+                if curves.is_known(&state, at) {
+                    continue;
+                }
+                if curves.follow(&state, at, &mut teller)?.is_break() {
+                    return teller.end();
+                }
             }
         }
     }
     teller.end()
 }
 
-/// The values of the second coordinate at which bifurcations are looked for.
-pub(super) fn scanned(curve: &GeneralCurve<'_>) -> Vec<f64> {
-    let (from, to) = curve.ranges[1];
+/// The values of a coordinate at which bifurcations along the other one are looked for.
+pub(super) fn scanned(curve: &GeneralCurve<'_>, coordinate: usize) -> Vec<f64> {
+    let (from, to) = curve.ranges[coordinate];
     SCAN.map(|part| from + (to - from) * part).to_vec()
 }
 
-/// The branch along the first parameter at this value of the second.
-pub(super) fn along_first<'a>(curve: &GeneralCurve<'a>, held: f64) -> GeneralBranch<'a> {
-    GeneralBranch {
-        system: curve.system,
-        range: curve.ranges[0],
+/// Looks along one of both coordinates at a value of the other one; the coordinates of what is met come in the order of the branch.
+pub(super) fn looked_along<R>(
+    curve: &GeneralCurve<'_>,
+    along: usize,
+    held: f64,
+    look: impl FnOnce(&GeneralBranch<'_>) -> R,
+) -> R {
+    let system = curve.system;
+    let family = Exchanged(system.family);
+    let alike = system.alike.map(Exchanged);
+    let equilibria = |at: [f64; 2]| (system.equilibria)([at[1], at[0]]);
+    let system = match along {
+        0 => system,
+        _ => GeneralSystem {
+            family: &family,
+            alike: alike.as_ref().map(|alike| alike as _),
+            names: [system.names[1], system.names[0]],
+            equilibria: &equilibria,
+        },
+    };
+    look(&GeneralBranch {
+        system,
+        range: curve.ranges[along],
         held,
         at: Vec::new(),
         orbit: None,
@@ -71,6 +95,47 @@ pub(super) fn along_first<'a>(curve: &GeneralCurve<'a>, held: f64) -> GeneralBra
             skip: Vec::new(),
             ..curve.following.clone()
         },
+    })
+}
+
+/// The coordinates in the order of the curve of those of a branch along one of them.
+pub(super) fn in_order<T: Copy>(along: usize, at: [T; 2]) -> [T; 2] {
+    match along {
+        0 => at,
+        _ => [at[1], at[0]],
+    }
+}
+
+/// A family with its coordinates exchanged.
+struct Exchanged<'a>(&'a dyn ParametrisedField);
+
+impl ParametrisedField for Exchanged<'_> {
+    fn dimension(&self) -> usize {
+        self.0.dimension()
+    }
+
+    fn plane(&self) -> [usize; 2] {
+        in_order(1, self.0.plane())
+    }
+
+    fn field(&self, at: [f64; 2]) -> AnyField<'_> {
+        self.0.field(in_order(1, at))
+    }
+
+    fn parameters(&self, at: [f64; 2]) -> [f64; 2] {
+        in_order(1, self.0.parameters(in_order(1, at)))
+    }
+
+    fn scale(&self, at: [f64; 2]) -> [f64; 2] {
+        in_order(1, self.0.scale(in_order(1, at)))
+    }
+
+    fn normal(&self, x: &Vector, flow: Vector) -> Vector {
+        self.0.normal(x, flow)
+    }
+
+    fn across(&self, x: &Vector, flow: &Vector) -> Matrix {
+        self.0.across(x, flow)
     }
 }
 
@@ -83,22 +148,23 @@ struct EquilibriumCurves<'c, 'a> {
 }
 
 impl EquilibriumCurves<'_, '_> {
-    /// The bifurcations along the first parameter at a value of the second.
-    fn seeds(&self, held: f64) -> Result<Vec<(Vector, [f64; 2])>> {
+    /// The bifurcations along one of the coordinates at a value of the other one.
+    fn seeds(&self, along: usize, held: f64) -> Result<Vec<(Vector, [f64; 2])>> {
         let wanted = match self.kind {
             EquilibriumBifurcation::Fold => Label::Lp,
             EquilibriumBifurcation::Hopf => Label::Hb,
             EquilibriumBifurcation::Pitchfork => Label::Bp,
         };
-        let branch = along_first(self.curve, held);
         let mut found = Vec::new();
-        EquilibriumBranches::new(&branch).all(&mut |point, _| {
-            if let GeneralSolution::Equilibrium { state, .. } = point.solution
-                && point.label == Some(wanted)
-            {
-                found.push((state, point.at));
-            }
-            Continue(())
+        looked_along(self.curve, along, held, |branch| {
+            EquilibriumBranches::new(branch).all(&mut |point, _| {
+                if let GeneralSolution::Equilibrium { state, .. } = point.solution
+                    && point.label == Some(wanted)
+                {
+                    found.push((state, in_order(along, point.at)));
+                }
+                Continue(())
+            })
         })?;
         Ok(found)
     }
@@ -165,31 +231,45 @@ impl EquilibriumCurves<'_, '_> {
         };
         let size = ranges.iter().map(|(a, b)| b - a).sum::<f64>() + 1.0 + state.amax();
         let longest = LONGEST * size * self.curve.following.step;
-        let scan = scanned(self.curve);
-        let mut values = wanted[1].clone();
-        values.extend(scan.iter().filter(|value| !wanted[1].contains(value)));
+        let scan = [0, 1].map(|i| scanned(self.curve, i));
+        let values = |i: usize| {
+            let others = scan[i].iter().filter(|value| !wanted[i].contains(value));
+            wanted[i].iter().chain(others).copied().collect()
+        };
+        // Landings on what is held are exact, those on the first coordinate to some digits.
+        let among = |values: &[f64], x: f64| {
+            let near = |value: &f64| (value - x).abs() < SAME * (1.0 + x.abs());
+            values.iter().any(near)
+        };
         let settings = Settings {
-            wanted: values,
+            wanted: values(1),
             max_points: self.curve.following.max_points + 1,
             ..Settings::new(ranges[1], longest)?
         };
         let first = FirstCoordinate {
             range: ranges[0],
-            wanted: wanted[0].clone(),
+            wanted: values(0),
         };
         let (mut begun, mut last) = (false, None);
         let passes = &mut self.passes;
         let followed =
             curve.follow_within((state, at), growing, &settings, &first, &mut |found| {
                 let begins = !std::mem::replace(&mut begun, true);
-                if found.label == Some(Label::Uz) && scan.contains(&found.at[1]) {
+                // Neutral saddles, where the curve begins at a double zero.
+                let saddle = self.kind == EquilibriumBifurcation::Hopf && found.frequency.is_none();
+                if saddle && found.label.is_none_or(|label| label == Label::Ep) {
+                    return if begins { Continue(()) } else { Break(()) };
+                }
+                let on = |values: &[Vec<f64>; 2]| (0..2).any(|i| among(&values[i], found.at[i]));
+                if found.label == Some(Label::Uz) && on(&scan) {
                     let state = &found.state;
                     passes.push(state.push(found.at[0]).push(found.at[1]));
-                    if !wanted[1].contains(&found.at[1]) && !wanted[0].contains(&found.at[0]) {
+                    if !on(wanted) {
                         return Continue(());
                     }
                 }
-                let label = found.label.filter(|_| !begins);
+                // No curve ends where it is begun.
+                let label = found.label.filter(|label| !begins || *label != Label::Ep);
                 let point = self::point(system.family, number, found, label);
                 last = Some(point.clone());
                 seen(point, label.is_some())?;
@@ -215,7 +295,7 @@ impl EquilibriumCurves<'_, '_> {
 }
 
 fn point(
-    family: &dyn crate::orbit::ParametrisedField,
+    family: &dyn ParametrisedField,
     number: usize,
     found: &EquilibriumCurvePoint,
     label: Option<Label>,

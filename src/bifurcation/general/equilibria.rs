@@ -15,8 +15,8 @@ use std::ops::ControlFlow::{self, Continue};
 const LONGEST: f64 = 0.02;
 /// Points nearer to the last one, in longest steps, are no rows.
 const SHOWN: f64 = 1e-2;
-/// Parts of the range at which branches are looked for that do not come to its ends.
-const INSIDE: [f64; 7] = [0.5, 0.25, 0.75, 0.125, 0.375, 0.625, 0.875];
+/// Parts of the range at which branches are looked for that do not come to its ends; no round ones, at which something special may be.
+const INSIDE: [f64; 7] = [0.4973, 0.2517, 0.7519, 0.1253, 0.3739, 0.6247, 0.8761];
 /// The first step onto a branch that crosses, in units of 1 + |state|.
 const ASIDE: f64 = 1e-3;
 /// Points nearer to each other than this, in units of 1 + |x|, are one.

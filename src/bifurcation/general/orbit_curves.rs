@@ -1,8 +1,11 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
 
-use super::curves::{along_first, scanned};
+use super::curves::{in_order, looked_along, scanned};
 use super::orbits::{classified, new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
-use super::{GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use super::{
+    GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
+    Teller,
+};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::Form;
 use crate::bifurcation::orbits::{LONGEST, middle};
@@ -41,20 +44,28 @@ pub fn orbit_curves(
     let mut curves = OrbitCurves {
         curve,
         test_function,
+        along: 0,
         count: 0,
         passes: Vec::new(),
     };
     test_function.checked(curves.family().dimension())?;
-    let given = curve.orbit.iter().map(|orbit| orbit.at[1]);
-    let scan: Vec<f64> = given.chain(scanned(curve)).collect();
-    for held in scan {
-        for seed in curves.seeds(held)? {
-            if curves.is_known(&seed) {
-                continue;
+    for along in [0, 1] {
+        curves.along = along;
+        let given = curve.orbit.iter().map(|orbit| orbit.at[1 - along]);
+        let scan: Vec<f64> = given.chain(scanned(curve, 1 - along)).collect();
+        for held in scan {
+            for seed in curves.seeds(held)? {
+                if curves.is_known(&seed) {
+                    continue;
+                }
+                if curves.through(seed, &mut teller)?.is_break() {
+                    return teller.end();
+                }
             }
-            if curves.through(seed, &mut teller)?.is_break() {
-                return teller.end();
-            }
+        }
+        // Branches of orbits take seconds: they are followed along the second coordinate only where a curve may lie along it.
+        if curves.count > 0 {
+            break;
         }
     }
     teller.end()
@@ -63,6 +74,8 @@ pub fn orbit_curves(
 struct OrbitCurves<'c, 'a> {
     curve: &'c GeneralCurve<'a>,
     test_function: TestFunction,
+    /// The coordinate along which bifurcations are looked for.
+    along: usize,
     count: usize,
     /// Where curves pass the values at which bifurcations are looked for: both coordinates and ln T.
     passes: Vec<[f64; 3]>,
@@ -82,7 +95,7 @@ impl<'a> OrbitCurves<'_, 'a> {
         alike.unwrap_or(system.family)
     }
 
-    /// The bifurcations along the first parameter at a value of the second.
+    /// The bifurcations along a coordinate at a value of the other one.
     fn seeds(&self, held: f64) -> Result<Vec<ContinuationPoint>> {
         let wanted = match self.test_function {
             TestFunction::Fold => Label::Sn,
@@ -90,22 +103,32 @@ impl<'a> OrbitCurves<'_, 'a> {
             TestFunction::Transverse => Label::Pf,
             _ => Label::Tr,
         };
-        let mut branch = along_first(self.curve, held);
-        branch.orbit = self.curve.orbit.clone().filter(|orbit| orbit.at[1] == held);
+        let along = self.along;
         let mut found = Vec::new();
-        orbits(&branch, &mut |event| {
-            if let GeneralEvent::Row(point) = event
-                && point.label == Some(wanted)
-                && let GeneralSolution::Orbit { shooting, .. } = point.solution
-            {
-                let at = point.at;
-                let site = ContinuationPoint { shooting, at };
-                found.push(match self.test_function {
-                    TestFunction::Transverse => middle(&site),
-                    _ => site,
-                });
-            }
-            Continue(())
+        looked_along(self.curve, along, held, |branch| {
+            let given = self.curve.orbit.clone();
+            let given = given.filter(|orbit| orbit.at[1 - along] == held);
+            let branch = GeneralBranch {
+                orbit: given.map(|orbit| ContinuationPoint {
+                    at: in_order(along, orbit.at),
+                    ..orbit
+                }),
+                ..branch.clone()
+            };
+            orbits(&branch, &mut |event| {
+                if let GeneralEvent::Row(point) = event
+                    && point.label == Some(wanted)
+                    && let GeneralSolution::Orbit { shooting, .. } = point.solution
+                {
+                    let at = in_order(along, point.at);
+                    let site = ContinuationPoint { shooting, at };
+                    found.push(match self.test_function {
+                        TestFunction::Transverse => middle(&site),
+                        _ => site,
+                    });
+                }
+                Continue(())
+            })
         })?;
         Ok(found)
     }
@@ -126,7 +149,10 @@ impl<'a> OrbitCurves<'_, 'a> {
         let step = self.curve.following.step;
         let settings = PalcSettings::locus(self.test_function, LONGEST * step);
         let mut corrector = new_corrector(self.family())?;
-        let held = settings.and(Condition::Parameter(1, seed.at[1]));
+        let held = settings.and(Condition::Parameter(
+            1 - self.along,
+            seed.at[1 - self.along],
+        ));
         let Ok(closed) = corrector.correct(seed, &settings.free, &held, Goal::STEP) else {
             return Ok(Continue(()));
         };
@@ -194,8 +220,9 @@ impl<'a> OrbitCurves<'_, 'a> {
             let values = [from, to].into_iter().chain(wanted);
             watches.extend(values.map(|x| WatchedFunction::Value(i, x)));
         }
-        let scan = scanned(self.curve).into_iter();
-        watches.extend(scan.map(|x| WatchedFunction::Value(1, x)));
+        let held = 1 - self.along;
+        let scan = scanned(self.curve, held).into_iter();
+        watches.extend(scan.map(|x| WatchedFunction::Value(held, x)));
         watches
     }
 
@@ -253,9 +280,9 @@ impl<'a> OrbitCurves<'_, 'a> {
             if (0..3).all(|k| (here[k] - begin[k]).abs() < SAME) {
                 return Continue(());
             }
-            if i == 1 && scanned(self.curve).contains(&value) {
+            if i == 1 - self.along && scanned(self.curve, i).contains(&value) {
                 self.passes.push(here);
-                if !self.curve.at[1].contains(&value) {
+                if !self.curve.at[i].contains(&value) {
                     return Continue(());
                 }
             }

@@ -1,4 +1,4 @@
-//! Two interfaces, equal or not, to be continued in any of their parameters.
+//! One interface or two, equal or not, to be continued in any of their parameters.
 
 use super::{RowKind, Subject};
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
@@ -7,10 +7,11 @@ use crate::error::{Error, Result};
 use crate::field::{Matrix, Parametrised, State, Vector};
 use crate::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
 use crate::integrate::{AnyField, Choice};
-use crate::model::{Driven, Loading, UnequalInterfaces};
+use crate::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
 use crate::orbit::{
-    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverLogarithms,
-    OverUnequal, ParametrisedField, Profile, ShootingNodes, find_unequal, profile_of,
+    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverInterfaces,
+    OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find, find_unequal,
+    profile_of,
 };
 use crate::scene::following;
 use crate::scene::plan::{self, Point};
@@ -18,7 +19,7 @@ use crate::scene::system::{Described, System};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
 
-/// Two interfaces with V_H and K.
+/// Interfaces with V_H and K.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SlabSubject {
     /// What slides.
@@ -32,17 +33,11 @@ pub struct SlabSubject {
 }
 
 impl SlabSubject {
-    /// Two interfaces of which these parameters vary.
+    /// Interfaces of which these parameters vary.
     ///
     /// # Errors
-    /// [`Error::Input`] for one interface, for SI units of parameters that have none here, and where V_H or K is given though
-    /// it varies.
+    /// [`Error::Input`] for SI units of parameters that have none here, and where V_H or K is given though it varies.
     pub fn new(system: System, free: &[&str]) -> Result<Self> {
-        if system.interfaces != 2 {
-            return Err(Error::Input(
-                "a single interface is followed along driving and stiffness; take two, or write it as a `system`".into(),
-            ));
-        }
         for (name, given) in [("driving", system.driving), ("stiffness", system.stiffness)] {
             if given.is_some() && free.contains(&name) {
                 return Err(Error::Input(format!(
@@ -73,7 +68,9 @@ impl SlabSubject {
         };
         Ok(SlabSubject {
             interfaces: UnequalInterfaces { laws, loading },
-            equal: system.unequal.is_none() && free.iter().all(|name| !of_one(name)),
+            equal: system.interfaces == 2
+                && system.unequal.is_none()
+                && free.iter().all(|name| !of_one(name)),
             system,
             orbit: None,
         })
@@ -103,10 +100,10 @@ impl SlabSubject {
         Ok(SlabSubject { orbit, ..self })
     }
 
-    /// The law of both, with the damping that may vary.
-    fn law(&self) -> Result<AnyLaw> {
-        let damping = self.interfaces.laws.damping();
-        let constants = self.interfaces.laws.constants()[0];
+    /// Equal interfaces, with the damping that may vary.
+    fn slab(&self, interfaces: &UnequalInterfaces) -> Result<InterfaceSystem> {
+        let damping = interfaces.laws.damping();
+        let constants = interfaces.laws.constants()[0];
         let parameters = Parameters::new(
             constants.direct_effect,
             constants.evolution_effect,
@@ -114,7 +111,41 @@ impl SlabSubject {
             constants.healing_time,
             constants.residual_strength,
         )?;
-        AnyLaw::named(self.interfaces.laws.name(), parameters.damped(damping)?)
+        Ok(InterfaceSystem {
+            law: AnyLaw::named(interfaces.laws.name(), parameters.damped(damping)?)?,
+            interfaces: self.system.interfaces,
+            loading: interfaces.loading,
+        })
+    }
+
+    /// There is one.
+    fn is_single(&self) -> bool {
+        self.system.interfaces == 1
+    }
+
+    fn alike_interfaces(&self) -> AlikeInterfaces {
+        AlikeInterfaces {
+            interfaces: self.interfaces,
+            count: self.system.interfaces,
+        }
+    }
+
+    /// What rows tell of a profile.
+    fn shown(&self, profile: &Profile) -> Vec<f64> {
+        let (least, most) = profile.stress_range;
+        let shown = self.system.interfaces;
+        let pairs = [profile.state, profile.slip_rate].into_iter();
+        let rest = pairs.flat_map(|pair| pair.into_iter().take(shown));
+        let stress = [profile.mean_stress, least, most].into_iter();
+        stress.chain(rest).collect()
+    }
+
+    /// Over these parameters.
+    fn over(&self, names: [&str; 2]) -> Result<OverInterfaces> {
+        match self.is_single() {
+            true => OverInterfaces::alike(&self.alike_interfaces(), names),
+            false => OverInterfaces::new(&self.interfaces, names),
+        }
     }
 
     fn at(&self, values: &[(&str, f64)]) -> Result<UnequalInterfaces> {
@@ -164,8 +195,12 @@ impl Described for SlabSubject {
 
 impl Subject for SlabSubject {
     fn parameters(&self) -> Vec<(&'static str, Quantity)> {
-        let names = self.interfaces.names().iter();
-        names.map(|&name| (name, quantity(name))).collect()
+        let alike = self.alike_interfaces();
+        let names = match self.is_single() {
+            true => alike.names(),
+            false => self.interfaces.names(),
+        };
+        names.iter().map(|&name| (name, quantity(name))).collect()
     }
 
     fn value(&self, name: &str) -> Result<f64> {
@@ -187,16 +222,12 @@ impl Subject for SlabSubject {
             }
         }
         Ok(match *names {
-            [first, second] => Box::new(OverUnequal::new(&self.interfaces, [first, second])?),
+            [first, second] => Box::new(self.over([first, second])?),
             [only] => {
-                let other = if only == "driving" {
-                    "stiffness"
-                } else {
-                    "driving"
-                };
+                let other = other_than(only);
                 Box::new(Held {
                     at: self.value(other)?.ln(),
-                    family: OverUnequal::new(&self.interfaces, [only, other])?,
+                    family: Box::new(self.over([only, other])?),
                 })
             }
             _ => return Err(Error::Input("one parameter may vary, or two".into())),
@@ -207,27 +238,34 @@ impl Subject for SlabSubject {
         if !self.equal {
             return None;
         }
-        let slab = InterfaceSystem {
-            law: self.law().ok()?,
-            interfaces: 2,
-            loading: self.interfaces.loading,
-        };
-        let over = |names| OverLogarithms::new(slab, Symmetry::Symmetric, names).ok();
-        Some(match *names {
-            [first, second] => Box::new(over([first, second])?),
+        let slab = self.slab(&self.interfaces).ok()?;
+        let (names, held) = match *names {
+            [first, second] => ([first, second], None),
             [only] => {
                 let other = other_than(only);
-                Box::new(Held {
-                    at: self.value(other).ok()?.ln(),
-                    family: over([only, other])?,
-                })
+                ([only, other], Some(self.value(other).ok()?.ln()))
             }
             _ => return None,
+        };
+        // Compiled for the constants that laws have.
+        let family: Box<dyn ParametrisedField> =
+            match OverLogarithms::new(slab, Symmetry::Symmetric, names) {
+                Ok(over) => Box::new(over),
+                Err(_) => Box::new(OverInterfaces::alike(&self.alike_interfaces(), names).ok()?),
+            };
+        Some(match held {
+            Some(at) => Box::new(Held { at, family }),
+            None => family,
         })
     }
 
     fn equilibria(&self, values: &[(&str, f64)]) -> Result<Vec<Vector>> {
         let interfaces = self.at(values)?;
+        if self.is_single() {
+            let slab = self.slab(&interfaces)?;
+            let state = vec![slab.steady_stress(), slab.steady_log_state()];
+            return Ok(vec![Vector::from_vec(state)]);
+        }
         let found = unequal_steady_states(&interfaces.laws, interfaces.loading.driving)?;
         let state = |one: &crate::equilibrium::Equilibrium| {
             Vector::from_vec(vec![one.stress.value, one.log_state[0], one.log_state[1]])
@@ -244,7 +282,16 @@ impl Subject for SlabSubject {
             checked: false,
             ..OrbitAccuracy::of(Choice::Auto)
         };
-        let found = find_unequal(&self.at(values)?, begin, &accuracy)?;
+        let interfaces = self.at(values)?;
+        let found = if self.is_single() {
+            let query = Query {
+                symmetry: Symmetry::Symmetric,
+                begin,
+            };
+            find(&self.slab(&interfaces)?, &query, &accuracy)?
+        } else {
+            find_unequal(&interfaces, begin, &accuracy)?
+        };
         Ok(Some(found.orbit.beginning()))
     }
 
@@ -285,19 +332,21 @@ impl Subject for SlabSubject {
             ("slip_rate_1", SlipRate),
             ("slip_rate_2", SlipRate),
         ];
-        all.map(|(name, quantity)| (name.to_owned(), quantity))
-            .to_vec()
+        all.into_iter()
+            .filter(|(name, _)| !(self.is_single() && name.ends_with("_2")))
+            .map(|(name, quantity)| (name.to_owned(), quantity))
+            .collect()
     }
 
     fn told(&self, family: &dyn ParametrisedField, point: &GeneralPoint) -> Result<Vec<f64>> {
         let values = family.parameters(point.at);
-        let names = self.interfaces.names();
+        let names = self.parameters();
         let places = family.plane();
-        let there = [0, 1].map(|i| (names[places[i]], values[i]));
+        let there = [0, 1].map(|i| (names[places[i]].0, values[i]));
         let interfaces = self.at(&there)?;
         let profile = match &point.solution {
             GeneralSolution::Equilibrium { state, .. } => {
-                let y = State::<3>::from_column_slice(state.as_slice());
+                let y = State::<3>::new(state[0], state[1], state[state.len() - 1]);
                 Profile {
                     mean_stress: y[0],
                     stress_range: (y[0], y[0]),
@@ -306,6 +355,11 @@ impl Subject for SlabSubject {
                 }
             }
             GeneralSolution::Orbit { shooting, .. } => {
+                let rates = |y: &State<3>| interfaces.slip_rates(y);
+                if self.is_single() {
+                    let field = family.field(point.at);
+                    return Ok(self.shown(&profile_of(&field, &rates, shooting)?));
+                }
                 let field = AnyField::of::<3>(&interfaces);
                 // In the states in which both move alike there is one state for both.
                 let whole = |x: &Vector| Vector::from_vec(vec![x[0], x[1], x[x.len() - 1]]);
@@ -313,27 +367,20 @@ impl Subject for SlabSubject {
                     nodes: shooting.nodes.iter().map(whole).collect(),
                     durations: shooting.durations.clone(),
                 };
-                profile_of(&field, &|y| interfaces.slip_rates(y), &shooting)?
+                profile_of(&field, &rates, &shooting)?
             }
         };
-        let Profile {
-            mean_stress,
-            stress_range: (least, most),
-            state,
-            slip_rate,
-        } = profile;
-        let rest = state.into_iter().chain(slip_rate);
-        Ok([mean_stress, least, most].into_iter().chain(rest).collect())
+        Ok(self.shown(&profile))
     }
 }
 
 /// A family of which the second coordinate is held.
-struct Held<F> {
-    family: F,
+struct Held<'f> {
+    family: Box<dyn ParametrisedField + 'f>,
     at: f64,
 }
 
-impl<F: ParametrisedField> ParametrisedField for Held<F> {
+impl ParametrisedField for Held<'_> {
     fn dimension(&self) -> usize {
         self.family.dimension()
     }

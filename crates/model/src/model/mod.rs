@@ -7,6 +7,7 @@
 mod ageing_lanes;
 #[cfg(target_arch = "x86_64")]
 mod ageing_series;
+mod alike;
 mod batch;
 pub mod classics;
 mod difference_chart;
@@ -29,6 +30,7 @@ mod text_system;
 mod two_interfaces;
 mod unequal;
 
+pub use alike::AlikeInterfaces;
 #[doc(hidden)]
 pub use batch::{BatchSolution, MAX_LANES, batch_solution};
 pub use difference_chart::{DifferenceChart, from_difference_chart, to_difference_chart};

@@ -62,7 +62,7 @@ const NAMES: [&str; 20] = [
 ];
 
 /// So many of them.
-const MOST: usize = NAMES.len();
+pub(super) const MOST: usize = NAMES.len();
 
 /// What a named parameter sets.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,13 +98,15 @@ impl Target {
     }
 }
 
-/// The names that systems have: by whether the state heals in a finite time, whether there is a residual strength, and a damping.
-fn names_of(has: [bool; 3]) -> &'static [&'static str] {
-    static TABLES: LazyLock<[Vec<&'static str>; 8]> = LazyLock::new(|| {
+/// The names that systems have: by whether the state heals in a finite time, whether there is a residual strength, and a damping; and
+/// whether there is a parameter of one interface.
+fn names_of(has: [bool; 4]) -> &'static [&'static str] {
+    static TABLES: LazyLock<[Vec<&'static str>; 16]> = LazyLock::new(|| {
         std::array::from_fn(|i| {
             let has = |bit: usize| i & (1 << bit) != 0;
             let there = |name: &&str| match Target::named(name) {
                 Target::Damping => has(2),
+                Target::Constant(_, of) if of != [true; 2] && !has(3) => false,
                 Target::Constant(0, _) => has(0),
                 Target::Constant(1, _) => has(1),
                 _ => true,
@@ -168,6 +170,17 @@ impl UnequalInterfaces {
         self.laws.constants().map(Into::into)
     }
 
+    fn all_names(&self) -> &'static [&'static str] {
+        self.named(true)
+    }
+
+    /// The names of its parameters; those of one interface, too, or not.
+    pub(super) fn named(&self, of_one: bool) -> &'static [&'static str] {
+        let mut law = self.laws.laws()[0];
+        let [_, _, healing, residual, damping] = law.constants().map(|constant| constant.is_some());
+        names_of([healing, residual, damping, of_one])
+    }
+
     /// Of a constant of both interfaces that of the first.
     fn value(&self, target: Target) -> f64 {
         match target {
@@ -197,9 +210,17 @@ impl UnequalInterfaces {
         self.in_targets([Some(Target::Driving), Some(Target::Stiffness)])
     }
 
-    /// In the parameters of these places among the names.
+    /// In the parameters of these places among its names.
     fn in_places<const P: usize>(&self, places: &[usize]) -> Smooth<InTargets<P>, 3, P> {
-        let names = self.names();
+        self.in_names(self.names(), places)
+    }
+
+    /// In the parameters of these places among some names.
+    pub(super) fn in_names<const P: usize>(
+        &self,
+        names: &[&str],
+        places: &[usize],
+    ) -> Smooth<InTargets<P>, 3, P> {
         self.in_targets(std::array::from_fn(|i| {
             places.get(i).map(|&place| Target::named(names[place]))
         }))
@@ -215,7 +236,7 @@ pub struct InTargets<const P: usize> {
 
 impl<const P: usize> InTargets<P> {
     /// V_H and K.
-    fn loading<T: Real>(&self, parameters: &[T; P]) -> (T, T) {
+    pub(super) fn loading<T: Real>(&self, parameters: &[T; P]) -> (T, T) {
         let of = |target: Target| {
             let mut set = self.targets.iter().zip(parameters);
             let found = set.find(|(set, _)| **set == Some(target));
@@ -255,6 +276,14 @@ impl<const P: usize> InTargets<P> {
         Some(self.interfaces.laws.freed(&constants, damping))
     }
 
+    /// What the first interface does.
+    pub(super) fn response<T: Real>(&self, tau: T, w: T, parameters: &[T; P]) -> Response<T> {
+        match self.freed(parameters) {
+            None => of_law(&self.interfaces.laws.laws()[0], tau, w),
+            Some(laws) => of_law(&laws[0], tau, w),
+        }
+    }
+
     /// What both interfaces do.
     fn responses<T: Real>(
         &self,
@@ -262,19 +291,17 @@ impl<const P: usize> InTargets<P> {
         parameters: &[T; P],
     ) -> [Response<T>; 2] {
         match self.freed(parameters) {
-            None => responses(self.interfaces.laws.laws(), tau, [first, second]),
-            Some(laws) => responses(&laws, tau, [first, second]),
+            None => {
+                let [one, other] = self.interfaces.laws.laws();
+                [of_law(one, tau, first), of_law(other, tau, second)]
+            }
+            Some([one, other]) => [of_law(&one, tau, first), of_law(&other, tau, second)],
         }
     }
 }
 
-fn responses<C, T: With<C>>(
-    laws: &[impl Formulas<C>; 2],
-    tau: T,
-    [first, second]: [T; 2],
-) -> [Response<T>; 2] {
-    let of = |law: &_, w| Response::new(law, Formulas::<C>::activation(law, tau), w);
-    [of(&laws[0], first), of(&laws[1], second)]
+fn of_law<C, T: With<C>>(law: &impl Formulas<C>, tau: T, w: T) -> Response<T> {
+    Response::new(law, Formulas::<C>::activation(law, tau), w)
 }
 
 impl<const P: usize> Equations<3, P> for InTargets<P> {
@@ -298,91 +325,96 @@ impl<const P: usize> Equations<3, P> for InTargets<P> {
     }
 }
 
-impl<const P: usize> Smooth<InTargets<P>, 3, P> {
-    fn formula(&self) -> Recorded<InTargets<P>, 3, P> {
-        Recorded {
-            equations: self.equations,
-            parameters: self.parameters,
-            symmetric: false,
+/// A vector field by its equations in V_H and K, `in_loading`, or in any parameters, `in_places`, and their names, `names`.
+macro_rules! field_in_any_parameter {
+    ($field:ident, $n:literal) => {
+        impl VectorField<$n> for $field {
+            fn f(&self, y: &State<$n>) -> State<$n> {
+                self.in_loading().f(y)
+            }
+
+            fn jacobian(&self, y: &State<$n>) -> Jacobian<$n> {
+                self.in_loading().jacobian(y)
+            }
+
+            fn second_derivative(&self, y: &State<$n>, u: &State<$n>, v: &State<$n>) -> State<$n> {
+                self.in_loading().second_derivative(y, u, v)
+            }
+
+            fn lasting(&self) -> Option<&'static str> {
+                self.in_loading().lasting()
+            }
+
+            fn parametrised(&self) -> Option<&dyn Parametrised<$n>> {
+                Some(self)
+            }
+
+            fn analytic(&self) -> Option<&dyn Analytic<$n>> {
+                Some(self)
+            }
         }
-    }
-}
 
-impl VectorField<3> for UnequalInterfaces {
-    fn f(&self, y: &State<3>) -> State<3> {
-        self.in_loading().f(y)
-    }
+        impl Parametrised<$n> for $field {
+            fn names(&self) -> &[&'static str] {
+                self.all_names()
+            }
 
-    fn jacobian(&self, y: &State<3>) -> Jacobian<3> {
-        self.in_loading().jacobian(y)
-    }
+            fn parameter_derivative(&self, y: &State<$n>, place: usize) -> State<$n> {
+                self.in_places::<1>(&[place]).parameter_derivative(y, 0)
+            }
 
-    fn second_derivative(&self, y: &State<3>, u: &State<3>, v: &State<3>) -> State<3> {
-        self.in_loading().second_derivative(y, u, v)
-    }
-
-    fn lasting(&self) -> Option<&'static str> {
-        self.in_loading().lasting()
-    }
-
-    fn parametrised(&self) -> Option<&dyn Parametrised<3>> {
-        Some(self)
-    }
-
-    fn analytic(&self) -> Option<&dyn Analytic<3>> {
-        Some(self)
-    }
-}
-
-impl Parametrised<3> for UnequalInterfaces {
-    fn names(&self) -> &[&'static str] {
-        let mut law = self.laws.laws()[0];
-        let [_, _, healing, residual, damping] = law.constants().map(|constant| constant.is_some());
-        names_of([healing, residual, damping])
-    }
-
-    fn parameter_derivative(&self, y: &State<3>, place: usize) -> State<3> {
-        self.in_places::<1>(&[place]).parameter_derivative(y, 0)
-    }
-
-    fn parameter_jacobian(&self, y: &State<3>, place: usize) -> Jacobian<3> {
-        self.in_places::<1>(&[place]).parameter_jacobian(y, 0)
-    }
-}
-
-impl Analytic<3> for UnequalInterfaces {
-    fn solution(&self) -> Box<dyn Solution<3> + '_> {
-        self.in_loading().formula().solution()
-    }
-
-    fn reference(&self) -> Box<dyn Solution<3> + '_> {
-        self.in_loading().formula().reference()
-    }
-
-    fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
-        let all: Vec<usize> = (0..free.len()).collect();
-        if free.len() <= 2 {
-            self.in_places::<2>(free).formula().tangent(&all)
-        } else {
-            self.in_places::<MOST>(free).formula().tangent(&all)
+            fn parameter_jacobian(&self, y: &State<$n>, place: usize) -> Jacobian<$n> {
+                self.in_places::<1>(&[place]).parameter_jacobian(y, 0)
+            }
         }
-    }
 
-    fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<3> + '_> {
-        let all: Vec<usize> = (0..free.len()).collect();
-        if free.len() <= 2 {
-            self.in_places::<2>(free).formula().reference_tangent(&all)
-        } else {
-            self.in_places::<MOST>(free)
-                .formula()
-                .reference_tangent(&all)
+        impl Analytic<$n> for $field {
+            fn solution(&self) -> Box<dyn Solution<$n> + '_> {
+                formula(self.in_loading()).solution()
+            }
+
+            fn reference(&self) -> Box<dyn Solution<$n> + '_> {
+                formula(self.in_loading()).reference()
+            }
+
+            fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<$n> + '_> {
+                let all: Vec<usize> = (0..free.len()).collect();
+                if free.len() <= 2 {
+                    formula(self.in_places::<2>(free)).tangent(&all)
+                } else {
+                    formula(self.in_places::<MOST>(free)).tangent(&all)
+                }
+            }
+
+            fn reference_tangent(&self, free: &[usize]) -> Box<dyn Tangent<$n> + '_> {
+                let all: Vec<usize> = (0..free.len()).collect();
+                if free.len() <= 2 {
+                    formula(self.in_places::<2>(free)).reference_tangent(&all)
+                } else {
+                    formula(self.in_places::<MOST>(free)).reference_tangent(&all)
+                }
+            }
+
+            fn transport(&self, start: [Jet3; $n]) -> Option<Box<dyn TaylorMap<$n> + '_>> {
+                Some(formula(self.in_loading()).transport(start))
+            }
         }
-    }
+    };
+}
+pub(super) use field_in_any_parameter;
 
-    fn transport(&self, start: [Jet3; 3]) -> Option<Box<dyn TaylorMap<3> + '_>> {
-        Some(self.in_loading().formula().transport(start))
+/// The same equations, recorded.
+pub(super) fn formula<S: Equations<N, P>, const N: usize, const P: usize>(
+    field: Smooth<S, N, P>,
+) -> Recorded<S, N, P> {
+    Recorded {
+        equations: field.equations,
+        parameters: field.parameters,
+        symmetric: false,
     }
 }
+
+field_in_any_parameter! { UnequalInterfaces, 3 }
 
 impl Driven<3> for UnequalInterfaces {
     fn slip_rates(&self, y: &State<3>) -> [f64; 2] {
