@@ -9,6 +9,7 @@ use super::{Ending, interrupt, say, special, written};
 use crate::bifurcation::{Criticality, Label};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
+use crate::model::Parameter;
 use crate::output::{
     self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot,
 };
@@ -22,13 +23,13 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 /// How a special point of orbits is computed once more, by which method.
-pub type Recheck<'a, S> = (Choice, &'a dyn Fn(&S) -> Result<Option<[f64; 3]>>);
+pub type Recheck<'a, S> = (Choice, &'a dyn Fn(&S) -> Result<Option<Vec<f64>>>);
 
 /// Whether to go on.
 pub type FoundObserver<'a, R> = &'a mut dyn FnMut(Found<R>) -> ControlFlow<()>;
 
 /// What a table says of special points, in lines.
-pub type SpecialLines<'a, S> = &'a dyn Fn(&[S], &special::Checks) -> Vec<String>;
+pub type SpecialLines<'a, S> = &'a dyn Fn(&[S], &special::Checks<'_>) -> Vec<String>;
 
 /// Everything that a run needs.
 pub struct Task<'a, R: CurveRow> {
@@ -124,8 +125,14 @@ impl<'a, R: CurveRow> Task<'a, R> {
         report: &Report<'_>,
         special: &[R::Special],
         failed: bool,
-    ) -> special::Checks {
-        let mut checks = special::Checks::default();
+    ) -> special::Checks<'_> {
+        let mut checks = special::Checks {
+            names: match self.names[..] {
+                [] => Parameter::LOADING.to_vec(),
+                _ => self.names.clone(),
+            },
+            ..special::Checks::default()
+        };
         let Some((method, again)) = self.second.filter(|_| !failed) else {
             return checks;
         };
@@ -157,7 +164,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
         &self,
         report: &Report<'_>,
         out: &ContinuationOut<'_, R>,
-        checks: &special::Checks,
+        checks: &special::Checks<'_>,
         failure: Option<&Error>,
     ) -> Result<Ending> {
         if report.format != Format::Json {

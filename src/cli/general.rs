@@ -1,6 +1,6 @@
 //! `branch` and `locus` in any parameters.
 
-use super::continuation::Task;
+use super::continuation::{Recheck, Task};
 use super::rows::Found;
 use super::{Ending, say, special};
 use crate::error::Result;
@@ -18,7 +18,10 @@ pub fn branch(options: &BranchOptions, subject: &dyn Subject, words: &[String]) 
     let files = (options.resume.as_ref(), options.plot.as_ref());
     let free = [&plan.free];
     let frame = Frame::new(subject, plan.kind, &free);
-    let task = frame.task(&plan.numerics, files, &options.output, words);
+    let second = plan.following.second;
+    let again = |one: &GeneralRow| second.map_or(Ok(None), |method| plan.crosscheck(one, method));
+    let second = second.map(|method| (method, &again as _));
+    let task = frame.task(&plan.numerics, second, files, &options.output, words);
     let report = task.report()?;
     if options.output.explain {
         say(plan.explain());
@@ -36,7 +39,10 @@ pub fn locus(options: &LocusOptions, subject: &dyn Subject, words: &[String]) ->
     let files = (options.resume.as_ref(), options.plot.as_ref());
     let free = plan.free.each_ref();
     let frame = Frame::new(subject, plan.kind, &free);
-    let task = frame.task(&plan.numerics, files, &options.output, words);
+    let second = plan.following.second;
+    let again = |one: &GeneralRow| second.map_or(Ok(None), |method| plan.crosscheck(one, method));
+    let second = second.map(|method| (method, &again as _));
+    let task = frame.task(&plan.numerics, second, files, &options.output, words);
     let report = task.report()?;
     if options.output.explain {
         say(plan.explain());
@@ -58,7 +64,7 @@ impl From<GeneralFound> for Found<GeneralRow> {
 }
 
 type Reader<'s> = Box<dyn Fn(&dyn Fn(&str) -> String) -> Option<GeneralRow> + 's>;
-type Lines<'s> = Box<dyn Fn(&[GeneralRow], &special::Checks) -> Vec<String> + 's>;
+type Lines<'s> = Box<dyn Fn(&[GeneralRow], &special::Checks<'_>) -> Vec<String> + 's>;
 
 /// What the tasks of branches and curves share.
 struct Frame<'s> {
@@ -82,8 +88,9 @@ impl<'s> Frame<'s> {
             names,
             read: Box::new(move |cell| GeneralRow::read(cell, units, &of_rows, &numbers)),
             read_special: Box::new(move |cell| GeneralRow::read(cell, units, &of_special, &[])),
-            lines: Box::new(move |special, _| {
-                special::general_lines(special, &GeneralRow::special_columns(&of_lines), units)
+            lines: Box::new(move |special, checks| {
+                let columns = GeneralRow::special_columns(&of_lines);
+                special::general_lines(special, &columns, checks, units)
             }),
         }
     }
@@ -91,6 +98,7 @@ impl<'s> Frame<'s> {
     fn task<'t>(
         &'t self,
         numerics: &Value,
+        second: Option<Recheck<'t, GeneralRow>>,
         (resume, plot): (Option<&'t PathBuf>, Option<&'t PathBuf>),
         output: &'t OutputOptions,
         words: &'t [String],
@@ -103,7 +111,7 @@ impl<'s> Frame<'s> {
             read: (&*self.read, &*self.read_special),
             lines: &*self.lines,
             numerics: numerics.clone(),
-            second: None,
+            second,
             resume,
             plot,
             output,

@@ -42,7 +42,7 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     let again = |one: &Special| {
         let second = plan.following.second;
         let checked = second.map(|method| orbits::crosscheck(&plan.request.slab, one, method));
-        checked.unwrap_or(Ok(None))
+        Ok(checked.transpose()?.flatten().map(Vec::from))
     };
     let task = Task {
         system: &plan.system,

@@ -7,31 +7,54 @@ use serde_json::{Value, json};
 
 /// What a second method says of the special points.
 #[derive(Default)]
-pub struct Checks {
+pub struct Checks<'a> {
     /// Its name, if there is one.
     pub method: Option<&'static str>,
-    /// Relative differences in V_H, K and the period, of the first so many points.
-    pub differences: Vec<Option<[f64; 3]>>,
+    /// The names of the parameters, those that vary first.
+    pub names: Vec<&'a str>,
+    /// Relative differences in the parameters that vary and, last, the period, of the first so many points.
+    pub differences: Vec<Option<Vec<f64>>>,
+}
+
+impl Checks<'_> {
+    /// The differences of a point by the names of what differs.
+    fn of(&self, i: usize) -> Option<Vec<(&str, f64)>> {
+        let (period, parameters) = self.differences.get(i)?.as_ref()?.split_last()?;
+        let parameters = self.names.iter().copied().zip(parameters.iter().copied());
+        Some(parameters.chain([("period", *period)]).collect())
+    }
+
+    /// The heading of the differences in a table.
+    fn heading(&self, symbols: &str) -> String {
+        self.method.map_or(String::new(), |method| {
+            format!("{method} differs in {symbols}period by")
+        })
+    }
+
+    /// The differences of a point in a table.
+    fn cell(&self, i: usize) -> String {
+        let all = self.of(i).unwrap_or_default();
+        let all: Vec<String> = all.iter().map(|(_, x)| format!("{x:.1e}")).collect();
+        all.join(", ")
+    }
 }
 
 /// `result.special`.
 pub fn objects<S>(
     special: &[S],
     columns: &[Column<S>],
-    checks: &Checks,
+    checks: &Checks<'_>,
     units: &Units,
 ) -> Vec<Value> {
     let object = |(i, one): (usize, &S)| {
         let mut object = views::object(columns, one, units);
         if let Some(method) = checks.method {
-            let difference = checks.differences.get(i).copied().flatten();
-            let check = difference.map(|[driving, stiffness, period]| {
-                json!({
-                    "method": method,
-                    "driving_difference": driving,
-                    "stiffness_difference": stiffness,
-                    "period_difference": period,
-                })
+            let check = checks.of(i).map(|all| {
+                let mut check = json!({"method": method});
+                for (name, difference) in all {
+                    check[format!("{name}_difference")] = json!(difference);
+                }
+                check
             });
             object.insert("crosscheck".to_owned(), json!(check));
         }
@@ -41,13 +64,10 @@ pub fn objects<S>(
 }
 
 /// The table of special points in V_H and K, a line each with the header first; none where there is none.
-pub fn lines(special: &[Special], checks: &Checks, units: &Units) -> Vec<String> {
+pub fn lines(special: &[Special], checks: &Checks<'_>, units: &Units) -> Vec<String> {
     if special.is_empty() {
         return Vec::new();
     }
-    let check = checks
-        .method
-        .map(|method| format!("{method} differs in V_H, K, period by"));
     let header = vec![
         String::new(),
         String::new(),
@@ -55,13 +75,12 @@ pub fn lines(special: &[Special], checks: &Checks, units: &Units) -> Vec<String>
         format!("K [{}]", units.name(Quantity::Stiffness)),
         format!("period [{}]", units.name(Quantity::Time)),
         String::new(),
-        check.unwrap_or_default(),
+        checks.heading("V_H, K, "),
         String::new(),
     ];
     let mut table = vec![header];
     for (i, one) in special.iter().enumerate() {
-        let difference = checks.differences.get(i).copied().flatten();
-        table.push(line(one, difference, units));
+        table.push(line(one, checks.cell(i), units));
     }
     aligned(&table)
 }
@@ -70,6 +89,7 @@ pub fn lines(special: &[Special], checks: &Checks, units: &Units) -> Vec<String>
 pub fn general_lines(
     special: &[GeneralRow],
     columns: &[Column<GeneralRow>],
+    checks: &Checks<'_>,
     units: &Units,
 ) -> Vec<String> {
     if special.is_empty() {
@@ -80,12 +100,17 @@ pub fn general_lines(
         "" | "1" => column.name.to_string(),
         unit => format!("{} [{unit}]", column.name),
     };
-    let around = |first: [String; 2], inner: Vec<String>, last: [String; 2]| -> Vec<String> {
+    let around = |first: [String; 2], inner: Vec<String>, last: [String; 3]| -> Vec<String> {
         first.into_iter().chain(inner).chain(last).collect()
     };
-    let empty = || [String::new(), String::new()];
-    let mut table = vec![around(empty(), known.iter().map(named).collect(), empty())];
-    for one in special {
+    let empty = String::new;
+    let heading = checks.heading("what varies and the ");
+    let mut table = vec![around(
+        [empty(), empty()],
+        known.iter().map(named).collect(),
+        [empty(), heading, empty()],
+    )];
+    for (i, one) in special.iter().enumerate() {
         let cell = |column: &&Column<GeneralRow>| match column.entry(one) {
             CellValue::Uncertain(Some(x)) => {
                 units.outward_uncertain(column.quantity, x).to_string()
@@ -99,16 +124,19 @@ pub fn general_lines(
         table.push(around(
             label.map(str::to_owned),
             known.iter().map(cell).collect(),
-            [criticality, one.note.clone().unwrap_or_default()],
+            [
+                criticality,
+                checks.cell(i),
+                one.note.clone().unwrap_or_default(),
+            ],
         ));
     }
     aligned(&table)
 }
 
-fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<String> {
+fn line(one: &Special, difference: String, units: &Units) -> Vec<String> {
     let number = |quantity, x| units.outward_uncertain(quantity, x).to_string();
     let period = one.period.map(|x| number(Quantity::Time, x));
-    let difference = difference.map(|[v, k, t]| format!("{v:.1e}, {k:.1e}, {t:.1e}"));
     vec![
         one.label.name().to_owned(),
         one.label.meaning().to_owned(),
@@ -116,7 +144,7 @@ fn line(one: &Special, difference: Option<[f64; 3]>, units: &Units) -> Vec<Strin
         number(Quantity::Stiffness, one.stiffness),
         period.unwrap_or_default(),
         one.criticality.map_or("", Criticality::name).to_owned(),
-        difference.unwrap_or_default(),
+        difference,
         one.note.clone().unwrap_or_default(),
     ]
 }

@@ -14,11 +14,13 @@ pub use equilibria::equilibria;
 pub use orbit_curves::orbit_curves;
 pub use orbits::orbits;
 
+use super::orbits::{SpecialOrbit, second};
 use super::{Criticality, Label};
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::equilibrium::Verdict;
 use crate::error::{Error, Result};
 use crate::field::Vector;
+use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction};
 use nalgebra::Complex;
@@ -143,6 +145,22 @@ pub struct GeneralPoint {
     pub coefficient_uncertainty: Option<f64>,
     /// What else is to be said.
     pub note: Option<String>,
+    /// Of a special orbit that is known in its last digits, what is needed to compute it once more.
+    pub orbit: Option<SpecialOrbit>,
+}
+
+impl GeneralSystem<'_> {
+    /// The parameters and the period of a special orbit once more, by an unlike method. That begins from the first one's nodes, cut
+    /// to a few digits, and shares nothing else with it.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where the second method does not find the orbit; those of the method.
+    pub fn crosscheck(&self, orbit: &SpecialOrbit, method: Choice) -> Result<[f64; 3]> {
+        let (nodes, _) = orbit.nodes();
+        let dimension = nodes.first().map_or(0, Vec::len);
+        let alike = self.alike.filter(|alike| alike.dimension() == dimension);
+        second(alike.unwrap_or(self.family), orbit, method)
+    }
 }
 
 /// What is found on the way.
@@ -171,6 +189,7 @@ impl GeneralPoint {
             coefficient: None,
             coefficient_uncertainty: None,
             note: None,
+            orbit: None,
         }
     }
 

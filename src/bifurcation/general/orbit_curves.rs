@@ -1,14 +1,14 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
 
 use super::curves::{in_order, looked_along, scanned};
-use super::orbits::{classified, new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
+use super::orbits::{new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
 use super::{
     GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
     Teller,
 };
-use crate::bifurcation::Label;
-use crate::bifurcation::orbits::normal_form::Form;
-use crate::bifurcation::orbits::{LONGEST, middle};
+use crate::bifurcation::orbits::normal_form::{Form, normal_form};
+use crate::bifurcation::orbits::{CoefficientCurve, Decided, LONGEST, embedded, middle};
+use crate::bifurcation::{Criticality, Label};
 use crate::continuation::{Met, Stop};
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -248,14 +248,23 @@ impl<'a> OrbitCurves<'_, 'a> {
         };
         let begin = pass(&here.site);
         let watches = self.watches();
+        let mut decided: Option<Decided> = None;
         let end = palc.follow(&watches, STEPS, &mut |palc, _, met| match met {
             Met::Zero(watch, at) => self.zero(palc, (watch, at), number, begin, seen),
             Met::Point(now) => {
-                let mut point = self.row(number, &now.here, None);
-                if self.curve.criticality {
-                    point = self.classified(point, &now.here);
+                let here = &now.here;
+                let point = self.row(number, here, None);
+                let way = self.way(&here.site).filter(|_| self.curve.criticality);
+                let Some((coefficient, criticality)) = way else {
+                    return seen(point, false);
+                };
+                if let Some(now) = Decided::new(here, coefficient, criticality)
+                    && let Some(before) = decided.replace(now.clone())
+                    && let Some(zero) = self.coefficient_zero(number, &before, &now)
+                {
+                    seen(zero, true)?;
                 }
-                seen(point, false)
+                seen(point.classified((coefficient, criticality)), false)
             }
         })?;
         if end != Stop::Observer {
@@ -343,11 +352,50 @@ impl<'a> OrbitCurves<'_, 'a> {
     }
 
     fn classified(&self, point: GeneralPoint, orbit: &Regular) -> GeneralPoint {
-        let form = match self.test_function {
-            TestFunction::Doubling => Form::Doubling,
-            TestFunction::Torus => Form::Torus,
-            _ => return point,
+        match self.way(&orbit.site) {
+            Some(way) => point.classified(way),
+            None => point,
+        }
+    }
+
+    /// The cubic coefficient of an orbit of the curve, and which way that is; folds have none.
+    fn way(&self, site: &ContinuationPoint) -> Option<(Uncertain, Criticality)> {
+        let family = self.family();
+        let way = match self.test_function {
+            TestFunction::Doubling => normal_form(family, site, Form::Doubling),
+            TestFunction::Torus => normal_form(family, site, Form::Torus),
+            TestFunction::Transverse => {
+                normal_form(self.curve.system.family, &embedded(site), Form::Pitchfork)
+            }
+            _ => return None,
         };
-        classified(point, self.family(), &orbit.site, form)
+        way.ok()
+    }
+
+    /// Where the cubic coefficient is zero between two orbits of the curve, if it is.
+    fn coefficient_zero(
+        &self,
+        number: usize,
+        before: &Decided,
+        now: &Decided,
+    ) -> Option<GeneralPoint> {
+        let moved = |i: usize| (now.site().at[i] - before.site().at[i]).abs();
+        let unknown = (Uncertain::new(0.0, f64::INFINITY), Criticality::Undecided);
+        let zero = before.change(
+            now,
+            CoefficientCurve {
+                family: self.family(),
+                test_function: self.test_function,
+                coefficient: &|site| self.way(site).unwrap_or(unknown),
+                held: usize::from(moved(1) >= moved(0)),
+            },
+        )?;
+        let point = GeneralPoint {
+            parameters: zero.at,
+            period: Some(zero.period),
+            note: zero.note,
+            ..orbit_point(number, &zero.orbit, Some(zero.label))
+        };
+        Some(self.angled(point, &zero.orbit))
     }
 }

@@ -3,9 +3,9 @@
 use super::equilibria::EquilibriumBranches;
 use super::hopf::GeneralHopf;
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
-use crate::bifurcation::Label;
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, embedded, middle, refined};
+use crate::bifurcation::{Criticality, Label};
 use crate::continuation::Met;
 use crate::error::Result;
 use crate::field::Vector;
@@ -242,25 +242,24 @@ pub(super) fn special_orbit(
     let point = GeneralPoint {
         parameters: sharp.at,
         period: Some(sharp.period),
+        orbit: Some(sharp.special_orbit()),
         ..orbit_point(number, &sharp.orbit, Some(label))
     };
     (point, Some(sharp.orbit))
 }
 
-/// With which way the bifurcation goes.
-pub(super) fn classified(
-    mut point: GeneralPoint,
-    family: &dyn ParametrisedField,
-    site: &ContinuationPoint,
-    form: Form,
-) -> GeneralPoint {
-    if let Ok((coefficient, criticality)) = normal_form(family, site, form) {
+impl GeneralPoint {
+    /// With which way the bifurcation goes.
+    pub(super) fn classified(
+        mut self,
+        (coefficient, criticality): (Uncertain, Criticality),
+    ) -> Self {
         let known = coefficient.uncertainty.is_finite();
-        point.criticality = Some(criticality);
-        point.coefficient = known.then_some(coefficient.value);
-        point.coefficient_uncertainty = known.then_some(coefficient.uncertainty);
+        self.criticality = Some(criticality);
+        self.coefficient = known.then_some(coefficient.value);
+        self.coefficient_uncertainty = known.then_some(coefficient.uncertainty);
+        self
     }
-    point
 }
 
 /// One branch.
@@ -381,9 +380,13 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             at: site.at,
             parameters: sharp.at,
             period: Some(sharp.period),
+            orbit: Some(sharp.special_orbit()),
             ..rough
         };
-        classified(point, system.family, &site, Form::Pitchfork)
+        match normal_form(system.family, &site, Form::Pitchfork) {
+            Ok(way) => point.classified(way),
+            Err(_) => point,
+        }
     }
 
     /// Something that is watched is zero here.
@@ -431,8 +434,10 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             Label::Tr => Some(Form::Torus),
             _ => None,
         };
-        if let (Some(form), Some(orbit)) = (form, &orbit) {
-            point = classified(point, family, &orbit.site, form);
+        if let (Some(form), Some(orbit)) = (form, &orbit)
+            && let Ok(way) = normal_form(family, &orbit.site, form)
+        {
+            point = point.classified(way);
         }
         if let (Label::Pd, Some(orbit)) = (label, orbit) {
             self.set.doublings.push((orbit, self.times, false));

@@ -54,7 +54,8 @@ pub fn crosscheck(
     Ok(Some([0, 1, 2].map(|i| second[i] / first[i] - 1.0)))
 }
 
-fn second(
+/// The parameters and the period of a special orbit of a family, by the second method.
+pub(in crate::bifurcation) fn second(
     family: &dyn ParametrisedField,
     orbit: &SpecialOrbit,
     method: Choice,

@@ -196,11 +196,13 @@ impl<'r, 's> HalfCurve<'r, 's> {
                     return self.merged(&chart.slab(), &chart.usual(&here.site));
                 }
                 let way = self.row(here)?;
-                if let Some(now) = way.and_then(|way| Decided::new(here, &way))
+                let now = way.and_then(|way| Decided::new(here, way.coefficient, way.criticality));
+                if let Some(now) = now
                     && let Some(before) = decided.replace(now.clone())
-                    && let Some(special) = before.change(&now, chart, self.test_function)
+                    && let Some(zero) =
+                        chart.with_curve(self.test_function, |curve| before.change(&now, curve))
                 {
-                    self.tell(Event::Special(special))?;
+                    self.tell(Event::Special(zero.special()))?;
                 }
                 lost = chart.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }

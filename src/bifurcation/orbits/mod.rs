@@ -19,6 +19,8 @@ pub use branch::branch;
 pub(super) use branch::{ARC, LONGEST, ROUGH, WORK};
 pub(super) use chart::{embedded, middle};
 pub use crosscheck::crosscheck;
+pub(super) use crosscheck::second;
+pub(super) use cubic_coefficient::{CoefficientCurve, Decided};
 pub use locus::{loci, locus};
 pub use refine::SpecialOrbit;
 pub(super) use refine::refined;

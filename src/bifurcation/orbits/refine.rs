@@ -175,22 +175,24 @@ fn kept(
 impl RefinedPoint {
     /// As a special point of a slab.
     pub fn special(&self, label: Label) -> Special {
-        let ContinuationPoint { shooting, at } = &self.orbit.site;
         Special {
             period: Some(self.period),
-            orbit: Some(SpecialOrbit {
-                in_difference_chart: false,
-                nodes: shooting
-                    .nodes
-                    .iter()
-                    .map(|x| x.iter().copied().collect())
-                    .collect(),
-                durations: shooting.durations.clone(),
-                at: *at,
-                meets: self.meets.clone(),
-                free: self.free.clone(),
-            }),
+            orbit: Some(self.special_orbit()),
             ..Special::new(label, self.at[DRIVING], self.at[STIFFNESS])
+        }
+    }
+
+    /// What is needed to compute it once more.
+    pub fn special_orbit(&self) -> SpecialOrbit {
+        let ContinuationPoint { shooting, at } = &self.orbit.site;
+        let nodes = shooting.nodes.iter();
+        SpecialOrbit {
+            in_difference_chart: false,
+            nodes: nodes.map(|x| x.as_slice().to_vec()).collect(),
+            durations: shooting.durations.clone(),
+            at: *at,
+            meets: self.meets.clone(),
+            free: self.free.clone(),
         }
     }
 }

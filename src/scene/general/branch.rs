@@ -1,11 +1,12 @@
 //! Branches along any parameter, from options.
 
-use super::following::{Free, general, numbers, shown, without_crosscheck};
+use super::following::{self, Free, general, numbers, shown};
 use super::{GeneralRow, RowKind, Subject};
 use crate::bifurcation::general::{
     GeneralBranch, GeneralEvent, GeneralPoint, GeneralSystem, equilibria, orbits,
 };
 use crate::error::{Error, Result};
+use crate::integrate::Choice;
 use crate::number::Uncertain;
 use crate::orbit::{Coordinate, ParametrisedField};
 use crate::scene::branch::BranchKind;
@@ -78,7 +79,6 @@ impl<'s> GeneralBranchPlan<'s> {
         let free = Free::new(subject, ("along", along), range, &at)?;
         let orbits = of == BranchKind::Orbits;
         let following = Following::new(&options.continuation, orbits)?;
-        without_crosscheck(&following)?;
         let numerics = json!({
             "of": of.name(),
             "along": along,
@@ -87,6 +87,7 @@ impl<'s> GeneralBranchPlan<'s> {
             "at": at,
             "step_limit": following.step,
             "tolerance": following.tolerance,
+            "crosscheck": following.second.map(|second| second.name()),
             "doublings": options.doublings,
         });
         Ok(GeneralBranchPlan {
@@ -130,6 +131,24 @@ impl<'s> GeneralBranchPlan<'s> {
             },
             self.following.max_points
         )
+    }
+
+    /// A special point of orbits once more, by another method: what the parameter and the period differ by.
+    ///
+    /// # Errors
+    /// Those of the second method.
+    pub fn crosscheck(&self, one: &GeneralRow, method: Choice) -> Result<Option<Vec<f64>>> {
+        let name = self.free.name;
+        let coordinates = [self.free.coordinate, Coordinate::Logarithm];
+        let family = self.subject.family(&[name], coordinates)?;
+        let alike = self.subject.alike(&[name]);
+        let system = GeneralSystem {
+            family: &*family,
+            alike: alike.as_deref(),
+            names: [name; 2],
+            equilibria: &|_| Ok(Vec::new()),
+        };
+        following::crosscheck(&system, 1, one, method)
     }
 
     /// Follows them, but those whose numbers are known.

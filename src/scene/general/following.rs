@@ -1,8 +1,9 @@
 //! Names, ranges and values that branches and curves in any parameters share.
 
-use super::Subject;
-use crate::bifurcation::general::GeneralFollowing;
+use super::{GeneralRow, Subject};
+use crate::bifurcation::general::{GeneralFollowing, GeneralSystem};
 use crate::error::{Error, Result};
+use crate::integrate::Choice;
 use crate::orbit::Coordinate;
 use crate::scene::following::Following;
 use crate::scene::units::Quantity;
@@ -121,16 +122,27 @@ pub fn general(following: &Following, known: &[usize]) -> GeneralFollowing {
     }
 }
 
-/// The second method has no place here yet.
+/// Relative differences in the free parameters and, last, the period between a special orbit and the same one by another method; of a zero
+/// the difference itself. `None` for points that are no orbit's.
 ///
 /// # Errors
-/// [`Error::Input`] where one is asked for.
-pub fn without_crosscheck(following: &Following) -> Result<()> {
-    match following.second {
-        None => Ok(()),
-        Some(_) => Err(Error::Input(
-            "`crosscheck` is of the special points of interfaces in V_H and K; here it is not made"
-                .into(),
-        )),
-    }
+/// As of [`GeneralSystem::crosscheck`].
+pub fn crosscheck(
+    system: &GeneralSystem<'_>,
+    free: usize,
+    one: &GeneralRow,
+    method: Choice,
+) -> Result<Option<Vec<f64>>> {
+    let (Some(orbit), Some(period)) = (&one.orbit, one.period) else {
+        return Ok(None);
+    };
+    let second = system.crosscheck(orbit, method)?;
+    let against = |first: f64, second: f64| match first {
+        0.0 => second,
+        first => second / first - 1.0,
+    };
+    let parameters = one.parameters[..free].iter().zip(second);
+    let parameters = parameters.map(|(first, second)| against(first.value, second));
+    let period = against(period.value, second[2]);
+    Ok(Some(parameters.chain([period]).collect()))
 }

@@ -1,11 +1,12 @@
 //! Curves of bifurcations in the plane of any two parameters, from options.
 
 use super::branch::{GeneralFound, found, nothing};
-use super::following::{Free, general, numbers, without_crosscheck};
-use super::{RowKind, Subject};
+use super::following::{self, Free, general, numbers};
+use super::{GeneralRow, RowKind, Subject};
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::bifurcation::general::{GeneralBifurcation, GeneralCurve, GeneralEvent, GeneralSystem};
 use crate::error::{Error, Result};
+use crate::integrate::Choice;
 use crate::orbit::TestFunction;
 use crate::scene::continuation::LocusOptions;
 use crate::scene::following::Following;
@@ -159,7 +160,6 @@ impl<'s> GeneralLocusPlan<'s> {
         let free = [free(0)?, free(1)?];
         let orbits = matches!(bifurcation, GeneralBifurcation::Orbit(_));
         let following = Following::new(&options.continuation, orbits)?;
-        without_crosscheck(&following)?;
         let outward = |free: &Free, x: f64| subject.units().outward(free.quantity, x);
         let list = |free: &Free, all: &[f64]| -> Vec<f64> {
             all.iter().map(|&x| outward(free, x)).collect()
@@ -172,6 +172,7 @@ impl<'s> GeneralLocusPlan<'s> {
             "criticality": options.criticality,
             "step_limit": following.step,
             "tolerance": following.tolerance,
+            "crosscheck": following.second.map(|second| second.name()),
         });
         Ok(GeneralLocusPlan {
             choice,
@@ -211,6 +212,24 @@ impl<'s> GeneralLocusPlan<'s> {
             ranges.concat(),
             self.following.max_points
         )
+    }
+
+    /// A special point of orbits once more, by another method: what both parameters and the period differ by.
+    ///
+    /// # Errors
+    /// Those of the second method.
+    pub fn crosscheck(&self, one: &GeneralRow, method: Choice) -> Result<Option<Vec<f64>>> {
+        let names = [self.free[0].name, self.free[1].name];
+        let coordinates = self.free.each_ref().map(|free| free.coordinate);
+        let family = self.subject.family(&names, coordinates)?;
+        let alike = self.subject.alike(&names);
+        let system = GeneralSystem {
+            family: &*family,
+            alike: alike.as_deref(),
+            names,
+            equilibria: &|_| Ok(Vec::new()),
+        };
+        following::crosscheck(&system, 2, one, method)
     }
 
     /// Follows all of them, but those whose numbers are known.

@@ -2,6 +2,7 @@
 
 use super::Subject;
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::bifurcation::orbits::SpecialOrbit;
 use crate::bifurcation::{Criticality, Label};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
@@ -46,6 +47,8 @@ pub struct GeneralRow {
     pub label: Option<Label>,
     /// What else is to be said.
     pub note: Option<String>,
+    /// Of a special orbit that was just found, what is needed to compute it once more.
+    pub orbit: Option<SpecialOrbit>,
 }
 
 impl GeneralRow {
@@ -86,6 +89,7 @@ impl GeneralRow {
             verdict: (!kind.curve).then(|| point.verdict()),
             label: point.label,
             note: point.note,
+            orbit: point.orbit,
         })
     }
 
@@ -219,6 +223,7 @@ impl GeneralRow {
                 .find(|verdict| verdict.name() == cell("verdict")),
             label: Label::named(&cell("label")),
             note: Some(cell("note")).filter(|note| !note.is_empty()),
+            orbit: None,
         })
     }
 }
