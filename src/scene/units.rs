@@ -23,6 +23,10 @@ pub enum Quantity {
     Stiffness,
     /// An eigenvalue.
     Growth,
+    /// Radiation damping eta.
+    Damping,
+    /// Normal stress sigma of an interface.
+    NormalStress,
     /// A friction coefficient, a ratio, a name.
     Number,
 }
@@ -139,6 +143,8 @@ impl Units {
             Quantity::Time => self.time,
             Quantity::Stiffness => scales.stiffness,
             Quantity::Growth => 1.0 / self.time,
+            Quantity::Damping => scales.stress / scales.slip_rate,
+            Quantity::NormalStress => scales.stress / scales.friction,
             Quantity::State if self.state_is_time => self.time,
             Quantity::State | Quantity::LogState | Quantity::Number => 1.0,
         }
@@ -208,6 +214,10 @@ impl Units {
             Quantity::Stiffness => "a sigma/L",
             Quantity::Growth if si => self.time_unit.inverse,
             Quantity::Growth => "V*/L",
+            Quantity::Damping if si => "Pa s/m",
+            Quantity::Damping => "a sigma/V*",
+            Quantity::NormalStress if si => "Pa",
+            Quantity::NormalStress => "sigma",
             Quantity::State if self.state_is_time && si => self.time_unit.name,
             Quantity::State if self.state_is_time => "L/V*",
             Quantity::State | Quantity::LogState | Quantity::Number => "1",

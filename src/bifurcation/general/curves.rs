@@ -87,6 +87,7 @@ pub(super) fn looked_along<R>(
     look(&GeneralBranch {
         system,
         range: curve.ranges[along],
+        beyond: curve.beyond[along],
         held,
         at: Vec::new(),
         orbit: None,

@@ -49,6 +49,8 @@ pub struct GeneralBranch<'a> {
     pub system: GeneralSystem<'a>,
     /// From where to where; the larger one may come first.
     pub range: (f64, f64),
+    /// Where orbits may begin, at a Hopf point, if there is none in the range; it holds the range.
+    pub beyond: (f64, f64),
     /// The second coordinate.
     pub held: f64,
     /// Values to land on.
@@ -70,6 +72,8 @@ pub struct GeneralCurve<'a> {
     pub kind: GeneralBifurcation,
     /// From where to where in both.
     pub ranges: [(f64, f64); 2],
+    /// As of a branch, in both.
+    pub beyond: [(f64, f64); 2],
     /// Values to land on.
     pub at: [Vec<f64>; 2],
     /// An orbit with its coordinates, where one is known.

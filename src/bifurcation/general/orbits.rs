@@ -53,9 +53,13 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
                 at: point.at,
                 frequency: std::f64::consts::TAU / period.value,
             };
+            let near =
+                |state: &Vector| (state - &hopf.state).amax() < SAME * (1.0 + hopf.state.amax());
+            // Of equal parts what differs by their exchange is one.
+            let equal = branch.system.alike.is_some();
             let same = |other: &GeneralHopf| {
                 (other.at[FREE] - hopf.at[FREE]).abs() < SAME
-                    && (&other.state - &hopf.state).amax() < SAME * (1.0 + hopf.state.amax())
+                    && (near(&other.state) || equal && near(&exchanged(&other.state)))
             };
             if !found.iter().any(|(other, _)| same(other)) {
                 found.push((hopf, point));
@@ -65,6 +69,14 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
     })?;
     found.sort_by(|a, b| a.0.at[FREE].total_cmp(&b.0.at[FREE]));
     Ok(found)
+}
+
+/// With the last two variables exchanged.
+fn exchanged(state: &Vector) -> Vector {
+    let mut exchanged = state.clone();
+    let n = state.len();
+    exchanged.swap_rows(n - 2, n - 1);
+    exchanged
 }
 
 /// All branches, and what is known of them so far.
@@ -81,7 +93,15 @@ struct OrbitBranches<'b, 'a> {
 
 impl<'b, 'a> OrbitBranches<'b, 'a> {
     fn new(branch: &'b GeneralBranch<'a>) -> Result<Self> {
-        let hopfs = hopf_points(branch)?;
+        let mut hopfs = hopf_points(branch)?;
+        if hopfs.is_empty() && branch.orbit.is_none() {
+            // What is not known there is no reason to fail: it was not asked for.
+            hopfs = hopf_points(&GeneralBranch {
+                range: branch.beyond,
+                ..branch.clone()
+            })
+            .unwrap_or_default();
+        }
         Ok(OrbitBranches {
             branch,
             count: 0,
@@ -156,12 +176,14 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         let number = self.next();
         let (hopf, point) = self.hopfs[i].clone();
         let point = GeneralPoint { number, ..point };
-        if teller.tell(GeneralEvent::Special(point.clone())).is_break() {
+        let inside = self.inside(hopf.at[FREE]);
+        if inside && teller.tell(GeneralEvent::Special(point.clone())).is_break() {
             return Ok(());
         }
         let mut corrector = new_corrector(self.branch.system.family)?;
         match hopf.palc(&mut corrector, self.settings()) {
-            Ok(mut palc) => OrbitBranch::new(self, number, 0, true).go(&mut palc, teller),
+            Ok(mut palc) => OrbitBranch::new(self, number, 0, inside).go(&mut palc, teller),
+            Err(_) if !inside => Ok(()),
             Err(error) => {
                 let special = GeneralPoint {
                     label: Some(Label::Mx),
@@ -327,7 +349,9 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 number: self.number,
                 ..self.set.hopfs[i].1.clone()
             };
-            let _ = teller.tell(GeneralEvent::Special(point));
+            if self.set.inside(point.at[FREE]) {
+                let _ = teller.tell(GeneralEvent::Special(point));
+            }
             return Break(());
         }
         let turned = now.direction.parameters[FREE] * before.direction.parameters[FREE] <= 0.0;
@@ -335,7 +359,13 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             return Break(());
         }
         if !self.set.inside(here.site.at[FREE]) {
-            return if self.inside { Break(()) } else { Continue(()) };
+            let (a, b) = self.set.branch.beyond;
+            let far = !(a.min(b)..=a.max(b)).contains(&here.site.at[FREE]);
+            return if self.inside || far {
+                Break(())
+            } else {
+                Continue(())
+            };
         }
         self.inside = true;
         teller.tell(GeneralEvent::Row(self.set.row(self.number, here, None)))

@@ -177,6 +177,7 @@ impl<'s> GeneralBranchPlan<'s> {
                 equilibria: &equilibria_at,
             },
             range: self.free.ends(),
+            beyond: self.free.beyond(),
             held: 0.0,
             at: self.free.landings(),
             orbit: None,

@@ -73,6 +73,17 @@ impl Free {
         (inward(self.range.0), inward(self.range.1))
     }
 
+    /// The range with as much again at both sides, or in logarithms a decade: there orbits may begin that come into it.
+    pub fn beyond(&self) -> (f64, f64) {
+        let (from, to) = self.ends();
+        let more = match self.coordinate {
+            Coordinate::Logarithm => std::f64::consts::LN_10,
+            Coordinate::Linear(_) => (to - from).abs(),
+        };
+        let more = more.copysign(to - from);
+        (from - more, to + more)
+    }
+
     /// The values to land on in the coordinate.
     pub fn landings(&self) -> Vec<f64> {
         self.at.iter().map(|&x| self.coordinate.inward(x)).collect()

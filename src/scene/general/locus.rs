@@ -273,6 +273,7 @@ impl<'s> GeneralLocusPlan<'s> {
             },
             kind: self.bifurcation,
             ranges: self.free.each_ref().map(Free::ends),
+            beyond: self.free.each_ref().map(Free::beyond),
             at: self.free.each_ref().map(Free::landings),
             orbit,
             criticality: self.criticality,

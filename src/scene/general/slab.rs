@@ -36,7 +36,7 @@ impl SlabSubject {
     /// Interfaces of which these parameters vary.
     ///
     /// # Errors
-    /// [`Error::Input`] for SI units of parameters that have none here, and where V_H or K is given though it varies.
+    /// [`Error::Input`] in SI for a parameter that sets the units, and where V_H or K is given though it varies.
     pub fn new(system: System, free: &[&str]) -> Result<Self> {
         for (name, given) in [("driving", system.driving), ("stiffness", system.stiffness)] {
             if given.is_some() && free.contains(&name) {
@@ -56,10 +56,10 @@ impl SlabSubject {
             laws
         };
         if system.units.si()
-            && let Some(name) = free.iter().find(|name| WITHOUT_UNITS.contains(name))
+            && let Some(name) = free.iter().find(|name| SETS_UNITS.contains(name))
         {
             return Err(Error::Input(format!(
-                "`{name}` is followed in dimensionless numbers; leave `si` out"
+                "`{name}` sets the unit of stress in SI, so that all else would change with it; leave `si` out"
             )));
         }
         let loading = Loading {
@@ -157,8 +157,8 @@ impl SlabSubject {
     }
 }
 
-/// Parameters whose SI units have no place here.
-const WITHOUT_UNITS: [&str; 3] = ["damping", "slip_length_2", "normal_stress_2"];
+/// Parameters that set the scales by which K and all stresses are dimensionless.
+const SETS_UNITS: [&str; 2] = ["direct_effect", "direct_effect_1"];
 
 /// A parameter that is held where this one varies.
 fn other_than(name: &str) -> &'static str {
@@ -178,6 +178,9 @@ fn quantity(name: &str) -> Quantity {
     match name {
         "driving" => Quantity::SlipRate,
         "stiffness" => Quantity::Stiffness,
+        "damping" => Quantity::Damping,
+        "slip_length_2" => Quantity::Length,
+        "normal_stress_2" => Quantity::NormalStress,
         _ if name.starts_with("healing_time") => Quantity::Time,
         _ => Quantity::Number,
     }
