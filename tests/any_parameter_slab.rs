@@ -226,6 +226,34 @@ fn orbits_of_a_single_interface_are_those_that_orbit_finds() {
     assert!(row.get("state_2").is_none());
 }
 
+/// At a steady state of equal interfaces the damping adds eta V_H / 2 to the stress, and nothing else: in Pa, of Pa s/m and m/s.
+#[test]
+fn the_damping_varies_in_pascal_seconds_per_metre() {
+    let made = object(
+        "branch equilibria --si --driving 1e-5 --stiffness 1e10 --along damping --from 1e9 --to 1e11",
+    );
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let rest = |row: &Value| number(row, "/stress") - number(row, "/damping") * 0.5e-5;
+    let alike = rows.iter().filter(|row| {
+        row["slip_rate_1"]
+            .as_f64()
+            .is_some_and(|v| (v / 0.5e-5 - 1.0).abs() < 1e-6)
+    });
+    let all: Vec<f64> = alike.map(rest).collect();
+    assert!(all.len() > 5);
+    for stress in &all {
+        assert!(
+            (stress / all[0] - 1.0).abs() < 1e-11,
+            "{stress} for {}",
+            all[0]
+        );
+    }
+    refused_in_one_line(
+        "branch equilibria --si --driving 1e-5 --stiffness 1e10 --along direct_effect --from 0.01 --to 0.02",
+        "sets the unit of stress",
+    );
+}
+
 #[test]
 fn what_interfaces_do_not_have_is_refused_in_one_sentence() {
     let branch = "branch equilibria --driving 10 --stiffness 0.14";

@@ -248,23 +248,28 @@ impl<'a> OrbitCurves<'_, 'a> {
         };
         let begin = pass(&here.site);
         let watches = self.watches();
-        let mut decided: Option<Decided> = None;
+        let mut decided = None;
+        self.change(number, &mut decided, here);
         let end = palc.follow(&watches, STEPS, &mut |palc, _, met| match met {
-            Met::Zero(watch, at) => self.zero(palc, (watch, at), number, begin, seen),
-            Met::Point(now) => {
-                let here = &now.here;
-                let point = self.row(number, here, None);
-                let way = self.way(&here.site).filter(|_| self.curve.criticality);
-                let Some((coefficient, criticality)) = way else {
-                    return seen(point, false);
-                };
-                if let Some(now) = Decided::new(here, coefficient, criticality)
-                    && let Some(before) = decided.replace(now.clone())
-                    && let Some(zero) = self.coefficient_zero(number, &before, &now)
+            Met::Zero(watch, at) => {
+                if matches!(watch, WatchedFunction::Value(..))
+                    && let (_, Some(zero)) = self.change(number, &mut decided, &at.here)
                 {
                     seen(zero, true)?;
                 }
-                seen(point.classified((coefficient, criticality)), false)
+                self.zero(palc, (watch, at), number, begin, seen)
+            }
+            Met::Point(now) => {
+                let point = self.row(number, &now.here, None);
+                let (way, zero) = self.change(number, &mut decided, &now.here);
+                if let Some(zero) = zero {
+                    seen(zero, true)?;
+                }
+                let point = match way {
+                    Some(way) => point.classified(way),
+                    None => point,
+                };
+                seen(point, false)
             }
         })?;
         if end != Stop::Observer {
@@ -370,6 +375,26 @@ impl<'a> OrbitCurves<'_, 'a> {
             _ => return None,
         };
         way.ok()
+    }
+
+    /// Which way the bifurcation goes at an orbit, where that is asked for; and where the coefficient is zero between the last orbit
+    /// at which that was decided and this one.
+    fn change(
+        &self,
+        number: usize,
+        last: &mut Option<Decided>,
+        here: &Regular,
+    ) -> (Option<(Uncertain, Criticality)>, Option<GeneralPoint>) {
+        let way = match self.curve.criticality {
+            true => self.way(&here.site),
+            false => None,
+        };
+        let now = way.and_then(|(coefficient, way)| Decided::new(here, coefficient, way));
+        let zero = now.and_then(|now| {
+            let before = last.replace(now.clone())?;
+            self.coefficient_zero(number, &before, &now)
+        });
+        (way, zero)
     }
 
     /// Where the cubic coefficient is zero between two orbits of the curve, if it is.

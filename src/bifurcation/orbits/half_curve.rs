@@ -179,7 +179,11 @@ impl<'r, 's> HalfCurve<'r, 's> {
 
     /// To the end, in other variables where these lose digits.
     pub fn go(&mut self, palc: &mut Palc<'_, '_>) -> Result<()> {
-        let mut decided: Option<Decided> = None;
+        // From where both ways begin on, and up to the ends of the ranges.
+        let decided_at = |way: Option<CubicCoefficient>, here: &Regular| {
+            way.and_then(|way| Decided::new(here, way.coefficient, way.criticality))
+        };
+        let mut decided = decided_at(self.way(&palc.now.here), &palc.now.here);
         let mut lost = false;
         let watches = self.watches();
         let end = palc.follow(&watches, STEPS, &mut |palc, before, met| match met {
@@ -188,7 +192,15 @@ impl<'r, 's> HalfCurve<'r, 's> {
             {
                 Continue(())
             }
-            Met::Zero(watch, at) => self.zero(palc, watch, &at.here),
+            Met::Zero(watch, at) => {
+                let here = &at.here;
+                if let WatchedFunction::Value(..) = watch
+                    && let Some(now) = decided_at(self.way(here), here)
+                {
+                    self.changed(decided.replace(now.clone()), &now)?;
+                }
+                self.zero(palc, watch, here)
+            }
             Met::Point(now) => {
                 let here = &now.here;
                 let chart = self.chart;
@@ -196,13 +208,8 @@ impl<'r, 's> HalfCurve<'r, 's> {
                     return self.merged(&chart.slab(), &chart.usual(&here.site));
                 }
                 let way = self.row(here)?;
-                let now = way.and_then(|way| Decided::new(here, way.coefficient, way.criticality));
-                if let Some(now) = now
-                    && let Some(before) = decided.replace(now.clone())
-                    && let Some(zero) =
-                        chart.with_curve(self.test_function, |curve| before.change(&now, curve))
-                {
-                    self.tell(Event::Special(zero.special()))?;
+                if let Some(now) = decided_at(way, here) {
+                    self.changed(decided.replace(now.clone()), &now)?;
                 }
                 lost = chart.loses(&here.site);
                 if lost { Break(()) } else { Continue(()) }
@@ -224,6 +231,17 @@ impl<'r, 's> HalfCurve<'r, 's> {
         special.note = Some(end.to_string());
         let _ = self.tell(Event::Special(special));
         Ok(())
+    }
+
+    /// Tells of where the coefficient is zero between two orbits.
+    fn changed(&mut self, before: Option<Decided>, now: &Decided) -> ControlFlow<()> {
+        let (chart, test_function) = (self.chart, self.test_function);
+        let zero = before
+            .and_then(|before| chart.with_curve(test_function, |curve| before.change(now, curve)));
+        match zero {
+            Some(zero) => self.tell(Event::Special(zero.special())),
+            None => Continue(()),
+        }
     }
 
     /// A point of the curve; which way the bifurcation goes there, where that is asked for.
