@@ -223,6 +223,11 @@ impl System {
         Ok((system, loading))
     }
 
+    /// Tells that a parameter varies: it has no one value.
+    pub(super) fn vary(&mut self, name: &str) {
+        self.echo.insert(name.to_owned(), Value::Null);
+    }
+
     /// The same for a command that takes equal interfaces alone.
     ///
     /// # Errors
