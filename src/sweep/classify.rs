@@ -174,7 +174,9 @@ impl Classifier {
             if run.returns().len() < FEWEST_TO_CREEP {
                 return Creeping::No;
             }
-            if let Some(equilibrium) = slow_convergence::to_rest(&run.field, &run.surface, run.returns(), 1.0) {
+            if let Some(equilibrium) =
+                slow_convergence::to_rest(&run.field, &run.surface, run.returns(), 1.0)
+            {
                 return Creeping::To(Box::new(steady(run, &equilibrium, true)));
             }
             // Where little is between the map and the identity, the point is off by much more than the map.

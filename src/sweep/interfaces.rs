@@ -57,10 +57,12 @@ impl InterfaceSweeper {
     }
 
     /// A point, or the row of one that there is not.
-    fn point(&self, number: usize) -> std::result::Result<SweepStart, Classified> {
-        point(&self.settings, number).map_err(|error| Classified {
-            row: missing(&self.settings, number, error.to_string()),
-            attractor: None,
+    fn point(&self, number: usize) -> std::result::Result<SweepStart, Box<Classified>> {
+        point(&self.settings, number).map_err(|error| {
+            Box::new(Classified {
+                row: missing(&self.settings, number, error.to_string()),
+                attractor: None,
+            })
         })
     }
 
@@ -102,7 +104,7 @@ impl InterfaceSweeper {
     /// What the runs of these points settle on.
     fn settle(
         &mut self,
-        points: Vec<std::result::Result<SweepStart, Classified>>,
+        points: Vec<std::result::Result<SweepStart, Box<Classified>>>,
     ) -> Vec<Classified> {
         if let Grid::Laws { .. } = self.settings.grid {
             let mut one = |point: SweepStart| {
@@ -110,7 +112,7 @@ impl InterfaceSweeper {
                 self.settle_side_by_side(vec![point])
             };
             let told = points.into_iter();
-            let told = told.flat_map(|point| point.map_or_else(|missing| vec![missing], &mut one));
+            let told = told.flat_map(|point| point.map_or_else(|missing| vec![*missing], &mut one));
             return told.collect();
         }
         // Of one law there is a point everywhere.

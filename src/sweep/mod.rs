@@ -195,7 +195,11 @@ impl SweepSettings {
         };
         let ranges = self.grid.ranges();
         if ranges.len() > names.len() {
-            return Err(Error::parameter("grid", ranges.len(), "of two axes at most"));
+            return Err(Error::parameter(
+                "grid",
+                ranges.len(),
+                "of two axes at most",
+            ));
         }
         for (range, name) in ranges.into_iter().zip(names) {
             match self.grid {

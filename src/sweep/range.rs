@@ -102,7 +102,10 @@ impl Range {
                 return refused(end.to_string(), "finite at both ends");
             }
             if self.log && end <= 0.0 {
-                return refused(end.to_string(), "positive at both ends, as it is logarithmic");
+                return refused(
+                    end.to_string(),
+                    "positive at both ends, as it is logarithmic",
+                );
             }
         }
         if self.from > self.to {

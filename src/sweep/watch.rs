@@ -11,8 +11,8 @@ use crate::model::two_interfaces;
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate};
 use crate::section::{
-    AT_START, Ended, Periodic, Recorder, Return, Surface, Watched, Watching,
-    equilibrium_near, half_driving_stress, usual_patience,
+    AT_START, Ended, Periodic, Recorder, Return, Surface, Watched, Watching, equilibrium_near,
+    half_driving_stress, usual_patience,
 };
 
 /// Steps between two looks whether an equilibrium has caught the run.
@@ -126,7 +126,9 @@ impl SweepRun {
         }
         if self.recorder.passed > passed {
             let n = self.recorder.returns.len();
-            self.candidate = (n >= self.next_look).then(|| closing(self.returns(), 1.0)).flatten();
+            self.candidate = (n >= self.next_look)
+                .then(|| closing(self.returns(), 1.0))
+                .flatten();
             if self.candidate.is_some() || n >= self.next_stage {
                 return Ok(Control::Stop);
             }

@@ -65,7 +65,7 @@ impl Axes {
             let name = name.trim();
             if let Some(other) = axes.says(name).or(said(options, name)?) {
                 return Err(Error::Input(format!(
-                    "`grid` {name}: {other} says what {name} is, and it can have one of both"
+                    "`grid` {name}: {other} says already what it is"
                 )));
             }
             let range = Range::of_any_sign(&format!("grid {name}"), range)?;
@@ -95,7 +95,9 @@ impl Axes {
         let varies = self.names.iter().any(|known| known == name);
         let loading = ["driving", "stiffness"].contains(&name);
         match varies || fixed {
-            true if loading => Some(format!("`{name}`, or another `grid`,")),
+            true if loading && self.said.iter().any(|(known, _)| *known == name) => {
+                Some(format!("`{name}`"))
+            }
             true => Some("another `grid`".to_owned()),
             false => None,
         }
@@ -134,7 +136,10 @@ impl Axes {
                 return refused(name, "it is the unit of other numbers, and can't vary");
             }
             if slab.si && of_first && is(IN_UNIT_OF_STRESS) {
-                return refused(name, "with `si` it is in the unit of stress; leave `si` out");
+                return refused(
+                    name,
+                    "with `si` it is in the unit of stress; leave `si` out",
+                );
             }
         }
         Ok(())
@@ -189,7 +194,10 @@ pub(super) fn missing(name: &str) -> Error {
 /// What else than the grid says what a parameter is.
 fn said(options: &SweepOptions, name: &str) -> Result<Option<String>> {
     let slab = &options.slab;
-    if assignments(&slab.text.set)?.iter().any(|(set, _)| *set == name) {
+    if assignments(&slab.text.set)?
+        .iter()
+        .any(|(set, _)| *set == name)
+    {
         return Ok(Some("`set`".into()));
     }
     let given = match name {

@@ -51,8 +51,16 @@ impl SweepPlan {
             }
             Grid::Laws { .. } | Grid::Systems { .. } => "taylor, one point after the other",
         };
+        let curves = match (&settings.grid, self.drawn) {
+            (Grid::Laws { .. } | Grid::Systems { .. }, true) => {
+                "\n  curves            none: those of bifurcations are drawn over V_H and K of equal interfaces"
+            }
+            _ => "",
+        };
         let section = self.section();
-        let section = section.map_or(String::new(), |text| format!("\n  section           {text}"));
+        let section = section.map_or(String::new(), |text| {
+            format!("\n  section           {text}")
+        });
         format!(
             "plan of this command
   grid              {grid}: {} rows
@@ -63,7 +71,7 @@ impl SweepPlan {
   following         {follow}
   exponents         {lyapunov}
   bound on work     {} returns, {} steps a point
-  rows              written in the order of the grid as soon as all before them are done",
+  rows              written in the order of the grid as soon as all before them are done{curves}",
             count(settings.points()),
             settings.rtol,
             count(settings.max_returns),
@@ -80,7 +88,11 @@ impl SweepPlan {
             Moving::Interfaces(_) => "tau_ss at the mean slip rate, falling".into(),
             Moving::States(states, section) => {
                 let name = states[*section];
-                match self.surface.as_deref().and_then(|text| text.split_once('=')) {
+                match self
+                    .surface
+                    .as_deref()
+                    .and_then(|text| text.split_once('='))
+                {
                     Some((_, value)) => format!(
                         "{name} falling through {value}; the transient, in steps and not in time, is passed to learn the scale of time"
                     ),

@@ -61,7 +61,9 @@ impl SweepLayout {
             };
             OWN.contains(&name)
                 || match &self.moves {
-                    Moving::Interfaces(_) => name.starts_with("start_") || name.starts_with("stress_m"),
+                    Moving::Interfaces(_) => {
+                        name.starts_with("start_") || name.starts_with("stress_m")
+                    }
                     Moving::States(states, _) => states.iter().any(of_state),
                 }
         };

@@ -56,6 +56,8 @@ pub struct SweepPlan {
     axes: Axes,
     /// Where the section was asked for.
     surface: Option<String>,
+    /// Whether there is a picture.
+    drawn: bool,
 }
 
 /// What moves at all points of a sweep; what varies has no value.
@@ -143,6 +145,7 @@ impl SweepPlan {
             shard,
             threads: options.threads,
             surface: options.surface.clone(),
+            drawn: options.plot.is_some(),
             axes,
         })
     }

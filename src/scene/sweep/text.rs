@@ -52,11 +52,7 @@ impl TextPoints {
                 }
             } else {
                 // What one interface has of its own becomes a parameter of the system.
-                asked
-                    .slab
-                    .text
-                    .set
-                    .push(format!("{name}={:?}", range.from));
+                asked.slab.text.set.push(format!("{name}={:?}", range.from));
             }
         }
         let model = TextModel::of(&asked, &["driving", "stiffness"])?;

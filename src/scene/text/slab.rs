@@ -168,7 +168,11 @@ impl TextSlab {
     /// # Errors
     /// [`Error::Input`] and [`Error::Parameter`] for what can't be read or is outside its domain, [`Error::NotConverged`] where the law
     /// has no steady state at which to start.
-    pub(in crate::scene) fn start(&self, text: Option<&str>, system: &TextSystem) -> Result<Vec<f64>> {
+    pub(in crate::scene) fn start(
+        &self,
+        text: Option<&str>,
+        system: &TextSystem,
+    ) -> Result<Vec<f64>> {
         let text = text.unwrap_or(USUAL_START);
         let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][self.interfaces() - 1];
         let unreadable = || {

@@ -1,5 +1,6 @@
 //! Judges the runs of any system.
 
+use super::super::SweepRow;
 use super::super::aperiodic::{FEWEST_TO_ASK, FEWEST_TO_WANDER, FineRun, fine_returns};
 use super::super::classify::{
     CONVERGED, FEWEST_TO_CREEP, LATER, ON_ORBIT, alike, attracts, symmetry,
@@ -8,7 +9,6 @@ use super::super::closing::{ARRIVED, apart};
 use super::super::orbit::around;
 use super::super::slow_convergence::{SlowReturns, comes_as_said, to_rest};
 use super::super::watch::SWING;
-use super::super::SweepRow;
 use super::run::{GeneralRun, pushed};
 use super::{GeneralSweeper, Settled};
 use crate::error::Error;
@@ -62,6 +62,10 @@ impl GeneralSweeper {
         if run.recorder.steps >= self.settings.max_steps {
             let why = "its steps are used up; raise `max_steps`";
             return Some(undecided(run, row.clone(), why.into()));
+        }
+        // The rounding of an equilibrium on the section returns for ever.
+        if run.leaves_rest() {
+            return None;
         }
         if let Some(q) = run.candidate.take() {
             match self.periodic(run, row, q) {
@@ -190,7 +194,7 @@ impl GeneralSweeper {
             return Err("too early");
         }
         let disorder = regularity(&points(&run.surface, half));
-        if disorder > IRREGULAR || disorder < REGULAR {
+        if !(REGULAR..=IRREGULAR).contains(&disorder) {
             return self.with_tangents(run, row);
         }
         Err("the returns are neither regular nor irregular yet; raise `max_returns`")

@@ -86,8 +86,23 @@ impl GeneralRun {
             moved: false,
             waited: false,
         };
-        run.leave_rest(AT_START);
+        run.begin();
         run
+    }
+
+    /// A start at an equilibrium is left by rounding alone: a stable one is where the run stays.
+    fn begin(&mut self) {
+        match equilibrium_near(&self.field, self.state.as_slice(), AT_START) {
+            Some((equilibrium, stable @ true)) => {
+                self.recorder.ended = Some(Ended::Steady {
+                    time: self.time,
+                    equilibrium,
+                    stable,
+                });
+            }
+            Some(_) => drop(self.let_go(&self.state.clone())),
+            None => (),
+        }
     }
 
     /// The returns that tell.
@@ -175,9 +190,10 @@ impl GeneralRun {
         self.recorder.resume(self.time);
     }
 
-    /// Moves the section to where a run swings that does not cross it; once.
+    /// Moves the section, unless it was asked for by its value, to where a run swings that does not cross it; once.
     pub fn section_moves_between(&mut self, lowest: f64, highest: f64) -> bool {
-        if self.moved || highest - lowest <= SWING * self.unit {
+        let asked = matches!(self.place, SectionPlace::Untimed(_));
+        if asked || self.moved || highest - lowest <= SWING * self.unit {
             return false;
         }
         self.moved = true;
@@ -198,11 +214,7 @@ impl GeneralRun {
 
     /// Lets a run go from an unstable equilibrium that it is held at, by a symmetry or by its start; whether it was.
     pub fn leaves_rest(&mut self) -> bool {
-        self.leave_rest(HELD)
-    }
-
-    fn leave_rest(&mut self, distance: f64) -> bool {
-        let near = equilibrium_near(&self.field, self.state.as_slice(), distance);
+        let near = equilibrium_near(&self.field, self.state.as_slice(), HELD);
         let at = near.map(|(at, _)| at);
         let held = at.is_some_and(|at| growth(&self.field, at.as_slice()) > 0.0);
         held && self.let_go(&self.state.clone())

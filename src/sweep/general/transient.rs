@@ -25,7 +25,7 @@ impl GeneralSweeper {
     /// # Errors
     /// Those of the integrator.
     pub(super) fn pass_transient(&mut self, run: &mut GeneralRun) -> Result<()> {
-        if let SectionPlace::Known(..) = run.place {
+        if matches!(run.place, SectionPlace::Known(..)) || run.recorder.ended.is_some() {
             return Ok(());
         }
         // The first window shows nothing but the way to where the run swings.
@@ -50,10 +50,13 @@ impl GeneralSweeper {
             return Ok(());
         }
         run.watching.patience = PATIENCE * duration;
+        let x = run.state[run.variable];
+        // A run that made no step has no reach.
         let (low, high) = run.reach[run.variable];
+        let middle = if low <= high { 0.5 * (low + high) } else { x };
         run.begin_stage();
         if let SectionPlace::Middle(_) = run.place {
-            run.put_section(0.5 * (low + high));
+            run.put_section(middle);
         } else {
             run.recorder.resume(run.time);
         }
