@@ -85,7 +85,7 @@ fn runs_that_a_symmetry_holds_are_let_go() {
         assert!(number(&found[0], "x_max").abs() < 1e-6);
         assert!((number(&found[1], "x_max").abs() - 24_f64.sqrt()).abs() < 1e-9);
         assert!(found[0]["note"].is_empty());
-        assert!(found[1]["note"].contains("let go"));
+        assert!(found[1]["note"].contains("held by a symmetry"));
     }
 }
 
