@@ -100,6 +100,7 @@ mod strong_resonance;
 #[cfg(feature = "sundials")]
 mod sundials;
 mod sweep;
+mod sweep_any;
 mod sweep_parts;
 mod sweep_rows;
 #[cfg(not(feature = "parquet"))]

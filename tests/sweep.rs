@@ -88,7 +88,7 @@ const TORUS_AGAIN: f64 = 0.100_026_498_087_912_47;
 fn along_k_014_the_regimes_change_where_the_bifurcations_say() {
     let settings = settings("0.045:0.115:36", "0.14:0.14:1", 1);
     for row in rows(&settings) {
-        let v = row.driving;
+        let v = row.parameters[0];
         let found = (row.regime, row.symmetry);
         if v < PITCHFORK {
             assert_eq!(found, (Regime::Steady, Some(Symmetry::Symmetric)), "{v}");
@@ -112,18 +112,18 @@ fn along_k_02_the_torus_is_where_the_orbit_is_unstable() {
     let mut changes = Vec::new();
     let mut before = None;
     for row in rows(&settings) {
-        let orbit = orbit(row.driving, row.stiffness, Symmetry::Asymmetric);
+        let orbit = orbit(row.parameters[0], row.parameters[1], Symmetry::Asymmetric);
         let stable = orbit.verdict() == Verdict::Stable;
         assert_eq!(is_small_orbit(&row), stable, "{row:?}");
         if stable {
             let period = row.period.unwrap();
             assert!((period / orbit.period.value - 1.0).abs() < 1e-8, "{row:?}");
-            let (low, high) = row.stress_range.unwrap();
+            let (low, high) = row.range.unwrap();
             assert!((low - orbit.stress_min.value).abs() < 1e-6, "{row:?}");
             assert!((high - orbit.stress_max.value).abs() < 1e-6, "{row:?}");
         }
         if before.is_some_and(|before| before != stable) {
-            changes.push(row.driving);
+            changes.push(row.parameters[0]);
         }
         before = Some(stable);
     }
@@ -278,16 +278,16 @@ fn runs_that_are_held_come_to_rest() {
                 continue;
             }
             held += 1;
-            let loading = Loading::new(row.driving, row.stiffness).unwrap();
+            let loading = Loading::new(row.parameters[0], row.parameters[1]).unwrap();
             let field = two_interfaces(law(), loading);
             let slowest = -row.lyapunov_max.unwrap().value;
             assert!(slowest > 0.0, "{row:?}");
             let mut taylor = Taylor::new(Tolerances::equal(1e-10).unwrap(), 10_000_000).unwrap();
-            let start = State::<3>::from(row.start);
+            let start = State::<3>::from_column_slice(&row.start);
             let end = taylor
                 .flow(&*field, (0.0, 25.0 / slowest), &start, None)
                 .unwrap();
-            let (tau, _) = row.stress_range.unwrap();
+            let (tau, _) = row.range.unwrap();
             assert!((end[0] - tau).abs() < 1e-5, "{row:?}: {end}");
         }
     }
@@ -343,7 +343,7 @@ fn chaos_has_the_exponent_of_the_tangents() {
 fn a_large_motion_coexists_with_the_small_orbit_below_the_torus_bifurcation() {
     let settings = settings("0.0755:0.0758:16", "0.14:0.14:1", 2);
     let rows = rows(&settings);
-    let large = |row: &SweepRow| row.stress_range.is_some_and(|(low, _)| low < 8.0);
+    let large = |row: &SweepRow| row.range.is_some_and(|(low, _)| low < 8.0);
     let both = |pair: &[SweepRow]| {
         pair.iter().any(|row| is_small_orbit(row) && !large(row)) && pair.iter().any(large)
     };
@@ -472,8 +472,8 @@ fn seeds_reproduce() {
         seed: 8,
         ..plane.clone()
     };
-    let starts = |settings: &SweepSettings| -> Vec<[f64; 3]> {
-        rows(settings).iter().map(|row| row.start).collect()
+    let starts = |settings: &SweepSettings| -> Vec<Vec<f64>> {
+        rows(settings).iter().map(|row| row.start.clone()).collect()
     };
     let (first, again, other) = (starts(&plane), starts(&plane), starts(&other));
     assert_eq!(first, again);
@@ -560,7 +560,7 @@ fn settings_refuse_nonsense() {
             ..good.clone()
         },
         SweepSettings {
-            grid: basin,
+            grid: basin.clone(),
             follow: true,
             ..good.clone()
         },

@@ -134,7 +134,7 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     refused_in_one_line("law --system lorenz", "this command is of interfaces");
     refused_in_one_line(
         "sweep --driving 1:2:3 --stiffness 1:2:3 --system lorenz",
-        "this command is of interfaces",
+        "--driving and --stiffness are of interfaces",
     );
     refused_in_one_line(
         "integrate --system lorenz --until 1 --set rr=3",

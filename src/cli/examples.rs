@@ -59,5 +59,8 @@ const LOCUS: &str =
 const SWEEP: &str = "Example, the regimes on 40 x 40 points and their map; then on with it after it was interrupted:
   twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 -o map.csv --plot map.svg
   twinslip sweep --driving 0.04:0.2:40 --stiffness 0.02:0.25:40 --resume map.csv --plot map.svg
+Over other parameters, of interfaces and of another system:
+  twinslip sweep --driving 0.1 --stiffness 0.1:0.25:30 --grid residual_strength_2=1e-4:1e-2:40log -o map.csv --plot map.svg
+  twinslip sweep --system roessler --grid c=2:6:60 --grid a=0.1:0.3:40 -o roessler.csv --plot roessler.svg
 Which starts go to which attractor, where a symmetric and an asymmetric orbit coexist:
   twinslip sweep --basin --driving 0.08 --stiffness 0.1 --state-1 1e-6:1:40log --state-2 1e-6:1:40log -o basin.csv";

@@ -55,14 +55,15 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     let Some((plan, _)) = parts.first() else {
         return Err(Error::Input("there are no files to merge".into()));
     };
-    let columns = views::sweep_columns();
+    let columns = views::sweep_columns(&plan.layout);
     let status = Status::Complete(Some(plan.settings.points()));
     let beginning = file::beginning(plan, None, &columns, place.path().map(|_| status));
+    let regime = file::regime_place(&columns);
     let mut sources = Vec::new();
     let mut undecided = 0;
     for (plan, path) in &parts {
         let mut count = |_: usize, cells: &[String]| {
-            undecided += usize::from(file::regime(cells) == Regime::Undecided.name());
+            undecided += usize::from(cells[regime] == Regime::Undecided.name());
         };
         let standing = file::read(path, plan, &columns, &mut count)?;
         let all = plan.part().units(plan.settings.units());

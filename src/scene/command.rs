@@ -28,7 +28,7 @@ pub enum Command {
     Branch(Box<BranchOptions>),
     /// A curve of bifurcations in the plane of V_H and K, with its special points
     Locus(Box<LocusOptions>),
-    /// The regime at every point of a grid of V_H and K, or of every start: resumable, on many threads and machines
+    /// The regime at every point of a grid of V_H and K or any other parameters, or of every start: resumable, on many threads and machines
     Sweep(Box<SweepOptions>),
 }
 

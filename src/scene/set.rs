@@ -5,7 +5,7 @@ use super::unequal::of_one;
 use crate::error::{Error, Result};
 
 /// The names of the parameters that interfaces have, V_H and K first.
-const NAMES: [&str; 10] = [
+pub(super) const NAMES: [&str; 10] = [
     "driving",
     "stiffness",
     "damping",
@@ -74,7 +74,7 @@ impl SlabOptions {
 
     /// Another value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
     fn put(&mut self, name: &str, value: f64) -> Result<()> {
-        if of_one(name)?.is_some() {
+        if of_one("set", name)?.is_some() {
             return Ok(());
         }
         if ["slip_length", "normal_stress"].contains(&name) && !self.si {

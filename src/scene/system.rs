@@ -115,12 +115,12 @@ impl System {
     pub fn of(options: &SlabOptions, driving: Option<f64>, stiffness: Option<f64>) -> Result<Self> {
         if options.text.system.is_some() {
             return Err(Error::Input(
-                "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section, orbit, branch and locus take it".into(),
+                "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section, orbit, branch, locus and sweep take it".into(),
             ));
         }
         if options.law_file().is_some() {
             return Err(Error::Input(format!(
-                "`law` {} is a law from a file; law, integrate, equilibria, section, orbit, branch and locus take it",
+                "`law` {} is a law from a file; law, integrate, equilibria, section, orbit, branch, locus and sweep take it",
                 options.law
             )));
         }
@@ -223,6 +223,11 @@ impl System {
         Ok((system, loading))
     }
 
+    /// Tells that a parameter varies: it has no one value.
+    pub(super) fn vary(&mut self, name: &str) {
+        self.echo.insert(name.to_owned(), Value::Null);
+    }
+
     /// The same for a command that takes equal interfaces alone.
     ///
     /// # Errors
@@ -231,7 +236,7 @@ impl System {
         match self.unequal {
             None => Ok(self),
             Some(_) => Err(Error::Input(format!(
-                "`set`: {command} takes equal interfaces, and these differ; integrate, equilibria, orbit, section, branch and locus take interfaces that differ"
+                "`set`: {command} takes equal interfaces, and these differ; integrate, equilibria, orbit, section, branch, locus and sweep take interfaces that differ"
             ))),
         }
     }

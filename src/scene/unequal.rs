@@ -16,7 +16,7 @@ const COMMON: [&str; 3] = ["driving", "stiffness", "damping"];
 ///
 /// # Errors
 /// [`Error::Input`] for an index that no interface has, and of a parameter that they have in common.
-pub(super) fn of_one(name: &str) -> Result<Option<(usize, usize)>> {
+pub(super) fn of_one(option: &str, name: &str) -> Result<Option<(usize, usize)>> {
     let Some((base, index)) = name.rsplit_once('_') else {
         return Ok(None);
     };
@@ -24,7 +24,8 @@ pub(super) fn of_one(name: &str) -> Result<Option<(usize, usize)>> {
         return Ok(None);
     }
     if COMMON.contains(&base) {
-        let what = format!("`set` {name}: the interfaces have one {base} in common; set {base}");
+        let what =
+            format!("`{option}` {name}: the interfaces have one {base} in common; say {base}");
         return Err(Error::Input(what));
     }
     let Some(place) = NAMES.iter().position(|known| *known == base) else {
@@ -34,7 +35,7 @@ pub(super) fn of_one(name: &str) -> Result<Option<(usize, usize)>> {
         "1" => Ok(Some((place, 0))),
         "2" => Ok(Some((place, 1))),
         _ => {
-            let what = format!("`set` {name}: the index is {index}, but must be 1 or 2");
+            let what = format!("`{option}` {name}: the index is {index}, but must be 1 or 2");
             Err(Error::Input(what))
         }
     }
@@ -52,7 +53,7 @@ impl OfOne {
     pub fn read(options: &SlabOptions) -> Result<Self> {
         let mut all = OfOne::default();
         for (name, value) in assignments(&options.text.set)? {
-            let Some((place, interface)) = of_one(name)? else {
+            let Some((place, interface)) = of_one("set", name)? else {
                 continue;
             };
             if interface >= usize::from(options.interfaces) {

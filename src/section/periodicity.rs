@@ -106,6 +106,7 @@ pub(crate) struct PeriodicSearch<'a> {
     returns: &'a [Return],
     q: usize,
     arrived: f64,
+    unit: f64,
     /// Newton's method begins here, goes no farther than `near`, and ends at a step of `converged`: the error is then about
     /// its square, and the integrator's tolerance.
     pub from: Vector,
@@ -135,7 +136,17 @@ impl<'a> PeriodicSearch<'a> {
             near: NEAR,
             converged: CONVERGED,
             shrunk: SHRUNK,
+            unit: 1.0,
         }
+    }
+
+    /// The same where distances are measured in this unit.
+    pub fn in_units(mut self, unit: f64) -> Self {
+        self.unit = unit;
+        self.arrived *= unit;
+        self.near *= unit;
+        self.converged *= unit;
+        self
     }
 
     /// The point, if there is one.
@@ -164,7 +175,7 @@ impl<'a> PeriodicSearch<'a> {
                 return None;
             }
             // Rounding ends the convergence too, where the map magnifies it.
-            if size < self.converged || (size < ROUNDING && size > 0.5 * before) {
+            if size < self.converged || (size < ROUNDING * self.unit && size > 0.5 * before) {
                 return self.judged(point, &along, size);
             }
         }
@@ -179,7 +190,7 @@ impl<'a> PeriodicSearch<'a> {
         // A point may come back sooner, where its multipliers turn the returns around it by a part of a turn.
         let sooner = |d: &usize| {
             self.q.is_multiple_of(*d)
-                && (&along[d - 1].state - &point).amax() < SAME.max(10.0 * error)
+                && (&along[d - 1].state - &point).amax() < (SAME * self.unit).max(10.0 * error)
         };
         let q = (1..self.q).find(sooner).unwrap_or(self.q);
         let Landing {

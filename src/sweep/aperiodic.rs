@@ -4,17 +4,18 @@ use super::classify::{Classified, Classifier, alike, begun, steady};
 use super::finite_difference_exponent::stretching;
 use super::flows::Flows;
 use super::watch::{SweepRun, see};
-use crate::field::{state, vector};
-use crate::integrate::Control;
+use crate::field::{Vector, state, vector};
+use crate::integrate::{AnyField, Control};
+use crate::number::Uncertain;
 use crate::section::{
-    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, Watching,
-    aperiodic, points, record_finely, regularity, spectrum,
+    Ended, FEWEST_FOR_EXPONENTS, FEWEST_RETURNS, IRREGULAR, REGULAR, Regime, Return, ReturnRecord,
+    Surface, Watching, aperiodic, points, record_finely, regularity, spectrum,
 };
 
 /// Returns without which neither torus nor chaos is told: those before are let pass.
-const FEWEST_TO_WANDER: usize = 512;
+pub(super) const FEWEST_TO_WANDER: usize = 512;
 /// Returns before exponents are asked for.
-const FEWEST_TO_ASK: usize = 1024;
+pub(super) const FEWEST_TO_ASK: usize = 1024;
 /// Over how many returns exponents are taken: if these don't tell, twice as many.
 const FOR_EXPONENTS: std::ops::RangeInclusive<usize> = 256..=1024;
 
@@ -95,39 +96,78 @@ impl Classifier {
 
     /// Records anew from where the run is, so finely that its tangents tell an exponent that vanishes.
     fn with_tangents(&self, run: &SweepRun) -> std::result::Result<Classified, &'static str> {
-        let returns = run.recorder.returns.len() / 4;
-        let watching = Watching {
-            returns: returns.clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end()),
-            ..run.watching
-        };
-        let mut stress = run.stress;
-        let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
-        let start = run
-            .recorder
-            .returns
+        let all = &run.recorder.returns;
+        let start = all
             .last()
             .map_or_else(|| vector(&run.state), |at| at.state.clone());
-        let (field, surface) = (&run.field, &run.surface);
-        let max_steps = self.settings.max_steps;
-        let recorded = record_finely(field, &start, surface, &watching, max_steps, see_all)
-            .map_err(|_| "its tangents fail")?;
-        for point in &recorded.waypoints {
+        let watching = Watching {
+            returns: fine_returns(all.len()),
+            ..run.watching
+        };
+        let at = (&run.field, &run.surface, &start);
+        let found = FineRun::of(at, &watching, self.settings.max_steps)?;
+        if let Some(equilibrium) = found.rests_at() {
+            return Ok(steady(run, equilibrium, true));
+        }
+        let mut stress = run.stress;
+        for point in &found.recorded.waypoints {
             see(&mut stress, point.state[0]);
         }
-        if let Ended::Steady { equilibrium, .. } = recorded.ended {
-            return Ok(steady(run, &equilibrium, true));
+        let (regime, exponent) = found.regime(&run.surface, &run.field)?;
+        let mut told = told(run, regime, stress);
+        told.row.returns += found.recorded.returns.len();
+        told.attractor = found.last().map(|at| state(at.state.as_slice()));
+        told.row.lyapunov_max = exponent;
+        Ok(told)
+    }
+}
+
+/// Over how many returns tangents are taken of a run with so many.
+pub(super) fn fine_returns(all: usize) -> usize {
+    (all / 4).clamp(*FOR_EXPONENTS.start(), *FOR_EXPONENTS.end())
+}
+
+/// A run recorded so finely that its tangents tell an exponent that vanishes.
+pub(super) struct FineRun {
+    pub recorded: ReturnRecord,
+}
+
+impl FineRun {
+    pub fn of(
+        (field, surface, start): (&AnyField<'_>, &Surface, &Vector),
+        watching: &Watching,
+        max_steps: usize,
+    ) -> std::result::Result<Self, &'static str> {
+        let see_all = &mut |_: usize, _: Option<&_>| Control::Continue;
+        let recorded = record_finely(field, start, surface, watching, max_steps, see_all);
+        let recorded = recorded.map_err(|_| "its tangents fail")?;
+        Ok(FineRun { recorded })
+    }
+
+    /// Where it has come to rest, if it has.
+    pub fn rests_at(&self) -> Option<&Vector> {
+        match &self.recorded.ended {
+            Ended::Steady { equilibrium, .. } => Some(equilibrium),
+            _ => None,
         }
-        let found = spectrum(field, &recorded).map_err(|_| "its tangents fail")?;
+    }
+
+    pub fn last(&self) -> Option<&Return> {
+        self.recorded.returns.last()
+    }
+
+    /// A torus or chaos with the largest exponent across the flow, or why neither can be said.
+    pub fn regime(
+        &self,
+        surface: &Surface,
+        field: &AnyField<'_>,
+    ) -> std::result::Result<(Regime, Option<Uncertain>), &'static str> {
+        let recorded = &self.recorded;
+        let found = spectrum(field, recorded).map_err(|_| "its tangents fail")?;
         let known = Some(found.known());
         let made = aperiodic(surface, &recorded.returns, recorded.accuracy, known);
         match made.regime {
-            Regime::Torus | Regime::Chaotic => {
-                let mut told = told(run, made.regime, stress);
-                told.row.returns += recorded.returns.len();
-                told.attractor = recorded.returns.last().map(|at| state(at.state.as_slice()));
-                told.row.lyapunov_max = found.across_flow();
-                Ok(told)
-            }
+            Regime::Torus | Regime::Chaotic => Ok((made.regime, found.across_flow())),
             _ => Err(made.why.unwrap_or("its returns do not tell")),
         }
     }
@@ -135,6 +175,6 @@ impl Classifier {
 
 fn told(run: &SweepRun, regime: Regime, stress: (f64, f64)) -> Classified {
     let mut told = begun(run, regime);
-    told.row.stress_range = Some(stress);
+    told.row.range = Some(stress);
     told
 }

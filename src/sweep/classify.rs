@@ -1,41 +1,31 @@
 //! Classifies what a run has settled on, from its returns.
 
+use super::closing::apart;
 use super::flows::Flows;
+use super::orbit::{TOLERANCE, around};
 use super::slow_convergence::{Leap, SlowReturns};
-use super::watch::{SWING, SweepRun, apart, see, turn};
+use super::watch::{SWING, SweepRun};
 use super::{SweepRow, SweepSettings, slow_convergence};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
-use crate::field::{Matrix, State, Vector, state};
-use crate::integrate::{AnyIntegrator, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
-use crate::number::{DoubleDouble, Uncertain};
-use crate::section::{
-    Ended, Periodic, PeriodicSearch, Regime, STEPS_OF_PIECE, at_equilibrium, derivative_along,
-    reduce,
-};
+use crate::field::{State, Vector, state};
+use crate::integrate::{AnyIntegrator, Choice, MAX_STEPS, Tolerances};
+use crate::section::{Ended, Periodic, PeriodicSearch, Regime, at_equilibrium};
 
 /// Log states that differ by less, all along, are those of interfaces that move alike.
 const ALIKE: f64 = 1e-6;
 /// The step at which Newton's method ends; the error then is its square.
-const CONVERGED: f64 = 1e-5;
-/// The tolerance with which an orbit is gone round once, for its period and its stress.
-const TOLERANCE: f64 = 1e-11;
+pub(super) const CONVERGED: f64 = 1e-5;
 /// Returns after which a run that has not settled is judged: each time twice as many.
 pub(super) const FIRST_STAGE: usize = 64;
-/// Returns without which no run is seen to slow_convergence.
-const FEWEST_TO_CREEP: usize = 256;
+/// Returns without which no run is seen to creep.
+pub(super) const FEWEST_TO_CREEP: usize = 256;
 /// A candidate that is none is not looked at again before this part more returns.
-const LATER: f64 = 1.3;
+pub(super) const LATER: f64 = 1.3;
 /// The error of the multipliers by which it is told whether a point attracts, in tolerances.
 const MULTIPLIER_PER_RTOL: f64 = 1e4;
-/// The relative error of the derivative once around, in tolerances; and what the change of a multiplier from one point to the next,
-/// which tells how it changes from there, is taken times. An orbit is gone round until these changes are below that error, and so
-/// often: the first point is off by the tolerance of the runs, which may matter more than all else.
-const DERIVATIVE_PER_RTOL: f64 = 30.0;
-const ROUNDS: usize = 3;
-const CHANGE: f64 = 3.0;
 /// A run this close to an unstable orbit is held on it.
-const ON_ORBIT: f64 = 1e-5;
+pub(super) const ON_ORBIT: f64 = 1e-5;
 
 /// Judges runs; its integrators are used over and over.
 pub(super) struct Classifier {
@@ -184,7 +174,9 @@ impl Classifier {
             if run.returns().len() < FEWEST_TO_CREEP {
                 return Creeping::No;
             }
-            if let Some(equilibrium) = slow_convergence::to_rest(&run.field, run.returns()) {
+            if let Some(equilibrium) =
+                slow_convergence::to_rest(&run.field, &run.surface, run.returns(), 1.0)
+            {
                 return Creeping::To(Box::new(steady(run, &equilibrium, true)));
             }
             // Where little is between the map and the identity, the point is off by much more than the map.
@@ -209,6 +201,7 @@ impl Classifier {
             taylor: &mut self.fine,
             returns: run.returns(),
             accuracy: self.settings.rtol,
+            unit: 1.0,
         }
     }
 
@@ -227,126 +220,36 @@ impl Classifier {
 
     /// Whether the point attracts, beyond the error of its multiplier.
     fn attracts(&self, found: &Periodic) -> bool {
-        found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * self.settings.rtol
+        attracts(found, self.settings.rtol)
     }
 
     fn orbit(&mut self, run: &SweepRun, found: &Periodic) -> Option<Classified> {
-        let mut stress = (found.point[0], found.point[0]);
-        let mut unlike = 0.0_f64;
-        let (mut point, mut period) = (found.point.clone(), found.period.value);
-        let (mut before, mut step) = (found.multiplier, found.last_step);
-        let mut largest: Option<Uncertain> = None;
-        let mut told = begun(run, Regime::Periodic);
-        for _ in 0..ROUNDS {
-            let mut points = vec![(DoubleDouble::ZERO, point.clone())];
-            let mut steps = 0;
-            let mut observer = |step: &AnyStep<'_>| {
-                see(&mut stress, step.y1[0]);
-                let series = step.series().ok_or(Error::NotAnalytic)?;
-                if let Some(turn) = turn(series) {
-                    see(&mut stress, turn);
-                }
-                unlike = unlike.max((step.y1[1] - step.y1[2]).abs());
-                steps += 1;
-                if steps % STEPS_OF_PIECE == 0 {
-                    let end = series.begin() + series.length();
-                    points.push((end, Vector::from_column_slice(step.y1)));
-                }
-                Ok(Control::Continue)
-            };
-            let (field, time) = (&run.field, (0.0, period));
-            let flown = self.fine.flow(field, time, &point, Some(&mut observer));
-            let end = flown.ok()?;
-            // The point is known better than the time: to the first order it ends on the section.
-            let rate = field.f(&end)[0];
-            period -= run.surface.height(end.as_slice()) / rate;
-            if told.row.period.is_none() {
-                (told.attractor, told.row.period) = (Some(state(point.as_slice())), Some(period));
-            }
-            points.retain(|(begin, _)| begin.hi() < period);
-            let now = DoubleDouble::from(period);
-            let around = derivative_along(field, &run.surface, &mut self.fine, &points, now);
-            let around = largest_multiplier(run, &point, &around.ok()?);
-            let Some(Revolution { mu, error, left }) = around.filter(|_| before > 0.0) else {
-                break;
-            };
-            // What mu still changes by, by how much it has changed over the last step to the point.
-            let part = (left.amax() / step).min(1.0);
-            let changes = CHANGE * (mu / before).ln().abs() * part;
-            let here = Uncertain::new(mu.ln(), changes + error);
-            // Of a stiff orbit the derivative may be too rough to come nearer by.
-            if largest.is_some_and(|best| best.uncertainty <= here.uncertainty) {
-                break;
-            }
-            largest = Some(here);
-            (told.attractor, told.row.period) = (Some(state(point.as_slice())), Some(period));
-            if changes <= error {
-                break;
-            }
-            point = run.surface.nearest(&(point + &left));
-            (before, step) = (mu, left.amax());
-        }
+        let orbit = around(&run.field, &run.surface, &mut self.fine, found, 0)?;
         // Returns beside a steady state on the section repeat themselves too.
-        if stress.1 - stress.0 < SWING {
+        if orbit.range.1 - orbit.range.0 < SWING {
             return None;
         }
-        told.row.symmetry = Some(symmetry(unlike));
+        let mut told = begun(run, Regime::Periodic);
+        told.attractor = Some(state(orbit.point.as_slice()));
+        told.row.period = Some(orbit.period);
+        told.row.symmetry = Some(symmetry(orbit.unlike));
         told.row.returns_per_period = Some(found.returns);
-        told.row.stress_range = Some(stress);
-        let period = told.row.period?;
-        told.row.lyapunov_max = largest.map(|ln| {
-            // The period is that of a point a little beside the orbit.
-            let by_period = ln.value.abs() * found.period.uncertainty / period;
-            Uncertain::new(ln.value / period, (ln.uncertainty + by_period) / period)
-        });
+        told.row.range = Some(orbit.range);
+        told.row.lyapunov_max = orbit.exponent;
         Some(told)
     }
 }
 
-/// Once around from a point.
-struct Revolution {
-    /// The larger multiplier, its modulus.
-    mu: f64,
-    /// What its logarithm errs by.
-    error: f64,
-    /// What Newton's method would move the point by.
-    left: Vector,
-}
-
-/// The larger multiplier by where the way around ends and its derivative; `None` where mu is too small to be told from rounding.
-fn largest_multiplier(
-    run: &SweepRun,
-    point: &Vector,
-    (end, derivative): &(Vector, Matrix),
-) -> Option<Revolution> {
-    const LEAST: f64 = 1e-6;
-    let inside = run.surface.directions(point.as_slice());
-    let reduced = reduce(derivative, &inside);
-    let values = reduced.complex_eigenvalues();
-    let mu = values.iter().map(|z| z.norm()).fold(0.0, f64::max);
-    if !(mu > LEAST && mu.is_finite()) {
-        return None;
-    }
-    let identity = Matrix::identity(2, 2);
-    let left = (identity - &reduced)
-        .lu()
-        .solve(&(inside.transpose() * (end - point)))?;
-    // A double multiplier errs by the root of what the derivative does.
-    let error = DERIVATIVE_PER_RTOL * TOLERANCE;
-    let (size, apart) = (reduced.norm(), (values[0] - values[1]).norm());
-    let double = size / apart.max(error.sqrt() * size);
-    Some(Revolution {
-        mu,
-        error: error * size / mu * double.max(1.0),
-        left: inside * left,
-    })
+/// Whether a point attracts, beyond the error of its multiplier at this tolerance.
+pub(super) fn attracts(found: &Periodic, rtol: f64) -> bool {
+    found.attracts() && found.multiplier < 1.0 - MULTIPLIER_PER_RTOL * rtol
 }
 
 pub(super) fn alike(y: &Vector) -> bool {
     (y[1] - y[2]).abs() < ALIKE
 }
 
-fn symmetry(unlike: f64) -> Symmetry {
+pub(super) fn symmetry(unlike: f64) -> Symmetry {
     if unlike < ALIKE {
         Symmetry::Symmetric
     } else {
@@ -357,6 +260,7 @@ fn symmetry(unlike: f64) -> Symmetry {
 /// A row of which the regime is known.
 pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
     let point = &run.point;
+    let (parameters, start) = (point.parameters.clone(), point.start.as_slice().to_vec());
     let note = (run.pushes > 0).then(|| {
         "equal interfaces, held by rounding where that is unstable, were let go by 0.001 in ln psi2"
             .into()
@@ -365,7 +269,7 @@ pub(super) fn begun(run: &SweepRun, regime: Regime) -> Classified {
         row: SweepRow {
             returns: run.recorder.passed,
             note,
-            ..SweepRow::new(point.number, point.loading, point.start.into(), regime)
+            ..SweepRow::new(point.number, parameters, start, regime)
         },
         attractor: run
             .recorder
@@ -379,7 +283,7 @@ pub(super) fn steady(run: &SweepRun, equilibrium: &Vector, stable: bool) -> Clas
     let mut told = begun(run, Regime::Steady);
     told.attractor = Some(state(equilibrium.as_slice()));
     told.row.symmetry = Some(symmetry((equilibrium[1] - equilibrium[2]).abs()));
-    told.row.stress_range = Some((equilibrium[0], equilibrium[0]));
+    told.row.range = Some((equilibrium[0], equilibrium[0]));
     told.row.lyapunov_max = Some(at_equilibrium(&run.field, equilibrium)[0]);
     if !stable {
         told.row.note = Some("starts at an unstable steady state and rests there".into());

@@ -32,6 +32,11 @@ impl Flows {
         Ok(Flows { law, way })
     }
 
+    /// Goes on with another law; lanes stay with theirs.
+    pub fn set_law(&mut self, law: AnyLaw) {
+        self.law = law;
+    }
+
     /// As [`Batch::flow`].
     pub fn flow(
         &mut self,

@@ -1,4 +1,4 @@
-//! Maps of regimes: what runs settle on at the points of a grid, of (V_H, K) or of starts at one (V_H, K).
+//! Maps of regimes: what runs settle on at the points of a grid, of (V_H, K) or any other parameters, or of starts at one (V_H, K).
 //!
 //! Points are numbered, and what is found at one depends on its number and the settings alone: not on threads, lanes, chunks or
 //! neighbours, to the bit, on one kind of processor. So a sweep may be cut anywhere and taken up again, or be shared out among
@@ -10,8 +10,13 @@
 mod aperiodic;
 mod capture;
 mod classify;
+mod closing;
 mod finite_difference_exponent;
 mod flows;
+mod general;
+mod interfaces;
+mod orbit;
+mod points;
 mod range;
 mod run;
 mod slow_convergence;
@@ -19,12 +24,17 @@ mod start;
 mod sweeper;
 mod watch;
 
+pub use general::{SectionPlace, SystemPoint, SystemPoints};
+pub use points::{LawPoints, RandomStart};
+
 pub use range::Range;
 #[doc(hidden)]
 pub use range::fields;
 #[doc(hidden)]
 pub use run::threads_checked;
 pub use run::{UnitShare, run};
+#[doc(hidden)]
+pub use start::start_of_interfaces;
 pub use sweeper::Sweeper;
 
 use crate::equilibrium::Symmetry;
@@ -34,6 +44,7 @@ use crate::integrate::Tolerances;
 use crate::model::Loading;
 use crate::number::Uncertain;
 use crate::section::{FEWEST_RETURNS, Regime};
+use std::sync::Arc;
 
 /// More points than this are a slip of the pen.
 const MOST_POINTS: usize = 1_000_000_000_000;
@@ -42,9 +53,9 @@ const MOST_STARTS: usize = 1000;
 const MOST_RETURNS: usize = 1_000_000;
 
 /// What varies from point to point.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone)]
 pub enum Grid {
-    /// V_H, fastest, and K.
+    /// V_H, fastest, and K, of two equal interfaces.
     Plane {
         /// V_H in V*.
         driving: Range,
@@ -60,36 +71,74 @@ pub enum Grid {
         /// psi_2
         state_2: Range,
     },
+    /// One or two parameters, the first fastest, of two equal interfaces with a law that is built in.
+    Laws {
+        /// Their values.
+        axes: Vec<Range>,
+        /// The law and the loading at these.
+        at: Arc<dyn LawPoints>,
+    },
+    /// One or two parameters, the first fastest, of any system.
+    Systems {
+        /// Their values.
+        axes: Vec<Range>,
+        /// The system at these.
+        at: Arc<dyn SystemPoints>,
+    },
 }
 
 impl Grid {
-    /// The inner range, which varies fastest, and the outer one.
-    pub fn ranges(&self) -> [&Range; 2] {
+    /// The inner range, which varies fastest, and the outer one, where there are two.
+    pub fn ranges(&self) -> Vec<&Range> {
         match self {
-            Grid::Plane { driving, stiffness } => [driving, stiffness],
+            Grid::Plane { driving, stiffness } => vec![driving, stiffness],
             Grid::Basin {
                 state_1, state_2, ..
-            } => [state_1, state_2],
+            } => vec![state_1, state_2],
+            Grid::Laws { axes, .. } | Grid::Systems { axes, .. } => axes.iter().collect(),
+        }
+    }
+
+    /// How many values the inner range has, and the outer one.
+    pub fn shape(&self) -> [usize; 2] {
+        let ranges = self.ranges();
+        [0, 1].map(|i| ranges.get(i).map_or(1, |range| range.count))
+    }
+
+    /// The values along all axes at the i-th of the inner range and the j-th of the outer one.
+    fn values(&self, place: [usize; 2]) -> Vec<f64> {
+        let ranges = self.ranges().into_iter().zip(place);
+        ranges.map(|(range, i)| range.value(i)).collect()
+    }
+
+    /// The parameters that a row tells at the i-th value of the inner range and the j-th of the outer one.
+    fn parameters(&self, place: [usize; 2]) -> Vec<f64> {
+        let values = self.values(place);
+        match self {
+            Grid::Plane { .. } => values,
+            Grid::Basin { loading, .. } => vec![loading.driving, loading.stiffness],
+            Grid::Laws { at, .. } => at.parameters(&values),
+            Grid::Systems { at, .. } => at.parameters(&values),
         }
     }
 }
 
 /// What a sweep computes. The point of number k = (j N + i) S + s is the i-th of N in the inner range, the j-th in the outer one,
 /// with the s-th of S starts.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct SweepSettings {
-    /// The interfaces' law.
+    /// The law of the interfaces of a plane or a basin.
     pub law: AnyLaw,
     /// The points.
     pub grid: Grid,
     /// Starts at each: the first beside the symmetric steady state, the second with equal interfaces, which it leaves only where
     /// they part by themselves, the third far from it with states far apart, the others random. The equal ones matter: a
     /// symmetric orbit that is stable may attract only what is symmetric to a part in a million. A basin has one start, which is
-    /// its point.
+    /// its point. Those of other systems are theirs ([`SystemPoints`]).
     pub starts: usize,
     /// Of the random starts.
     pub seed: u64,
-    /// Whether a point starts on the attractor of the one before it in V_H, with the same K and start.
+    /// Whether a point starts on the attractor of the one before it along the inner range, with the same start.
     pub follow: bool,
     /// Tolerance of the runs, relative and absolute.
     pub rtol: f64,
@@ -104,11 +153,23 @@ pub struct SweepSettings {
 impl SweepSettings {
     /// How many points there are, starts counted.
     pub fn points(&self) -> usize {
-        let [inner, outer] = self.grid.ranges();
-        inner.count * outer.count * self.starts
+        let [inner, outer] = self.grid.shape();
+        inner * outer * self.starts
     }
 
-    /// How many there are of what can be computed on its own: points, or lines of constant K where they follow one another.
+    /// The parameters that the row of this number tells.
+    pub fn parameters(&self, number: usize) -> Vec<f64> {
+        self.grid.parameters(self.place(number))
+    }
+
+    /// Where along the axes the point of this number is.
+    fn place(&self, number: usize) -> [usize; 2] {
+        let point = number / self.starts;
+        let inner = self.grid.shape()[0];
+        [point % inner, point / inner]
+    }
+
+    /// How many there are of what can be computed on its own: points, or lines along the inner range where they follow one another.
     pub fn units(&self) -> usize {
         self.points() / self.points_per_unit()
     }
@@ -116,7 +177,7 @@ impl SweepSettings {
     /// Points of a unit: their numbers follow one another.
     pub fn points_per_unit(&self) -> usize {
         if self.follow {
-            self.grid.ranges()[0].count * self.starts
+            self.grid.shape()[0] * self.starts
         } else {
             1
         }
@@ -130,11 +191,23 @@ impl SweepSettings {
         let names = match self.grid {
             Grid::Plane { .. } => ["driving", "stiffness"],
             Grid::Basin { .. } => ["state-1", "state-2"],
+            Grid::Laws { .. } | Grid::Systems { .. } => ["grid"; 2],
         };
-        for (range, name) in self.grid.ranges().into_iter().zip(names) {
-            range.checked(name)?;
+        let ranges = self.grid.ranges();
+        if ranges.len() > names.len() {
+            return Err(Error::parameter(
+                "grid",
+                ranges.len(),
+                "of two axes at most",
+            ));
         }
-        if let Grid::Basin { loading, .. } = self.grid {
+        for (range, name) in ranges.into_iter().zip(names) {
+            match self.grid {
+                Grid::Plane { .. } | Grid::Basin { .. } => range.checked_positive(name)?,
+                Grid::Laws { .. } | Grid::Systems { .. } => range.checked(name)?,
+            }
+        }
+        if let Grid::Basin { loading, .. } = &self.grid {
             Loading::new(loading.driving, loading.stiffness)?;
             if self.follow || self.starts != 1 {
                 return Err(Error::Input(
@@ -150,8 +223,8 @@ impl SweepSettings {
             }
         };
         within("starts", self.starts, 1, MOST_STARTS, "from 1 to 1000")?;
-        let [inner, outer] = self.grid.ranges();
-        let points = inner.count.saturating_mul(outer.count);
+        let [inner, outer] = self.grid.shape();
+        let points = inner.saturating_mul(outer);
         let points = points.saturating_mul(self.starts);
         within("points", points, 1, MOST_POINTS, "at most 1e12")?;
         within(
@@ -172,12 +245,11 @@ impl SweepSettings {
 pub struct SweepRow {
     /// The point's number.
     pub number: usize,
-    /// V_H in V*.
-    pub driving: f64,
-    /// K in a sigma / L.
-    pub stiffness: f64,
-    /// tau, ln psi_1 and ln psi_2 where the run starts.
-    pub start: [f64; 3],
+    /// The parameters that rows tell: of interfaces V_H in V* and K in a sigma / L, then the others that vary; of other systems all that
+    /// vary.
+    pub parameters: Vec<f64>,
+    /// Where the run starts: of interfaces tau and ln psi of each, of other systems all states. Empty where there is no start.
+    pub start: Vec<f64>,
     /// What it settles on.
     pub regime: Regime,
     /// Whether both interfaces move alike there; of steady and periodic runs.
@@ -186,8 +258,9 @@ pub struct SweepRow {
     pub returns_per_period: Option<usize>,
     /// The time of these.
     pub period: Option<f64>,
-    /// The least and the greatest stress there: over a period, or over the returns that were recorded.
-    pub stress_range: Option<(f64, f64)>,
+    /// The least and the greatest stress there, or value of the state that the section is in: over a period, or over the returns
+    /// that were recorded.
+    pub range: Option<(f64, f64)>,
     /// The largest Lyapunov exponent of those across the flow. Where the run rests or is periodic it is negative, from
     /// eigenvalues or multipliers; that along the flow, which is zero, is not counted.
     pub lyapunov_max: Option<Uncertain>,
@@ -199,17 +272,16 @@ pub struct SweepRow {
 
 impl SweepRow {
     /// A row of which no more is known than where the run starts and what it settles on.
-    pub fn new(number: usize, loading: Loading, start: [f64; 3], regime: Regime) -> Self {
+    pub fn new(number: usize, parameters: Vec<f64>, start: Vec<f64>, regime: Regime) -> Self {
         SweepRow {
             number,
-            driving: loading.driving,
-            stiffness: loading.stiffness,
+            parameters,
             start,
             regime,
             symmetry: None,
             returns_per_period: None,
             period: None,
-            stress_range: None,
+            range: None,
             lyapunov_max: None,
             returns: 0,
             note: None,

@@ -5,8 +5,7 @@ use crate::error::{Error, Result, option_name};
 /// More values than this along one axis are a slip of the pen.
 const MOST: usize = 10_000_000;
 
-/// Values from one end to the other, evenly spaced or evenly in the logarithm. All are positive: velocities, stiffnesses and
-/// states have no others.
+/// Values from one end to the other, evenly spaced or evenly in the logarithm.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// The first value.
@@ -27,7 +26,7 @@ pub fn fields(text: &str) -> Vec<&str> {
 }
 
 impl Range {
-    /// Reads `A:B:N` or `A:B:Nlog`: N values from A to B. `name` is how the user knows the axis.
+    /// Reads `A:B:N` or `A:B:Nlog`: N positive values from A to B. `name` is how the user knows the axis.
     ///
     /// # Errors
     /// [`Error::Input`] if it cannot be read, [`Error::Parameter`] for values outside their domain.
@@ -43,6 +42,22 @@ impl Range {
     /// # }
     /// ```
     pub fn parse(name: &str, text: &str) -> Result<Self> {
+        let range = Range::read(name, text)?;
+        range.checked_positive(name)?;
+        Ok(range)
+    }
+
+    /// The same where values may be zero or negative, unless they are spaced in the logarithm.
+    ///
+    /// # Errors
+    /// As [`Range::parse`].
+    pub fn of_any_sign(name: &str, text: &str) -> Result<Self> {
+        let range = Range::read(name, text)?;
+        range.checked(name)?;
+        Ok(range)
+    }
+
+    fn read(name: &str, text: &str) -> Result<Self> {
         let unreadable = || {
             Error::Input(format!(
                 "{} {text:?} must be A:B:N or A:B:Nlog, N values from A to B",
@@ -57,22 +72,40 @@ impl Range {
             None => (count, false),
         };
         let end = |text: &str| text.parse::<f64>().map_err(|_| unreadable());
-        let range = Range {
+        Ok(Range {
             from: end(from)?,
             to: end(to)?,
             count: count.parse().map_err(|_| unreadable())?,
             log,
-        };
-        range.checked(name)?;
-        Ok(range)
+        })
+    }
+
+    /// Whether the values are positive, as velocities, stiffnesses and states are, and some that can be computed with.
+    pub(super) fn checked_positive(&self, name: &str) -> Result<()> {
+        for end in [self.from, self.to] {
+            if !(end > 0.0 && end.is_finite()) {
+                return Err(Error::parameter(
+                    name,
+                    end,
+                    "positive and finite at both ends",
+                ));
+            }
+        }
+        self.checked(name)
     }
 
     /// Whether the values are some that can be computed with.
     pub(super) fn checked(&self, name: &str) -> Result<()> {
         let refused = |value: String, must| Err(Error::parameter(name, value, must));
         for end in [self.from, self.to] {
-            if !(end > 0.0 && end.is_finite()) {
-                return refused(end.to_string(), "positive and finite at both ends");
+            if !end.is_finite() {
+                return refused(end.to_string(), "finite at both ends");
+            }
+            if self.log && end <= 0.0 {
+                return refused(
+                    end.to_string(),
+                    "positive at both ends, as it is logarithmic",
+                );
             }
         }
         if self.from > self.to {

@@ -9,10 +9,12 @@
 //! exponentially in psi, not in ln psi: there distances are measured and leaps taken. A leap says nothing by itself. It is taken back unless the run there comes
 //! nearer to the same orbit, again as fast as its multipliers say.
 
-use super::watch::apart;
+use super::closing::apart;
 use crate::field::{State, Vector, state};
 use crate::integrate::{AnyField, AnyIntegrator};
-use crate::section::{LONGEST_PERIOD, Periodic, PeriodicSearch, Return, Surface, growth};
+use crate::section::{
+    LONGEST_PERIOD, Periodic, PeriodicSearch, Return, SeriesVariables, Surface, growth,
+};
 
 /// The distance, in every component, that Newton's method may go to an orbit, from where the returns seem to end, and to an
 /// equilibrium.
@@ -55,7 +57,7 @@ impl Leap {
 
     /// Whether the returns since come to the point as they should.
     pub fn is_confirmed_by(&self, returns: &[Return]) -> bool {
-        comes_as_said(returns, &self.to)
+        comes_as_said(SeriesVariables::LogStates, returns, &self.to)
     }
 
     /// Whether they have come so near that nothing else is to be asked.
@@ -66,17 +68,22 @@ impl Leap {
 }
 
 /// The stable equilibrium that these returns come to.
-pub(super) fn to_rest(field: &AnyField<'_>, returns: &[Return]) -> Option<Vector> {
+pub(super) fn to_rest(
+    field: &AnyField<'_>,
+    surface: &Surface,
+    returns: &[Return],
+    unit: f64,
+) -> Option<Vector> {
     let last = returns.last()?;
     let mut at = last.state.clone();
     for _ in 0..ITERATIONS {
         let step = field.newton_step(at.as_slice())?;
         at -= &step;
-        if apart(&at, &last.state) > NEAR_REST {
+        if apart(&at, &last.state) > NEAR_REST * unit {
             return None;
         }
-        if step.amax() < CONVERGED {
-            let (shrunk, time) = approach(returns, &at, 1)?;
+        if step.amax() < CONVERGED * unit {
+            let (shrunk, time) = approach(surface.chart, returns, &at, 1)?;
             let said = -growth(field, at.as_slice()) * time;
             return as_said(shrunk, said).then_some(at);
         }
@@ -91,6 +98,8 @@ pub(super) struct SlowReturns<'a> {
     pub taylor: &'a mut AnyIntegrator,
     pub returns: &'a [Return],
     pub accuracy: f64,
+    /// What distances are measured in.
+    pub unit: f64,
 }
 
 impl SlowReturns<'_> {
@@ -115,23 +124,24 @@ impl SlowReturns<'_> {
         [(&mean, 1), (last, 1), (last, closest)]
             .into_iter()
             .filter(|&(_, q)| shrinks(q))
-            .find_map(|(from, q)| self.search(from.clone(), NEAR, q))
+            .find_map(|(from, q)| self.search(from.clone(), NEAR * self.unit, q))
     }
 
     /// The periodic point, still far, that they creep to steadily: ever slower, along a line.
     pub fn ahead(&mut self) -> Option<Periodic> {
-        self.search(steady_end(self.returns)?, FROM_END, 1)
+        self.search(steady_end(self.returns)?, FROM_END * self.unit, 1)
     }
 
     /// The q-periodic point so near to where Newton's method begins, if they come to it as they should.
     fn search(&mut self, from: Vector, near: f64, q: usize) -> Option<Periodic> {
         let returns = self.returns;
         let asked = (self.accuracy, q);
-        let mut search = PeriodicSearch::new(self.field, self.surface, self.taylor, returns, asked);
+        let mut search = PeriodicSearch::new(self.field, self.surface, self.taylor, returns, asked)
+            .in_units(self.unit);
         (search.from, search.near) = (from, near);
-        (search.converged, search.shrunk) = (CONVERGED, 1.0);
+        (search.converged, search.shrunk) = (CONVERGED * self.unit, 1.0);
         let found = search.point()?;
-        comes_as_said(returns, &found).then_some(found)
+        comes_as_said(self.surface.chart, returns, &found).then_some(found)
     }
 }
 
@@ -170,21 +180,26 @@ fn steady_end(returns: &[Return]) -> Option<Vector> {
 }
 
 /// Whether these returns come nearer to a periodic point as fast as its multiplier says.
-fn comes_as_said(returns: &[Return], to: &Periodic) -> bool {
+pub(super) fn comes_as_said(chart: SeriesVariables, returns: &[Return], to: &Periodic) -> bool {
     let rounds = (returns.len() / 4) as f64 / to.returns as f64;
     let said = -to.multiplier.ln() * rounds;
-    let told = approach(returns, &to.point, to.returns);
+    let told = approach(chart, returns, &to.point, to.returns);
     told.is_some_and(|(shrunk, _)| as_said(shrunk, said))
 }
 
 /// By how much, in the logarithm, the distance of every q-th return has shrunk from the third quarter of them to the last, and
 /// the time between.
-fn approach(returns: &[Return], to: &Vector, q: usize) -> Option<(f64, f64)> {
+fn approach(
+    chart: SeriesVariables,
+    returns: &[Return],
+    to: &Vector,
+    q: usize,
+) -> Option<(f64, f64)> {
     let n = returns.len();
     let largest = |range: std::ops::Range<usize>| {
         let phase = range.filter(|i| (n - 1 - i).is_multiple_of(q));
         phase
-            .map(|i| away(&returns[i].state, to))
+            .map(|i| away(chart, &returns[i].state, to))
             .fold(0.0, f64::max)
     };
     let quarter = n / 4;
@@ -196,11 +211,11 @@ fn approach(returns: &[Return], to: &Vector, q: usize) -> Option<(f64, f64)> {
     (now > 0.0).then(|| ((before / now).ln(), time))
 }
 
-/// How far from a point, by the largest of the differences in tau and the relative ones in psi.
-fn away(y: &Vector, to: &Vector) -> f64 {
-    let difference = |i: usize| match i {
-        0 => y[0] - to[0],
-        _ => (y[i] - to[i]).exp_m1(),
+/// How far from a point, by the largest of the differences; in psi by the relative ones.
+fn away(chart: SeriesVariables, y: &Vector, to: &Vector) -> f64 {
+    let difference = |i: usize| match chart {
+        SeriesVariables::LogStates if i > 0 => (y[i] - to[i]).exp_m1(),
+        _ => y[i] - to[i],
     };
     (0..y.len())
         .map(|i| difference(i).abs())

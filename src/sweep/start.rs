@@ -1,12 +1,12 @@
 //! Where the runs of a sweep start.
 
-use super::{Grid, SweepSettings};
+use super::points::RandomStart;
+use super::{Grid, SweepRow, SweepSettings};
+use crate::error::Result;
 use crate::field::State;
-use crate::friction::{Formulas, beside};
+use crate::friction::{AnyLaw, Formulas, beside};
 use crate::model::Loading;
-use crate::section::half_driving_stress;
-use rand_chacha::ChaCha8Rng;
-use rand_chacha::rand_core::{Rng, SeedableRng};
+use crate::section::{Regime, half_driving_stress};
 
 /// ln psi_2 - ln psi_1 of the start beside the symmetric steady state.
 const BESIDE: f64 = 0.01;
@@ -18,68 +18,98 @@ const FAR: (f64, f64) = (1.0, -4.0);
 const RANDOM_STRESS: (f64, f64) = (-1.0, 1.5);
 const RANDOM_LOG_STATE: (f64, f64) = (-5.0, 1.0);
 
-/// A run of a sweep: where, and from which state.
-#[derive(Debug, Clone, Copy, PartialEq)]
+/// A run of a sweep: of which law, where, and from which state.
+#[derive(Debug, Clone, PartialEq)]
 pub(super) struct SweepStart {
     pub number: usize,
+    /// What its row tells of it.
+    pub parameters: Vec<f64>,
+    pub law: AnyLaw,
     pub loading: Loading,
     /// (tau, ln psi_1, ln psi_2)
     pub start: State<3>,
 }
 
 /// The point of that number.
-pub(super) fn point(settings: &SweepSettings, number: usize) -> SweepStart {
-    let starts = settings.starts;
-    let (k, s) = (number / starts, number % starts);
-    let stress = |driving: f64| half_driving_stress(&settings.law, driving, 2);
-    match &settings.grid {
+///
+/// # Errors
+/// Those of the law at the point.
+pub(super) fn point(settings: &SweepSettings, number: usize) -> Result<SweepStart> {
+    let place @ [i, j] = settings.place(number);
+    let stress = |law: &AnyLaw, driving: f64| half_driving_stress(law, driving, 2);
+    let ((law, loading), basin) = match &settings.grid {
         Grid::Plane { driving, stiffness } => {
             let loading = Loading {
-                driving: driving.value(k % driving.count),
-                stiffness: stiffness.value(k / driving.count),
+                driving: driving.value(i),
+                stiffness: stiffness.value(j),
             };
-            let tau = stress(loading.driving);
-            let w = settings.law.steady_state(0.5 * loading.driving).ln();
-            let start = match s {
-                0 => State::<3>::new(tau, w, beside(&settings.law, w, BESIDE)),
-                1 => State::<3>::new(tau, w + SWUNG, w + SWUNG),
-                2 => State::<3>::new(tau + FAR.0, w, w + FAR.1),
-                _ => random(settings.seed, number, (tau, w)),
-            };
-            SweepStart {
-                number,
-                loading,
-                start,
-            }
+            ((settings.law, loading), None)
         }
         Grid::Basin {
             loading,
             state_1,
             state_2,
         } => {
-            let first = state_1.value(k % state_1.count).ln();
-            let second = state_2.value(k / state_1.count).ln();
-            SweepStart {
-                number,
-                loading: *loading,
-                start: State::<3>::new(stress(loading.driving), first, second),
+            let states = (state_1.value(i).ln(), state_2.value(j).ln());
+            ((settings.law, *loading), Some(states))
+        }
+        Grid::Laws { at, .. } => (at.at(&settings.grid.values(place))?, None),
+        Grid::Systems { .. } => unreachable!("other systems have starts of their own"),
+    };
+    let tau = stress(&law, loading.driving);
+    let start = match basin {
+        Some((first, second)) => State::<3>::new(tau, first, second),
+        None => {
+            let w = law.steady_state(0.5 * loading.driving).ln();
+            match number % settings.starts {
+                0 => State::<3>::new(tau, w, beside(&law, w, BESIDE)),
+                s => {
+                    let random = RandomStart::new(settings.seed, number);
+                    State::<3>::from_column_slice(&start_of_interfaces(s, random, tau, &[w, w]))
+                }
             }
         }
+    };
+    Ok(SweepStart {
+        number,
+        parameters: settings.grid.parameters(place),
+        law,
+        loading,
+        start,
+    })
+}
+
+/// The row of a point that there is not.
+pub(super) fn missing(settings: &SweepSettings, number: usize, why: String) -> SweepRow {
+    let parameters = settings.parameters(number);
+    SweepRow {
+        note: Some(why),
+        ..SweepRow::new(number, parameters, Vec::new(), Regime::Undecided)
     }
 }
 
-/// A start around the symmetric steady state, from the seed and the point's number alone: the generator counts, and each point
-/// has a stream of its own.
-fn random(seed: u64, number: usize, (tau, w): (f64, f64)) -> State<3> {
-    let mut generator = ChaCha8Rng::seed_from_u64(seed);
-    generator.set_stream(number as u64);
-    let mut between = |(low, high): (f64, f64)| {
-        let part = (generator.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
-        low + part * (high - low)
+/// The start of this kind, from the second on, of interfaces with their steady stress tau and their steady ln psi: swung and alike, far,
+/// or random, from the seed and the point's number alone.
+#[doc(hidden)]
+pub fn start_of_interfaces(
+    kind: usize,
+    mut random: RandomStart,
+    tau: f64,
+    steady: &[f64],
+) -> Vec<f64> {
+    let last = steady.len() - 1;
+    let (stress, moved): (f64, Vec<f64>) = match kind {
+        1 => (0.0, vec![SWUNG; steady.len()]),
+        2 => {
+            let far = |i: usize| if i == last { FAR.1 } else { 0.0 };
+            (FAR.0, (0..steady.len()).map(far).collect())
+        }
+        _ => {
+            let stress = random.between(RANDOM_STRESS);
+            let states = steady.iter().map(|_| random.between(RANDOM_LOG_STATE));
+            (stress, states.collect())
+        }
     };
-    State::<3>::new(
-        tau + between(RANDOM_STRESS),
-        w + between(RANDOM_LOG_STATE),
-        w + between(RANDOM_LOG_STATE),
-    )
+    let states = steady.iter().zip(moved).map(|(w, by)| w + by);
+    std::iter::once(tau + stress).chain(states).collect()
 }

@@ -1,18 +1,18 @@
 //! A run on its way: its returns, and whether they tell yet what it settles on.
 
 use super::capture::Capture;
+use super::closing::{FEWEST_TO_CLOSE, closing};
 use super::slow_convergence::Leap;
 use super::start::SweepStart;
 use crate::error::Result;
-use crate::field::{State, Vector, state, vector};
-use crate::friction::AnyLaw;
+use crate::field::{State, state, vector};
 use crate::integrate::{AnyField, AnyStep, Control, Step, StepSeries};
 use crate::model::two_interfaces;
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate};
 use crate::section::{
-    AT_START, Ended, LONGEST_PERIOD, Periodic, Recorder, Return, Surface, Watched, Watching,
-    equilibrium_near, half_driving_stress, usual_patience,
+    AT_START, Ended, Periodic, Recorder, Return, Surface, Watched, Watching, equilibrium_near,
+    half_driving_stress, usual_patience,
 };
 
 /// Steps between two looks whether an equilibrium has caught the run.
@@ -21,22 +21,12 @@ const BETWEEN_LOOKS: usize = 48;
 const PATIENCE: f64 = 0.1;
 /// A run that swings by less is at rest.
 pub(super) const SWING: f64 = 1e-7;
-/// Returns that have come this close to each other after q, and come closer, make q a candidate; those closer than the second at
-/// once.
-const NEAR: f64 = 1e-3;
-const ARRIVED: f64 = 1e-5;
-/// What distances must shrink to from a window of returns to the next.
-const SHRUNK: f64 = 0.7;
 /// Interfaces of a run that is held in symmetry are no farther apart, in ln psi; it is let go by the second, and so often.
 const HELD: f64 = 1e-6;
 const PUSH: f64 = 1e-3;
 const MOST_PUSHES: usize = 2;
 /// Runs that are judged before so many returns are not judged by the stress on the way: its turns take time.
 const STRESS_FROM: usize = 512;
-/// The least returns in a window.
-const WINDOW: usize = 3;
-/// Where so many more rounds would bring a candidate to [`ARRIVED`], they are waited for: Newton's method takes as long.
-const WORTH_WAITING: f64 = 30.0;
 
 /// A run of a sweep.
 pub(super) struct SweepRun {
@@ -72,7 +62,8 @@ pub(super) struct SweepRun {
 }
 
 impl SweepRun {
-    pub fn new(law: AnyLaw, point: SweepStart, watching: Watching, stage: usize) -> Self {
+    pub fn new(point: SweepStart, watching: Watching, stage: usize) -> Self {
+        let law = point.law;
         let field = AnyField::new::<3>(two_interfaces(law, point.loading));
         let tau = half_driving_stress(&law, point.loading.driving, 2);
         let mut run = SweepRun {
@@ -87,7 +78,7 @@ impl SweepRun {
             time: 0.0,
             state: point.start,
             fresh: 0,
-            next_look: 2 * WINDOW + 1,
+            next_look: FEWEST_TO_CLOSE,
             next_stage: stage,
             candidate: None,
             stress: (f64::INFINITY, f64::NEG_INFINITY),
@@ -135,7 +126,9 @@ impl SweepRun {
         }
         if self.recorder.passed > passed {
             let n = self.recorder.returns.len();
-            self.candidate = self.period();
+            self.candidate = (n >= self.next_look)
+                .then(|| closing(self.returns(), 1.0))
+                .flatten();
             if self.candidate.is_some() || n >= self.next_stage {
                 return Ok(Control::Stop);
             }
@@ -240,7 +233,7 @@ impl SweepRun {
         {
             return;
         }
-        if let Some(turn) = step.series().and_then(|series| turn(series)) {
+        if let Some(turn) = step.series().and_then(|series| turn(series, 0)) {
             see(&mut self.stress, turn);
         }
     }
@@ -249,38 +242,6 @@ impl SweepRun {
     pub fn returns(&self) -> &[Return] {
         &self.recorder.returns[self.fresh.min(self.recorder.returns.len())..]
     }
-
-    /// The smallest number of returns after which the last ones have come close to where they were, and ever closer.
-    fn period(&self) -> Option<usize> {
-        let returns = self.returns();
-        let n = returns.len();
-        if self.recorder.returns.len() < self.next_look {
-            return None;
-        }
-        let moved = |i: usize, q: usize| apart(&returns[i].state, &returns[i - q].state);
-        (1..=LONGEST_PERIOD.min(n / 3)).find(|&q| {
-            let window = q.max(WINDOW).max(n / 8);
-            if moved(n - 1, q) > NEAR || n < 2 * window + q {
-                return false;
-            }
-            let largest =
-                |range: std::ops::Range<usize>| range.map(|i| moved(i, q)).fold(0.0, f64::max);
-            let late = largest(n - window..n);
-            let early = largest(n - 2 * window..n - window);
-            if late > NEAR || late > SHRUNK * early {
-                // Arrived, where the error of the run moves it about.
-                return late < ARRIVED;
-            }
-            let wait = (late / ARRIVED).ln() / (early / late).ln() * window as f64;
-            wait <= 0.0 || wait > WORTH_WAITING * q as f64
-        })
-    }
-}
-
-/// The largest difference in a component, without room for the difference: returns are compared after each of them.
-pub(super) fn apart(a: &Vector, b: &Vector) -> f64 {
-    let differences = a.iter().zip(b.iter()).map(|(a, b)| (a - b).abs());
-    differences.fold(0.0, f64::max)
 }
 
 /// Widens a range.
@@ -288,9 +249,9 @@ pub(super) fn see(range: &mut (f64, f64), x: f64) {
     *range = (range.0.min(x), range.1.max(x));
 }
 
-/// The stress where it turns within a step, if it does once: where its rate, by the polynomial of the step, changes sign.
-pub(super) fn turn(series: &dyn StepSeries) -> Option<f64> {
-    let stress = series.variable(0);
+/// The value of a variable where it turns within a step, if it does once: where its rate, by the polynomial of the step, changes sign.
+pub(super) fn turn(series: &dyn StepSeries, variable: usize) -> Option<f64> {
+    let stress = series.variable(variable);
     let end = series.length() / series.unit();
     let rate = |s: f64| {
         let (mut rate, mut slope) = (0.0, 0.0);

@@ -25,7 +25,7 @@ pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
-pub use sweep::{GridSide, PointOutcome, basin_map, regime_map};
+pub use sweep::{GridSide, PointOutcome, basin_map, parameter_map, regime_map};
 pub use text::{
     text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
 };

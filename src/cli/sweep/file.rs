@@ -5,7 +5,7 @@ use super::super::report;
 use super::super::resume::same;
 use crate::error::{Error, Result};
 use crate::output::{self, Head, ROW_CHECK, Status, checked_cells, checked_line, damage, shortest};
-use crate::scene::{Column, Quantity, Shard, SweepPlan};
+use crate::scene::{Column, Described, Quantity, Shard, SweepPlan};
 use crate::sweep::SweepRow;
 use crate::views;
 use std::fs::File;
@@ -42,7 +42,7 @@ pub fn beginning(
 /// Rows as lines, checked by their numbers: so the lines of parts are those of the whole.
 pub fn lines(plan: &SweepPlan, columns: &[Column<SweepRow>], rows: &[SweepRow]) -> Vec<u8> {
     let line = |row: &SweepRow| {
-        let cells = views::cells(columns, row, &plan.system.units, false);
+        let cells = views::cells(columns, row, plan.system.units(), false);
         checked_line(&row.number.to_string(), &cells)
     };
     rows.iter().map(line).collect::<String>().into_bytes()
@@ -195,14 +195,14 @@ pub fn whole_line(path: &Path, file: &mut impl BufRead) -> Result<Option<String>
     output::whole_line(file).map_err(|error| unreadable(path, error))
 }
 
-/// Whether cells begin with V_H and K of a row of that number.
+/// Whether cells begin with the parameters of a row of that number.
 fn belongs(plan: &SweepPlan, number: usize, cells: &[String]) -> bool {
-    let units = &plan.system.units;
-    let (driving, stiffness) = plan.loading(number);
-    let expected = [
-        shortest(units.outward(Quantity::SlipRate, driving)),
-        shortest(units.outward(Quantity::Stiffness, stiffness)),
-    ];
+    let values = plan.settings.parameters(number);
+    let parameters = plan.layout.parameters.iter().zip(values);
+    let told = |((_, quantity), value): (&(_, Quantity), f64)| {
+        shortest(plan.system.units().outward(*quantity, value))
+    };
+    let expected: Vec<String> = parameters.map(told).collect();
     cells.starts_with(&expected)
 }
 
@@ -218,12 +218,14 @@ pub fn row(
         let at = names.iter().position(|(one, _)| one == name);
         at.and_then(|at| cells.get(at)).map_or("", String::as_str)
     };
-    views::sweep_row(number, &cell, &plan.system.units)
+    views::sweep_row(number, &cell, &plan.layout, plan.system.units())
 }
 
-/// The regime that the cells of a row tell.
-pub fn regime(cells: &[String]) -> &str {
-    cells.get(2).map_or("", String::as_str)
+/// Which of the cells of a row tells the regime.
+pub fn regime_place(columns: &[Column<SweepRow>]) -> usize {
+    let names = views::names(columns, false);
+    let found = names.iter().position(|(name, _)| name == "regime");
+    found.expect("all rows tell it")
 }
 
 /// The remarks of a sweep's file, without `# `.

@@ -14,7 +14,7 @@ use super::report::Report;
 use super::{Ending, interrupt, say, written};
 use crate::error::Result;
 use crate::output::Format;
-use crate::scene::{SweepOptions, SweepPlan};
+use crate::scene::{Described, SweepOptions, SweepPlan};
 use crate::sweep::{self, UnitShare};
 use crate::views;
 use out::SweepOut;
@@ -53,7 +53,7 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
             say(text);
         }
     }
-    let columns = views::sweep_columns();
+    let columns = views::sweep_columns(&plan.layout);
     let mut out = SweepOut::new(&plan, &report, &columns, plot.is_some());
     let done = resume.map_or(Ok(0), |path| out.keep(path, &columns))?;
     if let Err(error) = out.open(resume.is_some()) {
@@ -97,7 +97,7 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<En
     if report.format != Format::Json {
         return Ok(Ending::Done);
     }
-    let units = &plan.system.units;
+    let units = plan.system.units();
     let rows = out.rows.iter();
     let rows: Vec<Value> = rows
         .map(|row| Value::Object(views::object(out.columns, row, units)))

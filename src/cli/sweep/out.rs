@@ -7,7 +7,7 @@ use super::super::words::{count, flagged, several, time};
 use super::file;
 use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
-use crate::scene::{Column, SweepPlan};
+use crate::scene::{Column, Described, SweepPlan};
 use crate::section::Regime;
 use crate::sweep::SweepRow;
 use crate::views::{self, REGIMES};
@@ -69,10 +69,13 @@ impl<'a> SweepOut<'a> {
     /// Reads the rows of an earlier run, and says of how many units they are.
     pub fn keep(&mut self, path: &Path, columns: &[Column<SweepRow>]) -> Result<usize> {
         let plan = self.plan;
+        let place = file::regime_place(columns);
         let mut unreadable = None;
         let standing = file::read(path, plan, columns, &mut |number, cells| {
-            let name = file::regime(cells);
-            let regime = REGIMES.iter().position(|regime| regime.name() == name);
+            let name = cells.get(place).map(String::as_str);
+            let regime = REGIMES
+                .iter()
+                .position(|regime| Some(regime.name()) == name);
             let row = self.keeps.then(|| file::row(plan, columns, number, cells));
             match (regime, row) {
                 (Some(regime), None) => self.counts[regime] += 1,
@@ -98,7 +101,7 @@ impl<'a> SweepOut<'a> {
             Format::Table => {
                 let names = views::names(self.columns, true);
                 let (names, quantities): (Vec<_>, Vec<_>) = names.into_iter().unzip();
-                let units = unit_names(&self.plan.system.units, quantities.into_iter());
+                let units = unit_names(self.plan.system.units(), quantities.into_iter());
                 let remarks = file::remarks(self.plan, self.plan.shard);
                 SweepSink::Table(report.begin(remarks, &names, &units)?)
             }
@@ -158,7 +161,7 @@ impl<'a> SweepOut<'a> {
                 to.flush()
             }
             SweepSink::Table(writer) => rows.iter().try_for_each(|row| {
-                let units = &self.plan.system.units;
+                let units = self.plan.system.units();
                 writer.row(&views::cells(self.columns, row, units, true))
             }),
         }

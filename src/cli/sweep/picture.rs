@@ -6,7 +6,7 @@ use super::curves::curves;
 use crate::bifurcation::LocusRow;
 use crate::error::Result;
 use crate::output::plot;
-use crate::scene::SweepPlan;
+use crate::scene::{Described, SweepPlan};
 use crate::sweep::{Grid, Range, SweepRow};
 use crate::views::{self, GridSide, PointOutcome};
 use std::path::Path;
@@ -18,7 +18,7 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
         return Ok(());
     }
     let outcomes: Vec<PointOutcome> = rows.iter().map(views::outcome).collect();
-    let units = &plan.system.units;
+    let units = plan.system.units();
     let side = |range: &Range| GridSide {
         values: range.values().collect(),
         log: range.log,
@@ -34,6 +34,15 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
             (loading.driving, loading.stiffness),
             units,
         ),
+        Grid::Laws { axes, .. } | Grid::Systems { axes, .. } => {
+            let [x, y] = &axes[..] else {
+                unreachable!("a plan with a picture has two axes");
+            };
+            let (x, y) = (side(x), side(y));
+            let [along, up] = plan.axis_labels();
+            let sides = [(&x, along), (&y, up)];
+            views::parameter_map(&outcomes, sides, plan.settings.starts, units)
+        }
         Grid::Plane { driving, stiffness } => {
             // Who has ended the sweep does not wait for them.
             let curves = match interrupt::asked() {

@@ -10,11 +10,10 @@ pub fn pack(rows: &[SweepRow]) -> Vec<u8> {
     let mut to = Vec::new();
     for row in rows {
         count(&mut to, row.number);
-        let [tau, ln_psi_1, ln_psi_2] = row.start;
-        numbers(
-            &mut to,
-            &[row.driving, row.stiffness, tau, ln_psi_1, ln_psi_2],
-        );
+        for list in [&row.parameters, &row.start] {
+            count(&mut to, list.len());
+            numbers(&mut to, list);
+        }
         let regime = REGIMES.iter().position(|&regime| regime == row.regime);
         count(&mut to, regime.expect("all regimes are listed"));
         count(
@@ -29,7 +28,7 @@ pub fn pack(rows: &[SweepRow]) -> Vec<u8> {
         count(&mut to, row.returns_per_period.unwrap_or(0));
         count(&mut to, row.returns);
         maybe(&mut to, row.period.map(|x| [x]));
-        maybe(&mut to, row.stress_range.map(|(low, high)| [low, high]));
+        maybe(&mut to, row.range.map(|(low, high)| [low, high]));
         let exponent = row.lyapunov_max.map(|x| [x.value, x.uncertainty]);
         maybe(&mut to, exponent);
         let note = row.note.as_deref().unwrap_or_default();
@@ -71,12 +70,10 @@ struct From<'a>(&'a [u8]);
 impl From<'_> {
     fn row(&mut self) -> Option<SweepRow> {
         let number = self.count()?;
-        let [driving, stiffness, tau, ln_psi_1, ln_psi_2] = self.numbers()?;
         Some(SweepRow {
             number,
-            driving,
-            stiffness,
-            start: [tau, ln_psi_1, ln_psi_2],
+            parameters: self.list()?,
+            start: self.list()?,
             regime: *REGIMES.get(self.count()?)?,
             symmetry: match self.count()? {
                 0 => None,
@@ -87,7 +84,7 @@ impl From<'_> {
             returns_per_period: Some(self.count()?).filter(|&q| q > 0),
             returns: self.count()?,
             period: self.maybe()?.map(|[x]| x),
-            stress_range: self.maybe()?.map(|[low, high]| (low, high)),
+            range: self.maybe()?.map(|[low, high]| (low, high)),
             lyapunov_max: self.maybe()?.map(|[x, bound]| Uncertain::new(x, bound)),
             note: self.note()?,
         })
@@ -110,6 +107,14 @@ impl From<'_> {
             *x = f64::from_le_bytes(self.take(8)?.try_into().ok()?);
         }
         Some(list)
+    }
+
+    fn list(&mut self) -> Option<Vec<f64>> {
+        let length = self.count()?;
+        // No longer than what is there, whatever the length says.
+        let bytes = self.take(length.checked_mul(8)?)?;
+        let number = |bytes: &[u8]| Some(f64::from_le_bytes(bytes.try_into().ok()?));
+        bytes.chunks(8).map(number).collect()
     }
 
     fn maybe<const N: usize>(&mut self) -> Option<Option<[f64; N]>> {

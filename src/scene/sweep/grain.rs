@@ -33,6 +33,15 @@ impl Grain {
         })
     }
 
+    /// Of values that were read.
+    pub fn of(name: &str, range: Range) -> Self {
+        Grain {
+            name: name.to_owned(),
+            range,
+            single: false,
+        }
+    }
+
     /// The same, dimensionless.
     pub fn inward(&self, quantity: Quantity, units: &Units) -> Result<Range> {
         let end = |x| positive(&self.name, units.inward(quantity, positive(&self.name, x)?));

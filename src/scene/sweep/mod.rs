@@ -1,33 +1,47 @@
 //! Sweeps from options: which grid of points, what is computed of each, and which part of it here.
 
+mod axes;
+mod explain;
 mod grain;
+mod interfaces;
+mod layout;
 mod options;
 mod shard;
+mod text;
 mod words;
 
+pub use layout::{Moving, SweepLayout};
 pub use options::SweepOptions;
 pub use shard::Shard;
 
 use super::continuation::LocusOptions;
 use super::locus::LocusPlan;
-use super::system::System;
-use super::units::Quantity;
-use crate::error::{Error, Result, count, option_name};
+use super::system::{Described, System};
+use super::text::TextModel;
+use super::units::{Quantity, Units};
+use crate::error::{Error, Result, option_name};
+use crate::friction::{AnyLaw, Parameters};
 use crate::model::Loading;
 use crate::sweep::{Grid, SweepSettings, threads_checked};
+use axes::Axes;
 use clap::Parser;
 use grain::Grain;
+use interfaces::{InterfacePoints, is_loading};
 use options::SweepLine;
-use serde_json::Value;
+use serde_json::{Map, Value};
+use std::sync::Arc;
+use text::TextPoints;
 use words::{canonical, numerics};
 
 /// A sweep that is asked for, checked.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone)]
 pub struct SweepPlan {
-    /// What slides.
-    pub system: System,
+    /// What moves.
+    pub system: Swept,
     /// What is computed.
     pub settings: SweepSettings,
+    /// What rows are of.
+    pub layout: SweepLayout,
     /// Which part of it.
     pub shard: Option<Shard>,
     /// By how many threads.
@@ -38,6 +52,48 @@ pub struct SweepPlan {
     pub numerics: Value,
     /// The command line of the whole sweep in one order, without what changes no row: equal sweeps have equal ones.
     pub canonical: Vec<String>,
+    /// The parameters that vary.
+    axes: Axes,
+    /// Where the section was asked for.
+    surface: Option<String>,
+    /// Whether there is a picture.
+    drawn: bool,
+}
+
+/// What moves at all points of a sweep; what varies has no value.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Swept {
+    /// Interfaces with a law that is built in.
+    Interfaces(Box<System>),
+    /// What is from a file.
+    Text(Box<TextModel>),
+}
+
+impl Described for Swept {
+    fn echo(&self) -> &Map<String, Value> {
+        match self {
+            Swept::Interfaces(system) => system.echo(),
+            Swept::Text(model) => model.echo(),
+        }
+    }
+
+    fn units(&self) -> &Units {
+        match self {
+            Swept::Interfaces(system) => &system.units,
+            Swept::Text(model) => model.units(),
+        }
+    }
+}
+
+/// A grid, with what moves at its points.
+struct SweptGrid {
+    system: Swept,
+    grid: Grid,
+    layout: SweepLayout,
+    law: AnyLaw,
+    axes: Axes,
+    /// The options of a basin.
+    states: Vec<(&'static str, String)>,
 }
 
 impl SweepPlan {
@@ -46,52 +102,17 @@ impl SweepPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &SweepOptions) -> Result<Self> {
-        if options.slab.interfaces != 2 {
-            return Err(Error::Input(
-                "sweep needs two interfaces: a single one has no regimes but rest and one cycle"
-                    .into(),
-            ));
-        }
         threads_checked(options.threads)?;
-        let needed = |name: &str, text: &Option<String>| {
-            let missing = || {
-                Error::Input(format!(
-                    "{} A:B:N is missing, and has no default",
-                    option_name(name)
-                ))
-            };
-            Grain::parse(name, text.as_deref().ok_or_else(missing)?)
-        };
-        let driving = needed("driving", &options.driving)?;
-        let stiffness = needed("stiffness", &options.stiffness)?;
-        let states = match options.basin {
-            true => Some((
-                needed("state-1", &options.state_1)?,
-                needed("state-2", &options.state_2)?,
-            )),
-            false => None,
-        };
-        let fixed = |grain: &Grain| options.basin.then_some(grain.range.from);
-        let system = System::of(
-            &options.slab.resolved()?,
-            fixed(&driving),
-            fixed(&stiffness),
-        )?
-        .alike("sweep")?;
-        let units = &system.units;
-        let grid = match &states {
-            None => Grid::Plane {
-                driving: driving.inward(Quantity::SlipRate, units)?,
-                stiffness: stiffness.inward(Quantity::Stiffness, units)?,
-            },
-            Some((state_1, state_2)) => Grid::Basin {
-                loading: loading(&system, &driving, &stiffness)?,
-                state_1: state_1.inward(Quantity::State, units)?,
-                state_2: state_2.inward(Quantity::State, units)?,
-            },
-        };
+        let SweptGrid {
+            system,
+            grid,
+            layout,
+            law,
+            axes,
+            states,
+        } = swept(options)?;
         let settings = SweepSettings {
-            law: system.law,
+            law,
             grid,
             starts: options.starts,
             seed: options.seed,
@@ -103,25 +124,29 @@ impl SweepPlan {
         };
         settings.checked()?;
         let shard = options.shard.as_deref().map(Shard::parse).transpose()?;
-        let grains = [Some(&driving), Some(&stiffness)]
-            .into_iter()
-            .chain([states.as_ref().map(|s| &s.0), states.as_ref().map(|s| &s.1)])
-            .flatten();
-        let grid: Vec<(&str, String)> = grains
-            .map(|grain| (grain.name.as_str(), grain.to_string()))
-            .collect();
-        let curves = match options.plot {
-            Some(_) => curves(options, &system, &settings.grid)?,
-            None => Vec::new(),
+        let said: Vec<(&str, String)> = axes.said.iter().chain(&states).cloned().collect();
+        let is_line = |grid: &Grid| grid.ranges().len() < 2;
+        let curves = match (&options.plot, &system) {
+            (Some(_), _) if is_line(&settings.grid) => {
+                return Err(Error::Input(
+                    "`plot` draws a map of two parameters, and here one varies; leave it out, or let another one vary".into(),
+                ));
+            }
+            (Some(_), Swept::Interfaces(system)) => curves(options, system, &settings.grid)?,
+            _ => Vec::new(),
         };
         Ok(SweepPlan {
             curves,
-            numerics: numerics(options, &grid),
-            canonical: canonical(options, &grid),
+            numerics: numerics(options, &said),
+            canonical: canonical(options, &said),
             system,
             settings,
+            layout,
             shard,
             threads: options.threads,
+            surface: options.surface.clone(),
+            drawn: options.plot.is_some(),
+            axes,
         })
     }
 
@@ -151,58 +176,137 @@ impl SweepPlan {
     pub fn rows(&self) -> usize {
         self.part().units(self.settings.units()) * self.rows_per_unit()
     }
+}
 
-    /// V_H and K of a row of the whole sweep, dimensionless.
-    pub fn loading(&self, number: usize) -> (f64, f64) {
-        match &self.settings.grid {
-            Grid::Basin { loading, .. } => (loading.driving, loading.stiffness),
-            Grid::Plane { driving, stiffness } => {
-                let point = number / self.settings.starts;
-                let (i, j) = (point % driving.count, point / driving.count);
-                (driving.value(i), stiffness.value(j))
-            }
+/// The grid that is asked for.
+fn swept(options: &SweepOptions) -> Result<SweptGrid> {
+    let axes = Axes::read(options)?;
+    let refused = |of: &str| match options.basin {
+        true => Err(Error::Input(format!(
+            "`basin` is of two equal interfaces with a law that is built in, and this is {of}"
+        ))),
+        false => Ok(()),
+    };
+    // Other systems have no law; theirs is not looked at.
+    let any_law = || AnyLaw::named("spinodal", Parameters::heslot_1994());
+    if let Some(model) = TextModel::named(&options.slab.text)? {
+        refused("a `system`")?;
+        let points = TextPoints::of_system(options, model, &axes)?;
+        let states = points.model().system.states().to_vec();
+        let names = axes.names.iter().cloned();
+        let layout = SweepLayout {
+            parameters: names.map(|name| (name, Quantity::Number)).collect(),
+            moves: Moving::States(states, points.section_state()),
+        };
+        layout.names_differ()?;
+        return Ok(of_text(points, layout, any_law()?, axes));
+    }
+    if let Some(points) = TextPoints::of_law(options, &axes)? {
+        refused("a law from a file")?;
+        let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
+        let layout = SweepLayout::interfaces(usize::from(options.slab.interfaces), others);
+        layout.names_differ()?;
+        return Ok(of_text(points, layout, any_law()?, axes));
+    }
+    axes.needs_loading()?;
+    let slab = options.slab.resolved()?;
+    axes.known_of_interfaces(&slab)?;
+    let interfaces = slab.checked_interfaces()?;
+    if interfaces == 2 && axes.are_of_loading() {
+        let fixed = |grain: &Grain| options.basin.then_some(grain.range.from);
+        let (driving, stiffness) = (axes.grain("driving")?, axes.grain("stiffness")?);
+        let system = System::of(&slab, fixed(&driving), fixed(&stiffness))?;
+        if system.unequal.is_none() {
+            return plane(options, system, axes, (&driving, &stiffness));
         }
     }
+    refused(match interfaces {
+        1 => "one interface",
+        _ if axes.are_of_loading() => "of interfaces that differ",
+        _ => "with a `grid`",
+    })?;
+    let (points, mut system) = InterfacePoints::new(&options.slab, &axes)?;
+    axes.names.iter().for_each(|name| system.vary(name));
+    let equal = interfaces == 2 && system.unequal.is_none() && !axes.tell_interfaces_apart();
+    let ranges = axes.ranges.clone();
+    let grid = match equal {
+        true => Grid::Laws {
+            axes: ranges,
+            at: Arc::new(points),
+        },
+        false => Grid::Systems {
+            axes: ranges,
+            at: Arc::new(points),
+        },
+    };
+    let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
+    Ok(SweptGrid {
+        grid,
+        layout: SweepLayout::interfaces(interfaces, others),
+        law: system.law,
+        system: Swept::Interfaces(Box::new(system)),
+        axes,
+        states: Vec::new(),
+    })
+}
 
-    /// The plan, one subject a line.
-    pub fn explain(&self) -> String {
-        let settings = &self.settings;
-        let grid = match (&settings.grid, settings.starts) {
-            (Grid::Basin { .. }, _) => "starts (psi1, psi2) at one V_H and K".to_owned(),
-            (_, 1) => "the plane of V_H and K, one start each".to_owned(),
-            (_, starts) => format!("the plane of V_H and K, {starts} starts each"),
-        };
-        let part = match self.shard {
-            None => "all".to_owned(),
-            Some(shard) => format!("part {shard}, {} rows", count(self.rows())),
-        };
-        let follow = match settings.follow {
-            true => {
-                "on: each point starts on the attractor of its neighbour; a line of V_H at one K is computed in one go"
-            }
-            false => "off: `follow` is not given; points are computed on their own",
-        };
-        let lyapunov = match settings.lyapunov {
-            true => "of every point",
-            false => "only where the regime needs them: `lyapunov` is not given",
-        };
-        format!(
-            "plan of this command
-  grid              {grid}: {} rows
-  part              {part}
-  dimension         3
-  method            taylor, several points side by side in the lanes of a core
-  rtol              {:e}
-  following         {follow}
-  exponents         {lyapunov}
-  bound on work     {} returns, {} steps a point
-  rows              written in the order of the grid as soon as all before them are done",
-            count(settings.points()),
-            settings.rtol,
-            count(settings.max_returns),
-            count(settings.max_steps)
-        )
+/// Of a system or a law from a file.
+fn of_text(points: TextPoints, layout: SweepLayout, law: AnyLaw, axes: Axes) -> SweptGrid {
+    let mut model = points.model().clone();
+    axes.names.iter().for_each(|name| model.vary(name));
+    SweptGrid {
+        grid: Grid::Systems {
+            axes: axes.ranges.clone(),
+            at: Arc::new(points),
+        },
+        layout,
+        law,
+        system: Swept::Text(Box::new(model)),
+        axes,
+        states: Vec::new(),
     }
+}
+
+/// V_H and K of two equal interfaces with a law that is built in, or their starts at one V_H and K.
+fn plane(
+    options: &SweepOptions,
+    system: System,
+    axes: Axes,
+    (driving, stiffness): (&Grain, &Grain),
+) -> Result<SweptGrid> {
+    let units = &system.units;
+    let mut states = Vec::new();
+    let grid = if options.basin {
+        let mut needed = |name: &'static str, text: &Option<String>| {
+            let missing = || {
+                Error::Input(format!(
+                    "{} A:B:N is missing, and has no default",
+                    option_name(name)
+                ))
+            };
+            let grain = Grain::parse(name, text.as_deref().ok_or_else(missing)?)?;
+            states.push((name, grain.to_string()));
+            grain.inward(Quantity::State, units)
+        };
+        Grid::Basin {
+            state_1: needed("state-1", &options.state_1)?,
+            state_2: needed("state-2", &options.state_2)?,
+            loading: loading(&system, driving, stiffness)?,
+        }
+    } else {
+        Grid::Plane {
+            driving: driving.inward(Quantity::SlipRate, units)?,
+            stiffness: stiffness.inward(Quantity::Stiffness, units)?,
+        }
+    };
+    Ok(SweptGrid {
+        grid,
+        layout: SweepLayout::interfaces(2, std::iter::empty()),
+        law: system.law,
+        system: Swept::Interfaces(Box::new(system)),
+        axes,
+        states,
+    })
 }
 
 /// V_H and K of a basin, which are single values.

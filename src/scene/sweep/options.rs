@@ -27,6 +27,36 @@ pub struct SweepOptions {
         help_heading = "Grid"
     )]
     pub stiffness: Option<String>,
+    /// Values of any other parameter, by the names that JSON has: healing_time=10:1000:30log, and of one interface
+    /// residual_strength_2=1e-4:1e-2:20log; of a --system any of its own, which may be negative. May be given again: two parameters
+    /// vary at most, V_H, then K, then these in their order, the first fastest
+    #[arg(
+        long,
+        value_name = "NAME=A:B:N[log]",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub grid: Vec<String>,
+    /// Of a --system: the section whose returns tell the regime, STATE=VALUE, crossed falling; or STATE, in the middle of what that
+    /// state swings through after the transient [default: the first state]. That of interfaces is tau_ss at the mean slip rate
+    #[arg(
+        long,
+        value_name = "STATE[=VALUE]",
+        requires = "system",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub surface: Option<String>,
+    /// Of a --system: the values of all states in their order, where the first run of every point starts [default: its table start]
+    #[arg(
+        long,
+        value_name = "START",
+        requires = "system",
+        allow_hyphen_values = true,
+        help_heading = "Grid"
+    )]
+    pub start: Option<String>,
     /// A grid of starting states instead of one of V_H and K: which attractor each leads to, at one V_H and K
     #[arg(long, requires_all = ["state_1", "state_2"], conflicts_with_all = ["follow", "starts"], help_heading = "Grid")]
     pub basin: bool,
@@ -49,13 +79,14 @@ pub struct SweepOptions {
     )]
     pub state_2: Option<String>,
     /// Starts at each point, a row for each: the first beside the symmetric steady state, the second with equal interfaces, the
-    /// third far from it, the others at random (--seed)
+    /// third far from it, the others at random (--seed). Of a --system the first is its start, the others lie at random around it, in
+    /// each state x within 1 + |x|
     #[arg(long, value_name = "S", value_parser = count, default_value_t = 1, help_heading = "Grid")]
     pub starts: usize,
     /// Seed of the random starts: the same seed gives the same rows
     #[arg(long, value_name = "SEED", default_value_t = 1, help_heading = "Grid")]
     pub seed: u64,
-    /// Start each point on the attractor found at the V_H before: shorter transients, and hysteresis shows
+    /// Start each point on the attractor found at the one before along the first parameter: shorter transients, and hysteresis shows
     #[arg(long, help_heading = "Grid")]
     pub follow: bool,
     /// The largest Lyapunov exponent of every point, not only of those whose regime needs it

@@ -3,13 +3,27 @@
 use super::options::{SweepLine, SweepOptions};
 use clap::Parser;
 use serde_json::{Value, json};
+use std::path::Path;
+
+/// The option that may be given again.
+const GRID: &str = "grid";
 
 /// The settings for the output.
 pub(super) fn numerics(options: &SweepOptions, grid: &[(&str, String)]) -> Value {
     let mut pairs: serde_json::Map<String, Value> = grid
         .iter()
+        .filter(|(name, _)| *name != GRID)
         .map(|(name, text)| (name.replace('-', "_"), json!(text)))
         .collect();
+    let axes = grid.iter().filter(|(name, _)| *name == GRID);
+    let axes: Vec<&str> = axes.map(|(_, text)| text.as_str()).collect();
+    if !axes.is_empty() {
+        pairs.insert(GRID.to_owned(), json!(axes));
+    }
+    if options.slab.text.system.is_some() {
+        pairs.insert("surface".to_owned(), json!(options.surface));
+        pairs.insert("start".to_owned(), json!(options.start));
+    }
     let others = [
         ("basin", json!(options.basin)),
         ("starts", json!(options.starts)),
@@ -36,8 +50,15 @@ pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<
         let maybe = |x: Option<f64>| x.map(|x| format!("{x:?}"));
         let plain = |x: f64| Some(format!("{x:?}"));
         let count = |n: usize| Some(n.to_string());
+        let path = |path: Option<&Path>| path.map(|path| path.display().to_string());
+        // A word has no spaces.
+        let plain_text = |text: Option<&str>| text.map(|text| text.split_whitespace().collect());
         [
             ("law", Some(slab.law.clone())),
+            ("interfaces", Some(slab.interfaces.to_string())),
+            ("system", path(slab.text.system.as_deref())),
+            ("surface", plain_text(options.surface.as_deref())),
+            ("start", plain_text(options.start.as_deref())),
             ("healing-time", maybe(slab.healing_time)),
             ("residual-strength", plain(slab.c())),
             ("damping", maybe(slab.damping)),

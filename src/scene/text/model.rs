@@ -126,6 +126,19 @@ impl TextModel {
         self.echo.insert(name.to_owned(), value);
     }
 
+    /// Tells that a parameter varies: it has no one value.
+    pub(in crate::scene) fn vary(&mut self, name: &str) {
+        for key in ["parameters", name] {
+            match self.echo.get_mut(key) {
+                Some(Value::Object(all)) if all.contains_key(name) => {
+                    all.insert(name.to_owned(), Value::Null);
+                }
+                Some(value) if key == name => *value = Value::Null,
+                _ => (),
+            }
+        }
+    }
+
     /// Its field.
     ///
     /// # Errors

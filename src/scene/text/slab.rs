@@ -108,6 +108,13 @@ impl TextSlab {
         self.places.len()
     }
 
+    /// Whether there are two interfaces whose parameters are the same.
+    pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
+        let all = system.parameters();
+        let of = |places: &Vec<usize>| -> Vec<f64> { places.iter().map(|&i| all[i]).collect() };
+        self.interfaces() == 2 && of(&self.places[0]) == of(&self.places[1])
+    }
+
     /// What the law is called.
     pub fn law_name(&self) -> &str {
         &self.law.name
@@ -161,7 +168,11 @@ impl TextSlab {
     /// # Errors
     /// [`Error::Input`] and [`Error::Parameter`] for what can't be read or is outside its domain, [`Error::NotConverged`] where the law
     /// has no steady state at which to start.
-    pub(super) fn start(&self, text: Option<&str>, system: &TextSystem) -> Result<Vec<f64>> {
+    pub(in crate::scene) fn start(
+        &self,
+        text: Option<&str>,
+        system: &TextSystem,
+    ) -> Result<Vec<f64>> {
         let text = text.unwrap_or(USUAL_START);
         let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][self.interfaces() - 1];
         let unreadable = || {
@@ -220,7 +231,7 @@ impl TextSlab {
     }
 
     /// The steady stress of the first interface at an equal share of V_H.
-    pub(super) fn mean_stress(&self, system: &TextSystem) -> Result<f64> {
+    pub(in crate::scene) fn mean_stress(&self, system: &TextSystem) -> Result<f64> {
         let v = system.parameters()[DRIVING] / self.interfaces() as f64;
         Ok(self.friction(system, 0).steady(v)?.stress)
     }

@@ -1,4 +1,4 @@
-//! Pictures of sweeps: which regime there is at each point of the (V_H, K) plane, and where starts end.
+//! Pictures of sweeps: which regime there is at each point of a plane, and where starts end.
 
 mod attractors;
 mod basin;
@@ -6,7 +6,7 @@ mod plane;
 pub(crate) mod tints;
 
 pub use basin::basin_map;
-pub use plane::regime_map;
+pub use plane::{parameter_map, regime_map};
 
 use crate::equilibrium::Symmetry;
 use crate::number::Uncertain;

@@ -1,9 +1,9 @@
-//! Regimes over the (V_H, K) plane, with curves of bifurcations over them.
+//! Regimes over a plane of two parameters; over that of V_H and K with curves of bifurcations over them.
 
 use super::tints::{LIGHTEST, RegimeKind};
 use super::{GridSide, PointOutcome};
 use crate::bifurcation::LocusRow;
-use crate::output::plot::{Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
+use crate::output::plot::{Axis, Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
 use crate::scene::{Quantity, Units};
 use crate::views::axis_label;
 
@@ -31,23 +31,45 @@ pub fn regime_map(
     units: &Units,
 ) -> Drawing {
     let label = |name, quantity| axis_label(name, quantity, units);
-    let (x, x_edges) = driving.axis(label("V_H", Quantity::SlipRate), |x| {
+    let x = driving.axis(label("V_H", Quantity::SlipRate), |x| {
         units.outward(Quantity::SlipRate, x)
     });
-    let (y, y_edges) = stiffness.axis(label("K", Quantity::Stiffness), |x| {
+    let y = stiffness.axis(label("K", Quantity::Stiffness), |x| {
         units.outward(Quantity::Stiffness, x)
     });
-    let columns = driving.values.len();
+    drawn(outcomes, [x, y], starts, over(curves, units), units)
+}
+
+/// The same over two parameters whose values are in the user's units, with the labels of their axes.
+pub fn parameter_map(
+    outcomes: &[PointOutcome],
+    sides: [(&GridSide, String); 2],
+    starts: usize,
+    units: &Units,
+) -> Drawing {
+    let axes = sides.map(|(side, label)| side.axis(label, |x| x));
+    drawn(outcomes, axes, starts, Vec::new(), units)
+}
+
+/// A map over axes with the edges of their cells.
+fn drawn(
+    outcomes: &[PointOutcome],
+    [(x, x_edges), (y, y_edges)]: [(Axis, Vec<f64>); 2],
+    starts: usize,
+    series: Vec<PlotSeries>,
+    units: &Units,
+) -> Drawing {
+    let [columns, lines] = [&x_edges, &y_edges].map(|edges| edges.len().saturating_sub(1));
     let starts = starts.max(1);
     let exponents = LargestExponents::of(outcomes);
-    let mut found = vec![Vec::new(); columns * stiffness.values.len()];
+    let mut found = vec![Vec::new(); columns * lines];
     for outcome in outcomes {
         if let Some(cell) = found.get_mut(outcome.number / starts) {
             cell.push((RegimeKind::of(outcome), exponents.shade(outcome)));
         }
     }
     let fills: Vec<_> = found.iter_mut().map(told).collect();
-    let mut title = format!("regimes at {columns} × {} points", stiffness.values.len());
+    let mut title = format!("regimes at {columns} × {lines} points");
     if starts > 1 {
         title += &format!(", {starts} starts each");
     }
@@ -63,7 +85,7 @@ pub fn regime_map(
     };
     let panel = Panel {
         cells: Some(map),
-        series: over(curves, units),
+        series,
         ..Panel::new(title, x, y)
     };
     Drawing::columns(vec![vec![panel]])
