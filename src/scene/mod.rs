@@ -90,7 +90,7 @@ pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,
     TextEquilibrium, TextInstant, TextLawPlan, TextLawPoint, TextModel, TextOptions, TextOrbitPlan,
-    TextOutcome, TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section,
+    TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section,
     text_columns, text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};
