@@ -108,6 +108,16 @@ impl TextSlab {
         self.places.len()
     }
 
+    /// Whether the interfaces differ in any parameter of the law.
+    pub(super) fn differ(&self, system: &TextSystem) -> bool {
+        let own = |places: &Vec<usize>| -> Vec<f64> {
+            places.iter().map(|&i| system.parameters()[i]).collect()
+        };
+        self.places
+            .windows(2)
+            .any(|pair| own(&pair[0]) != own(&pair[1]))
+    }
+
     /// What the law is called.
     pub fn law_name(&self) -> &str {
         &self.law.name
