@@ -207,3 +207,75 @@ fn interfaces_may_differ() {
         );
     }
 }
+
+/// Radiation damping of laws from files: numbers are those of the built-in laws, whose slip rate is defined by the same equation.
+#[test]
+fn damped_runs_are_those_of_built_in_laws() {
+    for (name, interfaces, options) in [
+        ("spinodal", 2, "--damping 0.05"),
+        ("bounded", 1, "--damping 3"),
+        ("regularised-ageing", 2, "--set damping=1e-3"),
+        ("dieterich-ruina", 1, "--damping 0.2"),
+        ("slip", 2, "--damping 0.2"),
+    ] {
+        let file = law("law_damped", name);
+        let run = |law: &str| {
+            object(&format!(
+                "integrate --law {law} --interfaces {interfaces} {options} --driving 10 --stiffness 0.5 --until 1 --rtol 1e-15 --method taylor --points 5 --start near-symmetric:-0.2"
+            ))
+        };
+        let (made, known) = (run(&file), run(name));
+        let rows = |made: &Value| made["result"]["rows"].as_array().cloned().expect("rows");
+        let columns = COLUMNS
+            .iter()
+            .filter(|column| interfaces == 2 || !column.ends_with('2'));
+        let columns: Vec<&str> = columns.copied().collect();
+        for (made, known) in rows(&made).iter().zip(&rows(&known)) {
+            alike(made, known, 1e-12, &columns);
+        }
+        let value = options.split(['=', ' ']).next_back().unwrap_or_default();
+        let told = number(&made, "/model/parameters/damping");
+        assert_eq!(Ok(told), value.parse());
+    }
+}
+
+/// By methods that take Jacobians and by those that take the rates alone.
+#[test]
+fn every_method_runs_a_damped_law_from_a_file() {
+    let file = law("law_damped_methods", "spinodal");
+    let end = |law: &str, method: &str, rtol: f64| {
+        let made = object(&format!(
+            "integrate --law {law} --damping 0.1 --driving 10 --stiffness 0.14 --until 2 --rtol {rtol} --method {method} --final-only"
+        ));
+        number(&made, "/result/final/stress")
+    };
+    let exact = end("spinodal", "taylor", 1e-15);
+    for method in twinslip::integrate::Choice::names() {
+        near(end(&file, method, 1e-9), exact, 1e-6);
+    }
+}
+
+/// Formulas with a factor within and without: stress in other units, sums within exp, quotients.
+#[test]
+fn damping_is_found_in_formulas_of_other_shape() {
+    let known = law("law_damped_known", "dieterich-ruina");
+    let other = folder("law_damped_shapes").join("other.toml");
+    let text = "slip_rate = \"-exp(-(mu - S*tau/unit)/a)*(-1)/psi^(b/a)\"\nevolution = \"1 - v*psi\"\n[parameters]\na = 0.0349\nb = 0.0489\nmu = 0.369\nunit = 2.0\n[where]\nS = \"2*a\"\n";
+    fs::write(&other, text).expect("a file");
+    let curve =
+        |law: &str| format!("law --law {law} --damping 0.05 --points 9 --from 0.1 --to 100");
+    let (made, known) = (
+        object(&curve(&other.display().to_string())),
+        object(&curve(&known)),
+    );
+    let rows = |made: &Value| made["result"]["rows"].as_array().cloned().expect("rows");
+    assert_eq!(rows(&made).len(), 9);
+    for (made, known) in rows(&made).iter().zip(&rows(&known)) {
+        alike(
+            made,
+            known,
+            1e-12,
+            &["stress", "state", "critical_stiffness"],
+        );
+    }
+}

@@ -170,8 +170,12 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
             "is from a file, and has no parameter healing_time",
         ),
         (
-            format!("{run} --damping 0.1"),
-            "is from a file, and has no parameter damping",
+            format!("{run} --damping -0.1"),
+            "damping is -0.1, but must be zero or positive, and finite",
+        ),
+        (
+            format!("{run} --set damping=-0.1"),
+            "damping is -0.1, but must be zero or positive, and finite",
         ),
         (format!("{run} --si"), "whose numbers have no units"),
         (format!("{run} --interfaces 3"), "1 or 2"),
@@ -215,6 +219,14 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
     ] {
         refused_in_one_line(&arguments, sentence);
     }
+    // Of a slip rate that rises otherwise with the stress no closed equation is known.
+    let path = folder("law_refused").join("cubic.toml");
+    let text = "slip_rate = \"tau^3/psi\"\nevolution = \"1 - abs(v)*psi\"\n";
+    fs::write(&path, text).expect("a file");
+    refused_in_one_line(
+        &format!("law --law {} --damping 0.1", path.display()),
+        "must be a factor times sinh or exp of a multiple of tau",
+    );
     // A law that does not weaken as the laws here do may have no steady state.
     let path = folder("law_refused").join("none.toml");
     fs::write(

@@ -117,3 +117,27 @@ fn the_law_that_the_program_carries_slides() {
     assert_eq!(made["model"]["law"], "composite");
     assert!(number(&made, "/result/final/state_1") > 0.0);
 }
+
+/// Radiation damping: equilibria, their stability and steady curves are those of the built-in law.
+#[test]
+fn damped_steady_states_are_those_of_the_built_in_law() {
+    let file = law("law_damped_steady", "spinodal");
+    for law in ["--damping 0.001", "--damping 0.5"] {
+        let of = |name: &str, command: &str| object(&format!("{command} --law {name} {law}"));
+        let both = |command: &str| (of(&file, command), of("spinodal", command));
+        let (made, known) = both("law --points 40");
+        let rows = |made: &Value| made["result"]["rows"].as_array().cloned().expect("rows");
+        for (made, known) in rows(&made).iter().zip(&rows(&known)) {
+            alike(made, known, 1e-12, &["stress", "state"]);
+            let critical = |row: &Value| number(row, "/critical_stiffness");
+            near(critical(made), critical(known), 1e-11);
+        }
+        let (made, known) = both("equilibria --driving 10 --stiffness 0.14 --interfaces 1");
+        for at in ["stress/value", "eigenvalues/0/0", "eigenvalues/0/1"] {
+            let at = format!("/result/equilibria/0/{at}");
+            near(number(&made, &at), number(&known, &at), 1e-11);
+        }
+        let verdict = |made: &Value| made["result"]["equilibria"][0]["verdict"].clone();
+        assert_eq!(verdict(&made), verdict(&known));
+    }
+}
