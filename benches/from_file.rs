@@ -13,26 +13,7 @@ use twinslip::model::{Loading, Smooth, two_interfaces};
 use twinslip::scene::SystemFile;
 
 /// Two interfaces with law (35), as one would write them.
-const SPINODAL: &str = r#"
-name = "two interfaces"
-states = ["tau", "w1", "w2"]
-[parameters]
-V = 10.0
-K = 0.14
-R = 100.0
-c = 0.001
-a = 0.0349
-b = 0.0489
-a_v = 0.369
-[rates]
-tau = "K*(V - v1 - v2)"
-w1 = "(exp(-w1) - 1)/R - abs(v1)"
-w2 = "(exp(-w2) - 1)/R - abs(v2)"
-[where]
-v1 = "gamma*sinh(tau)/(c + (1 + R)*exp(w1))^(b/a)"
-v2 = "gamma*sinh(tau)/(c + (1 + R)*exp(w2))^(b/a)"
-gamma = "2*exp(-a_v/a)"
-"#;
+const SPINODAL: &str = include_str!("../tests/data/two-interfaces.toml");
 const LORENZ: &str = include_str!("../scenes/systems/lorenz.toml");
 
 /// Pairs of runs.

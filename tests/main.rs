@@ -110,6 +110,8 @@ mod taylor;
 mod text_commands;
 mod text_files;
 mod text_laws;
+mod text_laws_input;
+mod text_laws_steady;
 mod text_systems;
 mod transport;
 mod unequal;

@@ -4,6 +4,7 @@ use crate::command;
 use crate::common;
 use command::{csv, folder, number, object, refused_in_one_line, run, twinslip};
 use common::assert_close;
+use common::text::{alike, law};
 use serde_json::Value;
 
 const COLUMNS: [&str; 10] = [
@@ -229,4 +230,156 @@ fn an_orbit_is_drawn_from_flags_and_scenes() {
         [typed, of_scene].map(|path| std::fs::read_to_string(path).expect("a picture"));
     assert!(typed.contains("phase plane") && typed.contains("slow"));
     assert_eq!(typed, of_scene);
+}
+
+/// Of systems from files: stable, unstable, and one whose period others computed.
+const OF_SYSTEMS: &[(&str, &[&str], f64)] = &[
+    ("--system van-der-pol", &["time", "x", "y"], 1e-12),
+    (
+        "--system lorenz --set r=24 --start 12,12,23 --period-guess 0.68",
+        &["time", "x", "y", "z"],
+        1e-12,
+    ),
+    (
+        "--system van-der-pol --method rodas5p",
+        &["time", "x", "y"],
+        1e-8,
+    ),
+];
+
+#[test]
+fn rows_of_a_system_go_around_its_orbit_once() {
+    for (flags, columns, near) in OF_SYSTEMS {
+        let command = format!("orbit {flags} --crosscheck none");
+        let made = object(&format!("{command} --points 41"));
+        let (orbit, rows) = (&made["result"]["orbit"], rows(&made));
+        assert_eq!(rows.len(), 41, "{flags}");
+        let names: Vec<&str> = rows[0]
+            .as_object()
+            .expect("a row")
+            .keys()
+            .map(String::as_str)
+            .collect();
+        assert_eq!(names, *columns, "{flags}");
+        let (first, last) = (&rows[0], &rows[40]);
+        assert_eq!(last["time"], orbit["period"]["value"], "{flags}");
+        alike(last, first, *near, &columns[1..]);
+        for (i, name) in columns[1..].iter().enumerate() {
+            assert_eq!(first[*name], orbit["point"][i], "{flags}");
+            let end = |of: &str| number(orbit, &format!("/extremes/{name}/{of}/value"));
+            let path = format!("/{name}");
+            assert!(rows.iter().all(|row| {
+                let x = number(row, &path);
+                x > end("min") - near && x < end("max") + near
+            }));
+        }
+        // A run from the point, for as long as it stays by an orbit that is not stable.
+        let run = object(&format!(
+            "integrate {} --start={} --until {} --points 41 --rtol 1e-15 --method taylor",
+            flags
+                .split(" --start")
+                .next()
+                .unwrap_or_default()
+                .replace(" --method rodas5p", ""),
+            columns[1..]
+                .iter()
+                .map(|name| first[*name].to_string())
+                .collect::<Vec<_>>()
+                .join(","),
+            orbit["period"]["value"]
+        ));
+        for (row, other) in rows.iter().zip(self::rows(&run)) {
+            alike(row, other, near.max(1e-9), columns);
+        }
+        let without = object(&command);
+        assert_eq!(without["result"]["orbit"], *orbit, "{flags}");
+        assert!(without["result"].get("rows").is_none());
+    }
+}
+
+#[test]
+fn rows_of_a_law_from_a_file_are_those_of_the_built_in_law() {
+    let file = law("orbit_rows_law", "spinodal");
+    for loading in [
+        "--symmetry asymmetric --driving 10 --stiffness 0.14 --start 9.91,0.00204,0.00198",
+        "--interfaces 1 --driving 10 --stiffness 0.1",
+    ] {
+        let orbit = |law: &str| {
+            object(&format!(
+                "orbit --law {law} {loading} --crosscheck none --points 33"
+            ))
+        };
+        let (made, known) = (orbit(&file), orbit("spinodal"));
+        let columns: Vec<&str> = COLUMNS
+            .into_iter()
+            .filter(|name| !(loading.contains("interfaces 1") && name.ends_with("_2")))
+            .collect();
+        let (first, last) = (&rows(&made)[0], &rows(&made)[32]);
+        let periodic: Vec<&str> = columns
+            .iter()
+            .copied()
+            .filter(|name| (name.contains("rate") || !name.starts_with("slip_")) && *name != "time")
+            .collect();
+        alike(last, first, 1e-10, &periodic);
+        // The point is a node: the rows of the built-in law begin elsewhere on the orbit, and are of another phase.
+        let point: Vec<String> = (0..columns
+            .iter()
+            .filter(|name| name.contains("log_state"))
+            .count()
+            + 1)
+            .map(|i| {
+                let x = number(&made, &format!("/result/orbit/point/{i}"));
+                if i == 0 { x } else { x.exp() }.to_string()
+            })
+            .collect();
+        let model = loading
+            .split(" --start")
+            .next()
+            .unwrap_or_default()
+            .replace("--symmetry asymmetric ", "");
+        let run = object(&format!(
+            "integrate --law spinodal {model} --start {} --until {} --points 33 --rtol 1e-14 --method taylor",
+            point.join(","),
+            made["result"]["orbit"]["period"]["value"]
+        ));
+        let period = "/result/orbit/period/value";
+        assert_close(
+            number(&made, period),
+            number(&known, period),
+            1e-12,
+            loading,
+        );
+        for (row, other) in rows(&made).iter().zip(rows(&run)) {
+            alike(row, other, 1e-8, &columns);
+        }
+    }
+}
+
+#[test]
+fn orbits_of_systems_are_drawn_and_told() {
+    let place = folder("orbit-rows-system");
+    let picture = place.join("orbit.svg");
+    let command = "orbit --system van-der-pol --crosscheck none";
+    let ended = twinslip(&format!(
+        "{command} --points 5 --format csv --explain --plot {}",
+        picture.display()
+    ));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    assert_eq!(csv(&ended.out)[0], ["time", "x", "y"]);
+    assert!(ended.out.contains("# orbit: period (11.6122306677"));
+    assert!(
+        ended
+            .err
+            .contains("on, for the extremes, the rows and the picture")
+    );
+    let picture = std::fs::read_to_string(picture).expect("a picture");
+    assert!(picture.contains("phase plane") && picture.contains("van der Pol"));
+    refused_in_one_line(
+        &format!("{command} --points 1"),
+        "points is 1, but must be from 2",
+    );
+    refused_in_one_line(
+        &format!("{command} --plot orbit.pdf"),
+        "must end in .svg or .png",
+    );
 }

@@ -233,6 +233,9 @@ fn pieces_of_the_paper_may_be_such_scenes() {
     assert!(equilibria.found.complete && !equilibria.found.undecided());
     assert_eq!(equilibria.found.equilibria.len(), 3);
     let law = pieces.law_of("law").expect("a law");
+    let [law] = &law.curves[..] else {
+        panic!("one law");
+    };
     assert_eq!((law.points.len(), law.landmarks.extrema.len()), (400, 2));
     assert!(pieces.orbit("law").is_err() && pieces.law_of("sweep").is_err());
 }

@@ -422,10 +422,109 @@ fn what_is_wrong_is_refused_in_one_sentence() {
         &format!("{orbit} --start hopf {differ}"),
         "for equal interfaces",
     );
-    refused_in_one_line(
-        &format!("law {differ}"),
-        "takes equal interfaces, and these differ",
-    );
+}
+
+/// tau_ss of interface 2 by (35) at v_2/l_2, in the unit of the first one, and k_c by its slope.
+#[test]
+fn the_laws_of_both_interfaces_stand_one_after_the_other() {
+    let (n, l, a, b, r, c) = (1.5, 2.0, 0.03, 0.045, 60.0, 0.002);
+    let made = object(&format!(
+        "law --points 25 --set normal_stress_2={n},slip_length_2={l},direct_effect_2={a},evolution_effect_2={b},healing_time_2={r},residual_strength_2={c}"
+    ));
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let (first, second) = rows.split_at(25);
+    let equal = object("law --points 25");
+    let equal = equal["result"]["rows"].as_array().expect("rows");
+    for (row, plain) in first.iter().zip(equal) {
+        assert_eq!(row["interface"], 1);
+        for (name, value) in plain.as_object().expect("a row") {
+            assert_eq!(row[name], *value, "{name}");
+        }
+    }
+    let gamma = 2.0 * (-0.369f64 / a).exp();
+    let stress = |v: f64| {
+        let psi = 1.0 / (1.0 + r * v / l);
+        let strength = (c + (1.0 + r) * psi).powf(b / a);
+        n * a / 0.0349 * (v / gamma * strength).asinh()
+    };
+    let stiffness = |v: f64| {
+        let h = 1e-4;
+        let slope = (stress(v * (1.0 + h)) - stress(v * (1.0 - h))) / (2.0 * h * v);
+        -(1.0 / r + v / l) * slope
+    };
+    for row in second {
+        assert_eq!(row["interface"], 2);
+        let v = number(row, "/slip_rate");
+        assert_close(number(row, "/stress"), stress(v), 1e-13, "stress");
+        let friction = 0.0349 / n * stress(v);
+        assert_close(number(row, "/friction"), friction, 1e-13, "friction");
+        let critical = number(row, "/critical_stiffness");
+        assert_close(
+            critical,
+            stiffness(v),
+            1e-5 * (1.0 + 1.0 / critical.abs()),
+            "k_c",
+        );
+    }
+    let of = |name: &str, interface: u64| -> Vec<Value> {
+        let all = made["result"][name].as_array().expect("a list").iter();
+        all.filter(|one| one["interface"] == interface)
+            .cloned()
+            .collect()
+    };
+    for interface in [1, 2] {
+        assert_eq!(of("extrema", interface).len(), 2);
+        assert_eq!(of("transition_rates", interface).len(), 1);
+    }
+    for extremum in of("extrema", 2) {
+        let ((v, radius), (peak, error)) = (
+            uncertain(&extremum["slip_rate"]),
+            uncertain(&extremum["stress"]),
+        );
+        let sign = if extremum["kind"] == "maximum" {
+            1.0
+        } else {
+            -1.0
+        };
+        assert!((stress(v) - peak).abs() <= error + 1e-14 * peak && radius < 1e-9 * v);
+        for beside in [0.999 * v, 1.001 * v] {
+            assert!(sign * (stress(v) - stress(beside)) > 0.0);
+        }
+    }
+    let [top] = &of("critical_stiffness_maxima", 2)[..] else {
+        panic!("one maximum");
+    };
+    let ((v, _), (most, error)) = (uncertain(&top["slip_rate"]), uncertain(&top["stiffness"]));
+    assert!((stiffness(v) - most).abs() < 1e-6 * most && error < 1e-9 * most);
+    for beside in [0.9 * v, 1.1 * v] {
+        assert!(stiffness(beside) < stiffness(v));
+    }
+}
+
+#[test]
+fn laws_of_both_interfaces_are_told_and_drawn() {
+    let place = folder("laws-of-both");
+    let picture = place.join("law.svg");
+    let ended = twinslip(&format!(
+        "law {SECOND} --points 5 --format csv --plot {}",
+        picture.display()
+    ));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let table = csv(&ended.out);
+    assert_eq!((table[0][0].as_str(), table.len()), ("interface", 11));
+    assert!(ended.err.contains("interface 2: maximum of stress"));
+    let picture = std::fs::read_to_string(picture).expect("a picture");
+    assert!(picture.contains("interface 1") && picture.contains("interface 2"));
+    // Equal by --set, though each has its own.
+    let same = object("law --points 3 --set slip_length_2=1,residual_strength_2=0.001");
+    assert!(same["result"]["rows"][0].get("interface").is_none());
+    // Of a law from a file.
+    let made = object("law --law composite.toml --set cutoff_2=0.1 --points 3");
+    let rows = made["result"]["rows"].as_array().expect("rows");
+    let plain = object("law --law composite.toml --set cutoff=0.1 --points 3");
+    assert_eq!(rows.len(), 6);
+    assert_eq!(rows[5]["interface"], 2);
+    assert_eq!(rows[5]["stress"], plain["result"]["rows"][2]["stress"]);
 }
 
 #[test]

@@ -3,19 +3,48 @@
 use super::interrupt;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
-use super::text;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::integrate::Work;
 use crate::output::{Format, Place, RowList, object, plot};
 use crate::scene::{
-    Change, IntegrateOptions, Keeping, Plan, Program, RunOutcome, TextModel, explain,
+    Change, Described, IntegrateOptions, Keeping, Plan, Program, Quantity, RunOutcome, TextModel,
+    TextPlan, explain,
 };
 use crate::views;
 use serde_json::{Map, Value, json};
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
+
+/// A run that is planned, of interfaces or of a system of one's own.
+pub trait PlannedRun {
+    /// The plan in words.
+    fn explain(&self, keeping: Keeping) -> String;
+    /// What is integrated.
+    fn system(&self) -> &dyn Described;
+    /// How it is integrated.
+    fn numerics(&self) -> Value;
+    /// The columns of rows.
+    fn columns(&self) -> Vec<(String, Quantity)>;
+    /// The columns of the points of a picture.
+    fn pictured(&self) -> Vec<(String, Quantity)>;
+    /// Of how many interfaces there are events; `None` where they are not asked for.
+    fn interfaces_of_events(&self) -> Option<usize> {
+        None
+    }
+    /// How V_H changes on the way, where it does.
+    fn program(&self) -> Option<&Program>;
+    /// The states whose errors are estimated each.
+    fn states(&self) -> &[&'static str] {
+        &[]
+    }
+    /// Whether anything is seen between start and end.
+    fn observed(&self) -> bool;
+    /// Goes along it.
+    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome>;
+    /// The picture of these points.
+    fn picture(&self, drawn: &RowList) -> plot::Drawing;
+}
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     // A program may say itself which V_H is the first.
@@ -24,10 +53,66 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     } else {
         &[]
     };
-    if let Some(model) = TextModel::of(&options.model, free)? {
-        return text::integrate::run(options, model, words);
+    match TextModel::of(&options.model, free)? {
+        Some(model) => integrate(&TextPlan::new(options, model)?, options, words),
+        None => integrate(&Plan::new(options)?, options, words),
     }
-    let plan = Plan::new(options)?;
+}
+
+impl PlannedRun for Plan {
+    fn explain(&self, keeping: Keeping) -> String {
+        explain(self, keeping)
+    }
+
+    fn system(&self) -> &dyn Described {
+        &self.system
+    }
+
+    fn numerics(&self) -> Value {
+        json!({
+            "method": self.method.name(),
+            "asked": self.asked_method,
+            "rtol": self.tolerances.rtol,
+            "atol": self.tolerances.atol,
+            "max_steps": self.max_steps,
+            "dimension": self.dimension.number(),
+        })
+    }
+
+    fn columns(&self) -> Vec<(String, Quantity)> {
+        views::names(&self.columns, false)
+    }
+
+    fn pictured(&self) -> Vec<(String, Quantity)> {
+        views::names(&self.pictured(), false)
+    }
+
+    fn interfaces_of_events(&self) -> Option<usize> {
+        self.events.map(|_| self.system.interfaces)
+    }
+
+    fn program(&self) -> Option<&Program> {
+        self.program.as_ref()
+    }
+
+    fn observed(&self) -> bool {
+        self.observed()
+    }
+
+    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome> {
+        crate::scene::run(self, out)
+    }
+
+    fn picture(&self, drawn: &RowList) -> plot::Drawing {
+        views::picture_of_run(self, drawn)
+    }
+}
+
+fn integrate(
+    plan: &impl PlannedRun,
+    options: &IntegrateOptions,
+    words: &[String],
+) -> Result<Ending> {
     if let Some(path) = &options.plot {
         plot::PictureFormat::of(path)?;
     }
@@ -45,21 +130,18 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         } else {
             Keeping::Streamed
         };
-        say(explain(&plan, keeping).trim_end());
+        say(plan.explain(keeping).trim_end());
     }
-    let columns = views::names(&plan.columns, false);
-    let pictured = views::names(&plan.pictured(), false);
-    let numbers = numerics(&plan);
-    let remarks = report.remarks(&plan.system, &numbers);
-    let columns = (columns, &plan.system.units);
+    let remarks = report.remarks(plan.system(), &plan.numerics());
+    let columns = (plan.columns(), plan.system().units());
     let mut out = match StreamOut::new(&report, remarks, columns, kept) {
-        Ok(out) => out.drawing(pictured.into_iter().map(|(name, _)| name).collect()),
+        Ok(out) => out.drawing(plan.pictured()),
         Err(error) => return written(Err(error), &report.place),
     };
     if plan.observed() {
         interrupt::watch();
     }
-    let outcome = crate::scene::run(&plan, &mut out)?;
+    let outcome = plan.run(&mut out)?;
     interrupt::unwatch();
     let seconds = out.progress.finish().as_secs_f64();
     let StreamOut {
@@ -71,26 +153,16 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
-    let ending = write(&plan, &report, &rows, &outcome, events.as_ref())?;
+    let ending = write(plan, &report, &rows, &outcome, events.as_ref())?;
     if let Some(path) = &options.plot {
-        plot::write(path, &views::picture_of_run(&plan, &drawn))?;
+        plot::write(path, &plan.picture(&drawn))?;
     }
-    report.say(summary(&outcome, plan.events.is_some(), seconds));
+    let events = plan.interfaces_of_events().map(|_| outcome.events.len());
+    report.say(summary(&outcome, events, seconds));
     report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None => Ok(ending),
-    })
-}
-
-fn numerics(plan: &Plan) -> Value {
-    json!({
-        "method": plan.method.name(),
-        "asked": plan.asked_method,
-        "rtol": plan.tolerances.rtol,
-        "atol": plan.tolerances.atol,
-        "max_steps": plan.max_steps,
-        "dimension": plan.dimension.number(),
     })
 }
 
@@ -133,7 +205,7 @@ fn events_place(options: &IntegrateOptions) -> Result<Option<(PathBuf, Format)>>
 
 /// The object, or the events after the rows.
 fn write(
-    plan: &Plan,
+    plan: &impl PlannedRun,
     report: &Report<'_>,
     rows: &RowList,
     outcome: &RunOutcome,
@@ -141,30 +213,27 @@ fn write(
 ) -> Result<Ending> {
     if report.format == Format::Json {
         let bytes = report.envelope(
-            &plan.system,
-            numerics(plan),
+            plan.system(),
+            plan.numerics(),
             result(plan, rows, outcome),
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
         return written(report.place.write(&bytes), &report.place);
     }
-    if plan.events.is_none() {
+    let Some(interfaces) = plan.interfaces_of_events() else {
         return Ok(Ending::Done);
-    }
+    };
     let place = Place::new(events.map(|(path, _)| path.as_path()));
     let mut to = place.stream()?;
     let mut remarks = Vec::new();
     let begun = if events.is_some() {
-        remarks = report.remarks(&plan.system, &numerics(plan));
+        remarks = report.remarks(plan.system(), &plan.numerics());
         Ok(())
     } else {
         writeln!(to)
     };
-    let (columns, units) = (
-        views::event_columns(plan.system.interfaces),
-        &plan.system.units,
-    );
+    let (columns, units) = (views::event_columns(interfaces), plan.system().units());
     let (names, quantities): (Vec<_>, Vec<_>) = views::names(&columns, false).into_iter().unzip();
     let unit_names = unit_names(units, quantities.into_iter());
     let format = events.map_or(report.format, |(_, format)| *format);
@@ -189,44 +258,42 @@ struct IntegrationResult<'a> {
     events: Option<Vec<Map<String, Value>>>,
 }
 
-fn result<'a>(plan: &Plan, rows: &'a RowList, outcome: &RunOutcome) -> IntegrationResult<'a> {
+fn result<'a>(
+    plan: &impl PlannedRun,
+    rows: &'a RowList,
+    outcome: &RunOutcome,
+) -> IntegrationResult<'a> {
     let last = outcome.last.as_ref().map(|row| {
         let mut last = object(&rows.columns, row);
         last.insert("error_estimate".into(), json!(outcome.error_estimate));
+        let states = plan.states().iter();
+        for (state, error) in states.zip(outcome.errors.iter().flatten()) {
+            last.insert(format!("{state}_uncertainty"), json!(error));
+        }
         last
     });
-    let events = plan.events.is_some().then(|| {
-        let columns = views::event_columns(plan.system.interfaces);
-        let object = |event| views::object(&columns, event, &plan.system.units);
+    let events = plan.interfaces_of_events().map(|interfaces| {
+        let columns = views::event_columns(interfaces);
+        let object = |event| views::object(&columns, event, plan.system().units());
         outcome.events.iter().map(object).collect()
     });
     IntegrationResult {
         rows,
         last,
-        program: plan.program.as_ref().map(changes),
+        program: plan.program().map(changes),
         events,
     }
 }
 
 /// The changes of V_H, as they were given.
-pub fn changes(program: &Program) -> Vec<Value> {
+fn changes(program: &Program) -> Vec<Value> {
     let one = |change: &Change| json!({"time": change.time, "until": change.until, "driving": change.driving});
     program.changes.iter().map(one).collect()
 }
 
-fn summary(outcome: &RunOutcome, events: bool, seconds: f64) -> String {
-    let estimate = (outcome.error_estimate, outcome.estimate_failure.as_ref());
-    let events = events.then_some(outcome.events.len());
-    summary_of(&outcome.work, events, estimate, seconds)
-}
-
 /// What a run has cost, how many events there were where they are asked for, and its error or why that is not known.
-pub fn summary_of(
-    work: &Work,
-    events: Option<usize>,
-    (estimate, failure): (Option<f64>, Option<&Error>),
-    seconds: f64,
-) -> String {
+fn summary(outcome: &RunOutcome, events: Option<usize>, seconds: f64) -> String {
+    let work = &outcome.work;
     let mut text = format!(
         "{} steps ({} rejected), {} evaluations of f, {} Jacobians, {}",
         count(work.steps),
@@ -239,10 +306,10 @@ pub fn summary_of(
         let events = several(events, "event", "events");
         text.push_str(&format!(", {events}"));
     }
-    if let Some(estimate) = estimate {
+    if let Some(estimate) = outcome.error_estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));
     }
-    if let Some(error) = failure {
+    if let Some(error) = &outcome.estimate_failure {
         text.push_str(&format!(", no error estimate: {error}"));
     }
     text

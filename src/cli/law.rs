@@ -8,7 +8,7 @@ use crate::friction::ExtremumKind;
 use crate::number::Uncertain;
 use crate::output::{Format, plot};
 use crate::scene::{
-    Column, Described, LawLandmarks, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Units,
+    Column, Described, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Units,
 };
 use crate::views;
 use serde_json::{Value, json};
@@ -20,13 +20,12 @@ pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
     }
     let plan = LawPlan::new(options)?;
     let report = begun(options, words, || plan.explain())?;
-    let (points, landmarks) = (plan.points(), plan.landmarks()?);
-    let (system, curve) = (&plan.system, (points.as_slice(), &landmarks));
+    let curves = plan.curves()?;
     if let Some(path) = &options.plot {
-        let drawing = picture(&system.units, Some(system.direct_effect), curve);
-        plot::write(path, &drawing)?;
+        plot::write(path, &picture(&plan.system.units, &curves))?;
     }
-    write(&report, system, &views::law_columns(), curve, None)
+    let columns = views::law_columns(curves.len() > 1);
+    write(&report, &plan.system, &columns, &curves, None)
 }
 
 /// Checks where results and pictures go, and says what will be computed.
@@ -46,23 +45,109 @@ pub fn begun<'a>(
     Ok(report)
 }
 
-/// Extrema and the maximum of k_c, in the user's units.
-fn objects(landmarks: &LawLandmarks, units: &Units) -> (Vec<Value>, Value) {
-    let out = |quantity, x| report::uncertain(units, quantity, x);
-    let extrema = landmarks.extrema.iter().map(|extremum| {
+/// What laws are known by, in the user's units; of two interfaces each with its number.
+struct Landmarks {
+    extrema: Vec<Value>,
+    maxima: Vec<Value>,
+    transitions: Vec<Value>,
+}
+
+impl Landmarks {
+    fn of<R>(curves: &[LawCurve<R>], units: &Units) -> Self {
+        let out = |quantity, x| report::uncertain(units, quantity, x);
+        let mut all = Landmarks {
+            extrema: Vec::new(),
+            maxima: Vec::new(),
+            transitions: Vec::new(),
+        };
+        for curve in curves {
+            let numbered = |object: Value| match (curves.len(), object) {
+                (2, Value::Object(own)) => {
+                    let number = ("interface".to_owned(), json!(curve.interface));
+                    Value::Object([number].into_iter().chain(own).collect())
+                }
+                (_, object) => object,
+            };
+            let landmarks = &curve.landmarks;
+            all.extrema.extend(landmarks.extrema.iter().map(|extremum| {
+                numbered(json!({
+                    "kind": kind(extremum.kind),
+                    "slip_rate": out(Quantity::SlipRate, extremum.slip_rate),
+                    "stress": out(Quantity::Stress, extremum.stress),
+                }))
+            }));
+            let maximum = landmarks.critical_stiffness_maximum.map(|maximum| {
+                numbered(json!({
+                    "slip_rate": out(Quantity::SlipRate, maximum.slip_rate),
+                    "stiffness": out(Quantity::Stiffness, maximum.stiffness),
+                }))
+            });
+            all.maxima.extend(maximum);
+            let transition = landmarks.transition_rate.map(|v| {
+                let v = units.outward(Quantity::SlipRate, v);
+                numbered(json!({ "slip_rate": v }))
+            });
+            all.transitions.extend(transition);
+        }
+        all
+    }
+
+    /// What the object has of them: of one law the single ones, of two lists.
+    fn result(&self, laws: usize, rows: Vec<Value>) -> Value {
+        if laws > 1 {
+            return json!({
+                "extrema": self.extrema,
+                "critical_stiffness_maxima": self.maxima,
+                "transition_rates": self.transitions,
+                "rows": rows,
+            });
+        }
         json!({
-            "kind": kind(extremum.kind),
-            "slip_rate": out(Quantity::SlipRate, extremum.slip_rate),
-            "stress": out(Quantity::Stress, extremum.stress),
+            "extrema": self.extrema,
+            "critical_stiffness_maximum": self.maxima.first(),
+            "transition_rate": self.transitions.first().map(|one| &one["slip_rate"]),
+            "rows": rows,
         })
-    });
-    let maximum = landmarks.critical_stiffness_maximum.map(|maximum| {
-        json!({
-            "slip_rate": out(Quantity::SlipRate, maximum.slip_rate),
-            "stiffness": out(Quantity::Stiffness, maximum.stiffness),
-        })
-    });
-    (extrema.collect(), json!(maximum))
+    }
+
+    /// In words, one a line.
+    fn lines(&self) -> Vec<String> {
+        let pair = |x: &Value| {
+            let number = |name: &str| x[name].as_f64();
+            match (number("value"), number("uncertainty")) {
+                (Some(value), Some(uncertainty)) => Uncertain::new(value, uncertainty).to_string(),
+                (Some(value), None) => format!("{value:e}, no digit of which is certain"),
+                (None, _) => "unknown".to_owned(),
+            }
+        };
+        let whose = |object: &Value| match object["interface"].as_u64() {
+            Some(number) => format!("interface {number}: "),
+            None => String::new(),
+        };
+        let extrema = self.extrema.iter().map(|extremum| {
+            format!(
+                "{}{} of stress at slip_rate {}, stress {}",
+                whose(extremum),
+                extremum["kind"].as_str().unwrap_or_default(),
+                pair(&extremum["slip_rate"]),
+                pair(&extremum["stress"])
+            )
+        });
+        let maxima = self.maxima.iter().map(|maximum| {
+            format!(
+                "{}maximum of critical_stiffness at slip_rate {}, stiffness {}",
+                whose(maximum),
+                pair(&maximum["slip_rate"]),
+                pair(&maximum["stiffness"])
+            )
+        });
+        let transitions = self.transitions.iter().map(|transition| {
+            let v = transition["slip_rate"].as_f64().unwrap_or(f64::NAN);
+            let whose = whose(transition);
+            format!("{whose}high-velocity strengthening sets in at slip_rate {v}")
+        });
+        extrema.chain(maxima).chain(transitions).collect()
+    }
 }
 
 fn kind(kind: ExtremumKind) -> &'static str {
@@ -76,131 +161,106 @@ pub fn write<R>(
     report: &Report<'_>,
     system: &dyn Described,
     columns: &[Column<R>],
-    (points, landmarks): (&[R], &LawLandmarks),
+    curves: &[LawCurve<R>],
     failure: Option<&Error>,
 ) -> Result<Ending> {
     let units = system.units();
-    let (extrema, maximum) = objects(landmarks, units);
-    let transition = landmarks
-        .transition_rate
-        .map(|v| units.outward(Quantity::SlipRate, v));
+    let landmarks = Landmarks::of(curves, units);
+    let points = || curves.iter().flat_map(|curve| &curve.points);
     if report.format == Format::Json {
-        let rows = points.iter();
-        let rows: Vec<Value> = rows
-            .map(|point| Value::Object(views::object(columns, point, units)))
-            .collect();
-        let result = json!({
-            "extrema": extrema,
-            "critical_stiffness_maximum": maximum,
-            "transition_rate": transition,
-            "rows": rows,
-        });
-        let work = json!({"evaluations": points.len()});
+        let object = |point| Value::Object(views::object(columns, point, units));
+        let rows: Vec<Value> = points().map(object).collect();
+        let work = json!({"evaluations": rows.len()});
+        let result = landmarks.result(curves.len(), rows);
         let bytes = report.envelope(system, json!({}), result, work, failure);
         return written(report.place.write(&bytes), &report.place);
     }
-    let found = landmark_lines(&extrema, &maximum, transition);
+    let found = landmarks.lines();
     let mut remarks = report.remarks(system, &Value::Null);
     remarks.extend(found.iter().cloned());
-    let ending = report.write_all(units, remarks, columns, points)?;
+    let ending = report.write_all(units, remarks, columns, points())?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)
 }
 
-/// The landmarks in words.
-fn landmark_lines(extrema: &[Value], maximum: &Value, transition: Option<f64>) -> Vec<String> {
-    let pair = |x: &Value| {
-        let number = |name: &str| x[name].as_f64();
-        match (number("value"), number("uncertainty")) {
-            (Some(value), Some(uncertainty)) => Uncertain::new(value, uncertainty).to_string(),
-            (Some(value), None) => format!("{value:e}, no digit of which is certain"),
-            (None, _) => "unknown".to_owned(),
-        }
-    };
-    let mut lines: Vec<String> = extrema
-        .iter()
-        .map(|extremum| {
-            format!(
-                "{} of stress at slip_rate {}, stress {}",
-                extremum["kind"].as_str().unwrap_or_default(),
-                pair(&extremum["slip_rate"]),
-                pair(&extremum["stress"])
-            )
-        })
-        .collect();
-    if !maximum.is_null() {
-        lines.push(format!(
-            "maximum of critical_stiffness at slip_rate {}, stiffness {}",
-            pair(&maximum["slip_rate"]),
-            pair(&maximum["stiffness"])
-        ));
-    }
-    lines.extend(
-        transition.map(|v| format!("high-velocity strengthening sets in at slip_rate {v}")),
-    );
-    lines
-}
-
-/// tau_ss, as a coefficient of friction where a is known, and k_c against V.
-pub fn picture(
-    units: &Units,
-    direct_effect: Option<f64>,
-    (points, landmarks): (&[LawPoint], &LawLandmarks),
-) -> plot::Drawing {
-    let scale = direct_effect.unwrap_or(1.0);
-    let out = |quantity, x| units.outward(quantity, x);
+/// tau_ss, as a coefficient of friction where that is the same of all laws and known, and k_c against V.
+pub fn picture(units: &Units, curves: &[LawCurve]) -> plot::Drawing {
+    let first = curves.first().and_then(|curve| curve.coefficient);
+    let alike = curves.iter().all(|curve| curve.coefficient == first);
+    let coefficient = first.filter(|_| alike);
     let unit = |quantity| units.short_name(quantity);
-    let each = |number: &dyn Fn(&LawPoint) -> f64| points.iter().map(number).collect::<Vec<f64>>();
-    let slip_rates = each(&|at| out(Quantity::SlipRate, at.slip_rate));
-    let marks = landmarks.extrema.iter().map(|extremum| {
+    // A coefficient has no unit.
+    let stress = |x: f64| match coefficient {
+        Some(coefficient) => coefficient * x,
+        None => units.outward(Quantity::Stress, x),
+    };
+    let friction = match (coefficient, unit(Quantity::Stress).as_str()) {
+        (Some(_), _) => "friction coefficient τₛₛ/σ".to_owned(),
+        (None, "1") => "steady stress τₛₛ".to_owned(),
+        (None, unit) => format!("steady stress τₛₛ [{unit}]"),
+    };
+    let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
+    let lines = |y: &dyn Fn(&LawPoint) -> f64| -> Vec<plot::PlotSeries> {
+        let line = |curve: &LawCurve| {
+            let rate = |at: &LawPoint| units.outward(Quantity::SlipRate, at.slip_rate);
+            let rates = curve.points.iter().map(rate).collect();
+            let name = match curves.len() {
+                1 => String::new(),
+                _ => format!("interface {}", curve.interface),
+            };
+            plot::PlotSeries::new(name, rates, curve.points.iter().map(y).collect())
+        };
+        curves.iter().map(line).collect()
+    };
+    let extrema = curves.iter().flat_map(|curve| &curve.landmarks.extrema);
+    let marks = extrema.map(|extremum| {
         let (name, side) = match extremum.kind {
             ExtremumKind::Maximum => ("maximum V_M", plot::Side::Above),
             ExtremumKind::Minimum => ("minimum V_m", plot::Side::Below),
         };
-        let at = out(Quantity::SlipRate, extremum.slip_rate.value);
-        let friction = scale * extremum.stress.value;
-        plot::Mark::new(at, friction, name).side(side)
+        let at = units.outward(Quantity::SlipRate, extremum.slip_rate.value);
+        plot::Mark::new(at, stress(extremum.stress.value), name).side(side)
     });
-    let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
-    let coefficient = plot::Axis::linear(match direct_effect {
-        Some(_) => "friction coefficient τₛₛ/σ",
-        None => "steady stress τₛₛ",
-    });
-    let friction = each(&|at| scale * at.stress);
-    let curve = plot::PlotSeries::new("", slip_rates.clone(), friction);
     let friction = plot::Panel {
-        series: vec![curve],
+        series: lines(&|at| stress(at.stress)),
         marks: marks.collect(),
-        ..plot::Panel::new("steady-state friction", x.clone(), coefficient)
+        ..plot::Panel::new(
+            "steady-state friction",
+            x.clone(),
+            plot::Axis::linear(friction),
+        )
     };
-    let top = landmarks.critical_stiffness_maximum.map(|maximum| {
-        let at = out(Quantity::SlipRate, maximum.slip_rate.value);
-        let stiffness = out(Quantity::Stiffness, maximum.stiffness.value);
+    let tops = curves
+        .iter()
+        .filter_map(|curve| curve.landmarks.critical_stiffness_maximum);
+    let tops = tops.map(|maximum| {
+        let at = units.outward(Quantity::SlipRate, maximum.slip_rate.value);
+        let stiffness = units.outward(Quantity::Stiffness, maximum.stiffness.value);
         plot::Mark::new(at, stiffness, "maximum").side(plot::Side::Above)
     });
     let title = "critical stiffness: a stiffer single interface slides steadily";
-    let unit = unit(Quantity::Stiffness);
-    let critical = plot::Axis::linear(format!("critical stiffness k_c [{unit}]"));
-    let stiffness = each(&|at| out(Quantity::Stiffness, at.critical_stiffness));
-    let curve = plot::PlotSeries::new("", slip_rates, from_above(stiffness));
+    let critical = format!("critical stiffness k_c [{}]", unit(Quantity::Stiffness));
     let stiffness = plot::Panel {
-        series: vec![curve],
-        marks: top.into_iter().collect(),
+        series: from_above(lines(&|at| {
+            units.outward(Quantity::Stiffness, at.critical_stiffness)
+        })),
+        marks: tops.collect(),
         zero_line: true,
-        ..plot::Panel::new(title, x, critical)
+        ..plot::Panel::new(title, x, plot::Axis::linear(critical))
     };
     plot::Drawing::columns(vec![vec![friction, stiffness]])
 }
 
-/// Without its far negative part: where a law strengthens, k_c falls without bound and only says that all is stable.
-fn from_above(mut stiffness: Vec<f64>) -> Vec<f64> {
-    let top = stiffness.iter().copied().fold(0.0, f64::max);
+/// Without their far negative parts: where a law strengthens, k_c falls without bound and only says that all is stable.
+fn from_above(mut curves: Vec<plot::PlotSeries>) -> Vec<plot::PlotSeries> {
+    let top = curves.iter().flat_map(|curve| curve.y.iter().copied());
+    let top = top.fold(0.0, f64::max);
     if top > 0.0 {
-        for k in &mut stiffness {
+        for k in curves.iter_mut().flat_map(|curve| &mut curve.y) {
             if *k < -top {
                 *k = f64::NAN;
             }
         }
     }
-    stiffness
+    curves
 }

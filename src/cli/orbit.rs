@@ -1,25 +1,93 @@
 //! `twinslip orbit`.
 
+use super::integrate::PlannedRun;
 use super::report::{self, Report};
 use super::stream::StreamOut;
-use super::text;
 use super::words::several;
 use super::{Ending, progress, say, written};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::number::Uncertain;
-use crate::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit};
+use crate::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit, OrbitAccuracy};
 use crate::output::{self, Format, RowList, plot};
-use crate::scene::{OrbitOptions, OrbitPlan, Quantity, System, TextModel, Units};
+use crate::scene::{
+    Column, Described, OrbitOptions, OrbitPlan, Plan, Quantity, System, TextModel, TextOrbitPlan,
+    Units,
+};
 use crate::views;
 use serde_json::{Value, json};
 use std::path::Path;
 
+/// A search for a periodic orbit, of interfaces or of a system of one's own.
+pub trait OrbitSearch {
+    /// The run along an orbit.
+    type Run: PlannedRun;
+    /// The plan in words.
+    fn explain(&self) -> String;
+    /// What the orbit is of.
+    fn system(&self) -> &dyn Described;
+    /// By which method, and by which second one.
+    fn accuracy(&self) -> (&OrbitAccuracy, Option<&OrbitAccuracy>);
+    /// Whether there are to be rows.
+    fn has_rows(&self) -> bool;
+    fn find(&self) -> Result<FoundOrbit>;
+    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>>;
+    /// `None` where neither rows nor a picture are asked for.
+    fn along(&self, orbit: &Orbit) -> Option<Self::Run>;
+    /// The columns of orbits.
+    fn columns(&self) -> Vec<Column<Orbit>>;
+    /// An orbit as an object.
+    fn object(&self, orbit: &Orbit) -> Value;
+}
+
 pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::of(&options.model, &[])? {
-        return text::orbit::run(options, model, words);
+    match TextModel::of(&options.model, &[])? {
+        Some(model) => search(&TextOrbitPlan::new(options, model)?, options, words),
+        None => search(&OrbitPlan::new(options)?, options, words),
     }
-    let plan = OrbitPlan::new(options)?;
+}
+
+impl OrbitSearch for OrbitPlan {
+    type Run = Plan;
+
+    fn explain(&self) -> String {
+        self.explain()
+    }
+
+    fn system(&self) -> &dyn Described {
+        &self.system
+    }
+
+    fn accuracy(&self) -> (&OrbitAccuracy, Option<&OrbitAccuracy>) {
+        (&self.accuracy, self.second.as_ref())
+    }
+
+    fn has_rows(&self) -> bool {
+        self.rows.is_some()
+    }
+
+    fn find(&self) -> Result<FoundOrbit> {
+        self.find()
+    }
+
+    fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
+        self.crosscheck(orbit)
+    }
+
+    fn along(&self, orbit: &Orbit) -> Option<Plan> {
+        self.along(orbit)
+    }
+
+    fn columns(&self) -> Vec<Column<Orbit>> {
+        views::orbit_columns(self.system.interfaces)
+    }
+
+    fn object(&self, orbit: &Orbit) -> Value {
+        object(orbit, &self.system)
+    }
+}
+
+fn search(plan: &impl OrbitSearch, options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     let picture = options.plot.as_deref();
     picture.map(plot::PictureFormat::of).transpose()?;
     let others: Vec<&Path> = picture.into_iter().collect();
@@ -32,11 +100,11 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
-    if in_rows && plan.rows.is_none() {
-        ending = write_orbits(&plan, &report, &orbit, &others)?;
+    if in_rows && !plan.has_rows() {
+        ending = write_orbits(plan, &report, &orbit, &others)?;
     }
-    let rows = along(&plan, &report, &orbit, picture)?;
-    let second = plan.second.map_or("", |second| second.method.name());
+    let rows = along(plan, &report, &orbit, picture)?;
+    let second = plan.accuracy().1.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(report.quiet, &words, || plan.crosscheck(&orbit));
     let checked = checked.unwrap_or_else(|error| {
@@ -44,10 +112,10 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
         None
     });
     if !in_rows {
-        let result = result(&plan, &orbit, &others, checked.as_ref(), rows.as_ref());
-        ending = write_object(&plan, &report, &orbit, result)?;
+        let result = result(plan, &orbit, &others, checked.as_ref(), rows.as_ref());
+        ending = write_object(plan, &report, &orbit, result)?;
     }
-    report.say(summary(&orbit, checked.as_ref(), &plan.system.units));
+    report.say(summary(&orbit, checked.as_ref(), plan.system().units()));
     if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
         return Ok(Ending::Undecided);
     }
@@ -55,7 +123,7 @@ pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
 }
 
 /// What was found, and at which cost.
-pub fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String {
+fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String {
     let unit = match units.name(Quantity::Time) {
         "1" => String::new(),
         unit => format!(" {unit}"),
@@ -86,7 +154,7 @@ pub fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> St
 /// Goes along the orbit for the rows and the picture that are asked for, and gives the rows; none where nobody asks for them, or reads
 /// them.
 fn along(
-    plan: &OrbitPlan,
+    plan: &impl OrbitSearch,
     report: &Report<'_>,
     orbit: &Orbit,
     picture: Option<&Path>,
@@ -94,62 +162,57 @@ fn along(
     let Some(run) = plan.along(orbit) else {
         return Ok(None);
     };
-    let columns = views::names(&run.columns, false);
-    let out = if plan.rows.is_some() {
-        let mut remarks = report.remarks(&plan.system, &numerics(plan, orbit));
-        remarks.push(format!(
-            "orbit: {}",
-            summary(orbit, None, &plan.system.units)
-        ));
-        let columns = (columns, &plan.system.units);
+    let columns = run.columns();
+    let out = if plan.has_rows() {
+        let units = plan.system().units();
+        let mut remarks = report.remarks(plan.system(), &numerics(plan, orbit));
+        remarks.push(format!("orbit: {}", summary(orbit, None, units)));
+        let columns = (columns, units);
         StreamOut::new(report, remarks, columns, false)
     } else {
         Ok(StreamOut::kept(report, columns))
     };
     let mut out = match out {
-        Ok(out) => {
-            let pictured = views::names(&run.pictured(), false).into_iter();
-            out.drawing(pictured.map(|(name, _)| name).collect())
-        }
+        Ok(out) => out.drawing(run.pictured()),
         Err(error) => return written(Err(error), &report.place).map(|_| None),
     };
-    let outcome = crate::scene::run(&run, &mut out)?;
+    let failure = run.run(&mut out)?.failure;
     out.progress.finish();
     if let Some(error) = out.broken {
         return written(Err(error), &report.place).map(|_| None);
     }
     if let Some(path) = picture {
-        plot::write(path, &views::picture_of_run(&run, &out.drawn))?;
+        plot::write(path, &run.picture(&out.drawn))?;
     }
-    if plan.rows.is_none() {
-        return outcome.failure.map_or(Ok(None), Err);
+    if !plan.has_rows() {
+        return failure.map_or(Ok(None), Err);
     }
-    report.ended(outcome.failure.map_or(Ok(Ending::Done), Err))?;
+    report.ended(failure.map_or(Ok(Ending::Done), Err))?;
     Ok(Some(out.rows))
 }
 
-fn numerics(plan: &OrbitPlan, orbit: &Orbit) -> Value {
+fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
+    let (accuracy, second) = plan.accuracy();
     json!({
         "method": orbit.method,
-        "rtol": plan.accuracy.tolerances.rtol,
-        "atol": plan.accuracy.tolerances.atol,
-        "max_steps": plan.accuracy.max_steps,
-        "crosscheck": plan.second.map(|second| second.method.name()),
+        "rtol": accuracy.tolerances.rtol,
+        "atol": accuracy.tolerances.atol,
+        "max_steps": accuracy.max_steps,
+        "crosscheck": second.map(|second| second.method.name()),
     })
 }
 
 /// What the object holds.
 fn result(
-    plan: &OrbitPlan,
+    plan: &impl OrbitSearch,
     orbit: &Orbit,
     others: &[Orbit],
     checked: Option<&Crosscheck>,
     rows: Option<&RowList>,
 ) -> Value {
-    let system = &plan.system;
-    let mut main = object(orbit, system);
-    main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, system));
-    let rest: Vec<Value> = others.iter().map(|other| object(other, system)).collect();
+    let mut main = plan.object(orbit);
+    main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, plan));
+    let rest: Vec<Value> = others.iter().map(|other| plan.object(other)).collect();
     let mut result = json!({"orbit": main, "others": rest});
     if let Some(rows) = rows {
         result["rows"] = json!(rows);
@@ -158,7 +221,7 @@ fn result(
 }
 
 fn write_object(
-    plan: &OrbitPlan,
+    plan: &impl OrbitSearch,
     report: &Report<'_>,
     orbit: &Orbit,
     result: Value,
@@ -166,22 +229,22 @@ fn write_object(
     let mut work = report::work(&orbit.work);
     work["nodes"] = json!(orbit.nodes.len());
     work["iterations"] = json!(orbit.iterations);
-    let bytes = report.envelope(&plan.system, numerics(plan, orbit), result, work, None);
+    let bytes = report.envelope(plan.system(), numerics(plan, orbit), result, work, None);
     written(report.place.write(&bytes), &report.place)
 }
 
 /// A row for each orbit.
 fn write_orbits(
-    plan: &OrbitPlan,
+    plan: &impl OrbitSearch,
     report: &Report<'_>,
     orbit: &Orbit,
     others: &[Orbit],
 ) -> Result<Ending> {
-    let system = &plan.system;
+    let system = plan.system();
     report.write_all(
-        &system.units,
+        system.units(),
         report.remarks(system, &numerics(plan, orbit)),
-        &views::orbit_columns(system.interfaces),
+        &plan.columns(),
         std::iter::once(orbit).chain(others),
     )
 }
@@ -228,7 +291,7 @@ fn object(orbit: &Orbit, system: &System) -> Value {
 }
 
 /// All multipliers, the trivial one first; of a conjugate pair the second one below the axis.
-pub fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
+pub(super) fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
     let mut multipliers = vec![[1.0, 0.0]];
     let mut above = true;
     for multiplier in &orbit.floquet.multipliers {
@@ -241,7 +304,7 @@ pub fn multipliers(orbit: &Orbit) -> Vec<[f64; 2]> {
 }
 
 /// A multiplier by its logarithm.
-pub fn logarithm(multiplier: &Multiplier) -> Value {
+pub(super) fn logarithm(multiplier: &Multiplier) -> Value {
     let Uncertain { value, uncertainty } = multiplier.ln_abs;
     let known = multiplier.kind != Kind::BelowFloor;
     json!({
@@ -252,11 +315,10 @@ pub fn logarithm(multiplier: &Multiplier) -> Value {
     })
 }
 
-fn comparison(checked: &Crosscheck, system: &System) -> Value {
-    let second = object(&checked.orbit, system);
-    let difference = system
-        .units
-        .outward(Quantity::Time, checked.period_difference);
+fn comparison(checked: &Crosscheck, plan: &impl OrbitSearch) -> Value {
+    let second = plan.object(&checked.orbit);
+    let units = plan.system().units();
+    let difference = units.outward(Quantity::Time, checked.period_difference);
     json!({
         "method": checked.orbit.method,
         "period_difference": difference,

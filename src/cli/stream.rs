@@ -66,9 +66,9 @@ impl StreamOut {
     }
 
     /// The picture has these columns.
-    pub fn drawing(self, columns: Vec<String>) -> Self {
+    pub fn drawing(self, columns: Vec<(String, Quantity)>) -> Self {
         StreamOut {
-            drawn: RowList::new(columns),
+            drawn: RowList::new(columns.into_iter().map(|(name, _)| name).collect()),
             ..self
         }
     }

@@ -56,6 +56,29 @@ impl Orbit {
     pub fn verdict(&self) -> Verdict {
         self.floquet.verdict()
     }
+
+    /// The nodes by their times since the point, ascending, but those as good as the point itself: from there an unstable orbit, which a
+    /// run soon leaves, is gone along piece by piece.
+    pub fn nodes_since_point(&self) -> Vec<(f64, &[f64])> {
+        /// A node nearer to the point than this part of the period is as good as it.
+        const SAME: f64 = 1e-12;
+        let period = self.period.value;
+        let begins = self.durations.iter().scan(0.0, |sum, duration| {
+            let begin = *sum;
+            *sum += duration;
+            Some(begin)
+        });
+        // What stands before the point comes at the end.
+        let times = begins.map(|begin| {
+            let time = begin - self.point_time;
+            if time > 0.0 { time } else { time + period }
+        });
+        let within = SAME * period..(1.0 - SAME) * period;
+        let nodes = times.zip(self.nodes.iter().map(Vec::as_slice));
+        let mut nodes: Vec<_> = nodes.filter(|(time, _)| within.contains(time)).collect();
+        nodes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        nodes
+    }
 }
 
 /// What an orbit is computed with.

@@ -4,8 +4,8 @@ use crate::bifurcation::{BranchRow, LocusRow, Special};
 use crate::orbit::{Crosscheck, FoundOrbit};
 use crate::output::RowList;
 use crate::scene::{
-    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, LawLandmarks, LawPlan, LawPoint, LocusPlan,
-    OrbitPlan, Plan, RunOutcome, SectionOutcome, SectionPlan,
+    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, LawCurve, LawPlan, LocusPlan, OrbitPlan,
+    Plan, RunOutcome, SectionOutcome, SectionPlan,
 };
 use std::sync::Arc;
 
@@ -73,15 +73,13 @@ pub struct Equilibria {
     pub found: ClassifiedEquilibria,
 }
 
-/// A steady-state friction law.
+/// Steady-state friction laws.
 #[derive(Debug)]
-pub struct LawCurve {
+pub struct Laws {
     /// What was evaluated.
     pub plan: LawPlan,
-    /// The points.
-    pub points: Vec<LawPoint>,
-    /// Its extrema.
-    pub landmarks: LawLandmarks,
+    /// The law of both interfaces, where they differ of each.
+    pub curves: Vec<LawCurve>,
 }
 
 /// What a scene computes.
@@ -93,5 +91,5 @@ pub(super) enum Piece {
     Curves(Arc<Curves>),
     Orbit(Arc<PeriodicOrbit>),
     Equilibria(Arc<Equilibria>),
-    Law(Arc<LawCurve>),
+    Law(Arc<Laws>),
 }

@@ -2,7 +2,7 @@
 
 use super::clock::timed;
 use super::going::{Going, Hears, Kept, Reached, Voice};
-use super::piece::{Branches, Curves, Equilibria, LawCurve, Map, PeriodicOrbit, Piece, Run};
+use super::piece::{Branches, Curves, Equilibria, Laws, Map, PeriodicOrbit, Piece, Run};
 use crate::bifurcation::{Event, Label, Special};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Parameters};
@@ -121,7 +121,7 @@ impl<'a> Pieces<'a> {
     ///
     /// # Errors
     /// As of [`Pieces::run`].
-    pub fn law_of(&self, scene: &str) -> Result<Arc<LawCurve>> {
+    pub fn law_of(&self, scene: &str) -> Result<Arc<Laws>> {
         match self.piece(scene)? {
             Piece::Law(law) => Ok(law),
             _ => Err(not(scene, "a law")),
@@ -166,9 +166,8 @@ impl<'a> Pieces<'a> {
             }
             Command::Law(options) => {
                 let plan = LawPlan::new(&options)?;
-                Ok(Piece::Law(Arc::new(LawCurve {
-                    points: plan.points(),
-                    landmarks: plan.landmarks()?,
+                Ok(Piece::Law(Arc::new(Laws {
+                    curves: plan.curves()?,
                     plan,
                 })))
             }

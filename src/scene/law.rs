@@ -5,8 +5,8 @@ use super::system::System;
 use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
 use crate::friction::{
-    Extremum, Formulas, Law, StiffnessMaximum, critical_stiffness, critical_stiffness_maximum,
-    positive, steady_stress,
+    Extremum, Formulas, Law, ScaledLaw, StiffnessMaximum, critical_stiffness, positive,
+    steady_stress,
 };
 
 /// The slip rates from, to where none are given.
@@ -23,14 +23,29 @@ pub struct LawPlan {
     pub slip_rates: Vec<f64>,
 }
 
-/// The law at a slip rate, dimensionless.
+/// The steady sliding of an interface, at rates and what it is known by.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LawCurve<P = LawPoint> {
+    /// Whose it is: 1 or 2; 1 where both are equal.
+    pub interface: usize,
+    /// tau_ss at these rates.
+    pub points: Vec<P>,
+    /// What it is known by, whatever the rates.
+    pub landmarks: LawLandmarks,
+    /// The coefficient of friction over the stress, where it is known.
+    pub coefficient: Option<f64>,
+}
+
+/// The law of an interface at a slip rate, dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LawPoint {
+    /// Whose it is, as of [`LawCurve`].
+    pub interface: usize,
     /// V.
     pub slip_rate: f64,
     /// tau_ss(V).
     pub stress: f64,
-    /// The friction coefficient a tau_ss; `None` for a law without an a.
+    /// The friction coefficient, a tau_ss where all interfaces are equal; `None` for a law without an a.
     pub friction: Option<f64>,
     /// psi_ss(V).
     pub state: f64,
@@ -55,7 +70,7 @@ impl LawPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
-        let system = System::new(&options.model)?.alike("law")?;
+        let system = System::new(&options.model)?;
         let slip_rates = slip_rates(options, &system.units)?;
         Ok(LawPlan { slip_rates, system })
     }
@@ -63,39 +78,53 @@ impl LawPlan {
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
         format!(
-            "plan of this command\n  4 closed formulas at {} slip rates; extrema enclosed by interval arithmetic; no integration",
-            self.slip_rates.len()
+            "plan of this command\n  4 closed formulas at {} slip rates{}; extrema enclosed by interval arithmetic; no integration",
+            self.slip_rates.len(),
+            of_each(self.system.unequal.is_some())
         )
     }
 
-    /// The law at all slip rates.
-    pub fn points(&self) -> Vec<LawPoint> {
-        let law = &self.system.law;
+    /// The law of both interfaces, where they differ of each.
+    ///
+    /// # Errors
+    /// Those of [`ScaledLaw::critical_stiffness_maximum`].
+    pub fn curves(&self) -> Result<Vec<LawCurve>> {
+        let laws = self.system.laws();
+        let count = if self.system.unequal.is_some() { 2 } else { 1 };
+        (0..count).map(|i| self.curve(i, &laws[i])).collect()
+    }
+
+    fn curve(&self, place: usize, law: &ScaledLaw) -> Result<LawCurve> {
+        let interface = place + 1;
+        // The stress is measured in a sigma of the first one.
+        let coefficient = self.system.constants[place].direct_effect * law.stress_factor;
         let point = |&v: &f64| {
             let stress = steady_stress(law, v);
             LawPoint {
+                interface,
                 slip_rate: v,
                 stress,
-                friction: Some(self.system.direct_effect * stress),
+                friction: Some(coefficient * stress),
                 state: law.steady_state(v),
                 critical_stiffness: critical_stiffness(law, v),
             }
         };
-        self.slip_rates.iter().map(point).collect()
-    }
-
-    /// What the law is known by, whatever the slip rates.
-    ///
-    /// # Errors
-    /// Those of [`critical_stiffness_maximum`].
-    pub fn landmarks(&self) -> Result<LawLandmarks> {
-        let law = &self.system.law;
-        Ok(LawLandmarks {
-            extrema: Extremum::all(law),
-            critical_stiffness_maximum: critical_stiffness_maximum(law)?,
-            transition_rate: law.transition_rate(),
+        Ok(LawCurve {
+            interface,
+            points: self.slip_rates.iter().map(point).collect(),
+            landmarks: LawLandmarks {
+                extrema: Extremum::all(law),
+                critical_stiffness_maximum: law.critical_stiffness_maximum()?,
+                transition_rate: law.transition_rate(),
+            },
+            coefficient: Some(coefficient),
         })
     }
+}
+
+/// In plans, where there are two laws.
+pub(super) fn of_each(two: bool) -> &'static str {
+    if two { " for each interface" } else { "" }
 }
 
 /// The slip rates of the grid, ascending, in V*.

@@ -69,7 +69,7 @@ pub use general::{
     Subject, TextSubject, plane, shown,
 };
 pub use instant::{Instant, run_columns};
-pub use law::{LawLandmarks, LawPlan, LawPoint};
+pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
@@ -90,7 +90,7 @@ pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,
     TextEquilibrium, TextInstant, TextLawPlan, TextLawPoint, TextModel, TextOptions, TextOrbitPlan,
-    TextOutcome, TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section,
-    text_columns, text_section_columns,
+    TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section, text_columns,
+    text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};

@@ -370,7 +370,7 @@ pub struct OrbitOptions {
     /// Give up an arc after so many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,
-    /// Draw stress, states and slip rates over one period, and the phase plane, as FILE.svg or FILE.png
+    /// Draw stress, states and slip rates over one period, of a system of one's own all states, and the phase plane, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Where results go.

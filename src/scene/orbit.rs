@@ -91,12 +91,7 @@ impl OrbitPlan {
             ),
             None => "off: `crosscheck` none".to_owned(),
         };
-        let dense = match (self.rows, self.picture) {
-            (None, false) => "on, for the extremes alone",
-            (Some(_), false) => "on, for the extremes and the rows",
-            (None, true) => "on, for the extremes and the picture",
-            (Some(_), true) => "on, for the extremes, the rows and the picture",
-        };
+        let dense = dense_output(self.rows, self.picture);
         format!(
             "plan of this command
   dimension         {dimension}
@@ -137,35 +132,15 @@ impl OrbitPlan {
             (Symmetry::Symmetric, _) => Dimension::Single,
         };
         let point = |y: &[f64]| -> Point { (y[0], [y[1], y[y.len() - 1]]) };
-        let until = orbit.period.value;
-        let begins = orbit.durations.iter().scan(0.0, |sum, duration| {
-            let begin = *sum;
-            *sum += duration;
-            Some(begin)
-        });
-        // Since the point; what stands before it comes at the end.
-        let times = begins.map(|begin| {
-            let time = begin - orbit.point_time;
-            if time > 0.0 { time } else { time + until }
-        });
-        let nodes = times.zip(orbit.nodes.iter().map(|node| point(node)));
-        /// A node nearer to the point than this part of the period is as good as it.
-        const SAME: f64 = 1e-12;
-        let within = SAME * until..(1.0 - SAME) * until;
-        let mut nodes: Vec<(f64, Point)> =
-            nodes.filter(|(time, _)| within.contains(time)).collect();
-        nodes.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let method = match self.accuracy.method {
-            Choice::Auto => Choice::Taylor,
-            other => other,
-        };
+        let nodes = orbit.nodes_since_point().into_iter();
+        let method = run_method(self.accuracy.method);
         Some(Plan {
             loading: self.slab.loading,
             program: None,
             start: point(&orbit.point),
-            nodes,
+            nodes: nodes.map(|(time, node)| (time, point(node))).collect(),
             dimension,
-            until,
+            until: orbit.period.value,
             sampling: self.rows.unwrap_or(Sampling::FinalOnly),
             columns: run_columns(self.system.interfaces),
             events: None,
@@ -250,10 +225,25 @@ fn accuracy(options: &OrbitOptions) -> Result<OrbitAccuracy> {
     })
 }
 
-fn method_name(choice: Choice) -> &'static str {
+/// The method of the flow along orbits.
+pub(super) fn run_method(choice: Choice) -> Choice {
     match choice {
-        Choice::Auto => Choice::Taylor.name(),
-        other => other.name(),
+        Choice::Auto => Choice::Taylor,
+        other => other,
+    }
+}
+
+fn method_name(choice: Choice) -> &'static str {
+    run_method(choice).name()
+}
+
+/// What the plan says of dense output.
+pub(super) fn dense_output(rows: Option<Sampling>, picture: bool) -> &'static str {
+    match (rows, picture) {
+        (None, false) => "on, for the extremes alone",
+        (Some(_), false) => "on, for the extremes and the rows",
+        (None, true) => "on, for the extremes and the picture",
+        (Some(_), true) => "on, for the extremes, the rows and the picture",
     }
 }
 

@@ -40,9 +40,12 @@ pub struct RunOutcome {
     pub events: Vec<SlipEvent>,
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
-    /// Estimate of the relative global error of the last row, largest of stress and states, not below it; `None` where not
-    /// asked for or not known.
+    /// Estimate of the global error of the last row, the largest of all states, not below it: relative to stress and psi, and of a
+    /// system of one's own in units of 1 + |x|. `None` where not asked for or not known.
     pub error_estimate: Option<f64>,
+    /// Estimates of the global errors of all states of a system of one's own at its end, not below them; `None` where not asked for or
+    /// not known, and of interfaces that are built in.
+    pub errors: Option<Vec<f64>>,
     /// Why the error could not be estimated.
     pub estimate_failure: Option<Error>,
     /// Why it ended early, in the user's units.
@@ -300,6 +303,7 @@ impl<'a> RunObserver<'a> {
             events: self.detector.map_or_else(Vec::new, Detector::into_events),
             work: Work::default(),
             error_estimate: None,
+            errors: None,
             estimate_failure: None,
             failure: end.as_ref().err().cloned(),
             stopped: self.stopped,

@@ -336,7 +336,7 @@ fn scales(options: &SlabOptions) -> Result<Scales> {
 }
 
 /// eta in the user's units: itself, or G/(2 c_s).
-fn damping(options: &SlabOptions) -> Result<f64> {
+pub(super) fn damping(options: &SlabOptions) -> Result<f64> {
     match (options.shear_modulus, options.shear_wave_speed) {
         (Some(modulus), Some(speed)) => {
             Ok(positive("shear-modulus", modulus)? / (2.0 * positive("shear-wave-speed", speed)?))

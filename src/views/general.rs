@@ -1,6 +1,6 @@
 //! Diagrams of branches, and of curves, in any parameters.
 
-use super::diagram::{axis_label, distinct, named_strokes};
+use super::diagram::{axis_label, distinct, named_strokes, value};
 use crate::bifurcation::Label;
 use crate::equilibrium::Verdict;
 use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
@@ -21,6 +21,47 @@ fn axis(free: &Free, units: &Units) -> Axis {
         Axis::log(name)
     } else {
         Axis::linear(name)
+    }
+}
+
+/// The axis of what is drawn: logarithmic where all of it is positive, and is so by nature or spans more than a factor of a hundred.
+fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Units) -> Axis {
+    /// Of the ends of what is shown by its logarithm.
+    const RATIO: f64 = 100.0;
+    let values = series.iter().flat_map(|one| one.y.iter().copied());
+    let (low, high) = values
+        .filter(|y| y.is_finite())
+        .fold((f64::INFINITY, 0.0), |(low, high): (f64, f64), y| {
+            (low.min(y), high.max(y))
+        });
+    let positive = matches!(
+        quantity,
+        Quantity::SlipRate | Quantity::State | Quantity::Time
+    );
+    let name = label(name, quantity, units);
+    if low > 0.0 && (positive || high > RATIO * low) {
+        Axis::log(name)
+    } else {
+        Axis::linear(name)
+    }
+}
+
+/// What is drawn, and at which values of what every row tells though it is held.
+fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
+    let symbol = |name: &'static str| match name {
+        "driving" => "V_H",
+        "stiffness" => "K",
+        other => other,
+    };
+    let told = subject.always_told().into_iter();
+    let held = told.filter(|(name, _)| free.iter().all(|free| free.name != *name));
+    let held = held.filter_map(|(name, quantity)| {
+        let held = subject.value(name).ok()?;
+        Some(value(symbol(name), quantity, held, subject.units()))
+    });
+    match held.collect::<Vec<_>>().join(", ") {
+        none if none.is_empty() => what.to_owned(),
+        held => format!("{what} at {held}"),
     }
 }
 
@@ -110,7 +151,7 @@ pub fn general_branches(
     plan: &GeneralBranchPlan<'_>,
 ) -> Drawing {
     /// So many numbers at most, in so many columns.
-    const MOST: usize = 4;
+    const MOST: usize = 6;
     let units = plan.subject.units();
     let x = |row: &GeneralRow| units.outward(plan.free.quantity, row.parameters[0].value);
     let what = if plan.kind.orbits {
@@ -127,7 +168,12 @@ pub fn general_branches(
             series.extend(lines(rows, &x, &y));
             points.extend(marks(rows, &x, &y, k + 1 == places.len()));
         }
-        let title = if number == 0 { what } else { "" };
+        let first = if number == 0 {
+            title(what, plan.subject, std::slice::from_ref(&plan.free))
+        } else {
+            String::new()
+        };
+        let vertical = value_axis(&name, quantity, &series, units);
         panels.push(Panel {
             strokes: if number == 0 {
                 named_strokes(&series)
@@ -136,11 +182,7 @@ pub fn general_branches(
             },
             series,
             marks: points,
-            ..Panel::new(
-                title,
-                axis(&plan.free, units),
-                Axis::linear(label(&name, quantity, units)),
-            )
+            ..Panel::new(first, axis(&plan.free, units), vertical)
         });
     }
     if plan.kind.orbits {
@@ -148,14 +190,12 @@ pub fn general_branches(
             let period = row.period.map_or(f64::NAN, |period| period.value);
             units.outward(Quantity::Time, period)
         };
+        let series = lines(rows, &x, &period);
+        let vertical = value_axis("period", Quantity::Time, &series, units);
         panels.push(Panel {
-            series: lines(rows, &x, &period),
+            series,
             marks: marks(rows, &x, &period, true),
-            ..Panel::new(
-                "",
-                axis(&plan.free, units),
-                Axis::log(label("period", Quantity::Time, units)),
-            )
+            ..Panel::new("", axis(&plan.free, units), vertical)
         });
     }
     let half = panels.len().div_ceil(2);
@@ -193,7 +233,7 @@ pub fn general_curves(
         series: series(&y),
         marks: marks(special, &x, &y, true),
         ..Panel::new(
-            plan.choice.title,
+            title(plan.choice.title, plan.subject, &plan.free),
             axis(&plan.free[0], units),
             axis(&plan.free[1], units),
         )

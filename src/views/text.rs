@@ -1,5 +1,6 @@
 //! What systems of one's own show: columns and pictures.
 
+use super::law::law_columns;
 use super::orbit::multiplier_columns;
 use crate::orbit::Orbit;
 use crate::output::plot::{Axis, Drawing, Panel, PlotSeries, Stroke};
@@ -10,17 +11,17 @@ use crate::scene::{
 use Quantity::Number;
 
 /// The columns of the steady-state friction of a law from a file: those of a law that is built in, and error budgets.
-pub fn text_law_columns() -> Vec<Column<TextLawPoint>> {
+pub fn text_law_columns(two: bool) -> Vec<Column<TextLawPoint>> {
     type Row = TextLawPoint;
     let known = |x: f64| Some(x).filter(|x| x.is_finite());
-    vec![
-        Column::new("slip_rate", Number, |at: &Row| at.point.slip_rate.into()),
-        Column::new("stress", Number, |at: &Row| at.point.stress.into()),
-        Column::new("friction", Number, |at: &Row| at.point.friction.into()),
-        Column::new("state", Number, |at: &Row| at.point.state.into()),
-        Column::new("critical_stiffness", Number, |at: &Row| {
-            at.point.critical_stiffness.into()
-        }),
+    let built_in = law_columns(two).into_iter();
+    let mut columns: Vec<Column<Row>> = built_in
+        .map(|column| {
+            let name = column.name.clone();
+            Column::new(name, Number, move |at: &Row| column.entry(&at.point))
+        })
+        .collect();
+    columns.extend([
         Column::new("stress_uncertainty", Number, move |at: &Row| {
             known(at.stress.uncertainty).into()
         })
@@ -29,7 +30,8 @@ pub fn text_law_columns() -> Vec<Column<TextLawPoint>> {
             known(at.state.uncertainty).into()
         })
         .not_in_table(),
-    ]
+    ]);
+    columns
 }
 
 /// The columns of equilibria; a table has room for the leading eigenvalue.

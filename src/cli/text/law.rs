@@ -4,21 +4,28 @@ use crate::cli::Ending;
 use crate::cli::law::{begun, picture, write};
 use crate::error::Result;
 use crate::output::plot;
-use crate::scene::{Described, LawOptions, LawPoint, TextLawPlan, TextModel};
+use crate::scene::{Described, LawCurve, LawOptions, TextLawPlan, TextLawPoint, TextModel};
 use crate::views;
 
 pub fn run(options: &LawOptions, model: TextModel, words: &[String]) -> Result<Ending> {
     let plan = TextLawPlan::new(options, model)?;
     let report = begun(options, words, || plan.explain())?;
-    let (points, failure) = plan.points();
-    let landmarks = plan.landmarks(&points)?;
+    let (curves, failure) = plan.curves()?;
     if let Some(path) = &options.plot {
-        let points: Vec<LawPoint> = points.iter().map(|at| at.point).collect();
-        let direct_effect = plan.direct_effect();
-        let drawing = picture(plan.model.units(), direct_effect, (&points, &landmarks));
-        plot::write(path, &drawing)?;
+        let curves: Vec<LawCurve> = curves.iter().map(plain).collect();
+        plot::write(path, &picture(plan.model.units(), &curves))?;
     }
-    let (columns, curve) = (views::text_law_columns(), (points.as_slice(), &landmarks));
-    let ending = write(&report, &plan.model, &columns, curve, failure.as_ref())?;
+    let columns = views::text_law_columns(curves.len() > 1);
+    let ending = write(&report, &plan.model, &columns, &curves, failure.as_ref())?;
     failure.map_or(Ok(ending), Err)
+}
+
+/// Without error budgets.
+fn plain(curve: &LawCurve<TextLawPoint>) -> LawCurve {
+    LawCurve {
+        interface: curve.interface,
+        points: curve.points.iter().map(|at| at.point).collect(),
+        landmarks: curve.landmarks.clone(),
+        coefficient: curve.coefficient,
+    }
 }

@@ -32,8 +32,7 @@ impl<'a> Friction<'a> {
 
     /// The value of a parameter of the law; `None` for a name that it does not have.
     pub fn parameter(&self, name: &str) -> Option<f64> {
-        let place = self.law.parameters.iter().position(|(own, _)| own == name);
-        place.map(|place| self.parameters[place])
+        self.law.place(name).map(|place| self.parameters[place])
     }
 
     fn constants<T: Real>(&self) -> Vec<T> {
@@ -51,7 +50,7 @@ impl<'a> Friction<'a> {
     }
 
     /// The steady state at a slip rate v > 0: ln psi where the evolution falls through zero, next to psi = 1/v, and tau where the slip rate
-    /// rises through v, next to 0.
+    /// rises through v, next to 0, or to the stress that is radiated.
     ///
     /// # Errors
     /// [`Error::NotConverged`] where there is none.
@@ -59,8 +58,9 @@ impl<'a> Friction<'a> {
         let evolution = |w: Jet<f64, 1>| -self.evolution(Jet::constant(v), w.exp());
         let log_state = rising_zero("the steady state of the law", -v.ln(), evolution)?;
         let psi = Jet::constant(log_state.exp());
+        let radiated = self.law.damping.map_or(0.0, |i| self.parameters[i] * v);
         let excess = |tau: Jet<f64, 1>| self.slip_rate(tau, psi) - v;
-        let stress = rising_zero("the steady stress of the law", 0.0, excess)?;
+        let stress = rising_zero("the steady stress of the law", radiated, excess)?;
         Ok(Steady { stress, log_state })
     }
 

@@ -6,14 +6,14 @@ use super::slab::TextSlab;
 use crate::error::{Error, Result};
 use crate::friction::{Extremum, ExtremumKind, StiffnessMaximum};
 use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
-use crate::scene::law::{LawLandmarks, LawPoint, slip_rates};
+use crate::scene::law::{LawCurve, LawLandmarks, LawPoint, of_each, slip_rates};
 use crate::scene::options::LawOptions;
 use crate::scene::system::Described;
 
 /// A friction law from a file that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextLawPlan {
-    /// Whose law it is; of several interfaces that of the first.
+    /// Whose law it is.
     pub model: TextModel,
     /// Where it is evaluated, ascending, in V*.
     pub slip_rates: Vec<f64>,
@@ -47,80 +47,101 @@ impl TextLawPlan {
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
         format!(
-            "plan of this command\n  zeros of both formulas at {} slip rates, enclosed by interval arithmetic; extrema where slopes change sign between these; no integration",
-            self.slip_rates.len()
+            "plan of this command\n  zeros of both formulas at {} slip rates{}, enclosed by interval arithmetic; extrema where slopes change sign between these; no integration",
+            self.slip_rates.len(),
+            of_each(self.slab().differ(&self.model.system))
         )
     }
 
-    fn friction(&self) -> Friction<'_> {
+    fn slab(&self) -> &TextSlab {
         let slab: Option<&TextSlab> = self.model.slab.as_ref();
-        let slab = slab.expect("a law from a file");
-        slab.friction(&self.model.system, 0)
+        slab.expect("a law from a file")
     }
 
-    /// a, where the law has a parameter of that name.
-    pub fn direct_effect(&self) -> Option<f64> {
-        self.friction().parameter("direct_effect")
+    /// The law of both interfaces, where they differ of each, up to a rate at which one has no steady state, and why that is.
+    ///
+    /// # Errors
+    /// [`Error::NotConverged`] where a law has no steady state between two points that have.
+    pub fn curves(&self) -> Result<(Vec<LawCurve<TextLawPoint>>, Option<Error>)> {
+        let count = if self.slab().differ(&self.model.system) {
+            2
+        } else {
+            1
+        };
+        let mut curves = Vec::with_capacity(count);
+        for i in 0..count {
+            let friction = self.slab().friction(&self.model.system, i);
+            let (points, failure) = self.points(&friction, i + 1);
+            curves.push(LawCurve {
+                interface: i + 1,
+                landmarks: landmarks(&friction, &points)?,
+                points,
+                coefficient: friction.parameter("direct_effect"),
+            });
+            if failure.is_some() {
+                return Ok((curves, failure));
+            }
+        }
+        Ok((curves, None))
     }
 
     /// The law at all slip rates, up to one at which it has no steady state, and why that is.
-    pub fn points(&self) -> (Vec<TextLawPoint>, Option<Error>) {
-        let friction = self.friction();
+    fn points(
+        &self,
+        friction: &Friction<'_>,
+        interface: usize,
+    ) -> (Vec<TextLawPoint>, Option<Error>) {
         let mut points = Vec::with_capacity(self.slip_rates.len());
         for &v in &self.slip_rates {
-            match point(&friction, v) {
+            match point(friction, interface, v) {
                 Ok(point) => points.push(point),
                 Err(error) => return (points, Some(error)),
             }
         }
         (points, None)
     }
-
-    /// The extrema of the steady stress, and the largest critical stiffness, between the points.
-    ///
-    /// # Errors
-    /// [`Error::NotConverged`] where the law has no steady state between two points that have.
-    pub fn landmarks(&self, points: &[TextLawPoint]) -> Result<LawLandmarks> {
-        let friction = self.friction();
-        let slopes: Vec<Slopes> = points
-            .iter()
-            .map(|at| slopes_at(&friction, at.point.slip_rate, at.steady))
-            .collect();
-        let mut extrema = Vec::new();
-        for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
-            let [left, right] = [0, 1].map(|i| pair[i].relative.value);
-            if left * right.signum() >= 0.0 {
-                continue;
-            }
-            let kind = if left > 0.0 {
-                ExtremumKind::Maximum
-            } else {
-                ExtremumKind::Minimum
-            };
-            let of = |slopes: Slopes<Interval>| slopes.relative.value;
-            // Where the signs are rounding's, and others at the ends of the search, the stress is flat too.
-            let v = match zero_of(&friction, ends, |slopes| slopes.relative) {
-                Err(Error::NotConverged { iterations: 0, .. }) => continue,
-                found => found?,
-            };
-            let (around, radius) = enclosure(&friction, v, of);
-            // Where no sign is certain the stress is flat, or nearly so.
-            if !radius.is_finite() {
-                continue;
-            }
-            let steady = friction.steady(v)?;
-            let [stress, _] = friction.enclosed(around, steady);
-            extrema.push(Extremum::new(kind, Uncertain::new(v, radius), stress));
-        }
-        Ok(LawLandmarks {
-            extrema,
-            critical_stiffness_maximum: largest_stiffness(&friction, points, &slopes)?,
-            transition_rate: None,
-        })
-    }
 }
 
-fn point(friction: &Friction<'_>, v: f64) -> Result<TextLawPoint> {
+/// The extrema of the steady stress, and the largest critical stiffness, between the points.
+fn landmarks(friction: &Friction<'_>, points: &[TextLawPoint]) -> Result<LawLandmarks> {
+    let slopes: Vec<Slopes> = points
+        .iter()
+        .map(|at| slopes_at(friction, at.point.slip_rate, at.steady))
+        .collect();
+    let mut extrema = Vec::new();
+    for (pair, ends) in slopes.windows(2).zip(points.windows(2)) {
+        let [left, right] = [0, 1].map(|i| pair[i].relative.value);
+        if left * right.signum() >= 0.0 {
+            continue;
+        }
+        let kind = if left > 0.0 {
+            ExtremumKind::Maximum
+        } else {
+            ExtremumKind::Minimum
+        };
+        let of = |slopes: Slopes<Interval>| slopes.relative.value;
+        // Where the signs are rounding's, and others at the ends of the search, the stress is flat too.
+        let v = match zero_of(friction, ends, |slopes| slopes.relative) {
+            Err(Error::NotConverged { iterations: 0, .. }) => continue,
+            found => found?,
+        };
+        let (around, radius) = enclosure(friction, v, of);
+        // Where no sign is certain the stress is flat, or nearly so.
+        if !radius.is_finite() {
+            continue;
+        }
+        let steady = friction.steady(v)?;
+        let [stress, _] = friction.enclosed(around, steady);
+        extrema.push(Extremum::new(kind, Uncertain::new(v, radius), stress));
+    }
+    Ok(LawLandmarks {
+        extrema,
+        critical_stiffness_maximum: largest_stiffness(friction, points, &slopes)?,
+        transition_rate: None,
+    })
+}
+
+fn point(friction: &Friction<'_>, interface: usize, v: f64) -> Result<TextLawPoint> {
     let steady = friction.steady(v)?;
     let [stress, log_state] = friction.enclosed(Interval::constant(v), steady);
     let psi = steady.log_state.exp();
@@ -132,6 +153,7 @@ fn point(friction: &Friction<'_>, v: f64) -> Result<TextLawPoint> {
         stress,
         state,
         point: LawPoint {
+            interface,
             slip_rate: v,
             stress: steady.stress,
             friction: friction

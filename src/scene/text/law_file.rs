@@ -2,7 +2,7 @@
 
 use super::file::{Meaning, Tables, parsed};
 use super::lowering::lowered_apart;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::expression::{Binary, Builder, Expressions, Function, Place};
 use crate::scene::file::Reader;
 use toml::de::DeTable;
@@ -25,6 +25,8 @@ pub struct LawFile {
     pub evolution: Expressions,
     /// The parameters and their values in the file.
     pub parameters: Vec<(String, f64)>,
+    /// Where radiation damping stands among the parameters, where the law has it beside what the file says.
+    pub damping: Option<usize>,
 }
 
 impl LawFile {
@@ -48,7 +50,31 @@ impl LawFile {
             name: tables.name,
             slip_rate,
             evolution,
+            damping: None,
         })
+    }
+
+    /// The place of a parameter of this name, where the law has one.
+    pub(super) fn place(&self, name: &str) -> Option<usize> {
+        self.parameters.iter().position(|(own, _)| own == name)
+    }
+
+    /// The same law with radiation damping, which is a parameter more: tau - eta v stands in the place of tau.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for a slip rate that is not a factor times sinh or exp of the stress.
+    pub(super) fn damped(mut self, damping: f64) -> Result<Self> {
+        let place = self.parameters.len();
+        let Some(slip_rate) = self.slip_rate.damped(place)? else {
+            return Err(Error::Input(format!(
+                "`damping`: the slip rate of the law {} must be a factor times sinh or exp of a multiple of tau",
+                self.name
+            )));
+        };
+        self.slip_rate = slip_rate;
+        self.damping = Some(place);
+        self.parameters.push((DAMPING.into(), damping));
+        Ok(self)
     }
 }
 
@@ -152,6 +178,8 @@ impl Sliding {
     }
 }
 
+/// What the radiation damping is called.
+pub(super) const DAMPING: &str = "damping";
 /// Where V_H and K stand among the parameters of interfaces.
 pub(super) const DRIVING: usize = 0;
 pub(super) const STIFFNESS: usize = 1;

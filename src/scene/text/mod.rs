@@ -25,6 +25,6 @@ pub use model::TextModel;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
 pub use plan::{TextInstant, TextPlan, text_columns};
-pub use run::{TextOutcome, run_text};
+pub use run::run_text;
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};
 pub use slab::TextSlab;

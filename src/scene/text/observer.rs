@@ -1,7 +1,6 @@
 //! What is seen of a run of a system of one's own: rows, slips and the points of a picture.
 
 use super::plan::{TextInstant, TextPlan};
-use super::run::TextOutcome;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyStep, Control, Work};
@@ -10,7 +9,7 @@ use crate::number::DoubleDouble;
 use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
 use crate::scene::program::Stretch;
-use crate::scene::run::{PICTURED, RESTS, Sink};
+use crate::scene::run::{PICTURED, RESTS, RunOutcome, Sink};
 use crate::scene::slip::{GAUSS, Slips, sum};
 use crate::scene::system::Described;
 
@@ -63,17 +62,20 @@ impl<'a> TextObserver<'a> {
     }
 
     /// A stretch begins: the first one with the first row, the others with one at either side of a change.
-    pub fn begin(&mut self, stretch: &Stretch) {
+    pub fn begin(&mut self, stretch: &Stretch, from: &Vector) {
         let first = self.begun == 0;
         self.begun += 1;
         let rows = self.plan.sampling != Sampling::FinalOnly;
-        if rows && !first && self.shown != Some(stretch.span.0) {
+        let changes = !first && self.plan.nodes.is_empty();
+        if rows && changes && self.shown != Some(stretch.span.0) {
             let before = self.here.clone();
             self.emit(&before);
         }
         let jumps = stretch.driving.0 != self.stretch.driving.1;
         self.stretch = *stretch;
         self.here.time = stretch.span.0;
+        let count = self.here.state.len();
+        self.here.state.copy_from_slice(&from.as_slice()[..count]);
         self.here.driving = stretch.driving.0;
         let here = self.here.clone();
         if self.plan.picture {
@@ -165,7 +167,7 @@ impl<'a> TextObserver<'a> {
         }
     }
 
-    pub fn finish(mut self, end: &Result<Vector>) -> TextOutcome {
+    pub fn finish(mut self, end: &Result<Vector>) -> RunOutcome {
         let plan = self.plan;
         if let Ok(y) = end
             && !self.stopped
@@ -180,8 +182,9 @@ impl<'a> TextObserver<'a> {
         }
         let known = end.is_ok() || plan.observed();
         fill(&mut self.row, &plan.columns, plan, &self.here);
-        TextOutcome {
+        RunOutcome {
             last: known.then_some(self.row),
+            events: Vec::new(),
             work: Work::default(),
             errors: None,
             error_estimate: None,

@@ -1,6 +1,7 @@
 //! A periodic orbit of a system of one's own.
 
 use super::model::TextModel;
+use super::plan::{TextPlan, text_columns};
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
@@ -8,7 +9,8 @@ use crate::friction::positive;
 use crate::integrate::{Choice, Tolerances};
 use crate::orbit::{Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, crosscheck_of, find_from};
 use crate::scene::options::OrbitOptions;
-use crate::scene::orbit::second;
+use crate::scene::orbit::{dense_output, run_method, second};
+use crate::scene::plan::{Sampling, equally_spaced};
 
 /// A periodic orbit that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +25,10 @@ pub struct TextOrbitPlan {
     pub accuracy: OrbitAccuracy,
     /// By which second method once more.
     pub second: Option<OrbitAccuracy>,
+    /// The rows over one period, where there are to be any.
+    pub rows: Option<Sampling>,
+    /// Whether the orbit is drawn.
+    pub picture: bool,
 }
 
 impl TextOrbitPlan {
@@ -46,6 +52,8 @@ impl TextOrbitPlan {
             start: start(options, &model)?,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            rows: options.points.map(equally_spaced).transpose()?,
+            picture: options.plot.is_some(),
             accuracy,
             model,
         })
@@ -66,10 +74,12 @@ impl TextOrbitPlan {
   dimension         {}
   guess             {guess}
   method            {}, tangents on, multiple shooting; rtol {:e}
-  crosscheck        {second}",
+  crosscheck        {second}
+  dense output      {}",
             self.start.len(),
-            self.accuracy.method.name(),
-            self.accuracy.tolerances.rtol
+            run_method(self.accuracy.method).name(),
+            self.accuracy.tolerances.rtol,
+            dense_output(self.rows, self.picture)
         )
     }
 
@@ -84,6 +94,32 @@ impl TextOrbitPlan {
             self.period,
             &self.accuracy,
         )
+    }
+
+    /// The run over one period of an orbit, from its point back to it, along the arcs between its shooting nodes. `None` where neither
+    /// rows nor a picture are asked for.
+    pub fn along(&self, orbit: &Orbit) -> Option<TextPlan> {
+        if self.rows.is_none() && !self.picture {
+            return None;
+        }
+        let vector = |y: &[f64]| Vector::from_column_slice(y);
+        let nodes = orbit.nodes_since_point().into_iter();
+        let method = run_method(self.accuracy.method);
+        Some(TextPlan {
+            program: None,
+            start: vector(&orbit.point),
+            nodes: nodes.map(|(time, node)| (time, vector(node))).collect(),
+            until: orbit.period.value,
+            sampling: self.rows.unwrap_or(Sampling::FinalOnly),
+            columns: text_columns(&self.model),
+            picture: self.picture,
+            estimate: None,
+            asked_method: method.name().into(),
+            method,
+            tolerances: self.accuracy.tolerances,
+            max_steps: self.accuracy.max_steps,
+            model: self.model.clone(),
+        })
     }
 
     /// The orbit once more, by the second method; `None` where there is none.

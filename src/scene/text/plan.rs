@@ -25,6 +25,9 @@ pub struct TextPlan {
     pub program: Option<Program>,
     /// Where it starts.
     pub start: Vector,
+    /// Where the run begins anew from known points of the same solution, as an orbit from its shooting nodes: their times, ascending,
+    /// and the points. Empty for a run from its start alone.
+    pub nodes: Vec<(f64, Vector)>,
     /// End of the run.
     pub until: f64,
     /// When there are rows.
@@ -134,6 +137,7 @@ impl TextPlan {
         Ok(TextPlan {
             program,
             start,
+            nodes: Vec::new(),
             until,
             sampling,
             columns,
@@ -170,10 +174,15 @@ impl TextPlan {
     /// The stretches of the run, one after the other.
     pub(super) fn stretches(&self) -> Result<Vec<Stretch>> {
         let driving = self.model.driving();
-        match &self.program {
-            Some(program) => program.stretches(driving, self.until, self.model.units()),
-            None => Ok(vec![Stretch::new((0.0, self.until), (driving, driving))]),
+        if let Some(program) = &self.program {
+            return program.stretches(driving, self.until, self.model.units());
         }
+        let times = || self.nodes.iter().map(|&(time, _)| time);
+        let begins = [0.0].into_iter().chain(times());
+        let spans = begins.zip(times().chain([self.until]));
+        Ok(spans
+            .map(|span| Stretch::new(span, (driving, driving)))
+            .collect())
     }
 
     /// The equations of a stretch: on a ramp V_H is their last state.

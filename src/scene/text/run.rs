@@ -8,38 +8,18 @@ use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolera
 use crate::model::TextSystem;
 use crate::scene::estimate::{Companion, GROWTH, MARGIN, PIECES, ROUNDING, TIME_SPACINGS};
 use crate::scene::program::Stretch;
-use crate::scene::run::Sink;
+use crate::scene::run::{RunOutcome, Sink};
 use std::borrow::Cow;
-
-/// What a run came to.
-#[derive(Debug, Clone, PartialEq)]
-#[non_exhaustive]
-pub struct TextOutcome {
-    /// The last row; `None` if a run that nobody watched failed.
-    pub last: Option<Vec<f64>>,
-    /// What it cost, the second run of an error estimate included.
-    pub work: Work,
-    /// Estimates of the global errors of all states at the end, not below them; `None` where not asked for or not known.
-    pub errors: Option<Vec<f64>>,
-    /// The largest of them, in units of 1 + |x|.
-    pub error_estimate: Option<f64>,
-    /// Why they could not be estimated.
-    pub estimate_failure: Option<Error>,
-    /// Why it ended early.
-    pub failure: Option<Error>,
-    /// Whether the sink stopped it.
-    pub stopped: bool,
-}
 
 /// Runs a plan.
 ///
 /// # Errors
-/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`TextOutcome::failure`].
-pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<TextOutcome> {
+/// [`Error::Parameter`] if the integrator refuses its settings; a failure on the way is in [`RunOutcome::failure`].
+pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     let mut watch = TextObserver::new(plan, &mut *sink);
     let mut work = Work::default();
     let end = along(plan, |part, from| {
-        watch.begin(part.stretch);
+        watch.begin(part.stretch, &from);
         if part.is_empty() {
             return Ok((from, false));
         }
@@ -105,15 +85,18 @@ impl Part<'_> {
     }
 }
 
-/// Goes along all stretches of a run, on each from where the last has ended, to the bit; `by` says where a stretch ends, and whether to
-/// go no further.
+/// Goes along all stretches of a run, on each from where the last has ended, to the bit, or from a node; `by` says where a stretch ends,
+/// and whether to go no further.
 fn along(
     plan: &TextPlan,
     mut by: impl FnMut(&Part<'_>, Vector) -> Result<(Vector, bool)>,
 ) -> Result<Vector> {
     let count = plan.start.len();
     let mut here = plan.start.clone();
-    for stretch in plan.stretches()? {
+    for (i, stretch) in plan.stretches()?.into_iter().enumerate() {
+        if let Some((_, node)) = i.checked_sub(1).and_then(|i| plan.nodes.get(i)) {
+            here.clone_from(node);
+        }
         let system = plan.system_on(&stretch)?;
         let part = Part {
             stretch: &stretch,
@@ -161,7 +144,7 @@ fn of_run(plan: &TextPlan, error: Error) -> Error {
 fn second_run(
     companion: Companion,
     plan: &TextPlan,
-    outcome: &mut TextOutcome,
+    outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
 ) -> Result<Vector> {
     along(plan, |part, from| {
@@ -189,7 +172,7 @@ fn errors(
     plan: &TextPlan,
     end: &Vector,
     second: &Vector,
-    outcome: &mut TextOutcome,
+    outcome: &mut RunOutcome,
 ) -> Result<Vec<f64>> {
     let tolerances = Tolerances::equal(GROWTH)?;
     let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, plan.max_steps)?;

@@ -1,15 +1,16 @@
 //! Interfaces whose friction law is from a file, and what the options say about them.
 
 use super::friction::Friction;
-use super::law_file::{DRIVING, LawFile, STIFFNESS, Sliding};
+use super::law_file::{DAMPING, DRIVING, LawFile, STIFFNESS, Sliding};
 use super::model::number;
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::TextSystem;
 use crate::number::Interval;
-use crate::scene::options::ModelOptions;
+use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
 use crate::scene::set::assignments;
+use crate::scene::system::damping;
 use serde_json::{Map, Value, json};
 
 /// One or two interfaces under one stress, with the law of a file.
@@ -46,6 +47,7 @@ impl TextSlab {
                 law.name
             )));
         }
+        let law = damped(law, options)?;
         let mut loading = [options.driving, options.stiffness];
         let own = parameters(&law, options, interfaces, &mut loading)?;
         let [driving, stiffness] = loading;
@@ -110,9 +112,17 @@ impl TextSlab {
 
     /// Whether there are two interfaces whose parameters are the same.
     pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
-        let all = system.parameters();
-        let of = |places: &Vec<usize>| -> Vec<f64> { places.iter().map(|&i| all[i]).collect() };
-        self.interfaces() == 2 && of(&self.places[0]) == of(&self.places[1])
+        self.interfaces() == 2 && !self.differ(system)
+    }
+
+    /// Whether the interfaces differ in any parameter of the law.
+    pub(super) fn differ(&self, system: &TextSystem) -> bool {
+        let own = |places: &Vec<usize>| -> Vec<f64> {
+            places.iter().map(|&i| system.parameters()[i]).collect()
+        };
+        self.places
+            .windows(2)
+            .any(|pair| own(&pair[0]) != own(&pair[1]))
     }
 
     /// What the law is called.
@@ -267,6 +277,23 @@ impl TextSlab {
     }
 }
 
+/// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
+fn damped(law: LawFile, options: &ModelOptions) -> Result<LawFile> {
+    if law.place(DAMPING).is_some() {
+        return Ok(law);
+    }
+    let set = assignments(&options.slab.text.set)?;
+    let set = set.into_iter().rfind(|(name, _)| *name == DAMPING);
+    let given = SlabOptions {
+        damping: set.map(|(_, value)| value).or(options.slab.damping),
+        ..options.slab.clone()
+    };
+    match damping(&given)? {
+        0.0 => Ok(law),
+        eta => law.damped(eta),
+    }
+}
+
 /// The parameters of the law, with what the options and `--set` say; V_H and K go to `loading`.
 fn parameters(
     law: &LawFile,
@@ -287,10 +314,14 @@ fn parameters(
         ("direct_effect", slab.direct_effect),
         ("evolution_effect", slab.evolution_effect),
         ("reference_friction", slab.reference_friction),
-        ("damping", slab.damping),
+        (DAMPING, slab.damping),
     ] {
         let Some(value) = value else { continue };
         let Some(own) = own.iter_mut().find(|own| own.name == name) else {
+            // Without damping a law needs none.
+            if name == DAMPING {
+                continue;
+            }
             let option = name.replace('_', "-");
             return Err(Error::Input(format!(
                 "`{option}`: the law {} is from a file, and has no parameter {name}",
@@ -303,6 +334,7 @@ fn parameters(
         match name {
             "driving" => loading[0] = Some(value),
             "stiffness" => loading[1] = Some(value),
+            DAMPING if law.place(DAMPING).is_none() => {}
             _ => put(&mut own, name, value, interfaces)?,
         }
     }

@@ -2,13 +2,14 @@
 //!
 //! What occurs twice is there once. Nothing in it can do more than arithmetic.
 
+mod damped;
 mod factor;
 mod function;
 
 pub use function::Function;
 
 use crate::error::{Error, Result};
-use crate::number::Real;
+use crate::number::{Balance, Real};
 use std::collections::HashMap;
 
 /// Formulas have no more operations, all together.
@@ -41,6 +42,15 @@ enum Operation {
     Call(Function, Place),
     Lesser(Place, Place),
     Greater(Place, Place),
+    /// g(y) of the y with y + g(y) = the first operand, g being the second one times this function.
+    Balanced(Place, Place, Activation),
+}
+
+/// A function of the stress by which a slip rate rises.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+enum Activation {
+    Sinh,
+    Exponential,
 }
 
 impl Operation {
@@ -69,6 +79,7 @@ impl Operation {
             Call(function, a) => Call(function, at(a)),
             Lesser(a, b) => Lesser(at(a), at(b)),
             Greater(a, b) => Greater(at(a), at(b)),
+            Balanced(a, b, activation) => Balanced(at(a), at(b), activation),
         }
     }
 }
@@ -127,6 +138,12 @@ impl Expressions {
                 Operation::Call(function, a) => function.of(at(a)),
                 Operation::Lesser(a, b) => at(a).lesser(at(b)),
                 Operation::Greater(a, b) => at(a).greater(at(b)),
+                Operation::Balanced(a, b, Activation::Sinh) => {
+                    at(a).balanced(Balance::Sinh(at(b))).1
+                }
+                Operation::Balanced(a, b, Activation::Exponential) => {
+                    at(a).balanced(Balance::Exponential(at(b))).1
+                }
             };
             values.push(value);
         }

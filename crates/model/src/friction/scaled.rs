@@ -4,8 +4,11 @@
 //! the law's own formulas, u = law(q tau, psi), dpsi/dt = -G(u, psi).
 
 use super::rounding::{CHANGE, ROUNDING};
-use super::{AnyLaw, Formulas, Law, Parameters, Rounded};
-use crate::number::{Constant, Free, Real, With};
+use super::{
+    AnyLaw, Formulas, Law, Parameters, Rounded, StiffnessMaximum, critical_stiffness_maximum,
+};
+use crate::error::Result;
+use crate::number::{Constant, Free, Real, Uncertain, With};
 
 /// v = l law(q tau, psi), dpsi/dt = -G(v/l, psi).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,6 +30,31 @@ impl From<AnyLaw> for ScaledLaw {
             slip_rate_factor: 1.0,
         }
     }
+}
+
+impl ScaledLaw {
+    /// The largest critical stiffness, in the units outside: that of the law over q l, at l times its rate.
+    ///
+    /// # Errors
+    /// As [`critical_stiffness_maximum`].
+    pub fn critical_stiffness_maximum(&self) -> Result<Option<StiffnessMaximum>> {
+        let stiffness = 1.0 / (self.stress_factor * self.slip_rate_factor);
+        let own = critical_stiffness_maximum(&self.law)?;
+        Ok(own.map(|own| StiffnessMaximum {
+            slip_rate: times(own.slip_rate, self.slip_rate_factor),
+            stiffness: times(own.stiffness, stiffness),
+        }))
+    }
+}
+
+/// A number in another unit: beside its own error that of the factor, which is known to three roundings, and its own rounding.
+fn times(x: Uncertain, factor: f64) -> Uncertain {
+    if factor == 1.0 {
+        return x;
+    }
+    let value = factor * x.value;
+    let rounding = 2.0 * f64::EPSILON * value.abs();
+    Uncertain::new(value, factor * x.uncertainty + rounding)
 }
 
 impl<C: Constant> ScaledLaw<C> {
