@@ -226,6 +226,67 @@ fn orbits_of_a_single_interface_are_those_that_orbit_finds() {
     assert!(row.get("state_2").is_none());
 }
 
+#[test]
+fn a_branch_of_orbits_goes_on_from_the_end_at_which_it_begins() {
+    // ln V_H = 0 is met again by rounding.
+    let made = object(
+        "branch orbits --stiffness 0.14 --set residual_strength_2=0.0011 --from 1 --to 1.5 --start 9.95,0.002,0.00199",
+    );
+    let ends: Vec<f64> = special(&made, "EP")
+        .iter()
+        .map(|one| number(one, "/driving/value"))
+        .collect();
+    assert_eq!(ends, [1.0, 1.5]);
+    assert!(made["result"]["rows"].as_array().expect("rows").len() > 4);
+}
+
+/// Where the way changes that the torus bifurcation goes, by both engines: in V_H and K of a law that is built in, and of the same law from a
+/// file. Hopf points lie outside of the range.
+#[test]
+fn the_chenciner_point_is_the_same_in_any_parameters() {
+    const LAW: &str = r#"
+slip_rate = "gamma*sinh(tau)/(residual_strength + (1 + healing_time)*psi)^beta"
+evolution = "(1 - psi)/healing_time - abs(v)*psi"
+[parameters]
+direct_effect = 0.0349
+evolution_effect = 0.0489
+reference_friction = 0.369
+residual_strength = 1e-3
+healing_time = 100.0
+[where]
+beta = "evolution_effect/direct_effect"
+gamma = "2*exp(-reference_friction/direct_effect)"
+"#;
+    let path = crate::common::text::file("chenciner", LAW);
+    let ranges = "--criticality --driving-range 0.054:0.055 --stiffness-range 0.033:0.034";
+    let found = ["", &format!("--law {path}")].map(|law| {
+        let made = object(&format!("locus torus {law} {ranges}"));
+        let points = special(&made, "CH");
+        assert_eq!(points.len(), 1, "{law}");
+        ["driving", "stiffness"].map(|name| {
+            ["value", "uncertainty"].map(|part| number(points[0], &format!("/{name}/{part}")))
+        })
+    });
+    for (i, most) in [1e-10, 1e-9].into_iter().enumerate() {
+        let [[first, by], [second, more]] = [found[0][i], found[1][i]];
+        assert!((first - second).abs() <= by + more, "{first} for {second}");
+        assert!(by + more < most);
+    }
+}
+
+#[test]
+fn special_orbits_in_any_parameter_are_computed_once_more_by_another_method() {
+    let made = object(
+        "branch orbits --interfaces 1 --driving 10 --stiffness 0.2 --along direct_effect --from 0.034 --to 0.038 --at 0.036 --crosscheck cvode-adams",
+    );
+    let landed = special(&made, "UZ");
+    let check = &landed[0]["crosscheck"];
+    assert_eq!(check["method"], "cvode-adams");
+    assert!(number(check, "/period_difference").abs() < 1e-10);
+    assert!(number(check, "/direct_effect_difference").abs() < 1e-15);
+    assert!(check.get("driving_difference").is_none());
+}
+
 /// At a steady state of equal interfaces the damping adds eta V_H / 2 to the stress, and nothing else: in Pa, of Pa s/m and m/s.
 #[test]
 fn the_damping_varies_in_pascal_seconds_per_metre() {

@@ -226,6 +226,37 @@ fn one_interface_has_the_orbit_that_orbit_finds() {
 }
 
 /// Where an attractor coexists with another, a line that follows stays on it.
+/// A damped fault in granite: earthquakes where K < k_c(V_H), which `law` has, and creep where K > k_c(V_H).
+#[test]
+fn a_fault_quakes_below_its_critical_stiffness_and_creeps_above_it() {
+    let fault = "--law regularised-ageing --interfaces 1 --si --time-unit year --direct-effect 0.010 --evolution-effect 0.015 \
+        --reference-friction 0.6 --slip-length 10e-6 --normal-stress 50e6 --shear-modulus 30e9 --shear-wave-speed 3000";
+    let rows = rows(&format!(
+        "{fault} --driving 1e-10:0.3:4log --stiffness 1e9:1e11:3log"
+    ));
+    assert_eq!(rows.len(), 12);
+    for row in &rows {
+        let (driving, stiffness) = (number(row, "driving"), number(row, "stiffness"));
+        let ends = format!("--from {driving} --to {} --points 2", 2.0 * driving);
+        let law = object(&format!("law {fault} {ends}"));
+        let critical = command::number(&law, "/result/rows/0/critical_stiffness");
+        let expected = if stiffness < critical {
+            "periodic"
+        } else {
+            "steady"
+        };
+        assert_eq!(row["regime"], expected, "{critical}: {row:?}");
+    }
+    let picture = folder("sweep-any-fault").join("map.svg");
+    let ended = twinslip(&format!(
+        "sweep {fault} --driving 1e-10:1e-3:2log --stiffness 1e9:1e11:2log --plot {} --format csv",
+        picture.display()
+    ));
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let picture = fs::read_to_string(picture).expect("a picture");
+    assert!(picture.contains("Hopf"));
+}
+
 #[test]
 fn lines_that_follow_stay_on_their_attractor() {
     let follow = rows("--system lorenz --start 7.7,7.7,23 --grid r=23:24.5:4 --follow");

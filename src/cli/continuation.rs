@@ -9,7 +9,6 @@ use super::{Ending, interrupt, say, special, written};
 use crate::bifurcation::{Criticality, Label};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
-use crate::model::Parameter;
 use crate::output::{
     self, Format, Over, ROW_CHECK, RowFile, RowWriter, Status, checked_line, plot,
 };
@@ -128,7 +127,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
     ) -> special::Checks<'_> {
         let mut checks = special::Checks {
             names: match self.names[..] {
-                [] => Parameter::LOADING.to_vec(),
+                [] => vec!["driving", "stiffness"],
                 _ => self.names.clone(),
             },
             ..special::Checks::default()

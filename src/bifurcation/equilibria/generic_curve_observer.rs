@@ -142,9 +142,11 @@ impl Observer<'_, '_> {
         let off_along = noise / slope.abs();
         let bend = (self.problem.tangent(&at(s + beside)?.0, along)? - &tangent) / beside;
         let across = self.problem.budget_across(&u, &tangent)?;
+        // At the origin rounding is nothing, and what is left are the steps that did not change a number of the size of the others.
+        let least = f64::EPSILON * f64::EPSILON * (1.0 + start.amax());
         let off = [0, 1].map(|k| {
             let by_bend = bend[n + k].abs() * off_along * off_along;
-            across[n + k] + off_along * tangent[n + k].abs() + by_bend
+            across[n + k] + off_along * tangent[n + k].abs() + by_bend + least
         });
         off.iter().all(|x| x.is_finite()).then_some((u, off))
     }

@@ -167,7 +167,9 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             let site = orbit.site.clone();
             let mut corrector = new_corrector(self.branch.system.family)?;
             let mut palc = Palc::from(&mut corrector, self.settings(), site, direction)?;
-            OrbitBranch::new(self, number, 0, true).go(&mut palc, teller)?;
+            let mut branch = OrbitBranch::new(self, number, 0, true);
+            branch.begin = Some(orbit.site.clone());
+            branch.go(&mut palc, teller)?;
         }
         Ok(())
     }
@@ -290,6 +292,8 @@ struct OrbitBranch<'s, 'b, 'a> {
     number: usize,
     times: usize,
     inside: bool,
+    /// The orbit that it begins with, which it does not come to again.
+    begin: Option<ContinuationPoint>,
 }
 
 impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
@@ -299,7 +303,19 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             number,
             times,
             inside,
+            begin: None,
         }
+    }
+
+    /// Whether this is the orbit that it begins with.
+    fn is_begin(&self, site: &ContinuationPoint) -> bool {
+        let apart = |begin: &ContinuationPoint| {
+            let periods = site.shooting.period() / begin.shooting.period();
+            (site.at[FREE] - begin.at[FREE])
+                .abs()
+                .max(periods.ln().abs())
+        };
+        self.begin.as_ref().is_some_and(|begin| apart(begin) < SAME)
     }
 
     fn watches(&self) -> Vec<WatchedFunction> {
@@ -433,6 +449,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let (from, to) = branch.range;
         let near = &at.here;
         let label = match watch {
+            // It begins at this value but for rounding.
+            WatchedFunction::Value(..) if self.is_begin(&near.site) => return Continue(()),
             WatchedFunction::Value(_, x) if x == from || x == to => Label::Ep,
             _ if !self.set.inside(near.site.at[FREE]) => return Continue(()),
             WatchedFunction::Value(..) => Label::Uz,

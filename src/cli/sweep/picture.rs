@@ -23,6 +23,15 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
         values: range.values().collect(),
         log: range.log,
     };
+    // Who has ended the sweep does not wait for them.
+    let curves = match interrupt::asked() {
+        true => Vec::new(),
+        false => curves(&plan.curves, report),
+    };
+    let curves: Vec<(&str, &[LocusRow])> = curves
+        .iter()
+        .map(|(title, points)| (*title, &points[..]))
+        .collect();
     let drawing = match &plan.settings.grid {
         Grid::Basin {
             loading,
@@ -41,18 +50,9 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
             let (x, y) = (side(x), side(y));
             let [along, up] = plan.axis_labels();
             let sides = [(&x, along), (&y, up)];
-            views::parameter_map(&outcomes, sides, plan.settings.starts, units)
+            views::parameter_map(&outcomes, sides, plan.settings.starts, &curves, units)
         }
         Grid::Plane { driving, stiffness } => {
-            // Who has ended the sweep does not wait for them.
-            let curves = match interrupt::asked() {
-                true => Vec::new(),
-                false => curves(&plan.curves, report),
-            };
-            let curves: Vec<(&str, &[LocusRow])> = curves
-                .iter()
-                .map(|(title, points)| (*title, &points[..]))
-                .collect();
             let sides = (&side(driving), &side(stiffness));
             views::regime_map(&outcomes, sides, plan.settings.starts, &curves, units)
         }

@@ -51,9 +51,9 @@ impl SweepPlan {
             }
             Grid::Laws { .. } | Grid::Systems { .. } => "taylor, one point after the other",
         };
-        let curves = match (&settings.grid, self.drawn) {
+        let curves = match (&settings.grid, self.drawn && self.curves.is_empty()) {
             (Grid::Laws { .. } | Grid::Systems { .. }, true) => {
-                "\n  curves            none: those of bifurcations are drawn over V_H and K of equal interfaces"
+                "\n  curves            none: those of bifurcations are drawn over V_H and K of equal interfaces, or of one"
             }
             _ => "",
         };

@@ -132,7 +132,9 @@ impl SweepPlan {
                     "`plot` draws a map of two parameters, and here one varies; leave it out, or let another one vary".into(),
                 ));
             }
-            (Some(_), Swept::Interfaces(system)) => curves(options, system, &settings.grid)?,
+            (Some(_), Swept::Interfaces(system)) => {
+                curves(options, system, (&settings.grid, &axes.names))?
+            }
             _ => Vec::new(),
         };
         Ok(SweepPlan {
@@ -328,23 +330,46 @@ struct LocusLine {
     options: LocusOptions,
 }
 
-/// The bifurcations of these interfaces within a grid, if it is a plane that has an area.
-fn curves(options: &SweepOptions, system: &System, grid: &Grid) -> Result<Vec<LocusPlan>> {
-    let Grid::Plane { driving, stiffness } = grid else {
-        return Ok(Vec::new());
+/// The bifurcations of these interfaces within a grid, if it is a plane of V_H and K that has an area.
+fn curves(
+    options: &SweepOptions,
+    system: &System,
+    (grid, names): (&Grid, &[String]),
+) -> Result<Vec<LocusPlan>> {
+    let usual = SweepLine::parse_from(["sweep"]).options.curves;
+    let outward = |quantity, range: &crate::sweep::Range| {
+        [range.from, range.to].map(|x| system.units.outward(quantity, x))
     };
-    if options.curves == "none" || driving.count == 1 || stiffness.count == 1 {
+    let (ends, asked_for) = match (grid, &grid.ranges()[..]) {
+        (Grid::Plane { driving, stiffness }, _) => (
+            [
+                outward(Quantity::SlipRate, driving),
+                outward(Quantity::Stiffness, stiffness),
+            ],
+            options.curves.as_str(),
+        ),
+        // Of a single interface there are Hopf points alone; its ranges are in the user's units.
+        (Grid::Systems { .. }, [driving, stiffness])
+            if system.interfaces == 1 && names == ["driving", "stiffness"] =>
+        {
+            let asked_for = match options.curves == usual {
+                true => "hopf",
+                false => options.curves.as_str(),
+            };
+            let ends = [driving, stiffness].map(|range| [range.from, range.to]);
+            (ends, asked_for)
+        }
+        _ => return Ok(Vec::new()),
+    };
+    if options.curves == "none" || grid.ranges().iter().any(|range| range.count == 1) {
         return Ok(Vec::new());
     }
-    let ends = |quantity, range: &crate::sweep::Range| {
-        let [from, to] = [range.from, range.to].map(|x| system.units.outward(quantity, x));
-        Some(format!("{from:?}:{to:?}"))
-    };
+    let [driving, stiffness] = ends.map(|[from, to]| Some(format!("{from:?}:{to:?}")));
     let mut asked = LocusLine::parse_from(["locus"]).options;
     asked.model.slab = options.slab.clone();
-    asked.driving_range = ends(Quantity::SlipRate, driving);
-    asked.stiffness_range = ends(Quantity::Stiffness, stiffness);
-    let names = options.curves.split(',');
+    asked.driving_range = driving;
+    asked.stiffness_range = stiffness;
+    let names = asked_for.split(',');
     names
         .map(|name| {
             LocusPlan::new(&LocusOptions {

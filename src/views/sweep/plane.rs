@@ -45,10 +45,11 @@ pub fn parameter_map(
     outcomes: &[PointOutcome],
     sides: [(&GridSide, String); 2],
     starts: usize,
+    curves: &[(&str, &[LocusRow])],
     units: &Units,
 ) -> Drawing {
     let axes = sides.map(|(side, label)| side.axis(label, |x| x));
-    drawn(outcomes, axes, starts, Vec::new(), units)
+    drawn(outcomes, axes, starts, over(curves, units), units)
 }
 
 /// A map over axes with the edges of their cells.
