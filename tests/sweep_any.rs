@@ -57,6 +57,14 @@ fn agree(
 fn lorenz_is_steady_chaotic_and_periodic_along_r() {
     let below = rows("--system lorenz --grid r=10:20:3");
     assert_eq!(regimes(&below), ["steady"; 3]);
+    // Chaos that ends in rest, sooner or later.
+    let transient = rows("--system lorenz --grid r=22:24:5 --max-returns 1024");
+    for row in &transient {
+        assert!(
+            ["steady", "undecided"].contains(&row["regime"].as_str()),
+            "{row:?}"
+        );
+    }
     for row in &below {
         let x = (8.0 / 3.0 * (number(row, "r") - 1.0)).sqrt();
         assert!((number(row, "x_min").abs() - x).abs() < 1e-9, "{row:?}");

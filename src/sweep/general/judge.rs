@@ -14,8 +14,8 @@ use super::{GeneralSweeper, Settled};
 use crate::error::Error;
 use crate::field::Vector;
 use crate::section::{
-    Ended, FEWEST_RETURNS, IRREGULAR, Periodic, PeriodicSearch, REGULAR, Regime, Watching,
-    aperiodic, at_equilibrium, points, regularity,
+    Ended, FEWEST_RETURNS, IRREGULAR, Periodic, PeriodicSearch, REGULAR, Regime, Return, Watching,
+    aperiodic, at_equilibrium, growth, points, regularity,
 };
 
 /// By what part of its size a run starts beside the steady state of the point before.
@@ -164,7 +164,8 @@ impl GeneralSweeper {
         Some(told)
     }
 
-    /// A torus or chaos, or why nothing can be said.
+    /// A torus or chaos, or why nothing can be said. Where there is a stable steady state too, chaos may be but a way to it: it is waited for,
+    /// and nothing said in the end.
     fn wandering(&self, run: &GeneralRun, row: &SweepRow) -> Result<Settled, &'static str> {
         let n = run.returns().len();
         let last = run.recorder.returns.len() >= self.settings.max_returns;
@@ -194,6 +195,11 @@ impl GeneralSweeper {
             return Err("too early");
         }
         let disorder = regularity(&points(&run.surface, half));
+        if disorder > IRREGULAR && may_come_to_rest(run) {
+            return Err(
+                "its returns are irregular, but there is a stable steady state, to which they may lead; raise `max_returns`",
+            );
+        }
         if !(REGULAR..=IRREGULAR).contains(&disorder) {
             return self.with_tangents(run, row);
         }
@@ -219,6 +225,29 @@ impl GeneralSweeper {
         told.attractor = found.last().map(|at| at.state.clone());
         Ok(told)
     }
+}
+
+/// Whether Newton's method leads from a return of the run to a stable steady state.
+fn may_come_to_rest(run: &GeneralRun) -> bool {
+    /// Returns that are tried, steps of Newton's method, and one that is the last, in units of 1 + |y|.
+    const TRIED: usize = 16;
+    const STEPS: usize = 40;
+    const LAST: f64 = 1e-9;
+    let rest = |at: &Return| {
+        let mut y = at.state.clone();
+        for _ in 0..STEPS {
+            let step = run.field.newton_step(y.as_slice())?;
+            y -= &step;
+            if step.amax() < LAST * (1.0 + y.amax()) {
+                return Some(y);
+            }
+        }
+        None
+    };
+    let returns = run.returns();
+    let every = (returns.len() / TRIED).max(1);
+    let mut rests = returns.iter().step_by(every).filter_map(rest);
+    rests.any(|y| growth(&run.field, y.as_slice()) < 0.0)
 }
 
 /// A row of which the regime is known.
