@@ -110,7 +110,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.x.copy_from_slice(x);
         self.lost.fill(self.any.like(0.0));
         self.record_here();
-        self.rows.level(&self.program, 0);
+        self.rows.level(0);
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
         let sizes = || self.x.iter().map(|x| x.abs());
         let largest = sizes().map(|x| x.largest_lane()).fold(0.0, f64::max);
@@ -154,7 +154,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.record_here();
         for _ in 0..=SHORTER_UNITS {
             for k in 0..order {
-                self.rows.level(&self.program, k);
+                self.rows.level(k);
                 let share = self.rows.one_over(k + 1) * self.unit;
                 for i in 0..self.x.len() {
                     let rate = self.rows.coefficient(self.program.outputs[i], k);
@@ -286,7 +286,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
         for (i, x) in x.iter().enumerate() {
             self.probe.set(i, 0, *x);
         }
-        self.probe.level(&self.program, 0);
+        self.probe.level(0);
         // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
         let changes = |&row: &usize| {
             let signs = self.rows.row(row)[0].sign() * self.probe.row(row)[0];

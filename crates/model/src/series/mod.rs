@@ -28,6 +28,7 @@ mod interpreted;
 pub(crate) mod lanes;
 mod later;
 mod linearised;
+mod placed;
 mod plain;
 mod products;
 mod program;

@@ -100,7 +100,6 @@ impl Operation {
     }
 
     /// The same of rows that stand elsewhere.
-    #[cfg(target_arch = "x86_64")]
     pub fn moved(self, mut at: impl FnMut(usize) -> usize) -> Self {
         use Operation::*;
         let mut source = |source: Source| match source {
