@@ -67,10 +67,12 @@ pub trait StepSeries {
     fn order(&self) -> usize;
     /// The coefficients of the i-th variable, to the order.
     fn variable(&self, i: usize) -> &[f64];
-    /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
-    fn slip_rates(&self) -> [&[f64]; 2];
-    /// The slips of both interfaces up to a time after the beginning of the step ([`Expansion::slips`]).
-    fn slips(&self, time: f64) -> [f64; 2];
+    /// How many interfaces slide; two at least.
+    fn sliding(&self) -> usize;
+    /// The coefficients of the slip rate of an interface, to one order less; zero for fields without any.
+    fn slip_rate(&self, interface: usize) -> &[f64];
+    /// The slip of an interface up to a time after the beginning of the step ([`Expansion::slip`]).
+    fn slip(&self, interface: usize, time: f64) -> f64;
     /// The time from the beginning of the step to a time of the solution ([`Expansion::since_begin`]).
     fn since_begin(&self, time: f64) -> f64;
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
@@ -104,12 +106,16 @@ impl<const N: usize> StepSeries for Expansion<N> {
         &self.variables[i][..=self.order]
     }
 
-    fn slip_rates(&self) -> [&[f64]; 2] {
-        self.slip_rates.each_ref().map(|rates| &rates[..self.order])
+    fn sliding(&self) -> usize {
+        self.slip_rates.len()
     }
 
-    fn slips(&self, time: f64) -> [f64; 2] {
-        self.slips(time)
+    fn slip_rate(&self, interface: usize) -> &[f64] {
+        &self.slip_rates[interface][..self.order]
+    }
+
+    fn slip(&self, interface: usize, time: f64) -> f64 {
+        self.slip(interface, time)
     }
 
     fn since_begin(&self, time: f64) -> f64 {

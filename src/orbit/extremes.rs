@@ -94,7 +94,7 @@ fn extremes_by(
                     });
                 }
                 let end = series.length() / series.unit();
-                for rates in series.slip_rates() {
+                for rates in (0..series.sliding()).map(|i| series.slip_rate(i)) {
                     let mut slope = [0.0; REFERENCE_ORDER];
                     let slope = &mut slope[..series.order() - 1];
                     for (j, c) in slope.iter_mut().enumerate() {

@@ -80,12 +80,25 @@ impl Multiplier {
     }
 }
 
+/// A multiplier of states in which the interfaces of a cluster, which move alike on the orbit, part.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WithinCluster {
+    /// Which cluster, from 1.
+    pub cluster: usize,
+    /// How many multipliers are this one.
+    pub multiplicity: usize,
+    /// ln mu; mu is positive.
+    pub ln_abs: Uncertain,
+}
+
 /// The multipliers of an orbit.
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub struct Floquet {
     /// The nontrivial ones, the largest first; of a complex pair the one with positive imaginary part.
     pub multipliers: Vec<Multiplier>,
+    /// Of interfaces in clusters those across each cluster that can split.
+    pub within: Vec<WithinCluster>,
     /// How far the trivial multiplier is from 1.
     pub trivial_defect: f64,
     /// Sum of the logarithms of the arcs' determinants minus the integral of the trace; `None` from methods without it.
@@ -103,6 +116,14 @@ impl Floquet {
             }
             let below = value + uncertainty < 0.0;
             if !below {
+                verdict = Verdict::Undecided;
+            }
+        }
+        for Uncertain { value, uncertainty } in self.within.iter().map(|within| within.ln_abs) {
+            if value - uncertainty > 0.0 {
+                return Verdict::Unstable;
+            }
+            if value.is_nan() || value + uncertainty >= 0.0 {
                 verdict = Verdict::Undecided;
             }
         }
@@ -230,6 +251,7 @@ fn around(nodes: &[Vector], linear: &Linear, field: &AnyField<'_>) -> Floquet {
     };
     Floquet {
         multipliers,
+        within: Vec::new(),
         trivial_defect: trivial_defect(nodes, arcs, field),
         liouville_defect,
     }
@@ -272,6 +294,7 @@ pub fn symmetric_floquet(closed: &Closed, field: &AnyField<'_>, across: &[Arc]) 
     let larger = |a: Option<f64>, b: Option<f64>| Some(a?.abs().max(b?.abs()));
     Floquet {
         multipliers,
+        within: Vec::new(),
         trivial_defect: trivial_defect(&closed.shooting.nodes, closed.arcs(), field),
         liouville_defect: larger(within_defect, defect),
     }

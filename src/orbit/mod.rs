@@ -31,6 +31,7 @@ mod solve;
 mod space;
 mod switch;
 mod test_function;
+mod within;
 
 pub use arc::{Arc, Tracer};
 pub use continuation_point::{ContinuationPoint, TangentVector};
@@ -43,7 +44,7 @@ pub use family::{
 pub use find::{FoundOrbit, InitialGuess, Query, find};
 pub use find_from::find_from;
 pub use find_unequal::find_unequal;
-pub use floquet::{Floquet, Kind, Multiplier, floquet};
+pub use floquet::{Floquet, Kind, Multiplier, WithinCluster, floquet};
 pub(crate) use hopf::EquilibriaAlong;
 pub use hopf::{HopfPoint, hopf_points};
 pub use interface_system::InterfaceSystem;
@@ -61,6 +62,7 @@ pub(crate) use shooting_nodes::of_digits;
 pub use solve::{Orbit, OrbitAccuracy};
 pub use switch::Switch;
 pub use test_function::{Spectrum, TestFunction};
+pub use within::{AlongArcs, SplitRate, within_clusters};
 
 use crate::error::Error;
 

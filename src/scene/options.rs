@@ -10,7 +10,8 @@ use std::path::PathBuf;
 
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
     symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1; where the interfaces differ, \
-    psi of each at its own steady state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of a system from a file: the values of all states in their order [default: its table start]";
+    psi of each at its own steady state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N interfaces or clusters one psi for \
+    each, or spread[:EPS[:SEED]]: psi of each at its steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the values of all states in their order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
@@ -63,9 +64,13 @@ pub struct SlabOptions {
     /// Friction law.
     #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
-    /// Number of frictional interfaces in the slab, 1 or 2
-    #[arg(long, value_name = "N", default_value_t = 2)]
-    pub interfaces: u8,
+    /// Number N of frictional interfaces, which all share the stress [default: as many as in all clusters, or 2]
+    #[arg(long, value_name = "N")]
+    pub interfaces: Option<u32>,
+    /// Equal interfaces in clusters that move alike: how many there are in each, which together are N. States, slip rates and starts
+    /// then have one number a cluster
+    #[arg(long, value_name = "N1,N2,...")]
+    pub clusters: Option<String>,
     /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     pub healing_time: Option<f64>,

@@ -51,15 +51,37 @@ impl SlabOptions {
         (!AnyLaw::NAMES.contains(&self.law.as_str()) && is_file).then_some(path)
     }
 
-    /// How many interfaces there are.
+    /// How many interfaces there are: as many as are asked for, else as in all clusters, else 2.
+    pub(super) fn count(&self) -> u32 {
+        let in_clusters = |text: &String| {
+            let counts = text.split(',').map(|part| part.trim().parse().ok());
+            let sum: Option<Vec<u32>> = counts.collect();
+            sum?.into_iter().try_fold(0, u32::checked_add)
+        };
+        let in_all = || self.clusters.as_ref().and_then(in_clusters);
+        self.interfaces.or_else(in_all).unwrap_or(2)
+    }
+
+    /// Whether there are clusters of interfaces, or more interfaces than two: they are made of the law's formulas.
+    pub(super) fn has_clusters(&self) -> bool {
+        self.clusters.is_some() || self.count() > 2
+    }
+
+    /// How many interfaces there are, of a command that takes one or two.
     ///
     /// # Errors
-    /// [`Error::Parameter`] where that are neither 1 nor 2.
+    /// [`Error::Parameter`] where that are neither 1 nor 2; [`Error::Input`] for clusters.
     pub(super) fn checked_interfaces(&self) -> Result<usize> {
-        if (1..=2).contains(&self.interfaces) {
-            return Ok(usize::from(self.interfaces));
+        if self.clusters.is_some() {
+            return Err(Error::Input(
+                "`clusters`: this command takes none; integrate, orbit, section, branch, locus and sweep do".into(),
+            ));
         }
-        Err(Error::parameter("interfaces", self.interfaces, "1 or 2"))
+        match self.count() {
+            1 => Ok(1),
+            2 => Ok(2),
+            other => Err(Error::parameter("interfaces", other, "1 or 2")),
+        }
     }
 
     /// a_v
@@ -363,7 +385,7 @@ fn echo(
 ) -> Map<String, Value> {
     let mut pairs = vec![
         ("law", json!(options.law)),
-        ("interfaces", json!(options.interfaces)),
+        ("interfaces", json!(options.count())),
         ("driving", json!(driving)),
         ("stiffness", json!(stiffness)),
         ("healing_time", json!(healing_time)),

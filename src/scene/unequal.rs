@@ -56,7 +56,7 @@ impl OfOne {
             let Some((place, interface)) = of_one("set", name)? else {
                 continue;
             };
-            if interface >= usize::from(options.interfaces) {
+            if interface >= options.count() as usize {
                 let what = format!("`set` {name}: there is one interface");
                 return Err(Error::Input(what));
             }

@@ -25,7 +25,8 @@ pub trait LawPoints: Debug + Send + Sync {
 pub struct RandomStart(ChaCha8Rng);
 
 impl RandomStart {
-    pub(super) fn new(seed: u64, number: usize) -> Self {
+    /// The stream of this point.
+    pub fn new(seed: u64, number: usize) -> Self {
         let mut generator = ChaCha8Rng::seed_from_u64(seed);
         generator.set_stream(number as u64);
         RandomStart(generator)

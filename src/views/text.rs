@@ -41,7 +41,7 @@ pub fn text_equilibria_columns(model: &TextModel) -> Vec<Column<TextEquilibrium>
     let mut columns: Vec<Column<Row>> = states
         .map(|(i, name)| Column::uncertain(*name, Number, move |row: &Row| row.state[i].into()))
         .collect();
-    let interfaces = model.slab.as_ref().map_or(0, |slab| slab.interfaces());
+    let interfaces = model.slab.as_ref().map_or(0, |slab| slab.clusters().len());
     for (i, rate) in (1..=interfaces).enumerate() {
         let v = move |row: &Row| row.slip_rate.get(i).copied().into();
         columns.push(Column::new(format!("slip_rate_{rate}"), Number, v));
@@ -147,14 +147,14 @@ fn sliding(slab: &TextSlab, rows: &RowList) -> Drawing {
                 Some(name) => column(&format!("{name}_{i}")),
                 None => column(other),
             };
-            let name = if slab.interfaces() == 1 {
+            let name = if slab.clusters().len() == 1 {
                 String::new()
             } else {
                 format!("{symbol} {i}")
             };
             PlotSeries::new(name, of(x, "time"), of(y, "stress"))
         };
-        (1..=slab.interfaces()).map(one).collect()
+        (1..=slab.clusters().len()).map(one).collect()
     };
     let panel = |title: &str, x: Axis, y: Axis, series| Panel {
         series,

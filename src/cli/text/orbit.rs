@@ -58,7 +58,16 @@ fn object(orbit: &Orbit, model: &TextModel) -> Value {
             ((*name).to_owned(), ends)
         })
         .collect();
-    let logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
+    let mut logs: Vec<Value> = orbit.floquet.multipliers.iter().map(logarithm).collect();
+    logs.extend(orbit.floquet.within.iter().map(|within| {
+        json!({
+            "ln_abs": uncertain(within.ln_abs),
+            "angle_over_pi": 0.0,
+            "kind": "within",
+            "cluster": within.cluster,
+            "multiplicity": within.multiplicity,
+        })
+    }));
     json!({
         "period": uncertain(orbit.period),
         "point": orbit.point,

@@ -124,7 +124,7 @@ impl Axes {
         let refused = |name: &str, why: &str| Err(Error::Input(format!("`grid` {name}: {why}")));
         for name in &self.names {
             let own = of_one("grid", name)?;
-            if own.is_some() && slab.interfaces == 1 {
+            if own.is_some() && slab.count() == 1 {
                 return refused(name, "there is one interface");
             }
             if own.is_none() && !NAMES.contains(&name.as_str()) {

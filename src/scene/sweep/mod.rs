@@ -206,7 +206,7 @@ fn swept(options: &SweepOptions) -> Result<SweptGrid> {
     if let Some(points) = TextPoints::of_law(options, &axes)? {
         refused("a law from a file")?;
         let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
-        let layout = SweepLayout::interfaces(usize::from(options.slab.interfaces), others);
+        let layout = SweepLayout::interfaces(points.parts(), others);
         layout.names_differ()?;
         return Ok(of_text(points, layout, any_law()?, axes));
     }

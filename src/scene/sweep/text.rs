@@ -38,7 +38,7 @@ impl TextPoints {
             return Ok(None);
         };
         axes.needs_loading()?;
-        let two = options.slab.interfaces == 2;
+        let two = options.slab.count() == 2;
         let known = model.system.parameter_names();
         for (name, range) in axes.names.iter().zip(&axes.ranges) {
             let of_one = ["_1", "_2"].iter().find_map(|end| name.strip_suffix(end));
@@ -98,6 +98,12 @@ impl TextPoints {
             names: axes.names.clone(),
             model,
         })
+    }
+
+    /// How many parts slide.
+    pub fn parts(&self) -> usize {
+        let slab = self.model.slab.as_ref();
+        slab.map_or(0, |slab| slab.clusters().len())
     }
 
     /// What it is, at the first point.

@@ -55,7 +55,8 @@ pub(super) fn canonical(options: &SweepOptions, grid: &[(&str, String)]) -> Vec<
         let plain_text = |text: Option<&str>| text.map(|text| text.split_whitespace().collect());
         [
             ("law", Some(slab.law.clone())),
-            ("interfaces", Some(slab.interfaces.to_string())),
+            ("interfaces", Some(slab.count().to_string())),
+            ("clusters", plain_text(slab.clusters.as_deref())),
             ("system", path(slab.text.system.as_deref())),
             ("surface", plain_text(options.surface.as_deref())),
             ("start", plain_text(options.start.as_deref())),

@@ -93,6 +93,15 @@ impl<'a> Friction<'a> {
 }
 
 impl Friction<'_> {
+    /// dg/dpsi + s_psi dg/dv: the rate at which a small difference of psi grows between interfaces that are in this state, under one
+    /// stress.
+    pub fn split_rate<T: Real>(&self, tau: T, psi: T) -> T {
+        let v = self.slip_rate(tau, psi);
+        let [_, of_psi] = gradient(tau, psi, |tau, psi| self.slip_rate(tau, psi));
+        let [by_rate, by_state] = gradient(v, psi, |v, psi| self.evolution(v, psi));
+        by_state + of_psi * by_rate
+    }
+
     /// The same with their derivatives in V along steady sliding, where dpsi_ss/dV = -g_v/g_psi and dtau_ss/dV = (1 - s_psi
     /// dpsi_ss/dV)/s_tau.
     pub fn along_steady<T: Real>(&self, v: T, tau: T, psi: T) -> (Jet<T, 1>, Jet<T, 1>) {

@@ -136,14 +136,19 @@ pub(super) struct Sliding {
 }
 
 impl Sliding {
-    /// Of interfaces under one stress, (11) and (19): dtau/dt = K (V_H - sum of v_i), dw_i/dt = (dpsi_i/dt)/psi_i with psi_i = e^(w_i).
+    /// Of clusters of interfaces under one stress, (11) and (19): dtau/dt = K (V_H - sum of n_i v_i), dw_i/dt = (dpsi_i/dt)/psi_i with
+    /// psi_i = e^(w_i), the i-th cluster being n_i interfaces that move alike.
     ///
-    /// The parameters are V_H, or on a ramp its rate of change, K, and those of the law; `places` has for each interface where each
+    /// The parameters are V_H, or on a ramp its rate of change, K, and those of the law; `places` has for each cluster where each
     /// of the law's own stands among them.
     ///
     /// # Errors
     /// [`crate::error::Error::Input`] where there are too many operations.
-    pub fn of(law: &LawFile, places: &[Vec<usize>], ramp: bool) -> Result<Self> {
+    pub fn of(
+        law: &LawFile,
+        (places, counts): (&[Vec<usize>], &[usize]),
+        ramp: bool,
+    ) -> Result<Self> {
         let mut builder = Builder::default();
         let tau = builder.variable(0)?;
         let (mut slip_rates, mut evolutions): (Vec<Place>, Vec<Place>) = Default::default();
@@ -164,8 +169,15 @@ impl Sliding {
             first
         };
         let mut total = driving;
-        for &v in &slip_rates {
-            total = builder.binary(Binary::Difference, total, v)?;
+        for (&v, &count) in slip_rates.iter().zip(counts) {
+            let all = match count {
+                1 => v,
+                _ => {
+                    let count = builder.number(count as f64)?;
+                    builder.binary(Binary::Product, v, count)?
+                }
+            };
+            total = builder.binary(Binary::Difference, total, all)?;
         }
         let stiffness = builder.parameter(STIFFNESS)?;
         let mut rates = vec![builder.binary(Binary::Product, stiffness, total)?];

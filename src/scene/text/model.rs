@@ -6,6 +6,7 @@ use super::options::TextOptions;
 use super::slab::TextSlab;
 use crate::error::{Error, Result, did_you_mean};
 use crate::field::Vector;
+use crate::friction::AnyLaw;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
 use crate::number::Interval;
@@ -41,10 +42,12 @@ impl TextModel {
     /// # Errors
     /// As [`TextModel::named`], and those of the options of interfaces.
     pub fn of(options: &ModelOptions, free: &[&str]) -> Result<Option<Self>> {
-        let Some(path) = options.slab.law_file() else {
-            return Self::named(&options.slab.text);
+        let law = match options.slab.law_file() {
+            Some(path) => read_law(path)?,
+            None if options.slab.has_clusters() => built_in_law(&options.slab.law)?,
+            None => return Self::named(&options.slab.text),
         };
-        let (slab, system) = TextSlab::new(read_law(path)?, options, free)?;
+        let (slab, system) = TextSlab::new(law, options, free)?;
         Ok(Some(TextModel {
             echo: slab.echo(&system),
             start: Vec::new(),
@@ -237,6 +240,15 @@ fn read(path: &Path) -> Result<SystemFile> {
         "`system` {name}: there is no such file, and no built-in system of this name; those are {}{hint}",
         known.join(", ")
     )))
+}
+
+/// The formulas of a law that is built in, with its own constants.
+fn built_in_law(name: &str) -> Result<LawFile> {
+    let text = shipped_law(Path::new(name));
+    LawFile::parse(
+        name,
+        text.ok_or_else(|| Error::unknown("law", name, &AnyLaw::NAMES))?,
+    )
 }
 
 /// The file of a law, or where there is none of that name the one that the program carries.

@@ -10,7 +10,7 @@ use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
 use crate::scene::program::Stretch;
 use crate::scene::run::{PICTURED, RESTS, RunOutcome, Sink};
-use crate::scene::slip::{GAUSS, Slips, sum};
+use crate::scene::slip::GAUSS;
 use crate::scene::system::Described;
 
 /// Sees the steps of a run and makes rows of them.
@@ -22,7 +22,7 @@ pub(super) struct TextObserver<'a> {
     stretch: Stretch,
     here: TextInstant,
     /// The slips there, in all digits.
-    slips: Slips,
+    slips: Vec<DoubleDouble>,
     row: Vec<f64>,
     /// Rows at fixed times made so far.
     sampled: usize,
@@ -36,6 +36,8 @@ pub(super) struct TextObserver<'a> {
 impl<'a> TextObserver<'a> {
     pub fn new(plan: &'a TextPlan, sink: &'a mut dyn Sink) -> Self {
         let driving = plan.model.driving();
+        let slab = plan.model.slab.as_ref();
+        let interfaces = slab.map_or(0, |slab| slab.clusters().len());
         TextObserver {
             plan,
             sink,
@@ -44,10 +46,10 @@ impl<'a> TextObserver<'a> {
             here: TextInstant {
                 time: 0.0,
                 state: plan.start.as_slice().to_vec(),
-                slip: [0.0; 2],
+                slip: vec![0.0; interfaces],
                 driving,
             },
-            slips: [DoubleDouble::ZERO; 2],
+            slips: vec![DoubleDouble::ZERO; interfaces],
             row: Vec::new(),
             sampled: 0,
             begun: 0,
@@ -90,17 +92,18 @@ impl<'a> TextObserver<'a> {
     }
 
     pub fn see(&mut self, system: &TextSystem, step: &AnyStep<'_>) -> Control {
-        let (plan, stretch, before) = (self.plan, self.stretch, self.slips);
+        let (plan, stretch) = (self.plan, self.stretch);
+        let before = std::mem::take(&mut self.slips);
         let needs_slip = plan.needs_slip();
         let slip = |t: f64| {
             if needs_slip {
                 slips(system, step, &before, t)
             } else {
-                before
+                before.clone()
             }
         };
         let count = plan.start.len();
-        let instant = |t: f64, slips: Slips| {
+        let instant = |t: f64, slips: &[DoubleDouble]| {
             let mut state = if t == step.t1 {
                 step.y1.to_vec()
             } else {
@@ -110,24 +113,24 @@ impl<'a> TextObserver<'a> {
             TextInstant {
                 time: t,
                 state,
-                slip: slips.map(DoubleDouble::hi),
+                slip: leading(slips),
                 driving: stretch.driving_at(t),
             }
         };
         while let Some(t) = self.next_sample().filter(|&t| t <= step.t1) {
-            self.emit(&instant(t, slip(t)));
+            self.emit(&instant(t, &slip(t)));
             self.sampled += 1;
         }
         if plan.picture {
             for part in 1..=PICTURED {
                 let t = step.t0 + (step.t1 - step.t0) * part as f64 / PICTURED as f64;
-                self.draw(&instant(t, before));
+                self.draw(&instant(t, &before));
             }
         }
         self.slips = slip(step.t1);
         self.here.time = step.t1;
         self.here.state.copy_from_slice(&step.y1[..count]);
-        self.here.slip = self.slips.map(DoubleDouble::hi);
+        self.here.slip = leading(&self.slips);
         self.here.driving = stretch.driving_at(step.t1);
         if plan.sampling == Sampling::EveryStep {
             let here = self.here.clone();
@@ -196,14 +199,26 @@ impl<'a> TextObserver<'a> {
 }
 
 /// The slips at t, from those at the beginning of the step: term by term where the step is a series, else by quadrature.
-fn slips(system: &TextSystem, step: &AnyStep<'_>, before: &Slips, t: f64) -> Slips {
+fn slips(
+    system: &TextSystem,
+    step: &AnyStep<'_>,
+    before: &[DoubleDouble],
+    t: f64,
+) -> Vec<DoubleDouble> {
     let within = match step.series() {
-        // The ends of steps are known better than to the rounding of t.
-        Some(series) if t == step.t1 => series.slips(series.length()),
-        Some(series) => series.slips(series.since_begin(t)),
+        Some(series) => {
+            // The ends of steps are known better than to the rounding of t.
+            let time = if t == step.t1 {
+                series.length()
+            } else {
+                series.since_begin(t)
+            };
+            let interfaces = 0..before.len();
+            interfaces.map(|i| series.slip(i, time)).collect()
+        }
         None => {
             let h = t - step.t0;
-            let mut slips = [0.0; 2];
+            let mut slips = vec![0.0; before.len()];
             for (node, weight) in GAUSS {
                 let rates = system.slip_rates(step.dense(step.t0 + node * h).as_slice());
                 for (slip, v) in slips.iter_mut().zip(rates) {
@@ -213,7 +228,13 @@ fn slips(system: &TextSystem, step: &AnyStep<'_>, before: &Slips, t: f64) -> Sli
             slips
         }
     };
-    sum(before, within)
+    let both = before.iter().zip(within);
+    both.map(|(before, within): (_, f64)| *before + within)
+        .collect()
+}
+
+fn leading(slips: &[DoubleDouble]) -> Vec<f64> {
+    slips.iter().map(|slip| slip.hi()).collect()
 }
 
 /// Fills a row with the columns at an instant.

@@ -12,7 +12,7 @@ pub struct TextOptions {
         long,
         value_name = "FILE",
         conflicts_with_all = [
-            "law", "interfaces", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
+            "law", "interfaces", "clusters", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
             "si", "slip_length", "reference_rate", "normal_stress", "damping", "shear_modulus", "shear_wave_speed",
         ]
     )]

@@ -7,7 +7,10 @@ use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
 use crate::integrate::{Choice, Tolerances};
-use crate::orbit::{Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, crosscheck_of, find_from};
+use crate::orbit::{
+    AlongArcs, Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, ShootingNodes, crosscheck_of,
+    find_from,
+};
 use crate::scene::options::OrbitOptions;
 use crate::scene::orbit::{dense_output, run_method, second};
 use crate::scene::plan::{Sampling, equally_spaced};
@@ -88,12 +91,35 @@ impl TextOrbitPlan {
     /// # Errors
     /// Those of [`find_from`].
     pub fn find(&self) -> Result<FoundOrbit> {
-        find_from(
+        let mut found = find_from(
             &self.model.field()?,
             &self.start,
             self.period,
             &self.accuracy,
-        )
+        )?;
+        for orbit in std::iter::once(&mut found.orbit).chain(&mut found.others) {
+            self.complete(orbit, &self.accuracy)?;
+        }
+        Ok(found)
+    }
+
+    /// With its multipliers within clusters, by the method that it was found by.
+    fn complete(&self, orbit: &mut Orbit, accuracy: &OrbitAccuracy) -> Result<()> {
+        let Some(slab) = &self.model.slab else {
+            return Ok(());
+        };
+        let vector = |node: &Vec<f64>| Vector::from_column_slice(node);
+        let shooting = ShootingNodes {
+            nodes: orbit.nodes.iter().map(vector).collect(),
+            durations: orbit.durations.clone(),
+        };
+        let along = AlongArcs {
+            method: accuracy.method,
+            tolerances: accuracy.tolerances,
+            uncertainty: orbit.point_uncertainty,
+        };
+        orbit.floquet.within = slab.within(&self.model.system, &shooting, along)?;
+        Ok(())
     }
 
     /// The run over one period of an orbit, from its point back to it, along the arcs between its shooting nodes. `None` where neither
@@ -128,8 +154,12 @@ impl TextOrbitPlan {
     /// Those of [`crosscheck_of`].
     pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
         let field = self.model.field()?;
-        let again = |second| crosscheck_of(&field, orbit, second);
-        self.second.as_ref().map(again).transpose()
+        let Some(second) = &self.second else {
+            return Ok(None);
+        };
+        let mut again = crosscheck_of(&field, orbit, second)?;
+        self.complete(&mut again.orbit, second)?;
+        Ok(Some(again))
     }
 }
 

@@ -55,8 +55,8 @@ pub struct TextInstant {
     pub time: f64,
     /// The values of all states.
     pub state: Vec<f64>,
-    /// The slip of each interface since the start; zeros where nothing slides.
-    pub slip: [f64; 2],
+    /// The slip of each interface since the start; none where nothing slides.
+    pub slip: Vec<f64>,
     /// V_H; 0 where nothing is driven.
     pub driving: f64,
 }
@@ -86,7 +86,7 @@ fn interface_columns(slab: &TextSlab, system: &TextSystem) -> Vec<Column<TextIns
             let entry = move |at: &TextInstant| entry(at, &system, i).into();
             Column::new(format!("{name}_{}", i + 1), quantity, entry)
         };
-        (0..slab.interfaces()).map(column).collect::<Vec<_>>()
+        (0..slab.clusters().len()).map(column).collect::<Vec<_>>()
     };
     let mut columns = vec![Column::new("stress", Number, |at: &TextInstant| {
         at.state[0].into()

@@ -5,19 +5,25 @@ use super::law_file::{DAMPING, DRIVING, LawFile, STIFFNESS, Sliding};
 use super::model::number;
 use crate::error::{Error, Result};
 use crate::friction::positive;
+use crate::integrate::AnyField;
 use crate::model::TextSystem;
-use crate::number::Interval;
+use crate::number::{Interval, Jet, Real};
+use crate::orbit::{AlongArcs, ShootingNodes, WithinCluster, within_clusters};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
 use crate::scene::set::assignments;
 use crate::scene::system::damping;
+use crate::sweep::RandomStart;
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 
-/// One or two interfaces under one stress, with the law of a file.
+/// Interfaces under one stress, with the law of a file: each on its own, or in clusters that move alike.
 #[derive(Debug, Clone, PartialEq)]
 pub struct TextSlab {
     law: LawFile,
-    /// For each interface where the law's own parameters stand among those of the system.
+    /// How many interfaces there are in each cluster.
+    counts: Vec<usize>,
+    /// For each cluster where the law's own parameters stand among those of the system.
     places: Vec<Vec<usize>>,
     /// V_H, where it is given.
     pub(super) driving: Option<f64>,
@@ -40,12 +46,18 @@ impl TextSlab {
         options: &ModelOptions,
         free: &[&str],
     ) -> Result<(Self, TextSystem)> {
-        let interfaces = options.slab.checked_interfaces()?;
+        let counts = counts(&options.slab)?;
+        let interfaces = counts.len();
         if options.slab.si {
-            return Err(Error::Input(format!(
-                "`si`: the law {} is from a file, whose numbers have no units",
-                law.name
-            )));
+            return Err(Error::Input(match options.slab.law_file() {
+                Some(_) => format!(
+                    "`si`: the law {} is from a file, whose numbers have no units",
+                    law.name
+                ),
+                None => {
+                    "`si`: clusters, and more than 2 interfaces, are computed without units".into()
+                }
+            }));
         }
         let law = damped(law, options)?;
         let mut loading = [options.driving, options.stiffness];
@@ -97,6 +109,7 @@ impl TextSlab {
         }
         let slab = TextSlab {
             law,
+            counts,
             places,
             driving,
         };
@@ -107,12 +120,17 @@ impl TextSlab {
 
     /// How many interfaces there are.
     pub fn interfaces(&self) -> usize {
-        self.places.len()
+        self.counts.iter().sum()
     }
 
-    /// Whether there are two interfaces whose parameters are the same.
+    /// How many of them there are in each cluster.
+    pub fn clusters(&self) -> &[usize] {
+        &self.counts
+    }
+
+    /// Whether there are two parts, as large, whose parameters are the same.
     pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
-        self.interfaces() == 2 && !self.differ(system)
+        matches!(self.counts[..], [one, other] if one == other) && !self.differ(system)
     }
 
     /// Whether the interfaces differ in any parameter of the law.
@@ -138,6 +156,9 @@ impl TextSlab {
         let mut echo = Map::new();
         echo.insert("law".into(), json!(self.law.name));
         echo.insert("interfaces".into(), json!(self.interfaces()));
+        if self.interfaces() > 2 || self.has_clusters() {
+            echo.insert("clusters".into(), json!(self.counts));
+        }
         for (name, value) in all.take(STIFFNESS + 1) {
             echo.insert((*name).to_owned(), json!(value));
         }
@@ -148,9 +169,10 @@ impl TextSlab {
 
     /// The equations at these parameters; on a ramp V_H is the last state, and its rate of change stands in its place.
     fn system(&self, parameters: &[(&str, f64)], ramp: bool) -> Result<TextSystem> {
-        let Sliding { rates, slip_rates } = Sliding::of(&self.law, &self.places, ramp)?;
+        let parts = (&*self.places, &*self.counts);
+        let Sliding { rates, slip_rates } = Sliding::of(&self.law, parts, ramp)?;
         let mut states = vec!["stress".to_owned()];
-        states.extend((1..=self.interfaces()).map(|i| format!("log_state_{i}")));
+        states.extend((1..=self.counts.len()).map(|i| format!("log_state_{i}")));
         if ramp {
             states.push("driving".into());
         }
@@ -173,6 +195,27 @@ impl TextSlab {
         Friction::new(&self.law, places.map(|&place| all[place]).collect())
     }
 
+    /// The multipliers of an orbit within its clusters, at the parameters of the system.
+    ///
+    /// # Errors
+    /// Those of [`within_clusters`].
+    pub(in crate::scene) fn within(
+        &self,
+        system: &TextSystem,
+        shooting: &ShootingNodes,
+        along: AlongArcs,
+    ) -> Result<Vec<WithinCluster>> {
+        let each: Vec<_> = (0..self.counts.len())
+            .map(|i| self.friction(system, i))
+            .collect();
+        let rate = |cluster: usize, [tau, w]: [f64; 2]| {
+            let psi = Real::exp(Jet::variable(w, 1));
+            each[cluster].split_rate(Jet::variable(tau, 0), psi)
+        };
+        let field = AnyField::of_text(Cow::Borrowed(system))?;
+        within_clusters(&field, shooting, &self.counts, &rate, along)
+    }
+
     /// tau and ln psi of every interface, as `--start` gives them.
     ///
     /// # Errors
@@ -184,10 +227,14 @@ impl TextSlab {
         system: &TextSystem,
     ) -> Result<Vec<f64>> {
         let text = text.unwrap_or(USUAL_START);
-        let shape = ["TAU,PSI", "TAU,PSI1,PSI2"][self.interfaces() - 1];
+        let shape = match self.counts.len() {
+            1 => "TAU,PSI".to_owned(),
+            2 => "TAU,PSI1,PSI2".to_owned(),
+            count => format!("TAU,PSI1,...,PSI{count}"),
+        };
         let unreadable = || {
             Error::Input(format!(
-                "`start` {text:?} must be {shape} or {USUAL_START}[:EPS]"
+                "`start` {text:?} must be {shape}, {USUAL_START}[:EPS] or {SPREAD}[:EPS[:SEED]]"
             ))
         };
         let read = |part: &str| {
@@ -201,10 +248,20 @@ impl TextSlab {
                 None if rest.is_empty() => NEAR_SYMMETRIC,
                 None => return Err(unreadable()),
             };
-            return self.near_symmetric(asymmetry, system, shape);
+            return self.near_symmetric(asymmetry, system, &shape);
+        }
+        if let Some(rest) = text.strip_prefix(SPREAD) {
+            let mut parts = rest.split(':');
+            let begins = parts.next() == Some("");
+            let by = parts.next().map_or(Ok(NEAR_SYMMETRIC), read)?;
+            let seed = parts.next().map_or(Ok(1), str::parse);
+            return match (seed, parts.next()) {
+                (Ok(seed), None) if begins => self.spread(by, seed, system, &shape),
+                _ => Err(unreadable()),
+            };
         }
         let mut start = text.split(',').map(read).collect::<Result<Vec<f64>>>()?;
-        if start.len() != self.interfaces() + 1 {
+        if start.len() != self.counts.len() + 1 {
             return Err(unreadable());
         }
         for psi in &mut start[1..] {
@@ -222,9 +279,9 @@ impl TextSlab {
         /// Of a range, on either side of it.
         const MARGIN: f64 = 0.05;
         let driving = system.parameters()[DRIVING];
-        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); self.interfaces() + 1];
+        let mut ends = vec![(f64::INFINITY, f64::NEG_INFINITY); self.counts.len() + 1];
         let mut put = |i: usize, x: f64| ends[i] = (ends[i].0.min(x), ends[i].1.max(x));
-        for i in 0..self.interfaces() {
+        for i in 0..self.counts.len() {
             let friction = self.friction(system, i);
             for k in 0..RATES {
                 let v = driving * LEAST.powf(k as f64 / (RATES - 1) as f64);
@@ -255,27 +312,79 @@ impl TextSlab {
 
     /// Each interface in its steady state at an equal share of V_H, the stress that of the first, and the last one moved by exp(EPS).
     fn near_symmetric(&self, by: f64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
+        let mut start = self.steady(USUAL_START, system, shape)?;
+        if let Some(last) = start.last_mut() {
+            *last += by;
+        }
+        Ok(start)
+    }
+
+    /// The same, and each psi times exp(EPS z), z drawn between -1 and 1.
+    fn spread(&self, by: f64, seed: u64, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
+        let mut start = self.steady(SPREAD, system, shape)?;
+        let mut random = RandomStart::new(seed, 0);
+        for log_state in &mut start[1..] {
+            *log_state += by * random.between((-1.0, 1.0));
+        }
+        Ok(start)
+    }
+
+    /// Each interface in its steady state at an equal share of V_H, the stress that of the first.
+    fn steady(&self, name: &str, system: &TextSystem, shape: &str) -> Result<Vec<f64>> {
         let driving = system.parameters()[DRIVING];
         if driving == 0.0 {
             return Err(Error::Input(format!(
-                "`start` {USUAL_START} is at the steady state, of which there is none at V_H = 0: give `start` {shape}"
+                "`start` {name} is at the steady state, of which there is none at V_H = 0: give `start` {shape}"
             )));
         }
         let v = driving / self.interfaces() as f64;
-        let mut start = Vec::with_capacity(self.interfaces() + 1);
-        for i in 0..self.interfaces() {
+        let mut start = Vec::with_capacity(self.counts.len() + 1);
+        for i in 0..self.counts.len() {
             let steady = self.friction(system, i).steady(v)?;
             if i == 0 {
                 start.push(steady.stress);
             }
             start.push(steady.log_state);
         }
-        if let Some(last) = start.last_mut() {
-            *last += by;
-        }
         Ok(start)
     }
+
+    /// Whether any interfaces move alike by being in one cluster.
+    fn has_clusters(&self) -> bool {
+        self.counts.iter().any(|&count| count > 1)
+    }
 }
+
+/// How many interfaces there are in each cluster: one, where the options say nothing of clusters.
+fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
+    const MOST: usize = TextSystem::LARGEST - 1;
+    let interfaces = options.count();
+    let Some(text) = &options.clusters else {
+        return match interfaces {
+            0 => Err(Error::parameter("interfaces", interfaces, "at least 1")),
+            _ if interfaces as usize <= MOST => Ok(vec![1; interfaces as usize]),
+            _ => Err(Error::Input(format!(
+                "`interfaces` {interfaces}: at most {MOST} can move on their own here; say which move alike by `clusters`"
+            ))),
+        };
+    };
+    let wrong = |must: String| Error::Input(format!("`clusters` {text:?} must be {must}"));
+    let read = |part: &str| part.trim().parse::<u32>().ok().filter(|&count| count > 0);
+    let counts: Option<Vec<u32>> = text.split(',').map(read).collect();
+    let counts = counts
+        .filter(|counts| counts.len() <= MOST)
+        .ok_or_else(|| wrong(format!("1 to {MOST} whole numbers, each at least 1")))?;
+    let sum: u64 = counts.iter().copied().map(u64::from).sum();
+    if sum != u64::from(interfaces) {
+        return Err(wrong(format!(
+            "numbers that together are {interfaces}, the number of `interfaces`"
+        )));
+    }
+    Ok(counts.into_iter().map(|count| count as usize).collect())
+}
+
+/// A start at steady states that are moved apart at random.
+const SPREAD: &str = "spread";
 
 /// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
 fn damped(law: LawFile, options: &ModelOptions) -> Result<LawFile> {

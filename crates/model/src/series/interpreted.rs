@@ -32,6 +32,8 @@ pub(super) trait Trajectory {
     fn unit(&self) -> f64;
     /// The first coefficients of the i-th variable's series, as many as there is room for.
     fn series(&self, i: usize, into: &mut [f64]);
+    /// How many interfaces slide.
+    fn sliding(&self) -> usize;
     /// The same of the slip rate of an interface; zeros where there is none.
     fn slip_rates(&self, interface: usize, into: &mut [f64]);
     /// In how many parameters it has derivatives.
@@ -49,7 +51,7 @@ pub(super) trait Trajectory {
 }
 
 /// A solution on its way, in numbers T. What the program gives first are the rates of the variables; what it gives after them
-/// as many slip rates as `watched` says, one or two, are kept with its series.
+/// as many slip rates as `watched` says are kept with its series.
 ///
 /// In two lanes ([`Program::in_two_lanes`]) two variables share a row, and x is as many numbers less.
 pub struct Interpreted<'a, T> {
@@ -390,6 +392,10 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
         }
     }
 
+    fn sliding(&self) -> usize {
+        self.watched
+    }
+
     fn slip_rates(&self, interface: usize, into: &mut [f64]) {
         if self.watched == 0 {
             return;
@@ -486,6 +492,10 @@ impl Trajectory for Transported<'_> {
 
     fn series(&self, i: usize, into: &mut [f64]) {
         self.solution.series(i, into);
+    }
+
+    fn sliding(&self) -> usize {
+        self.solution.sliding()
     }
 
     fn slip_rates(&self, interface: usize, into: &mut [f64]) {

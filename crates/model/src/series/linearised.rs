@@ -343,6 +343,10 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         self.solution.series(i, into);
     }
 
+    fn sliding(&self) -> usize {
+        self.solution.sliding()
+    }
+
     fn slip_rates(&self, interface: usize, into: &mut [f64]) {
         self.solution.slip_rates(interface, into);
     }

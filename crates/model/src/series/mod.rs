@@ -170,8 +170,8 @@ pub struct Expansion<const N: usize> {
     pub order: usize,
     /// The coefficients of tau and psi, or of whatever the field's variables are.
     pub variables: [[f64; REFERENCE_ORDER + 1]; N],
-    /// The coefficients of the slip rates of both interfaces, to one order less; zero for fields without any.
-    pub slip_rates: [[f64; REFERENCE_ORDER + 1]; 2],
+    /// The coefficients of the slip rates of all interfaces, of two at least, to one order less; zero for fields without any.
+    pub slip_rates: Vec<[f64; REFERENCE_ORDER + 1]>,
     /// From these variables to the state that the field is integrated in.
     pub chart: fn([f64; N]) -> [f64; N],
 }
@@ -185,7 +185,7 @@ impl<const N: usize> Expansion<N> {
             unit: 1.0,
             order: 0,
             variables: [[0.0; REFERENCE_ORDER + 1]; N],
-            slip_rates: [[0.0; REFERENCE_ORDER + 1]; 2],
+            slip_rates: vec![[0.0; REFERENCE_ORDER + 1]; 2],
             chart: |x| x,
         }
     }
@@ -209,17 +209,18 @@ impl<const N: usize> Expansion<N> {
         (self.chart)(x)
     }
 
-    /// The slips of both interfaces up to a time after the beginning of the step: the slip rates integrated term by term.
+    /// The slips of both interfaces up to a time after the beginning of the step.
     pub fn slips(&self, time: f64) -> [f64; 2] {
+        [0, 1].map(|interface| self.slip(interface, time))
+    }
+
+    /// The slip of one interface up to a time after the beginning of the step: its slip rate integrated term by term.
+    pub fn slip(&self, interface: usize, time: f64) -> f64 {
         let s = time / self.unit;
-        let mut slips = [0.0; 2];
-        for (slip, rates) in slips.iter_mut().zip(&self.slip_rates) {
-            for j in (0..self.order).rev() {
-                *slip = *slip * s + rates[j] / (j + 1) as f64;
-            }
-            *slip *= time;
-        }
-        slips
+        let rates = &self.slip_rates[interface][..self.order];
+        let terms = rates.iter().enumerate().rev();
+        let mean = terms.fold(0.0, |sum, (j, rate)| sum * s + rate / (j + 1) as f64);
+        mean * time
     }
 }
 

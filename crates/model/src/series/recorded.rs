@@ -118,6 +118,9 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
         for (i, variable) in into.variables.iter_mut().enumerate() {
             self.0.series(i, &mut variable[..=order]);
         }
+        // A single interface stands in both places.
+        let sliding = self.0.sliding().max(2);
+        into.slip_rates.resize(sliding, [0.0; REFERENCE_ROOM]);
         for (i, rates) in into.slip_rates.iter_mut().enumerate() {
             self.0.slip_rates(i, &mut rates[..order]);
         }
