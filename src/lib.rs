@@ -60,6 +60,8 @@ pub mod sweep;
 
 pub mod bifurcation;
 
+pub mod many;
+
 #[cfg(feature = "cli")]
 pub mod scene;
 

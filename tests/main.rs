@@ -23,6 +23,7 @@ mod browser;
 mod cli_input;
 mod cli_runs;
 mod cli_words;
+mod clusters;
 mod continuation;
 mod curves_equilibria;
 mod curves_orbits;
@@ -55,6 +56,7 @@ mod law_bifurcations;
 mod law_parameters;
 mod lyapunov;
 #[cfg(not(feature = "parquet"))]
+mod many;
 mod many_dimensions;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;

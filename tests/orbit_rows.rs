@@ -299,7 +299,7 @@ fn rows_of_a_system_go_around_its_orbit_once() {
 
 #[test]
 fn rows_of_a_law_from_a_file_are_those_of_the_built_in_law() {
-    let file = law("orbit_rows_law", "spinodal");
+    let file = law("spinodal");
     for loading in [
         "--symmetry asymmetric --driving 10 --stiffness 0.14 --start 9.91,0.00204,0.00198",
         "--interfaces 1 --driving 10 --stiffness 0.1",

@@ -69,9 +69,11 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "number",
         ],
     ),
+    ("many", &["model", "friction", "series", "number"]),
     (
         "scene",
         &[
+            "many",
             "sweep",
             "bifurcation",
             "orbit",

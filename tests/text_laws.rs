@@ -28,7 +28,7 @@ fn runs_are_those_of_built_in_laws() {
         ("dieterich-ruina", "--driving 1 --stiffness 2 --until 3"),
         ("slip", "--driving 1 --stiffness 2 --until 3"),
     ] {
-        let file = law("law_runs", name);
+        let file = law(name);
         for interfaces in [1, 2] {
             let run = |law: &str| {
                 object(&format!(
@@ -52,7 +52,7 @@ fn runs_are_those_of_built_in_laws() {
 
 #[test]
 fn every_method_runs_a_law_from_a_file() {
-    let file = law("law_methods", "spinodal");
+    let file = law("spinodal");
     let run = |method: &str, rtol: &str| {
         object(&format!(
             "integrate --law {file} --driving 1 --stiffness 0.14 --until 1 --method {method} --rtol {rtol} --final-only"
@@ -70,7 +70,7 @@ fn every_method_runs_a_law_from_a_file() {
 
 #[test]
 fn an_estimate_holds_the_error() {
-    let file = law("law_estimate", "spinodal");
+    let file = law("spinodal");
     let arguments = format!(
         "integrate --law {file} --driving 10 --stiffness 0.14 --until 3 --estimate-error --final-only"
     );
@@ -89,7 +89,7 @@ fn an_estimate_holds_the_error() {
 
 #[test]
 fn programs_are_followed_as_by_built_in_laws() {
-    let file = law("law_programs", "spinodal");
+    let file = law("spinodal");
     for interfaces in [1, 2] {
         let run = |law: &str| {
             object(&format!(
@@ -126,7 +126,7 @@ fn programs_are_followed_as_by_built_in_laws() {
 
 #[test]
 fn orbits_are_those_of_the_built_in_law() {
-    let file = law("law_orbits", "spinodal");
+    let file = law("spinodal");
     for loading in [
         "--symmetry symmetric --driving 10 --stiffness 0.14",
         "--symmetry asymmetric --driving 10 --stiffness 0.14",
@@ -156,7 +156,7 @@ fn orbits_are_those_of_the_built_in_law() {
 
 #[test]
 fn returns_are_those_of_the_built_in_law() {
-    let file = law("law_section", "spinodal");
+    let file = law("spinodal");
     let section = |law: &str| -> Value {
         let ended = twinslip(&format!(
             "section --law {law} --driving 10 --stiffness 0.14 --returns 5 --skip 0 --rtol 1e-15 --format json -q"
@@ -175,7 +175,7 @@ fn returns_are_those_of_the_built_in_law() {
 
 #[test]
 fn interfaces_may_differ() {
-    let file = law("law_differ", "spinodal");
+    let file = law("spinodal");
     let by_law = object(&format!(
         "integrate --law {file} --driving 1 --stiffness 0.5 --set residual_strength_2=0.01 --until 2 --rtol 1e-15 --method taylor --final-only --start 9,0.01,0.02"
     ));
@@ -218,7 +218,7 @@ fn damped_runs_are_those_of_built_in_laws() {
         ("dieterich-ruina", 1, "--damping 0.2"),
         ("slip", 2, "--damping 0.2"),
     ] {
-        let file = law("law_damped", name);
+        let file = law(name);
         let run = |law: &str| {
             object(&format!(
                 "integrate --law {law} --interfaces {interfaces} {options} --driving 10 --stiffness 0.5 --until 1 --rtol 1e-15 --method taylor --points 5 --start near-symmetric:-0.2"
@@ -242,7 +242,7 @@ fn damped_runs_are_those_of_built_in_laws() {
 /// By methods that take Jacobians and by those that take the rates alone.
 #[test]
 fn every_method_runs_a_damped_law_from_a_file() {
-    let file = law("law_damped_methods", "spinodal");
+    let file = law("spinodal");
     let end = |law: &str, method: &str, rtol: f64| {
         let made = object(&format!(
             "integrate --law {law} --damping 0.1 --driving 10 --stiffness 0.14 --until 2 --rtol {rtol} --method {method} --final-only"
@@ -258,7 +258,7 @@ fn every_method_runs_a_damped_law_from_a_file() {
 /// Formulas with a factor within and without: stress in other units, sums within exp, quotients.
 #[test]
 fn damping_is_found_in_formulas_of_other_shape() {
-    let known = law("law_damped_known", "dieterich-ruina");
+    let known = law("dieterich-ruina");
     let other = folder("law_damped_shapes").join("other.toml");
     let text = "slip_rate = \"-exp(-(mu - S*tau/unit)/a)*(-1)/psi^(b/a)\"\nevolution = \"1 - v*psi\"\n[parameters]\na = 0.0349\nb = 0.0489\nmu = 0.369\nunit = 2.0\n[where]\nS = \"2*a\"\n";
     fs::write(&other, text).expect("a file");

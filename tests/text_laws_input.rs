@@ -8,7 +8,7 @@ use std::fs;
 
 #[test]
 fn parameters_are_set_by_flags_and_by_name() {
-    let file = law("law_set", "spinodal");
+    let file = law("spinodal");
     let end = |options: &str| {
         let made = object(&format!(
             "integrate {options} --driving 1 --stiffness 0.5 --until 1 --final-only --rtol 1e-14 --method taylor"
@@ -39,7 +39,7 @@ fn parameters_are_set_by_flags_and_by_name() {
 #[test]
 fn pictures_of_runs_and_curves_are_drawn() {
     let place = folder("law_pictures");
-    let file = law("law_pictures", "spinodal");
+    let file = law("spinodal");
     for (command, name) in [
         (
             format!("integrate --law {file} --driving 1 --stiffness 0.5 --until 2 --program 1:2"),

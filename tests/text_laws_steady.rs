@@ -7,7 +7,7 @@ use serde_json::Value;
 
 #[test]
 fn equilibria_are_all_those_of_the_built_in_law() {
-    let file = law("law_equilibria", "spinodal");
+    let file = law("spinodal");
     for loading in [
         "--driving 0.12 --stiffness 0.14",
         "--driving 100 --stiffness 0.05",
@@ -52,7 +52,7 @@ fn the_steady_curve_is_that_of_the_built_in_law() {
         ("regularised-ageing", 0),
         ("slip", 0),
     ] {
-        let file = law("law_curve", name);
+        let file = law(name);
         let curve = |law: &str| object(&format!("law --law {law} --points 60"));
         let (made, known) = (curve(&file), curve(name));
         let rows = |made: &Value| made["result"]["rows"].as_array().cloned().expect("rows");
@@ -121,7 +121,7 @@ fn the_law_that_the_program_carries_slides() {
 /// Radiation damping: equilibria, their stability and steady curves are those of the built-in law.
 #[test]
 fn damped_steady_states_are_those_of_the_built_in_law() {
-    let file = law("law_damped_steady", "spinodal");
+    let file = law("spinodal");
     for law in ["--damping 0.001", "--damping 0.5"] {
         let of = |name: &str, command: &str| object(&format!("{command} --law {name} {law}"));
         let both = |command: &str| (of(&file, command), of("spinodal", command));

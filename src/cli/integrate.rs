@@ -8,8 +8,8 @@ use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::output::{Format, Place, RowList, object, plot};
 use crate::scene::{
-    Change, Described, IntegrateOptions, Keeping, Plan, Program, Quantity, RunOutcome, TextModel,
-    TextPlan, explain,
+    Change, Described, IntegrateOptions, Keeping, ManyPlan, Plan, Program, Quantity, RunOutcome,
+    TextModel, TextPlan, explain,
 };
 use crate::views;
 use serde_json::{Map, Value, json};
@@ -47,6 +47,9 @@ pub trait PlannedRun {
 }
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+    if ManyPlan::is_of(options) {
+        return integrate(&ManyPlan::new(options)?, options, words);
+    }
     // A program may say itself which V_H is the first.
     let free: &[&str] = if options.program.is_some() {
         &["driving"]

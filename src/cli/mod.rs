@@ -9,6 +9,7 @@ mod integrate;
 mod interrupt;
 mod law;
 mod locus;
+mod many;
 mod merge;
 mod orbit;
 mod progress;

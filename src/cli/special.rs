@@ -1,6 +1,6 @@
 //! Special points as objects and as a short table.
 
-use crate::bifurcation::{Criticality, Special};
+use crate::bifurcation::{Criticality, Label, Special};
 use crate::scene::{CellValue, Column, GeneralRow, Quantity, Units};
 use crate::views;
 use serde_json::{Value, json};
@@ -117,9 +117,7 @@ pub fn general_lines(
             }
             _ => String::new(),
         };
-        let label = one
-            .label
-            .map_or(["", ""], |label| [label.name(), label.meaning()]);
+        let label = [one.label.map(Label::name), one.meaning()].map(Option::unwrap_or_default);
         let criticality = one.criticality.map_or("", Criticality::name).to_owned();
         table.push(around(
             label.map(str::to_owned),

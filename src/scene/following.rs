@@ -12,6 +12,15 @@ pub(super) const DRIVING: (f64, f64) = (1e-3, 1e6);
 /// K from, to.
 pub(super) const STIFFNESS: (f64, f64) = (1e-3, 1.0);
 
+/// The range of V_H or K where none is given; `None` for other parameters.
+pub(super) fn loading_range(name: &str) -> Option<(f64, f64)> {
+    match name {
+        "driving" => Some(DRIVING),
+        "stiffness" => Some(STIFFNESS),
+        _ => None,
+    }
+}
+
 /// What `--symmetry` takes.
 pub(super) const SYMMETRIES: [&str; 3] = ["symmetric", "asymmetric", "both"];
 

@@ -39,6 +39,7 @@ mod general;
 mod instant;
 mod law;
 mod locus;
+mod many;
 mod options;
 mod orbit;
 mod plan;
@@ -71,6 +72,7 @@ pub use general::{
 pub use instant::{Instant, run_columns};
 pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
+pub use many::{ManyInstant, ManyPlan, run_many};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,

@@ -189,6 +189,25 @@ pub struct IntegrateOptions {
         help = START_HELP
     )]
     pub start: Option<String>,
+    /// A constant that each of many interfaces has of its own, drawn between A and B, NAME=A:B, or by its logarithm, NAME=A:Blog; may
+    /// be given again. NAME is healing_time, residual_strength, evolution_effect, reference_friction or slip_length
+    #[arg(
+        long,
+        value_name = "NAME=A:B",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Run"
+    )]
+    pub draw: Vec<String>,
+    /// With --draw: another seed, other constants
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "draw",
+        help_heading = "Run"
+    )]
+    pub seed: u64,
     /// How V_H changes on the way, from --driving on: "T:V,T:V,..." for steps to V at T, where V = 0 is a hold, and "T1-T2:V" for a
     /// ramp; or FILE.csv with the columns time, driving and, for ramps, until. Rows then have a column driving, and stand at both
     /// sides of a change

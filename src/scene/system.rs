@@ -20,7 +20,7 @@ const REFERENCE_RATE: f64 = 1e-6;
 /// sigma in Pa. The paper states none.
 const NORMAL_STRESS: f64 = 1e6;
 /// R of the paper.
-const HEALING_TIME: f64 = 100.0;
+pub(super) const HEALING_TIME: f64 = 100.0;
 /// c of the paper.
 const RESIDUAL_STRENGTH: f64 = 1e-3;
 /// a, b and a_v of the paper.

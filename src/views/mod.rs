@@ -9,6 +9,7 @@ mod diagram;
 mod equilibria;
 mod general;
 mod law;
+mod many;
 mod map;
 mod orbit;
 mod points;
@@ -21,6 +22,7 @@ pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, par
 pub use equilibria::equilibria_columns;
 pub use general::{general_branches, general_curves};
 pub use law::law_columns;
+pub use many::many_run;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};

@@ -92,6 +92,7 @@ pub(super) fn looked_along<R>(
         at: Vec::new(),
         orbit: None,
         doublings: 0,
+        within: None,
         following: super::GeneralFollowing {
             skip: Vec::new(),
             ..curve.following.clone()

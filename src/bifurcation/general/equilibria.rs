@@ -1,5 +1,6 @@
 //! Branches of equilibria along one parameter, with all that branches off.
 
+use super::splits::with_splits;
 use super::{GeneralBranch, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
 use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
@@ -28,9 +29,11 @@ const SAME: f64 = 1e-6;
 /// Those of the known equilibria; [`crate::Error::TooManyPoints`]; [`crate::Error::NotConverged`] where not one equilibrium is
 /// found to begin with. That a branch ends early is none: it is told as `MX`.
 pub fn equilibria(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<()> {
-    let mut teller = Teller::new(seen, &branch.following);
-    EquilibriumBranches::new(branch).all(&mut |point, special| teller.point(point, special))?;
-    teller.end()
+    with_splits(branch, seen, |seen| {
+        let mut teller = Teller::new(seen, &branch.following);
+        EquilibriumBranches::new(branch).all(&mut |point, special| teller.point(point, special))?;
+        teller.end()
+    })
 }
 
 /// Who is told of a point, and whether it is special.

@@ -8,11 +8,13 @@ mod equilibria;
 mod hopf;
 mod orbit_curves;
 mod orbits;
+mod splits;
 
 pub use curves::equilibrium_curves;
 pub use equilibria::equilibria;
 pub use orbit_curves::orbit_curves;
 pub use orbits::orbits;
+pub use splits::WithinClusters;
 
 use super::orbits::{SpecialOrbit, second};
 use super::{Criticality, Label};
@@ -22,7 +24,9 @@ use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::Choice;
 use crate::number::Uncertain;
-use crate::orbit::{ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction};
+use crate::orbit::{
+    ContinuationPoint, ParametrisedField, ShootingNodes, TestFunction, WithinCluster,
+};
 use nalgebra::Complex;
 use std::ops::ControlFlow;
 
@@ -59,6 +63,8 @@ pub struct GeneralBranch<'a> {
     pub orbit: Option<ContinuationPoint>,
     /// How many times orbits may double their period.
     pub doublings: usize,
+    /// Of interfaces in clusters what a split of each grows by.
+    pub within: Option<WithinClusters<'a>>,
     /// How it is followed.
     pub following: GeneralFollowing,
 }
@@ -147,6 +153,8 @@ pub struct GeneralPoint {
     pub coefficient: Option<f64>,
     /// It may be off by this, where that is known.
     pub coefficient_uncertainty: Option<f64>,
+    /// Of interfaces in clusters what a small split of each that can split grows by: ln mu on an orbit, an eigenvalue at an equilibrium.
+    pub within: Vec<WithinCluster>,
     /// What else is to be said.
     pub note: Option<String>,
     /// Of a special orbit that is known in its last digits, what is needed to compute it once more.
@@ -192,6 +200,7 @@ impl GeneralPoint {
             criticality: None,
             coefficient: None,
             coefficient_uncertainty: None,
+            within: Vec::new(),
             note: None,
             orbit: None,
         }
@@ -226,6 +235,10 @@ impl GeneralPoint {
                 NEUTRAL.1,
             ),
         };
+        let within = self.within.iter().map(|within| within.ln_abs.value);
+        // Of what is not known nothing is larger.
+        let larger = |a: f64, b: f64| if a > b || a.is_nan() { a } else { b };
+        let largest = within.fold(largest, larger);
         if largest > neutral {
             Verdict::Unstable
         } else if largest < -neutral {

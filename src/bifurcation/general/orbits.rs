@@ -2,6 +2,7 @@
 
 use super::equilibria::EquilibriumBranches;
 use super::hopf::GeneralHopf;
+use super::splits::with_splits;
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, embedded, middle, refined};
@@ -30,10 +31,12 @@ const SAME: f64 = 1e-6;
 /// # Errors
 /// Those of the equilibria and of the flow; [`crate::Error::TooManyPoints`]; that a branch ends early is none.
 pub fn orbits(branch: &GeneralBranch<'_>, seen: GeneralObserver<'_>) -> Result<()> {
-    let mut teller = Teller::new(seen, &branch.following);
-    let mut set = OrbitBranches::new(branch)?;
-    set.all(&mut teller)?;
-    teller.end()
+    with_splits(branch, seen, |seen| {
+        let mut teller = Teller::new(seen, &branch.following);
+        let mut set = OrbitBranches::new(branch)?;
+        set.all(&mut teller)?;
+        teller.end()
+    })
 }
 
 /// What makes the orbits of a family, its work bounded.

@@ -169,6 +169,9 @@ impl<'s> GeneralBranchPlan<'s> {
             self.subject
                 .equilibria(&[(name, self.free.asked(at[0]).unwrap_or(value))])
         };
+        let within =
+            |point: &GeneralPoint, sharp: bool| self.subject.within(&*family, point, sharp);
+        let clusters = !self.subject.clusters().is_empty();
         let mut branch = GeneralBranch {
             system: GeneralSystem {
                 family: &*family,
@@ -182,6 +185,7 @@ impl<'s> GeneralBranchPlan<'s> {
             at: self.free.landings(),
             orbit: None,
             doublings: self.doublings,
+            within: clusters.then_some(&within),
             following: general(&self.following, known),
         };
         if self.kind.orbits {

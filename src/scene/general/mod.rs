@@ -20,7 +20,7 @@ use super::units::Quantity;
 use crate::bifurcation::general::GeneralPoint;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::orbit::{ContinuationPoint, Coordinate, ParametrisedField};
+use crate::orbit::{ContinuationPoint, Coordinate, ParametrisedField, WithinCluster};
 
 /// A system with parameters by name, to be continued in any of these.
 pub trait Subject: Described + Sync {
@@ -69,6 +69,24 @@ pub trait Subject: Described + Sync {
     /// Whether it is of three variables, the last two of equal parts: then it has pitchforks.
     fn has_equal_parts(&self) -> bool {
         false
+    }
+
+    /// The clusters that can split, from 1, of interfaces in clusters.
+    fn clusters(&self) -> Vec<usize> {
+        Vec::new()
+    }
+
+    /// What a small split of each of these grows by, with all digits or a few: ln mu on an orbit, an eigenvalue at an equilibrium.
+    ///
+    /// # Errors
+    /// Those of the flow along an orbit.
+    fn within(
+        &self,
+        _family: &dyn ParametrisedField,
+        _point: &GeneralPoint,
+        _sharp: bool,
+    ) -> Result<Vec<WithinCluster>> {
+        Ok(Vec::new())
     }
 
     /// The range of a parameter where none is given, in the user's units; `None` where one must be given.

@@ -33,6 +33,8 @@ pub struct GeneralRow {
     pub period: Option<Uncertain>,
     /// The real parts of the leading eigenvalues, or ln |mu| of the leading multipliers.
     pub exponents: [Option<f64>; 2],
+    /// Of interfaces in clusters what a split of each that can split grows by.
+    pub within: Vec<f64>,
     /// The angle of the multipliers of a torus bifurcation, over pi.
     pub angle_over_pi: Option<f64>,
     /// To which side a bifurcation goes.
@@ -82,6 +84,7 @@ impl GeneralRow {
             numbers,
             period: point.period,
             exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
+            within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
             criticality: point.criticality,
             coefficient: point.coefficient,
@@ -91,6 +94,14 @@ impl GeneralRow {
             note: point.note,
             orbit: point.orbit,
         })
+    }
+
+    /// What its label means; where a cluster of more than two splits that is no pitchfork.
+    pub fn meaning(&self) -> Option<&'static str> {
+        match self.label? {
+            Label::Bp if !self.within.is_empty() => Some("branch point"),
+            label => Some(label.meaning()),
+        }
     }
 
     /// The columns of rows.
@@ -133,6 +144,10 @@ impl GeneralRow {
                 let entry = move |row: &Row| row.exponents[i].into();
                 columns.push(Column::new(name, exponent, entry));
             }
+            for (i, cluster) in subject.clusters().into_iter().enumerate() {
+                let entry = move |row: &Row| row.within.get(i).copied().into();
+                columns.push(Column::new(format!("within_{cluster}"), exponent, entry));
+            }
             columns.push(Column::new("verdict", Number, |row: &Row| {
                 row.verdict.map(Verdict::name).into()
             }));
@@ -153,9 +168,7 @@ impl GeneralRow {
             Column::new("label", Number, |row: &Row| {
                 row.label.map(Label::name).into()
             }),
-            Column::new("name", Number, |row: &Row| {
-                row.label.map(Label::meaning).into()
-            }),
+            Column::new("name", Number, |row: &Row| row.meaning().into()),
             Column::new("branch", Number, |row: &Row| row.number.into()),
         ];
         for (i, &(name, quantity)) in names.iter().enumerate() {
@@ -212,6 +225,7 @@ impl GeneralRow {
             period: uncertain("period", Quantity::Time),
             // Not shown but in the line itself, which is kept as it stands.
             exponents: [None; 2],
+            within: Vec::new(),
             angle_over_pi: number("angle_over_pi"),
             criticality: sides
                 .into_iter()

@@ -310,11 +310,7 @@ impl Subject for SlabSubject {
     }
 
     fn default_range(&self, name: &str) -> Option<(f64, f64)> {
-        let (from, to) = match name {
-            "driving" => following::DRIVING,
-            "stiffness" => following::STIFFNESS,
-            _ => return None,
-        };
+        let (from, to) = following::loading_range(name)?;
         let outward = |x| self.units().outward(quantity(name), x);
         Some((outward(from), outward(to)))
     }

@@ -5,11 +5,13 @@ use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
-use crate::integrate::AnyField;
+use crate::integrate::{AnyField, Choice, Tolerances};
 use crate::model::TextSystem;
 use crate::orbit::{
-    ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField, find_from, ranges,
+    AlongArcs, ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField,
+    WithinCluster, find_from, ranges,
 };
+use crate::scene::following;
 use crate::scene::system::Described;
 use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel};
 use crate::scene::units::{Quantity, Units};
@@ -139,7 +141,7 @@ impl Subject for TextSubject {
         let field = AnyField::of_text(Cow::Owned(system))?;
         let accuracy = OrbitAccuracy {
             checked: false,
-            ..OrbitAccuracy::of(crate::integrate::Choice::Auto)
+            ..OrbitAccuracy::of(Choice::Auto)
         };
         let found = find_from(&field, start, *period, &accuracy)?;
         Ok(Some(found.orbit.beginning()))
@@ -149,12 +151,53 @@ impl Subject for TextSubject {
         Ok(Coordinate::of(&ends))
     }
 
-    fn default_range(&self, _: &str) -> Option<(f64, f64)> {
-        None
+    fn default_range(&self, name: &str) -> Option<(f64, f64)> {
+        // Of interfaces as of those that are built in.
+        self.model.slab.as_ref()?;
+        following::loading_range(name)
     }
 
     fn always_told(&self) -> Vec<(&'static str, Quantity)> {
         Vec::new()
+    }
+
+    fn clusters(&self) -> Vec<usize> {
+        let counts = self.model.slab.iter().flat_map(|slab| slab.clusters());
+        let split = counts.zip(1..).filter(|(count, _)| **count > 1);
+        split.map(|(_, cluster)| cluster).collect()
+    }
+
+    fn within(
+        &self,
+        family: &dyn ParametrisedField,
+        point: &GeneralPoint,
+        sharp: bool,
+    ) -> Result<Vec<WithinCluster>> {
+        /// Of rows: tolerance of the flow, and what their nodes may be off.
+        const ROUGH: (f64, f64) = (1e-8, 1e-6);
+        const FINE: (f64, f64) = (1e-15, 1e-13);
+        let Some(slab) = &self.model.slab else {
+            return Ok(Vec::new());
+        };
+        let names = self.model.system.parameter_names();
+        let places = family.plane();
+        let values = family.parameters(point.at);
+        let mut system = self.model.system.clone();
+        for (place, value) in places.into_iter().zip(values).rev() {
+            system.set(names[place], value)?;
+        }
+        match &point.solution {
+            GeneralSolution::Equilibrium { state, .. } => Ok(slab.within_state(&system, state)),
+            GeneralSolution::Orbit { shooting, .. } => {
+                let (tolerance, uncertainty) = if sharp { FINE } else { ROUGH };
+                let along = AlongArcs {
+                    method: Choice::Taylor,
+                    tolerances: Tolerances::equal(tolerance)?,
+                    uncertainty,
+                };
+                slab.within(&system, shooting, along)
+            }
+        }
     }
 
     fn numbers(&self, kind: RowKind) -> Vec<(String, Quantity)> {

@@ -27,4 +27,5 @@ pub use orbit::TextOrbitPlan;
 pub use plan::{TextInstant, TextPlan, text_columns};
 pub use run::run_text;
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};
+pub(super) use slab::SPREAD;
 pub use slab::TextSlab;

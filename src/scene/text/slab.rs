@@ -4,10 +4,11 @@ use super::friction::Friction;
 use super::law_file::{DAMPING, DRIVING, LawFile, STIFFNESS, Sliding};
 use super::model::number;
 use crate::error::{Error, Result};
+use crate::field::Vector;
 use crate::friction::positive;
 use crate::integrate::AnyField;
 use crate::model::TextSystem;
-use crate::number::{Interval, Jet, Real};
+use crate::number::{Interval, Jet, Real, Uncertain};
 use crate::orbit::{AlongArcs, ShootingNodes, WithinCluster, within_clusters};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
@@ -216,6 +217,32 @@ impl TextSlab {
         within_clusters(&field, shooting, &self.counts, &rate, along)
     }
 
+    /// The eigenvalues of an equilibrium within its clusters, with what the state's last digits make of them.
+    pub(in crate::scene) fn within_state(
+        &self,
+        system: &TextSystem,
+        state: &Vector,
+    ) -> Vec<WithinCluster> {
+        /// Of a state, in units of 1 + |x|.
+        const ROUNDED: f64 = 4.0 * f64::EPSILON;
+        let counts = self.counts.iter().enumerate();
+        let split = counts.filter(|(_, count)| **count > 1);
+        let within = split.map(|(i, &count)| {
+            let [tau, w] = [state[0], state[i + 1]];
+            let psi = Real::exp(Jet::variable(w, 1));
+            let friction = self.friction(system, i);
+            let rate: Jet<f64, 2> = friction.split_rate(Jet::variable(tau, 0), psi);
+            let [of_tau, of_state] = rate.gradient.map(f64::abs);
+            let moved = of_tau * (1.0 + tau.abs()) + of_state * (1.0 + w.abs());
+            WithinCluster {
+                cluster: i + 1,
+                multiplicity: count - 1,
+                ln_abs: Uncertain::new(rate.value, ROUNDED * (moved + rate.value.abs())),
+            }
+        });
+        within.collect()
+    }
+
     /// tau and ln psi of every interface, as `--start` gives them.
     ///
     /// # Errors
@@ -384,7 +411,7 @@ fn counts(options: &SlabOptions) -> Result<Vec<usize>> {
 }
 
 /// A start at steady states that are moved apart at random.
-const SPREAD: &str = "spread";
+pub(in crate::scene) const SPREAD: &str = "spread";
 
 /// The law with the radiation damping that the options give it, where it has no parameter of that name itself.
 fn damped(law: LawFile, options: &ModelOptions) -> Result<LawFile> {

@@ -1,0 +1,83 @@
+//! Constants of interfaces drawn at random between two values.
+
+use crate::error::{Error, Result, did_you_mean};
+use crate::scene::options::SlabOptions;
+use crate::sweep::RandomStart;
+
+/// What may be drawn.
+const NAMES: [&str; 5] = [
+    "healing_time",
+    "residual_strength",
+    "evolution_effect",
+    "reference_friction",
+    "slip_length",
+];
+
+/// A constant that each interface has of its own, equally likely anywhere between two values or, by logarithm, in any part of their
+/// ratio.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Draw {
+    name: &'static str,
+    from: f64,
+    to: f64,
+    by_logarithm: bool,
+}
+
+impl Draw {
+    /// From `NAME=A:B` or `NAME=A:Blog`.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for what is none.
+    pub fn read(text: &str) -> Result<Self> {
+        let wrong = |what: String| Error::Input(format!("`draw` {text:?}: {what}"));
+        let shape = || wrong("must be NAME=A:B or NAME=A:Blog with 0 < A <= B".into());
+        let (name, range) = text.split_once('=').ok_or_else(shape)?;
+        let name = name.trim();
+        let known = NAMES.into_iter().find(|known| *known == name);
+        let name = known.ok_or_else(|| {
+            let hint = did_you_mean(name, NAMES.into_iter());
+            wrong(format!("{name:?} is none of {}{hint}", NAMES.join(", ")))
+        })?;
+        let (range, by_logarithm) = match range.strip_suffix("log") {
+            Some(range) => (range, true),
+            None => (range, false),
+        };
+        let (from, to) = range.split_once(':').ok_or_else(shape)?;
+        let number = |part: &str| part.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        let (Some(from), Some(to)) = (number(from), number(to)) else {
+            return Err(shape());
+        };
+        if !(from > 0.0 && from <= to) {
+            return Err(shape());
+        }
+        Ok(Draw {
+            name,
+            from,
+            to,
+            by_logarithm,
+        })
+    }
+
+    /// As it was asked for.
+    pub fn told(&self) -> String {
+        let log = if self.by_logarithm { "log" } else { "" };
+        format!("{}={:?}:{:?}{log}", self.name, self.from, self.to)
+    }
+
+    /// Gives the options of an interface its next value.
+    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, length: &mut f64) {
+        let value = if self.by_logarithm {
+            let drawn = random.between((self.from.ln(), self.to.ln())).exp();
+            drawn.clamp(self.from, self.to)
+        } else {
+            random.between((self.from, self.to))
+        };
+        match self.name {
+            "healing_time" => slab.healing_time = Some(value),
+            "residual_strength" => slab.residual_strength = Some(value),
+            "evolution_effect" => slab.evolution_effect = Some(value),
+            "reference_friction" => slab.reference_friction = Some(value),
+            _ => *length = value,
+        }
+    }
+}

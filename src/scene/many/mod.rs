@@ -1,0 +1,8 @@
+//! Runs of many interfaces: more than move on their own elsewhere, or with constants drawn at random.
+
+mod draw;
+mod plan;
+mod run;
+
+pub use plan::{ManyInstant, ManyPlan};
+pub use run::run_many;

@@ -1,0 +1,406 @@
+//! A run of many interfaces from options: what they are, where they start, and what rows hold.
+
+use super::draw::Draw;
+use crate::error::{Error, Result};
+use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
+use crate::integrate::Choice;
+use crate::many::{Extent, ManyInterfaces, ManyTaylor};
+use crate::model::Loading;
+use crate::scene::column::Column;
+use crate::scene::options::{IntegrateOptions, ModelOptions, SlabOptions};
+use crate::scene::plan::{NEAR_SYMMETRIC, Sampling, USUAL_START, sampling, until};
+use crate::scene::system::{Described, HEALING_TIME};
+use crate::scene::text::SPREAD;
+use crate::scene::units::{Quantity, Units};
+use crate::sweep::RandomStart;
+use serde_json::{Map, Value, json};
+
+/// A run of many interfaces, checked.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ManyPlan {
+    /// What slides.
+    pub interfaces: ManyInterfaces,
+    /// tau, and psi of each.
+    pub start: (f64, Vec<f64>),
+    /// End of the run.
+    pub until: f64,
+    /// When there are rows.
+    pub sampling: Sampling,
+    /// What a row holds.
+    pub columns: Vec<Column<ManyInstant>>,
+    /// The interfaces that columns are of, from 0.
+    pub watched: Vec<usize>,
+    /// Whether the run is drawn.
+    pub picture: bool,
+    /// The method.
+    pub taylor: ManyTaylor,
+    /// The method's name as it was asked for.
+    pub asked_method: String,
+    /// The tolerance.
+    pub rtol: f64,
+    /// The bound on steps.
+    pub max_steps: usize,
+    units: Units,
+    echo: Map<String, Value>,
+}
+
+/// A point of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ManyInstant {
+    /// Time.
+    pub time: f64,
+    /// tau
+    pub stress: f64,
+    /// The slip of all interfaces together since the start.
+    pub slip: f64,
+    /// What they do together.
+    pub extent: Extent,
+    /// psi, v and the slip of those that are watched.
+    pub each: Vec<[f64; 3]>,
+}
+
+/// Interfaces from which on the other engines have no room for all.
+const MANY: u32 = 8;
+
+impl ManyPlan {
+    /// Whether the options are of a run of this kind.
+    pub fn is_of(options: &IntegrateOptions) -> bool {
+        let slab = &options.model.slab;
+        let named = slab.text.system.is_some() || slab.clusters.is_some();
+        !options.draw.is_empty() || slab.count() >= MANY && !named
+    }
+
+    /// Checks the options.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
+    pub fn new(options: &IntegrateOptions) -> Result<Self> {
+        let model = options.model.resolved()?;
+        refused(options, &model)?;
+        let count = model.slab.count() as usize;
+        if count == 0 {
+            return Err(Error::parameter("interfaces", count, "at least 1"));
+        }
+        let needed = |name: &str, value: Option<f64>| match value {
+            Some(value) => positive(name, value),
+            None => Err(Error::Input(format!(
+                "`{name}` is missing, and has no default"
+            ))),
+        };
+        let driving = needed("driving", model.driving)?;
+        let loading = Loading::new(driving, needed("stiffness", model.stiffness)?)?;
+        let draws = options.draw.iter().map(|text| Draw::read(text));
+        let draws = draws.collect::<Result<Vec<Draw>>>()?;
+        let laws = laws(&model.slab, (&draws, options.seed), count)?;
+        let interfaces = match &laws[..] {
+            [(law, _)] => ManyInterfaces::alike(law, count, loading)?,
+            _ => ManyInterfaces::new(&laws, loading)?,
+        };
+        let start = start(options.start.as_deref(), &laws, (count, driving))?;
+        let units = Units::none();
+        let until = until(options)?;
+        let (columns, watched) = columns(options.columns.as_deref(), count)?;
+        let method = Choice::named(&options.numerics.method)?;
+        if !matches!(method, Choice::Auto | Choice::Taylor) {
+            return Err(Error::Input(format!(
+                "`method` {}: many interfaces are integrated by taylor",
+                method.name()
+            )));
+        }
+        let taylor = ManyTaylor::new(options.numerics.rtol, options.numerics.max_steps)?;
+        Ok(ManyPlan {
+            echo: echo(&model.slab, (count, loading), (&draws, options.seed)),
+            interfaces,
+            start,
+            until,
+            sampling: sampling(options, &units, until)?,
+            columns,
+            watched,
+            picture: options.plot.is_some(),
+            taylor,
+            asked_method: options.numerics.method.clone(),
+            rtol: options.numerics.rtol,
+            max_steps: options.numerics.max_steps,
+            units,
+        })
+    }
+
+    /// The columns of the points of a picture.
+    pub fn pictured(&self) -> Vec<Column<ManyInstant>> {
+        together()
+    }
+
+    /// Whether any column needs what all interfaces do.
+    pub fn needs_extent(&self) -> bool {
+        let of_all = together();
+        let extents = &of_all[EXTENTS..];
+        self.picture || self.columns.iter().any(|column| extents.contains(column))
+    }
+
+    /// The plan, one subject a line.
+    pub fn explain(&self) -> String {
+        let rows = match self.sampling {
+            Sampling::FinalOnly => "off: only the end is asked for".to_owned(),
+            Sampling::EveryStep => "a row at every step".to_owned(),
+            Sampling::Points(n) => format!("{n} rows equally spaced in time"),
+            Sampling::Every(dt) => format!("a row every {dt}"),
+        };
+        let count = self.interfaces.count();
+        format!(
+            "plan of this run
+  interfaces        {}, under one stress
+  method            taylor, order {}, all of them at once
+  tolerance         {:e} of every psi and of 1 + |tau|, at most {} steps
+  memory            {} MB
+  trajectory        {rows}
+  slips             {}",
+            crate::error::count(count),
+            self.taylor.order(),
+            self.rtol,
+            crate::error::count(self.max_steps),
+            crate::error::count(self.interfaces.memory() / 1_000_000),
+            match self.watched.len() {
+                0 => "of all together, by the balance of stress".to_owned(),
+                n => format!("of {n} interfaces, term by term"),
+            }
+        )
+    }
+}
+
+impl Described for ManyPlan {
+    fn echo(&self) -> &Map<String, Value> {
+        &self.echo
+    }
+
+    fn units(&self) -> &Units {
+        &self.units
+    }
+}
+
+/// What many interfaces do not have.
+fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
+    let slab = &model.slab;
+    let set = |name: &str| slab.text.set.iter().any(|set| set.starts_with(name));
+    let numbered = |set: &String| {
+        let name = set.split('=').next().unwrap_or_default();
+        let index = name.rsplit('_').next().unwrap_or_default();
+        !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
+    };
+    let asked: [(&str, bool, &str); 7] = [
+        (
+            "law",
+            slab.law_file().is_some(),
+            "from a file can have at most 7 interfaces that move on their own",
+        ),
+        ("si", slab.si, "many interfaces are computed without units"),
+        (
+            "damping",
+            slab.damping.is_some_and(|eta| eta != 0.0) || set("damping"),
+            "many interfaces have none yet",
+        ),
+        (
+            "program",
+            options.program.is_some(),
+            "V_H is constant for many interfaces",
+        ),
+        (
+            "events",
+            options.events.is_some(),
+            "stick-slip events are of one or two interfaces",
+        ),
+        (
+            "estimate_error",
+            options.estimate_error,
+            "runs of many interfaces have no estimate; compare with a smaller `rtol`",
+        ),
+        (
+            "set",
+            slab.text.set.iter().any(numbered),
+            "numbers of one interface are drawn, by `draw`, where there are many",
+        ),
+    ];
+    match asked.into_iter().find(|(_, asked, _)| *asked) {
+        Some((name, _, why)) => Err(Error::Input(format!("`{name}`: {why}"))),
+        None => Ok(()),
+    }
+}
+
+/// The law and the slip length of each; one alone where all are equal.
+fn laws(
+    slab: &SlabOptions,
+    (draws, seed): (&[Draw], u64),
+    count: usize,
+) -> Result<Vec<(AnyLaw, f64)>> {
+    let law = |slab: &SlabOptions| {
+        let healing_time = slab.healing_time.unwrap_or(HEALING_TIME);
+        let parameters = Parameters::new(slab.a(), slab.b(), slab.a_v(), healing_time, slab.c())?;
+        AnyLaw::named(&slab.law, parameters)
+    };
+    if draws.is_empty() {
+        return Ok(vec![(law(slab)?, 1.0)]);
+    }
+    // A stream for each constant: what one draws does not depend on the others.
+    let mut streams: Vec<RandomStart> = (1..=draws.len())
+        .map(|stream| RandomStart::new(seed, stream))
+        .collect();
+    let mut one = |_| {
+        let (mut own, mut length) = (slab.clone(), 1.0);
+        for (draw, random) in draws.iter().zip(&mut streams) {
+            draw.put(random, &mut own, &mut length);
+        }
+        Ok((law(&own)?, length))
+    };
+    (0..count).map(&mut one).collect()
+}
+
+/// tau and psi of each, as `--start` gives them.
+fn start(
+    text: Option<&str>,
+    laws: &[(AnyLaw, f64)],
+    (count, driving): (usize, f64),
+) -> Result<(f64, Vec<f64>)> {
+    let text = text.unwrap_or(SPREAD);
+    let unreadable = || {
+        Error::Input(format!(
+            "`start` {text:?} must be TAU,PSI1,...,PSI{count}, {USUAL_START}[:EPS] or {SPREAD}[:EPS[:SEED]]"
+        ))
+    };
+    let number = |part: &str| {
+        let number = part.trim().parse::<f64>().ok().filter(|x| x.is_finite());
+        number.ok_or_else(unreadable)
+    };
+    let rate = driving / count as f64;
+    let law = |i: usize| &laws[i.min(laws.len() - 1)];
+    let steady = |i: usize| {
+        let (law, length) = law(i);
+        law.steady_state(rate / length).ln()
+    };
+    let near = |moved: &mut dyn FnMut(usize) -> f64| {
+        let state = |i: usize| beside(&law(i).0, steady(i), moved(i)).exp();
+        let states = (0..count).map(state).collect();
+        (steady_stress(&laws[0].0, rate), states)
+    };
+    if let Some(rest) = text.strip_prefix(USUAL_START) {
+        let by = match rest.strip_prefix(':') {
+            Some(part) => number(part)?,
+            None if rest.is_empty() => NEAR_SYMMETRIC,
+            None => return Err(unreadable()),
+        };
+        return Ok(near(&mut |i| if i + 1 == count { by } else { 0.0 }));
+    }
+    if let Some(rest) = text.strip_prefix(SPREAD) {
+        let parts: Vec<&str> = rest.split(':').collect();
+        let (by, seed) = match parts[..] {
+            [""] => (NEAR_SYMMETRIC, 1),
+            ["", by] => (number(by)?, 1),
+            ["", by, seed] => (number(by)?, seed.parse().map_err(|_| unreadable())?),
+            _ => return Err(unreadable()),
+        };
+        let mut random = RandomStart::new(seed, 0);
+        return Ok(near(&mut |_| by * random.between((-1.0, 1.0))));
+    }
+    let numbers = text.split(',').map(number).collect::<Result<Vec<f64>>>()?;
+    match numbers.split_first() {
+        Some((tau, states)) if states.len() == count => Ok((*tau, states.to_vec())),
+        _ => Err(unreadable()),
+    }
+}
+
+/// Columns before those of what all interfaces do.
+const EXTENTS: usize = 3;
+
+/// What all interfaces do together.
+fn together() -> Vec<Column<ManyInstant>> {
+    use Quantity::{Length, Number, SlipRate, State, Stress, Time};
+    type Row = ManyInstant;
+    vec![
+        Column::new("time", Time, |at: &Row| at.time.into()),
+        Column::new("stress", Stress, |at: &Row| at.stress.into()),
+        Column::new("slip", Length, |at: &Row| at.slip.into()),
+        Column::new("slip_rate", SlipRate, |at: &Row| at.extent.slip_rate.into()),
+        Column::new("slip_rate_max", SlipRate, |at: &Row| {
+            at.extent.slip_rate_max.into()
+        }),
+        Column::new("sliding", Number, |at: &Row| at.extent.sliding.into()),
+        Column::new("state_min", State, |at: &Row| at.extent.state[0].into()),
+        Column::new("state_max", State, |at: &Row| at.extent.state[1].into()),
+    ]
+}
+
+/// The columns that are asked for, and the interfaces that they are of.
+fn columns(names: Option<&str>, count: usize) -> Result<(Vec<Column<ManyInstant>>, Vec<usize>)> {
+    let of_all = together();
+    let Some(names) = names else {
+        return Ok((of_all, Vec::new()));
+    };
+    let (mut columns, mut watched) = (Vec::new(), Vec::new());
+    for name in names.split(',').map(str::trim) {
+        let numbered = name.rsplit_once('_').and_then(|(base, number)| {
+            let i: usize = number.parse().ok()?;
+            (1..=count).contains(&i).then_some((base, i - 1))
+        });
+        if let Some((base, interface)) = numbered
+            && let Some((quantity, entry)) = of_one(base)
+        {
+            let known = watched.iter().position(|one| *one == interface);
+            let at = known.unwrap_or(watched.len());
+            if known.is_none() {
+                watched.push(interface);
+            }
+            let entry = move |row: &ManyInstant| entry(row.each[at]).into();
+            columns.push(Column::new(name.to_owned(), quantity, entry));
+            continue;
+        }
+        let found = of_all.iter().find(|column| column.name == name);
+        columns.push(found.cloned().ok_or_else(|| {
+            let known: Vec<&str> = of_all.iter().map(|column| &*column.name).collect();
+            let known =
+                known
+                    .into_iter()
+                    .chain(["state_1", "log_state_1", "slip_rate_1", "slip_1"]);
+            Error::unknown("columns", name, &known.collect::<Vec<_>>())
+        })?);
+    }
+    Ok((columns, watched))
+}
+
+/// What one interface has, of its psi, v and slip.
+fn of_one(base: &str) -> Option<(Quantity, fn([f64; 3]) -> f64)> {
+    Some(match base {
+        "state" => (Quantity::State, |[psi, ..]| psi),
+        "log_state" => (Quantity::LogState, |[psi, ..]| psi.ln()),
+        "slip_rate" => (Quantity::SlipRate, |[_, v, _]| v),
+        "slip" => (Quantity::Length, |[.., slip]| slip),
+        _ => return None,
+    })
+}
+
+fn echo(
+    slab: &SlabOptions,
+    (count, loading): (usize, Loading),
+    (draws, seed): (&[Draw], u64),
+) -> Map<String, Value> {
+    let mut pairs = vec![
+        ("law", json!(slab.law)),
+        ("interfaces", json!(count)),
+        ("driving", json!(loading.driving)),
+        ("stiffness", json!(loading.stiffness)),
+        (
+            "healing_time",
+            json!(slab.healing_time.unwrap_or(HEALING_TIME)),
+        ),
+        ("residual_strength", json!(slab.c())),
+        ("direct_effect", json!(slab.a())),
+        ("evolution_effect", json!(slab.b())),
+        ("reference_friction", json!(slab.a_v())),
+        ("si", json!(false)),
+    ];
+    if !draws.is_empty() {
+        let told: Vec<String> = draws.iter().map(Draw::told).collect();
+        pairs.extend([("draw", json!(told)), ("seed", json!(seed))]);
+    }
+    let pairs = pairs.into_iter();
+    pairs
+        .map(|(name, value)| (name.to_owned(), value))
+        .collect()
+}

@@ -1,0 +1,158 @@
+//! A run of many interfaces: from a plan to rows.
+
+use super::plan::{ManyInstant, ManyPlan};
+use crate::error::{Error, Result};
+use crate::integrate::{Control, Work};
+use crate::many::{Extent, ManyStep};
+use crate::number::DoubleDouble;
+use crate::scene::column::Column;
+use crate::scene::plan::Sampling;
+use crate::scene::run::{PICTURED, RunOutcome, Sink};
+use crate::scene::system::Described;
+
+/// Runs a plan.
+///
+/// # Errors
+/// [`Error::Parameter`] for a start that is refused; a failure on the way is in [`RunOutcome::failure`].
+pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
+    let (stress, states) = (plan.start.0, &plan.start.1);
+    let mut watch = Watch {
+        plan,
+        sink,
+        pictured: plan.pictured(),
+        slips: vec![DoubleDouble::ZERO; plan.watched.len()],
+        row: Vec::new(),
+        sampled: 0,
+        steps: 0,
+        begun: false,
+        stopped: false,
+        last: None,
+    };
+    let start = (stress, states.as_slice());
+    let end = plan
+        .taylor
+        .flow(&plan.interfaces, start, plan.until, &mut |step| {
+            Ok(watch.see(step))
+        });
+    if let Err(error @ Error::Parameter { .. }) = end {
+        return Err(error);
+    }
+    let steps = watch.steps;
+    Ok(RunOutcome {
+        last: watch.last,
+        events: Vec::new(),
+        work: Work {
+            steps,
+            rhs: steps * plan.taylor.order(),
+            ..Work::default()
+        },
+        errors: None,
+        error_estimate: None,
+        estimate_failure: None,
+        failure: end.err(),
+        stopped: watch.stopped,
+    })
+}
+
+/// Makes rows of steps.
+struct Watch<'a> {
+    plan: &'a ManyPlan,
+    sink: &'a mut dyn Sink,
+    pictured: Vec<Column<ManyInstant>>,
+    /// Those of the watched interfaces at the beginning of the step.
+    slips: Vec<DoubleDouble>,
+    row: Vec<f64>,
+    sampled: usize,
+    steps: usize,
+    begun: bool,
+    stopped: bool,
+    last: Option<Vec<f64>>,
+}
+
+impl Watch<'_> {
+    /// Whether to go on.
+    fn see(&mut self, step: &ManyStep<'_>) -> bool {
+        let plan = self.plan;
+        let end = step.end();
+        let first = !std::mem::replace(&mut self.begun, true);
+        if first && plan.picture {
+            self.draw(step, step.begin());
+        }
+        if first && plan.sampling == Sampling::EveryStep {
+            self.emit(step, step.begin());
+        }
+        while let Some(t) = plan.sampling.time(self.sampled, plan.until, plan.until)
+            && t <= end
+        {
+            self.emit(step, t);
+            self.sampled += 1;
+        }
+        if plan.picture {
+            let length = end - step.begin();
+            for part in 1..PICTURED {
+                self.draw(step, step.begin() + length * part as f64 / PICTURED as f64);
+            }
+            self.draw(step, end);
+        }
+        let ends = end >= plan.until;
+        match plan.sampling {
+            Sampling::EveryStep => self.emit(step, end),
+            Sampling::FinalOnly if ends => self.emit(step, end),
+            _ => {}
+        }
+        for (slip, &interface) in self.slips.iter_mut().zip(&plan.watched) {
+            *slip = *slip + step.slip(interface, end);
+        }
+        self.steps += 1;
+        if self.sink.reached(end / plan.until) == Control::Stop {
+            self.stopped = true;
+        }
+        !self.stopped
+    }
+
+    fn instant(&self, step: &ManyStep<'_>, time: f64, whole: bool) -> ManyInstant {
+        let plan = self.plan;
+        let loading = plan.interfaces.loading;
+        let stress = step.stress(time);
+        let each = plan.watched.iter().zip(&self.slips);
+        let each = each.map(|(&interface, before)| {
+            let [psi, v] = step.interface(interface, time);
+            let slip = *before + step.slip(interface, time);
+            [psi, v, slip.hi()]
+        });
+        let mean = loading.driving / plan.interfaces.count() as f64;
+        ManyInstant {
+            time,
+            stress,
+            // K (V_H t - slip) = tau - tau(0)
+            slip: loading.driving * time - (stress - plan.start.0) / loading.stiffness,
+            extent: match whole {
+                true => step.extent(time, mean),
+                false => Extent::NONE,
+            },
+            each: each.collect(),
+        }
+    }
+
+    fn draw(&mut self, step: &ManyStep<'_>, time: f64) {
+        let at = self.instant(step, time, true);
+        let units = self.plan.units();
+        let cells = self.pictured.iter().map(|column| column.number(&at, units));
+        self.row.clear();
+        self.row.extend(cells);
+        self.sink.drawn(&self.row);
+    }
+
+    fn emit(&mut self, step: &ManyStep<'_>, time: f64) {
+        let at = self.instant(step, time, self.plan.needs_extent());
+        let units = self.plan.units();
+        let columns = self.plan.columns.iter();
+        self.row.clear();
+        self.row
+            .extend(columns.map(|column| column.number(&at, units)));
+        self.last = Some(self.row.clone());
+        if self.sink.row(&self.row) == Control::Stop {
+            self.stopped = true;
+        }
+    }
+}
