@@ -77,6 +77,14 @@ fn every_command_of_the_guide_runs() {
 }
 
 #[test]
+fn every_command_of_the_page_on_many_interfaces_runs() {
+    let text = text_of("docs/many-interfaces.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 7, "{lines:?}");
+    run_all(&lines, &folder("many-interfaces"));
+}
+
+#[test]
 fn every_command_of_the_page_on_systems_runs() {
     let text = text_of("docs/system-file.md");
     let lines = commands(&text);
