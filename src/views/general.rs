@@ -74,7 +74,7 @@ fn label(name: &str, quantity: Quantity, units: &Units) -> String {
 }
 
 /// A number of every row against the parameter, stable parts solid, all others dashed; branches in colours of their own.
-fn lines(
+pub fn general_lines(
     rows: &[GeneralRow],
     x: &dyn Fn(&GeneralRow) -> f64,
     y: &dyn Fn(&GeneralRow) -> f64,
@@ -165,7 +165,7 @@ pub fn general_branches(
         let (mut series, mut points) = (Vec::new(), Vec::new());
         for (k, &i) in places.iter().enumerate() {
             let y = |row: &GeneralRow| units.outward(quantity, row.numbers[i]);
-            series.extend(lines(rows, &x, &y));
+            series.extend(general_lines(rows, &x, &y));
             points.extend(marks(rows, &x, &y, k + 1 == places.len()));
         }
         let first = if number == 0 {
@@ -190,7 +190,7 @@ pub fn general_branches(
             let period = row.period.map_or(f64::NAN, |period| period.value);
             units.outward(Quantity::Time, period)
         };
-        let series = lines(rows, &x, &period);
+        let series = general_lines(rows, &x, &period);
         let vertical = value_axis("period", Quantity::Time, &series, units);
         panels.push(Panel {
             series,

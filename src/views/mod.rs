@@ -19,7 +19,7 @@ mod text;
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
-pub use general::{general_branches, general_curves};
+pub use general::{general_branches, general_curves, general_lines};
 pub use law::law_columns;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
