@@ -101,6 +101,7 @@ mod strong_resonance;
 mod sundials;
 mod sweep;
 mod sweep_any;
+mod sweep_basins;
 mod sweep_parts;
 mod sweep_rows;
 #[cfg(not(feature = "parquet"))]

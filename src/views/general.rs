@@ -16,7 +16,7 @@ fn axis(free: &Free, units: &Units) -> Axis {
         free.range.0.min(free.range.1),
         free.range.0.max(free.range.1),
     );
-    let name = label(free.name, free.quantity, units);
+    let name = quantity_label(free.name, free.quantity, units);
     if low > 0.0 && high > RATIO * low {
         Axis::log(name)
     } else {
@@ -38,7 +38,7 @@ fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Uni
         quantity,
         Quantity::SlipRate | Quantity::State | Quantity::Time
     );
-    let name = label(name, quantity, units);
+    let name = quantity_label(name, quantity, units);
     if low > 0.0 && (positive || high > RATIO * low) {
         Axis::log(name)
     } else {
@@ -65,7 +65,8 @@ fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
     }
 }
 
-fn label(name: &str, quantity: Quantity, units: &Units) -> String {
+/// The label of an axis, without a unit where there is none.
+pub fn quantity_label(name: &str, quantity: Quantity, units: &Units) -> String {
     match units.name(quantity) {
         // A number without a unit.
         "" | "1" => name.to_owned(),
