@@ -14,6 +14,7 @@ mod drawn;
 mod any_parameter;
 mod any_parameter_slab;
 mod arcs;
+mod attraction;
 mod batch;
 mod boxes;
 mod branches;
@@ -104,6 +105,7 @@ mod sweep_any;
 mod sweep_basins;
 mod sweep_parts;
 mod sweep_rows;
+mod sweep_unbounded;
 #[cfg(not(feature = "parquet"))]
 mod systems;
 mod tableaus;

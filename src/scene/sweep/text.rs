@@ -11,7 +11,9 @@ use crate::number::polynomial::Crossing;
 use crate::scene::options::ModelOptions;
 use crate::scene::text::TextModel;
 use crate::section::{Surface, usual_patience};
-use crate::sweep::{RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces};
+use crate::sweep::{
+    Enclosure, RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces,
+};
 use std::borrow::Cow;
 
 /// A system from a file of which some parameters vary.
@@ -195,6 +197,7 @@ impl SystemPoints for TextPoints {
             (None, None) => unreachable!("a system has a start"),
         };
         Ok(SystemPoint {
+            enclosed: Some(Enclosure(Box::new(system.clone()))),
             field: AnyField::of_text(Cow::Owned(system))?,
             start: begin,
             section,
