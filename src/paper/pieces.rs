@@ -12,8 +12,8 @@ use crate::output::RowList;
 use crate::scene::{
     BranchKind, BranchOptions, BranchPlan, Column, Command, EquilibriaPlan, GeneralBranchPlan,
     GeneralFound, GeneralLocusPlan, GeneralRow, LawPlan, LocusOptions, LocusPlan, OrbitPlan, Plan,
-    Sampling, SceneFile, SectionPlan, SlabSubject, run, run_section, section_columns, shipped,
-    shipped_names, shown,
+    Quantity, Sampling, SceneFile, SectionPlan, SlabSubject, run, run_section, section_columns,
+    shipped, shipped_names, shown,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -309,8 +309,9 @@ impl<'a> Pieces<'a> {
         } else {
             "branches of equilibria"
         };
-        let (rows, special) =
-            self.followed(&self.voice(name, what), |seen| plan.follow(&[], seen))?;
+        let (rows, special) = self.followed(&self.voice(name, what), &names, |seen| {
+            plan.follow(&[], seen)
+        })?;
         Ok(Piece::General(Arc::new(GeneralCurves {
             kind,
             names,
@@ -329,7 +330,7 @@ impl<'a> Pieces<'a> {
         let plan = GeneralLocusPlan::new(options, &subject)?;
         let (kind, names) = (plan.kind, shown(&subject, &plan.free.each_ref()));
         let voice = self.voice(name, plan.choice.title);
-        let (rows, special) = self.followed(&voice, |seen| plan.follow(&[], seen))?;
+        let (rows, special) = self.followed(&voice, &names, |seen| plan.follow(&[], seen))?;
         Ok(Piece::General(Arc::new(GeneralCurves {
             kind,
             names,
@@ -343,6 +344,7 @@ impl<'a> Pieces<'a> {
     fn followed(
         &self,
         voice: &Voice<'_>,
+        names: &[(&'static str, Quantity)],
         follow: impl FnOnce(&mut dyn FnMut(GeneralFound) -> ControlFlow<()>) -> Result<()>,
     ) -> Result<(Vec<GeneralRow>, Vec<GeneralRow>)> {
         let (mut rows, mut special) = (Vec::new(), Vec::new());
@@ -359,10 +361,12 @@ impl<'a> Pieces<'a> {
         })?;
         self.going_on()?;
         if let Some(stuck) = special.iter().find(|one| one.label == Some(Label::Mx)) {
-            let why = stuck.note.clone().unwrap_or_default();
-            return Err(Error::Input(format!(
-                "a branch of the figure ends early: {why}"
-            )));
+            let of = |name: &str| {
+                let place = names.iter().position(|(known, _)| *known == name);
+                place.map_or(f64::NAN, |place| stuck.parameters[place].value)
+            };
+            let (driving, stiffness) = (of("driving"), of("stiffness"));
+            return Err(Error::Stuck { driving, stiffness });
         }
         voice.says(Reached::Whole);
         Ok((rows, special))
