@@ -16,7 +16,7 @@ fn axis(free: &Free, units: &Units) -> Axis {
         free.range.0.min(free.range.1),
         free.range.0.max(free.range.1),
     );
-    let name = quantity_label(free.name, free.quantity, units);
+    let name = quantity_label(symbol(free.name), free.quantity, units);
     if low > 0.0 && high > RATIO * low {
         Axis::log(name)
     } else {
@@ -46,13 +46,17 @@ fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Uni
     }
 }
 
-/// What is drawn, and at which values of what every row tells though it is held.
-fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
-    let symbol = |name: &'static str| match name {
+/// V_H and K by their symbols, all else by its name.
+fn symbol(name: &str) -> &str {
+    match name {
         "driving" => "V_H",
         "stiffness" => "K",
         other => other,
-    };
+    }
+}
+
+/// What is drawn, and at which values of what every row tells though it is held.
+fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
     let told = subject.always_told().into_iter();
     let held = told.filter(|(name, _)| free.iter().all(|free| free.name != *name));
     let held = held.filter_map(|(name, quantity)| {
