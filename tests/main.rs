@@ -14,6 +14,7 @@ mod drawn;
 mod any_parameter;
 mod any_parameter_slab;
 mod arcs;
+mod attraction;
 mod batch;
 mod boxes;
 mod branches;
@@ -103,8 +104,10 @@ mod strong_resonance;
 mod sundials;
 mod sweep;
 mod sweep_any;
+mod sweep_basins;
 mod sweep_parts;
 mod sweep_rows;
+mod sweep_unbounded;
 #[cfg(not(feature = "parquet"))]
 mod systems;
 mod tableaus;

@@ -85,6 +85,55 @@ fn only_what_is_asked_for_is_made_and_told_in_the_report() {
     assert!((largest - 1.0).abs() < 1e-6, "{largest}");
 }
 
+/// Folds along V_H at one c_2 and K are those of the curves in the plane of V_H and c_2 at another K, which end at the cusps known.
+#[test]
+fn the_unfolded_pitchforks_are_made_beside_both_figures() {
+    let out = folder("reproduce-unfolded");
+    let ended = reproduce(&out, &["--only", "5-unfolded,fig06-unfolded"]);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let special = |id: &str, label: &str, columns: &[&str]| -> Vec<Vec<f64>> {
+        let text = fs::read_to_string(out.join(format!("{id}.csv"))).expect("rows");
+        let rows = csv(&text);
+        let place = |name: &str| {
+            let place = rows[0].iter().position(|known| known == name);
+            place.unwrap_or_else(|| panic!("no column {name}"))
+        };
+        let (part, of) = (place("part"), place("label"));
+        let chosen = rows[1..].iter();
+        let chosen = chosen.filter(|row| row[part].starts_with("special") && row[of] == label);
+        let number = |row: &Vec<String>, name: &&str| row[place(name)].parse().expect("a number");
+        let numbers = |row| columns.iter().map(|name| number(row, name)).collect();
+        chosen.map(numbers).collect()
+    };
+    let sorted = |rows: Vec<Vec<f64>>| {
+        let mut first: Vec<f64> = rows.into_iter().map(|row| row[0]).collect();
+        first.sort_by(f64::total_cmp);
+        first
+    };
+    let along = sorted(special("fig05-unfolded", "LP", &["driving"]));
+    let landed = special("fig06-unfolded", "UZ", &["driving", "residual_strength_2"]);
+    assert!(landed.iter().all(|at| at[1] == 1.2e-3), "{landed:?}");
+    let landed = sorted(landed);
+    assert_eq!((along.len(), landed.len()), (4, 4));
+    for (a, b) in along.iter().zip(&landed) {
+        assert!((a / b - 1.0).abs() < 1e-9, "{a} {b}");
+    }
+    let cusps = sorted(special("fig06-unfolded", "CP", &["driving"]));
+    let known: Value = serde_json::from_str(include_str!("data/unequal.json")).expect("JSON");
+    let mut exact: Vec<f64> = (0..2)
+        .map(|i| known["cusps_VH_c2"][i]["V_H"].as_str().expect("digits"))
+        .map(|digits| digits.parse().expect("a number"))
+        .collect();
+    exact.sort_by(f64::total_cmp);
+    assert_eq!(cusps.len(), 2);
+    for (found, exact) in cusps.iter().zip(&exact) {
+        assert!((found / exact - 1.0).abs() < 1e-9, "{found} {exact}");
+    }
+    let report = fs::read_to_string(out.join("report.html")).expect("a report");
+    assert!(report.contains("Figure\u{a0}5, unfolded"));
+    assert!(report.contains("id=\"fig06-unfolded\""));
+}
+
 #[test]
 fn what_stands_is_not_made_again_and_what_is_damaged_is_mended() {
     let out = folder("reproduce-mend");

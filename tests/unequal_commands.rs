@@ -515,6 +515,10 @@ fn laws_of_both_interfaces_are_told_and_drawn() {
     assert!(ended.err.contains("interface 2: maximum of stress"));
     let picture = std::fs::read_to_string(picture).expect("a picture");
     assert!(picture.contains("interface 1") && picture.contains("interface 2"));
+    // Marks say whose they are.
+    for label in ["maximum (1)", "maximum (2)"] {
+        assert!(picture.contains(label), "{label}");
+    }
     // Equal by --set, though each has its own.
     let same = object("law --points 3 --set slip_length_2=1,residual_strength_2=0.001");
     assert!(same["result"]["rows"][0].get("interface").is_none());

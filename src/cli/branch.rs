@@ -5,9 +5,7 @@ use super::rows::{SlabRow, special_row};
 use super::{Ending, general, say, special};
 use crate::bifurcation::{BranchRow, Special, orbits};
 use crate::error::Result;
-use crate::scene::{
-    BranchKind, BranchOptions, BranchPlan, Described, SlabSubject, System, TextModel, TextSubject,
-};
+use crate::scene::{BranchKind, BranchOptions, BranchPlan, Described, TextModel, TextSubject};
 use crate::views;
 use std::ops::ControlFlow;
 
@@ -26,18 +24,7 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
         )?;
         return general::branch(options, &subject, words);
     }
-    let along = options.along.as_deref().unwrap_or("driving");
-    let system = System::new(&options.model)?;
-    if system.unequal.is_some() || !["driving", "stiffness"].contains(&along) {
-        let subject = SlabSubject::new(system, &[along])?;
-        let search = &options.search;
-        let subject = match options.of.as_deref() {
-            Some("orbits") => subject.beginning(search.start.as_deref(), search.period_guess)?,
-            _ => {
-                search.unused()?;
-                subject
-            }
-        };
+    if let Some(subject) = options.any_parameter()? {
         return general::branch(options, &subject, words);
     }
     options.search.unused()?;

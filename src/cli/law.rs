@@ -201,25 +201,38 @@ pub fn picture(units: &Units, curves: &[LawCurve]) -> plot::Drawing {
     };
     let x = plot::Axis::log(format!("slip rate V [{}]", unit(Quantity::SlipRate)));
     let lines = |y: &dyn Fn(&LawPoint) -> f64| -> Vec<plot::PlotSeries> {
-        let line = |curve: &LawCurve| {
+        let line = |(i, curve): (usize, &LawCurve)| {
             let rate = |at: &LawPoint| units.outward(Quantity::SlipRate, at.slip_rate);
             let rates = curve.points.iter().map(rate).collect();
             let name = match curves.len() {
                 1 => String::new(),
                 _ => format!("interface {}", curve.interface),
             };
-            plot::PlotSeries::new(name, rates, curve.points.iter().map(y).collect())
+            let values = curve.points.iter().map(y).collect();
+            plot::PlotSeries::new(name, rates, values).colour(i)
         };
-        curves.iter().map(line).collect()
+        curves.iter().enumerate().map(line).collect()
     };
-    let extrema = curves.iter().flat_map(|curve| &curve.landmarks.extrema);
-    let marks = extrema.map(|extremum| {
-        let (name, side) = match extremum.kind {
-            ExtremumKind::Maximum => ("maximum V_M", plot::Side::Above),
-            ExtremumKind::Minimum => ("minimum V_m", plot::Side::Below),
+    // Of two laws each mark has the colour and the number of its interface.
+    let mark = |i: usize, (x, y): (f64, f64), [alone, beside]: [&str; 2]| match curves.len() {
+        1 => plot::Mark::new(x, y, alone),
+        _ => {
+            let label = format!("{beside} ({})", curves[i].interface);
+            plot::Mark::new(x, y, label).colour(i)
+        }
+    };
+    let numbered = || curves.iter().enumerate();
+    let extrema = numbered().flat_map(|(i, curve)| {
+        let extrema = curve.landmarks.extrema.iter();
+        extrema.map(move |extremum| (i, extremum))
+    });
+    let marks = extrema.map(|(i, extremum)| {
+        let (names, side) = match extremum.kind {
+            ExtremumKind::Maximum => (["maximum V_M", "V_M"], plot::Side::Above),
+            ExtremumKind::Minimum => (["minimum V_m", "V_m"], plot::Side::Below),
         };
         let at = units.outward(Quantity::SlipRate, extremum.slip_rate.value);
-        plot::Mark::new(at, stress(extremum.stress.value), name).side(side)
+        mark(i, (at, stress(extremum.stress.value)), names).side(side)
     });
     let friction = plot::Panel {
         series: lines(&|at| stress(at.stress)),
@@ -230,13 +243,12 @@ pub fn picture(units: &Units, curves: &[LawCurve]) -> plot::Drawing {
             plot::Axis::linear(friction),
         )
     };
-    let tops = curves
-        .iter()
-        .filter_map(|curve| curve.landmarks.critical_stiffness_maximum);
-    let tops = tops.map(|maximum| {
+    let tops = numbered().filter_map(|(i, curve)| {
+        let maximum = curve.landmarks.critical_stiffness_maximum?;
         let at = units.outward(Quantity::SlipRate, maximum.slip_rate.value);
         let stiffness = units.outward(Quantity::Stiffness, maximum.stiffness.value);
-        plot::Mark::new(at, stiffness, "maximum").side(plot::Side::Above)
+        let mark = mark(i, (at, stiffness), ["maximum", "maximum"]);
+        Some(mark.side(plot::Side::Above))
     });
     let title = "critical stiffness: a stiffer single interface slides steadily";
     let critical = format!("critical stiffness k_c [{}]", unit(Quantity::Stiffness));

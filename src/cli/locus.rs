@@ -6,8 +6,7 @@ use super::{Ending, general, say, special};
 use crate::bifurcation::{LocusRow, Special, orbits};
 use crate::error::Result;
 use crate::scene::{
-    CurveChoice, Described, LocusOptions, LocusPlan, SlabSubject, System, TextModel, TextSubject,
-    plane,
+    CurveChoice, Described, LocusOptions, LocusPlan, TextModel, TextSubject, plane,
 };
 use crate::views;
 use std::ops::ControlFlow;
@@ -27,13 +26,7 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
         )?;
         return general::locus(options, &subject, words);
     }
-    let names = plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?;
-    let system = System::new(&options.model)?;
-    let loading = names.contains(&"driving") && names.contains(&"stiffness");
-    if system.unequal.is_some() || !loading {
-        let subject = SlabSubject::new(system, &names)?;
-        let search = &options.search;
-        let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
+    if let Some(subject) = options.any_parameter()? {
         return general::locus(options, &subject, words);
     }
     options.search.unused()?;

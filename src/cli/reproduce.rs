@@ -28,7 +28,7 @@ pub struct ReproduceOptions {
     /// Where all files go
     #[arg(long, value_name = "DIR", default_value = "paper")]
     out: PathBuf,
-    /// Only some of it, comma-separated: fig01 to fig17, table1, scorecard
+    /// Only some of it, comma-separated: fig01 to fig17, fig05-unfolded, fig06-unfolded, table1, scorecard
     #[arg(long, value_name = "LIST")]
     only: Option<String>,
     /// Compute again what an earlier run has left complete
@@ -42,7 +42,7 @@ pub struct ReproduceOptions {
 /// `figure`: one figure as CSV and SVG.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct FigureOptions {
-    /// Its number in the paper, 1 to 17; fig7 and fig07 mean the same
+    /// Its number in the paper, 1 to 17, or 5-unfolded or 6-unfolded; fig7 and fig07 mean the same
     #[arg(value_name = "N")]
     number: String,
     /// Where the files go

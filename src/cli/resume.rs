@@ -256,6 +256,11 @@ pub(super) fn same(earlier: &Head, remarks: &[String], columns: &[String]) -> Re
                     .get(name)
                     .map_or(format!("no {name}"), |value| format!("{name} = {value}"))
             };
+            if *name == "formulas" {
+                return Err(
+                    "it was written with other formulas: the file of the system or law has changed since".into(),
+                );
+            }
             return Err(format!(
                 "it was written with {}, but this run has {}",
                 said(&theirs),

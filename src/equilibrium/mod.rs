@@ -10,6 +10,7 @@ mod interface;
 mod isolate;
 #[cfg(feature = "sundials")]
 mod kinsol;
+mod lyapunov_ball;
 mod newton;
 mod pitchfork;
 mod polynomial;
@@ -22,6 +23,7 @@ pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
 pub use interface::LawOfEach;
 pub(crate) use interface::{Interface, routh_hurwitz};
 pub(crate) use isolate::quotient;
+pub use lyapunov_ball::LyapunovBall;
 pub use pitchfork::Pitchfork;
 pub(crate) use refine::refined;
 pub use spectrum::spectrum_within;

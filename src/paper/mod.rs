@@ -16,7 +16,7 @@ pub mod scorecard;
 mod sheet;
 
 pub use going::{Going, Reached};
-pub(crate) use piece::{Branches, Curves, Map, Run};
+pub(crate) use piece::{Branches, Curves, GeneralCurves, Map, Run};
 #[doc(hidden)]
 pub use pieces::Pieces;
 #[doc(hidden)]

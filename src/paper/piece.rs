@@ -4,8 +4,8 @@ use crate::bifurcation::{BranchRow, LocusRow, Special};
 use crate::orbit::{Crosscheck, FoundOrbit};
 use crate::output::RowList;
 use crate::scene::{
-    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, LawCurve, LawPlan, LocusPlan, OrbitPlan,
-    Plan, RunOutcome, SectionOutcome, SectionPlan,
+    BranchPlan, ClassifiedEquilibria, EquilibriaPlan, GeneralRow, LawCurve, LawPlan, LocusPlan,
+    OrbitPlan, Plan, Quantity, RowKind, RunOutcome, SectionOutcome, SectionPlan, SlabSubject,
 };
 use std::sync::Arc;
 
@@ -53,6 +53,21 @@ pub struct Curves {
     pub special: Vec<Special>,
 }
 
+/// Branches or curves of interfaces that differ, or in parameters other than V_H and K.
+#[derive(Debug)]
+pub struct GeneralCurves {
+    /// What slides.
+    pub subject: SlabSubject,
+    /// What rows are of.
+    pub kind: RowKind,
+    /// The parameters that rows tell, those that vary first.
+    pub names: Vec<(&'static str, Quantity)>,
+    /// The points.
+    pub rows: Vec<GeneralRow>,
+    /// The special ones.
+    pub special: Vec<GeneralRow>,
+}
+
 /// A periodic orbit.
 #[derive(Debug)]
 pub struct PeriodicOrbit {
@@ -89,6 +104,7 @@ pub(super) enum Piece {
     Map(Arc<Map>),
     Branches(Arc<Branches>),
     Curves(Arc<Curves>),
+    General(Arc<GeneralCurves>),
     Orbit(Arc<PeriodicOrbit>),
     Equilibria(Arc<Equilibria>),
     Law(Arc<Laws>),

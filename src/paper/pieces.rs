@@ -2,14 +2,18 @@
 
 use super::clock::timed;
 use super::going::{Going, Hears, Kept, Reached, Voice};
-use super::piece::{Branches, Curves, Equilibria, Laws, Map, PeriodicOrbit, Piece, Run};
+use super::piece::{
+    Branches, Curves, Equilibria, GeneralCurves, Laws, Map, PeriodicOrbit, Piece, Run,
+};
 use crate::bifurcation::{Event, Label, Special};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Parameters};
 use crate::output::RowList;
 use crate::scene::{
-    BranchKind, BranchPlan, Column, Command, EquilibriaPlan, LawPlan, LocusPlan, OrbitPlan, Plan,
-    Sampling, SceneFile, SectionPlan, run, run_section, section_columns, shipped, shipped_names,
+    BranchKind, BranchOptions, BranchPlan, Column, Command, EquilibriaPlan, GeneralBranchPlan,
+    GeneralFound, GeneralLocusPlan, GeneralRow, LawPlan, LocusOptions, LocusPlan, OrbitPlan, Plan,
+    Quantity, Sampling, SceneFile, SectionPlan, SlabSubject, run, run_section, section_columns,
+    shipped, shipped_names, shown,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -95,6 +99,17 @@ impl<'a> Pieces<'a> {
         }
     }
 
+    /// The branches or curves of a scene in any parameters.
+    ///
+    /// # Errors
+    /// As of [`Pieces::run`].
+    pub fn general(&self, scene: &str) -> Result<Arc<GeneralCurves>> {
+        match self.piece(scene)? {
+            Piece::General(curves) => Ok(curves),
+            _ => Err(not(scene, "a branch or a curve in any parameters")),
+        }
+    }
+
     /// The periodic orbit of a scene.
     ///
     /// # Errors
@@ -156,8 +171,14 @@ impl<'a> Pieces<'a> {
         match Command::of_scene(&file, &[], &[])? {
             Command::Integrate(options) => self.run_of(name, Plan::new(&options)?),
             Command::Section(options) => self.map_of(name, SectionPlan::new(&options)?),
-            Command::Branch(options) => self.branches_of(name, BranchPlan::new(&options)?),
-            Command::Locus(options) => self.curves_of(name, LocusPlan::new(&options)?),
+            Command::Branch(options) => match options.any_parameter()? {
+                Some(subject) => self.general_branches_of(name, &options, subject),
+                None => self.branches_of(name, BranchPlan::new(&options)?),
+            },
+            Command::Locus(options) => match options.any_parameter()? {
+                Some(subject) => self.general_curves_of(name, &options, subject),
+                None => self.curves_of(name, LocusPlan::new(&options)?),
+            },
             Command::Orbit(options) => self.orbit_of(name, OrbitPlan::new(&options)?),
             Command::Equilibria(options) => {
                 let plan = EquilibriaPlan::new(&options)?;
@@ -273,6 +294,82 @@ impl<'a> Pieces<'a> {
             rows,
             special,
         })))
+    }
+
+    fn general_branches_of(
+        &self,
+        name: &str,
+        options: &BranchOptions,
+        subject: SlabSubject,
+    ) -> Result<Piece> {
+        let plan = GeneralBranchPlan::new(options, &subject)?;
+        let (kind, names) = (plan.kind, shown(&subject, &[&plan.free]));
+        let what = if kind.orbits {
+            "branches of orbits"
+        } else {
+            "branches of equilibria"
+        };
+        let (rows, special) = self.followed(&self.voice(name, what), &names, |seen| {
+            plan.follow(&[], seen)
+        })?;
+        Ok(Piece::General(Arc::new(GeneralCurves {
+            kind,
+            names,
+            rows,
+            special,
+            subject,
+        })))
+    }
+
+    fn general_curves_of(
+        &self,
+        name: &str,
+        options: &LocusOptions,
+        subject: SlabSubject,
+    ) -> Result<Piece> {
+        let plan = GeneralLocusPlan::new(options, &subject)?;
+        let (kind, names) = (plan.kind, shown(&subject, &plan.free.each_ref()));
+        let voice = self.voice(name, plan.choice.title);
+        let (rows, special) = self.followed(&voice, &names, |seen| plan.follow(&[], seen))?;
+        Ok(Piece::General(Arc::new(GeneralCurves {
+            kind,
+            names,
+            rows,
+            special,
+            subject,
+        })))
+    }
+
+    /// The rows and the special points of branches or curves in any parameters.
+    fn followed(
+        &self,
+        voice: &Voice<'_>,
+        names: &[(&'static str, Quantity)],
+        follow: impl FnOnce(&mut dyn FnMut(GeneralFound) -> ControlFlow<()>) -> Result<()>,
+    ) -> Result<(Vec<GeneralRow>, Vec<GeneralRow>)> {
+        let (mut rows, mut special) = (Vec::new(), Vec::new());
+        voice.says(Reached::Points(0));
+        follow(&mut |found| {
+            match found {
+                GeneralFound::Row(row) => {
+                    rows.push(row);
+                    voice.says(Reached::Points(rows.len()));
+                }
+                GeneralFound::Special(point) => special.push(point),
+            }
+            self.flow()
+        })?;
+        self.going_on()?;
+        if let Some(stuck) = special.iter().find(|one| one.label == Some(Label::Mx)) {
+            let of = |name: &str| {
+                let place = names.iter().position(|(known, _)| *known == name);
+                place.map_or(f64::NAN, |place| stuck.parameters[place].value)
+            };
+            let (driving, stiffness) = (of("driving"), of("stiffness"));
+            return Err(Error::Stuck { driving, stiffness });
+        }
+        voice.says(Reached::Whole);
+        Ok((rows, special))
     }
 
     fn orbit_of(&self, name: &str, plan: OrbitPlan) -> Result<Piece> {

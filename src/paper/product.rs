@@ -53,7 +53,9 @@ pub const PRODUCTS: &[&Product] = &[
     &figures::fig03::FIGURE,
     &figures::fig04::FIGURE,
     &figures::fig05::FIGURE,
+    &figures::fig05_unfolded::FIGURE,
     &figures::fig06::FIGURE,
+    &figures::fig06_unfolded::FIGURE,
     &figures::fig07::FIGURE,
     &figures::fig08::FIGURE,
     &figures::fig09::FIGURE,
@@ -70,7 +72,8 @@ pub const PRODUCTS: &[&Product] = &[
 ];
 
 impl Product {
-    /// The product of that name; figures may be called by their number alone, as 7, fig7 or fig07.
+    /// The product of that name; figures may be called by their number alone, as 7, fig7 or fig07, and what is beside one as
+    /// 5-unfolded.
     ///
     /// # Errors
     /// [`Error::Parameter`] with the names that there are.
@@ -79,8 +82,9 @@ impl Product {
         let digits = plain
             .trim_start_matches("fig")
             .trim_start_matches(['.', ' ']);
+        let (digits, beside) = digits.split_at(digits.find('-').unwrap_or(digits.len()));
         let number = digits.parse::<u8>();
-        let id = number.map_or_else(|_| name.to_owned(), |n| format!("fig{n:02}"));
+        let id = number.map_or_else(|_| name.to_owned(), |n| format!("fig{n:02}{beside}"));
         let found = PRODUCTS.iter().find(|product| product.id == id);
         found.copied().ok_or_else(|| {
             let ids: Vec<&str> = PRODUCTS.iter().map(|product| product.id).collect();

@@ -1,10 +1,10 @@
 //! The numbers behind a picture, as CSV: several sets of rows one below the other, each under its own name.
 
-use super::piece::{Branches, Curves, Map, Run};
+use super::piece::{Branches, Curves, GeneralCurves, Map, Run};
 use crate::bifurcation::Special;
 use crate::error::{Error, Result};
 use crate::output::{Cell, CsvRows, RowList, RowWriter};
-use crate::scene::{BranchKind, Column, Units};
+use crate::scene::{BranchKind, Column, Described, GeneralRow, Units};
 use crate::views::{self, branch_columns, locus_columns, special_columns};
 
 /// Sets of rows. In the CSV the first column, `part`, has the name of the set, and the other columns are those of all sets.
@@ -73,6 +73,16 @@ impl Sheet {
         let units = &curves.plan.system.units;
         self.add_rows(name.into(), &locus_columns(), &curves.rows, units);
         self.add_special(name, &curves.special, units);
+    }
+
+    /// Adds branches or curves in any parameters, in the columns of their commands, and their special points.
+    pub fn add_general(&mut self, name: &str, curves: &GeneralCurves) {
+        let (subject, names) = (&curves.subject, &curves.names);
+        let columns = GeneralRow::columns(subject, curves.kind, names);
+        self.add_rows(name.into(), &columns, &curves.rows, subject.units());
+        let columns = GeneralRow::special_columns(names);
+        let name = format!("special points of {name}");
+        self.add_rows(name, &columns, &curves.special, subject.units());
     }
 
     fn add_special(&mut self, name: &str, special: &[Special], units: &Units) {

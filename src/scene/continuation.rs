@@ -2,9 +2,11 @@
 
 use super::branch::{BranchKind, BranchParameter};
 use super::following::SYMMETRIES;
+use super::general::{SlabSubject, plane};
 use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
+use super::system::System;
 use crate::bifurcation::MAX_POINTS;
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
@@ -125,6 +127,48 @@ pub struct BranchOptions {
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,
+}
+
+impl BranchOptions {
+    /// The interfaces, where branches are followed in any parameter: they differ, or neither V_H nor K varies.
+    ///
+    /// # Errors
+    /// Those of the system; [`Error::Input`] for places of a search that equilibria do without.
+    pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
+        let along = self.along.as_deref().unwrap_or("driving");
+        let system = System::new(&self.model)?;
+        if system.unequal.is_none() && ["driving", "stiffness"].contains(&along) {
+            return Ok(None);
+        }
+        let subject = SlabSubject::new(system, &[along])?;
+        let search = &self.search;
+        Ok(Some(match self.of.as_deref() {
+            Some("orbits") => subject.beginning(search.start.as_deref(), search.period_guess)?,
+            _ => {
+                search.unused()?;
+                subject
+            }
+        }))
+    }
+}
+
+impl LocusOptions {
+    /// The interfaces, where curves are followed in any plane: they differ, or not both V_H and K vary.
+    ///
+    /// # Errors
+    /// Those of the system, and of [`plane`].
+    pub fn any_parameter(&self) -> Result<Option<SlabSubject>> {
+        let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
+        let system = System::new(&self.model)?;
+        let loading = names.contains(&"driving") && names.contains(&"stiffness");
+        if system.unequal.is_none() && loading {
+            return Ok(None);
+        }
+        let search = &self.search;
+        let subject = SlabSubject::new(system, &names)?;
+        let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
+        Ok(Some(subject))
+    }
 }
 
 /// `locus`: a curve of bifurcations in the plane of V_H and K.

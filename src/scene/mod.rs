@@ -87,7 +87,7 @@ pub use section::{
     section_columns,
 };
 pub use shipped::{about, shipped, shipped_names};
-pub use sweep::{Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
+pub use sweep::{BasinStates, Moving, Shard, SweepLayout, SweepOptions, SweepPlan, Swept};
 pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,

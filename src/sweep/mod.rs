@@ -24,7 +24,7 @@ mod start;
 mod sweeper;
 mod watch;
 
-pub use general::{SectionPlace, SystemPoint, SystemPoints};
+pub use general::{Enclosure, SectionPlace, SystemPoint, SystemPoints};
 pub use points::{LawPoints, RandomStart};
 
 pub use range::Range;

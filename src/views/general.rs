@@ -16,7 +16,7 @@ fn axis(free: &Free, units: &Units) -> Axis {
         free.range.0.min(free.range.1),
         free.range.0.max(free.range.1),
     );
-    let name = label(free.name, free.quantity, units);
+    let name = quantity_label(symbol(free.name), free.quantity, units);
     if low > 0.0 && high > RATIO * low {
         Axis::log(name)
     } else {
@@ -38,7 +38,7 @@ fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Uni
         quantity,
         Quantity::SlipRate | Quantity::State | Quantity::Time
     );
-    let name = label(name, quantity, units);
+    let name = quantity_label(name, quantity, units);
     if low > 0.0 && (positive || high > RATIO * low) {
         Axis::log(name)
     } else {
@@ -46,13 +46,17 @@ fn value_axis(name: &str, quantity: Quantity, series: &[PlotSeries], units: &Uni
     }
 }
 
-/// What is drawn, and at which values of what every row tells though it is held.
-fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
-    let symbol = |name: &'static str| match name {
+/// V_H and K by their symbols, all else by its name.
+fn symbol(name: &str) -> &str {
+    match name {
         "driving" => "V_H",
         "stiffness" => "K",
         other => other,
-    };
+    }
+}
+
+/// What is drawn, and at which values of what every row tells though it is held.
+fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
     let told = subject.always_told().into_iter();
     let held = told.filter(|(name, _)| free.iter().all(|free| free.name != *name));
     let held = held.filter_map(|(name, quantity)| {
@@ -65,7 +69,8 @@ fn title(what: &str, subject: &dyn Subject, free: &[Free]) -> String {
     }
 }
 
-fn label(name: &str, quantity: Quantity, units: &Units) -> String {
+/// The label of an axis, without a unit where there is none.
+pub fn quantity_label(name: &str, quantity: Quantity, units: &Units) -> String {
     match units.name(quantity) {
         // A number without a unit.
         "" | "1" => name.to_owned(),
@@ -74,7 +79,7 @@ fn label(name: &str, quantity: Quantity, units: &Units) -> String {
 }
 
 /// A number of every row against the parameter, stable parts solid, all others dashed; branches in colours of their own.
-fn lines(
+pub fn general_lines(
     rows: &[GeneralRow],
     x: &dyn Fn(&GeneralRow) -> f64,
     y: &dyn Fn(&GeneralRow) -> f64,
@@ -165,7 +170,7 @@ pub fn general_branches(
         let (mut series, mut points) = (Vec::new(), Vec::new());
         for (k, &i) in places.iter().enumerate() {
             let y = |row: &GeneralRow| units.outward(quantity, row.numbers[i]);
-            series.extend(lines(rows, &x, &y));
+            series.extend(general_lines(rows, &x, &y));
             points.extend(marks(rows, &x, &y, k + 1 == places.len()));
         }
         let first = if number == 0 {
@@ -190,7 +195,7 @@ pub fn general_branches(
             let period = row.period.map_or(f64::NAN, |period| period.value);
             units.outward(Quantity::Time, period)
         };
-        let series = lines(rows, &x, &period);
+        let series = general_lines(rows, &x, &period);
         let vertical = value_axis("period", Quantity::Time, &series, units);
         panels.push(Panel {
             series,

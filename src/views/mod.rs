@@ -20,14 +20,17 @@ mod text;
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
-pub use general::{general_branches, general_curves};
+pub use general::{general_branches, general_curves, general_lines, quantity_label};
 pub use law::law_columns;
 pub use many::many_run;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};
 pub use run::{event_columns, panels_in_time, phase_plane, picture_of_run};
-pub use sweep::{GridSide, PointOutcome, basin_map, parameter_map, regime_map};
+pub use sweep::{
+    Basins, GridSide, PointOutcome, basin_map, basins_of_states, parameter_map, regime_line,
+    regime_map,
+};
 pub use text::{
     text_equilibria_columns, text_law_columns, text_orbit_columns, text_return_map, text_run,
 };

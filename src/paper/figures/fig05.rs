@@ -24,7 +24,7 @@ pub const FIGURE: Product = Product {
 
 /// The frames about the pitchforks: V_H and stress.
 const FIRST: [(f64, f64); 2] = [(0.03, 0.2), (11.3, 11.62)];
-const SECOND: [(f64, f64); 2] = [(500.0, 3000.0), (8.62, 9.1)];
+pub const SECOND: [(f64, f64); 2] = [(500.0, 3000.0), (8.62, 9.1)];
 
 fn make(pieces: &Pieces<'_>) -> Result<Made> {
     let branches = pieces.branches("fig05")?;

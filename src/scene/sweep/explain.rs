@@ -22,7 +22,10 @@ impl SweepPlan {
         let grid = match &settings.grid {
             Grid::Basin { .. } => "starts (psi1, psi2) at one V_H and K".to_owned(),
             Grid::Plane { .. } => format!("the plane of V_H and K, {starts}"),
-            Grid::Laws { .. } | Grid::Systems { .. } => format!("{}, {starts}", along()),
+            Grid::Laws { .. } | Grid::Systems { .. } => match &self.basin {
+                Some(states) => format!("starts ({}) of one system", states.names.join(", ")),
+                None => format!("{}, {starts}", along()),
+            },
         };
         let part = match self.shard {
             None => "all".to_owned(),

@@ -134,6 +134,7 @@ impl SystemPoints for InterfacePoints {
             start: Vector::from_vec(begin),
             section: SectionPlace::Known(surface, patience),
             equal_parts: system.interfaces == 2 && system.unequal.is_none(),
+            enclosed: None,
         })
     }
 }

@@ -1,6 +1,7 @@
 //! Sweeps from options: which grid of points, what is computed of each, and which part of it here.
 
 mod axes;
+mod basin;
 mod explain;
 mod grain;
 mod interfaces;
@@ -10,6 +11,7 @@ mod shard;
 mod text;
 mod words;
 
+pub use basin::BasinStates;
 pub use layout::{Moving, SweepLayout};
 pub use options::SweepOptions;
 pub use shard::Shard;
@@ -22,8 +24,9 @@ use super::units::{Quantity, Units};
 use crate::error::{Error, Result, option_name};
 use crate::friction::{AnyLaw, Parameters};
 use crate::model::Loading;
-use crate::sweep::{Grid, SweepSettings, threads_checked};
+use crate::sweep::{Grid, SweepSettings, SystemPoints, threads_checked};
 use axes::Axes;
+use basin::BasinPoints;
 use clap::Parser;
 use grain::Grain;
 use interfaces::{InterfacePoints, is_loading};
@@ -48,6 +51,8 @@ pub struct SweepPlan {
     pub threads: Option<usize>,
     /// Bifurcations to draw over the map.
     pub curves: Vec<LocusPlan>,
+    /// The states that vary where the grid is of starts of another system than two equal interfaces.
+    pub basin: Option<BasinStates>,
     /// The settings for the output.
     pub numerics: Value,
     /// The command line of the whole sweep in one order, without what changes no row: equal sweeps have equal ones.
@@ -94,6 +99,7 @@ struct SweptGrid {
     axes: Axes,
     /// The options of a basin.
     states: Vec<(&'static str, String)>,
+    basin: Option<BasinStates>,
 }
 
 impl SweepPlan {
@@ -110,6 +116,7 @@ impl SweepPlan {
             law,
             axes,
             states,
+            basin,
         } = swept(options)?;
         let settings = SweepSettings {
             law,
@@ -125,11 +132,10 @@ impl SweepPlan {
         settings.checked()?;
         let shard = options.shard.as_deref().map(Shard::parse).transpose()?;
         let said: Vec<(&str, String)> = axes.said.iter().chain(&states).cloned().collect();
-        let is_line = |grid: &Grid| grid.ranges().len() < 2;
         let curves = match (&options.plot, &system) {
-            (Some(_), _) if is_line(&settings.grid) => {
+            (Some(_), _) if settings.grid.ranges().is_empty() => {
                 return Err(Error::Input(
-                    "`plot` draws a map of two parameters, and here one varies; leave it out, or let another one vary".into(),
+                    "`plot` draws what there is over one parameter or two, and here none varies; leave it out, or let one vary".into(),
                 ));
             }
             (Some(_), Swept::Interfaces(system)) => {
@@ -149,6 +155,7 @@ impl SweepPlan {
             surface: options.surface.clone(),
             drawn: options.plot.is_some(),
             axes,
+            basin,
         })
     }
 
@@ -183,38 +190,34 @@ impl SweepPlan {
 /// The grid that is asked for.
 fn swept(options: &SweepOptions) -> Result<SweptGrid> {
     let axes = Axes::read(options)?;
-    let refused = |of: &str| match options.basin {
-        true => Err(Error::Input(format!(
-            "`basin` is of two equal interfaces with a law that is built in, and this is {of}"
-        ))),
-        false => Ok(()),
-    };
-    // Other systems have no law; theirs is not looked at.
-    let any_law = || AnyLaw::named("spinodal", Parameters::heslot_1994());
     if let Some(model) = TextModel::named(&options.slab.text)? {
-        refused("a `system`")?;
-        let points = TextPoints::of_system(options, model, &axes)?;
-        let states = points.model().system.states().to_vec();
+        let states = model.system.states().to_vec();
         let names = axes.names.iter().cloned();
+        let parameters = names.map(|name| (name, Quantity::Number)).collect();
+        let moving = |section| Moving::States(states.clone(), section);
+        let starts = starts(options, &axes, &moving(0), model.units())?;
+        let free = starts.as_ref().map_or(&[][..], BasinStates::places);
+        let points = TextPoints::of_system(options, model, (&axes, free))?;
         let layout = SweepLayout {
-            parameters: names.map(|name| (name, Quantity::Number)).collect(),
-            moves: Moving::States(states, points.section_state()),
+            parameters,
+            moves: moving(points.section_state()),
         };
         layout.names_differ()?;
-        return Ok(of_text(points, layout, any_law()?, axes));
+        return of_text(points, layout, axes, starts);
     }
     if let Some(points) = TextPoints::of_law(options, &axes)? {
-        refused("a law from a file")?;
         let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
         let layout = SweepLayout::interfaces(points.parts(), others);
         layout.names_differ()?;
-        return Ok(of_text(points, layout, any_law()?, axes));
+        let starts = starts(options, &axes, &layout.moves, points.model().units())?;
+        return of_text(points, layout, axes, starts);
     }
     axes.needs_loading()?;
     let slab = options.slab.resolved()?;
     axes.known_of_interfaces(&slab)?;
     let interfaces = slab.checked_interfaces()?;
-    if interfaces == 2 && axes.are_of_loading() {
+    let psi_of_both = !options.basin || BasinStates::are_plain(options);
+    if interfaces == 2 && axes.are_of_loading() && psi_of_both {
         let fixed = |grain: &Grain| options.basin.then_some(grain.range.from);
         let (driving, stiffness) = (axes.grain("driving")?, axes.grain("stiffness")?);
         let system = System::of(&slab, fixed(&driving), fixed(&stiffness))?;
@@ -222,51 +225,84 @@ fn swept(options: &SweepOptions) -> Result<SweptGrid> {
             return plane(options, system, axes, (&driving, &stiffness));
         }
     }
-    refused(match interfaces {
-        1 => "one interface",
-        _ if axes.are_of_loading() => "of interfaces that differ",
-        _ => "with a `grid`",
-    })?;
     let (points, mut system) = InterfacePoints::new(&options.slab, &axes)?;
     axes.names.iter().for_each(|name| system.vary(name));
-    let equal = interfaces == 2 && system.unequal.is_none() && !axes.tell_interfaces_apart();
-    let ranges = axes.ranges.clone();
-    let grid = match equal {
-        true => Grid::Laws {
-            axes: ranges,
-            at: Arc::new(points),
-        },
-        false => Grid::Systems {
-            axes: ranges,
-            at: Arc::new(points),
-        },
-    };
     let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
-    Ok(SweptGrid {
-        grid,
-        layout: SweepLayout::interfaces(interfaces, others),
-        law: system.law,
-        system: Swept::Interfaces(Box::new(system)),
-        axes,
-        states: Vec::new(),
-    })
-}
-
-/// Of a system or a law from a file.
-fn of_text(points: TextPoints, layout: SweepLayout, law: AnyLaw, axes: Axes) -> SweptGrid {
-    let mut model = points.model().clone();
-    axes.names.iter().for_each(|name| model.vary(name));
-    SweptGrid {
-        grid: Grid::Systems {
+    let layout = SweepLayout::interfaces(interfaces, others);
+    let starts = starts(options, &axes, &layout.moves, &system.units)?;
+    let equal = interfaces == 2 && system.unequal.is_none() && !axes.tell_interfaces_apart();
+    let grid = match &starts {
+        None if equal => Grid::Laws {
             axes: axes.ranges.clone(),
             at: Arc::new(points),
         },
+        _ => systems(points, &axes, starts.as_ref()),
+    };
+    Ok(SweptGrid {
+        grid,
         layout,
-        law,
+        law: system.law,
+        system: Swept::Interfaces(Box::new(system)),
+        axes,
+        states: starts.as_ref().map_or(Vec::new(), BasinStates::said),
+        basin: starts,
+    })
+}
+
+/// The starts of a basin, where one is asked for; then nothing else varies.
+fn starts(
+    options: &SweepOptions,
+    axes: &Axes,
+    moves: &Moving,
+    units: &Units,
+) -> Result<Option<BasinStates>> {
+    if !options.basin {
+        return Ok(None);
+    }
+    if let Some(name) = axes.names.first() {
+        return Err(Error::Input(format!(
+            "with `basin` nothing but starts varies; give {name} a single value"
+        )));
+    }
+    BasinStates::read(options, moves, units).map(Some)
+}
+
+/// Systems at the points of the axes, or one from the points of a grid of starts.
+fn systems(points: impl SystemPoints + 'static, axes: &Axes, starts: Option<&BasinStates>) -> Grid {
+    match starts {
+        Some(states) => Grid::Systems {
+            axes: states.ranges.to_vec(),
+            at: Arc::new(BasinPoints {
+                system: points,
+                states: states.clone(),
+            }),
+        },
+        None => Grid::Systems {
+            axes: axes.ranges.clone(),
+            at: Arc::new(points),
+        },
+    }
+}
+
+/// Of a system or a law from a file.
+fn of_text(
+    points: TextPoints,
+    layout: SweepLayout,
+    axes: Axes,
+    starts: Option<BasinStates>,
+) -> Result<SweptGrid> {
+    let mut model = points.model().clone();
+    axes.names.iter().for_each(|name| model.vary(name));
+    Ok(SweptGrid {
+        grid: systems(points, &axes, starts.as_ref()),
+        layout,
+        // Other systems have no law; theirs is not looked at.
+        law: AnyLaw::named("spinodal", Parameters::heslot_1994())?,
         system: Swept::Text(Box::new(model)),
         axes,
-        states: Vec::new(),
-    }
+        states: starts.as_ref().map_or(Vec::new(), BasinStates::said),
+        basin: starts,
+    })
 }
 
 /// V_H and K of two equal interfaces with a law that is built in, or their starts at one V_H and K.
@@ -308,6 +344,7 @@ fn plane(
         system: Swept::Interfaces(Box::new(system)),
         axes,
         states,
+        basin: None,
     })
 }
 

@@ -57,22 +57,23 @@ pub struct SweepOptions {
         help_heading = "Grid"
     )]
     pub start: Option<String>,
-    /// A grid of starting states instead of one of V_H and K: which attractor each leads to, at one V_H and K
+    /// A grid of starting states instead of one of parameters: which attractor each leads to, at one V_H and K or of one --system
     #[arg(long, requires_all = ["state_1", "state_2"], conflicts_with_all = ["follow", "starts"], help_heading = "Grid")]
     pub basin: bool,
-    /// With --basin: the values of psi1 to start from
+    /// With --basin: the values of psi1 to start from; or those of any state by its name, as x=-2:2:50 of a --system, and stress,
+    /// state_1 or state_2 of interfaces
     #[arg(
         long = "state-1",
-        value_name = "A:B:N[log]",
+        value_name = "[NAME=]A:B:N[log]",
         requires = "basin",
         allow_hyphen_values = true,
         help_heading = "Grid"
     )]
     pub state_1: Option<String>,
-    /// With --basin: the values of psi2 to start from
+    /// With --basin: the values of psi2 to start from, of a single interface those of stress; or of any other state by its name
     #[arg(
         long = "state-2",
-        value_name = "A:B:M[log]",
+        value_name = "[NAME=]A:B:M[log]",
         requires = "basin",
         allow_hyphen_values = true,
         help_heading = "Grid"
@@ -121,7 +122,7 @@ pub struct SweepOptions {
     /// Continue FILE, the CSV of an interrupted run of the same sweep: its complete rows are kept
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub resume: Option<PathBuf>,
-    /// Draw the map of regimes as FILE.svg or FILE.png
+    /// Draw the map of regimes, or where one parameter varies what runs go through along it, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
     /// Bifurcations to draw over the map, comma-separated, as locus has them, or none

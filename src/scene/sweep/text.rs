@@ -11,7 +11,9 @@ use crate::number::polynomial::Crossing;
 use crate::scene::options::ModelOptions;
 use crate::scene::text::TextModel;
 use crate::section::{Surface, usual_patience};
-use crate::sweep::{RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces};
+use crate::sweep::{
+    Enclosure, RandomStart, SectionPlace, SystemPoint, SystemPoints, start_of_interfaces,
+};
 use std::borrow::Cow;
 
 /// A system from a file of which some parameters vary.
@@ -63,18 +65,22 @@ impl TextPoints {
         }))
     }
 
-    /// A system.
+    /// A system; states that are free need no start.
     ///
     /// # Errors
     /// [`Error::Input`] and [`Error::Parameter`] for what it does not have, and for a system of one state.
-    pub fn of_system(options: &SweepOptions, model: TextModel, axes: &Axes) -> Result<Self> {
+    pub fn of_system(
+        options: &SweepOptions,
+        model: TextModel,
+        (axes, free): (&Axes, &[usize]),
+    ) -> Result<Self> {
         let known = model.system.parameter_names();
         if options.driving.is_some() || options.stiffness.is_some() {
             return Err(Error::Input(
                 "`driving` and `stiffness` are of interfaces; of a `system` say what varies by `grid` NAME=A:B:N".into(),
             ));
         }
-        if axes.names.is_empty() {
+        if axes.names.is_empty() && !options.basin {
             return Err(Error::Input(format!(
                 "`grid` NAME=A:B:N is missing: which parameter of {} varies? They are {}",
                 model.name(),
@@ -94,7 +100,7 @@ impl TextPoints {
         }
         let section = section(options.surface.as_deref(), &model)?;
         Ok(TextPoints {
-            begins: Some((model.start(options.start.as_deref())?, section)),
+            begins: Some((model.start_but(options.start.as_deref(), free)?, section)),
             names: axes.names.clone(),
             model,
         })
@@ -197,6 +203,7 @@ impl SystemPoints for TextPoints {
             (None, None) => unreachable!("a system has a start"),
         };
         Ok(SystemPoint {
+            enclosed: Some(Enclosure(Box::new(system.clone()))),
             field: AnyField::of_text(Cow::Owned(system))?,
             start: begin,
             section,

@@ -1,5 +1,6 @@
 //! A system from a TOML file: states, parameters and the formulas of their rates, all names resolved.
 
+use super::fingerprint::fingerprint;
 use super::grammar::{self, Item, Wrong, begins_name, continues_name};
 use super::lowering::lowered;
 use crate::error::{Error, Result, did_you_mean};
@@ -28,6 +29,8 @@ pub struct SystemFile {
     pub system: TextSystem,
     /// The start of every state that has one.
     pub start: Vec<Option<f64>>,
+    /// A number that tells its formulas from others.
+    pub fingerprint: String,
 }
 
 impl SystemFile {
@@ -38,7 +41,7 @@ impl SystemFile {
     pub fn parse(file: &str, text: &str) -> Result<Self> {
         let reader = Reader { name: file, text };
         let table = parsed(&reader)?;
-        Tables::of_system(reader, table.get_ref())?.system()
+        Tables::of_system(reader, table.get_ref())?.system(fingerprint(table.get_ref()))
     }
 }
 
@@ -322,12 +325,13 @@ impl<'a> Tables<'a> {
         self.reader.misplaced(formula.begin + within, what)
     }
 
-    fn system(self) -> Result<SystemFile> {
+    fn system(self, fingerprint: String) -> Result<SystemFile> {
         let rates = lowered(&self)?;
         Ok(SystemFile {
             system: TextSystem::new(rates, &self.states, &self.parameters)?,
             name: self.name,
             start: self.start,
+            fingerprint,
         })
     }
 }

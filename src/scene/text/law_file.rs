@@ -1,6 +1,7 @@
 //! A friction law from a TOML file: its slip rate and its evolution, and the interfaces that have it.
 
 use super::file::{Meaning, Tables, parsed};
+use super::fingerprint::fingerprint;
 use super::lowering::lowered_apart;
 use crate::error::{Error, Result};
 use crate::expression::{Binary, Builder, Expressions, Function, Place};
@@ -25,6 +26,8 @@ pub struct LawFile {
     pub evolution: Expressions,
     /// The parameters and their values in the file.
     pub parameters: Vec<(String, f64)>,
+    /// A number that tells its formulas from others.
+    pub fingerprint: String,
     /// Where radiation damping stands among the parameters, where the law has it beside what the file says.
     pub damping: Option<usize>,
 }
@@ -50,6 +53,7 @@ impl LawFile {
             name: tables.name,
             slip_rate,
             evolution,
+            fingerprint: fingerprint(table.get_ref()),
             damping: None,
         })
     }

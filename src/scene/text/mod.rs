@@ -2,6 +2,7 @@
 
 mod equilibria;
 mod file;
+mod fingerprint;
 mod friction;
 mod grammar;
 mod law;

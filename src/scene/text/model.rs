@@ -84,6 +84,7 @@ impl TextModel {
             .collect();
         let mut echo = Map::new();
         echo.insert("system".into(), json!(read.name));
+        echo.insert("formulas".into(), json!(read.fingerprint));
         echo.insert("states".into(), json!(read.system.states()));
         echo.insert("parameters".into(), Value::Object(parameters));
         Ok(Some(TextModel {
@@ -157,14 +158,22 @@ impl TextModel {
     /// [`Error::Input`] for a text that can't be read, and for a state without a start; [`Error::Parameter`] for a psi that is not positive,
     /// and [`Error::NotConverged`] where the law has no steady state.
     pub fn start(&self, text: Option<&str>) -> Result<Vector> {
+        self.start_but(text, &[])
+    }
+
+    /// The same, where states at these places need none: theirs is then 0.
+    ///
+    /// # Errors
+    /// As [`TextModel::start`].
+    pub(in crate::scene) fn start_but(&self, text: Option<&str>, free: &[usize]) -> Result<Vector> {
         if let Some(slab) = &self.slab {
             return Ok(Vector::from_vec(slab.start(text, &self.system)?));
         }
         let states = self.system.states();
         let Some(text) = text else {
-            let start = states.iter().zip(&self.start);
-            let value = |(state, value): (&&str, &Option<f64>)| {
-                value.ok_or_else(|| {
+            let start = states.iter().zip(&self.start).enumerate();
+            let value = |(place, (state, value)): (usize, (&&str, &Option<f64>))| {
+                value.or(free.contains(&place).then_some(0.0)).ok_or_else(|| {
                     Error::Input(format!(
                         "the state {state} has no start: give `start` {}, or {state} = ... in [start] of the file",
                         states.join(",").to_uppercase()

@@ -163,6 +163,7 @@ impl TextSlab {
         for (name, value) in all.take(STIFFNESS + 1) {
             echo.insert((*name).to_owned(), json!(value));
         }
+        echo.insert("formulas".into(), json!(self.law.fingerprint));
         echo.insert("states".into(), json!(system.states()));
         echo.insert("parameters".into(), Value::Object(own));
         echo

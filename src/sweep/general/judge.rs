@@ -29,6 +29,7 @@ impl GeneralSweeper {
         }
         loop {
             if run.recorder.ended.is_none()
+                && run.hopeless.is_none()
                 && let Err(error) = run.advance(&mut self.coarse)
             {
                 return undecided(&run, row, error.to_string());
@@ -40,6 +41,9 @@ impl GeneralSweeper {
     }
 
     fn judge(&mut self, run: &mut GeneralRun, row: &SweepRow) -> Option<Settled> {
+        if let Some(why) = run.hopeless.take() {
+            return Some(undecided(run, row.clone(), why));
+        }
         match run.recorder.ended.take() {
             Some(Ended::Steady { equilibrium, .. }) => {
                 return Some(steady(run, row, &equilibrium));

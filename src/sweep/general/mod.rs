@@ -3,6 +3,7 @@
 //! What a run settles on is told as of two equal interfaces, but with less knowledge. Of a system from a file not even the scale of
 //! time is known, nor where it swings: a transient, counted in steps, shows both.
 
+mod attraction;
 mod judge;
 mod run;
 mod transient;
@@ -10,6 +11,7 @@ mod transient;
 use super::points::RandomStart;
 use super::start::missing;
 use super::{Grid, SweepRow, SweepSettings};
+use crate::equilibrium::Enclosed;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances};
@@ -40,6 +42,17 @@ pub struct SystemPoint {
     pub section: SectionPlace,
     /// Whether the last two variables are of equal parts.
     pub equal_parts: bool,
+    /// The same equations over boxes, where they are known: by these it is certain that a run has come to a stable equilibrium.
+    pub enclosed: Option<Enclosure>,
+}
+
+/// Equations over boxes.
+pub struct Enclosure(pub Box<dyn Enclosed + Send + Sync>);
+
+impl Debug for Enclosure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str("Enclosure")
+    }
 }
 
 /// Where the section of a run is.

@@ -3,7 +3,8 @@
 use super::super::SweepSettings;
 use super::super::closing::{FEWEST_TO_CLOSE, closing};
 use super::super::watch::{SWING, see, turn};
-use super::{SectionPlace, SystemPoint};
+use super::attraction::Attraction;
+use super::{Enclosure, SectionPlace, SystemPoint};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Control};
@@ -19,6 +20,13 @@ const PUSH: f64 = 1e-3;
 const HELD: f64 = 1e-5;
 /// How much longer than usual a run may wait once for a return.
 const LONGER: f64 = 10.0;
+/// Steps between two looks for an equilibrium.
+pub(super) const BETWEEN_LOOKS: usize = 32;
+/// A state beyond this goes to infinity.
+const INFINITE: f64 = 1e100;
+/// Windows, one after the other, in which a run that never turns grows each time by more than this factor, until it is seen to go on so.
+const GROWING_WINDOWS: usize = 4;
+const GROWTH: f64 = 1.5;
 /// Distances are measured by how far a system swings, but not by less than this.
 const LEAST_UNIT: f64 = 1e-2;
 
@@ -48,8 +56,22 @@ pub(super) struct GeneralRun {
     pub unit: f64,
     /// How often it was let go.
     pub pushes: usize,
+    /// Why nothing more is to be waited for.
+    pub hopeless: Option<String>,
+    growing: Growing,
+    pub enclosed: Option<Enclosure>,
+    pub attraction: Attraction,
     moved: bool,
     waited: bool,
+}
+
+/// How long a run has grown without turning.
+#[derive(Debug, Default)]
+struct Growing {
+    /// The size of the state at the end of the last window.
+    size: f64,
+    /// In so many windows.
+    windows: usize,
 }
 
 impl GeneralRun {
@@ -83,6 +105,10 @@ impl GeneralRun {
             reach: vec![(f64::INFINITY, f64::NEG_INFINITY); dimension],
             unit: 1.0,
             pushes: 0,
+            hopeless: None,
+            growing: Growing::default(),
+            enclosed: point.enclosed,
+            attraction: Attraction::default(),
             moved: false,
             waited: false,
         };
@@ -137,6 +163,9 @@ impl GeneralRun {
             candidate,
             reach,
             unit,
+            hopeless,
+            enclosed,
+            attraction,
             ..
         } = self;
         let watched = Watched {
@@ -148,6 +177,16 @@ impl GeneralRun {
             *time = step.t1;
             state.copy_from_slice(step.y1);
             see_all(reach, step, *variable);
+            if goes_to_infinity(step, hopeless) {
+                return Ok(Control::Stop);
+            }
+            if recorder.steps % BETWEEN_LOOKS == 0
+                && let Some(Enclosure(equations)) = enclosed
+                && let Some(equilibrium) = attraction.of(field, &**equations, step.y1)
+            {
+                recorder.ended = Some(caught(step, equilibrium));
+                return Ok(Control::Stop);
+            }
             let passed = recorder.passed;
             let go_on = &mut |_: usize, _: Option<&Return>| Control::Continue;
             if recorder.step(&watched, step, go_on)? == Control::Stop {
@@ -166,7 +205,7 @@ impl GeneralRun {
             })
         };
         integrator.flow(field, (now, end), &from, Some(&mut observer))?;
-        if self.time >= end && self.recorder.ended.is_none() {
+        if self.time >= end && self.recorder.ended.is_none() && self.hopeless.is_none() {
             let error = self.recorder.no_return(&self.surface, end);
             self.recorder.ended = Some(Ended::Failed(error));
         }
@@ -181,6 +220,21 @@ impl GeneralRun {
             self.unit = swing.clamp(LEAST_UNIT, f64::MAX);
         }
         self.reach.fill((f64::INFINITY, f64::NEG_INFINITY));
+    }
+
+    /// Sees the end of a window of the transient, in which the run has turned round so often: one that never turns, and grows by its own
+    /// size from one window to the next, is not waited for.
+    pub fn end_window(&mut self, turns: usize) {
+        let size = self.state.amax();
+        let grows = turns == 0 && size > GROWTH * self.growing.size.max(1.0);
+        let windows = if grows { self.growing.windows + 1 } else { 0 };
+        self.growing = Growing { size, windows };
+        if windows >= GROWING_WINDOWS && self.hopeless.is_none() {
+            self.hopeless = Some(format!(
+                "it goes on growing without turning: a state has come to {size:.1e} at t = {:.6e}",
+                self.time
+            ));
+        }
     }
 
     /// Puts the section at another value of its variable.
@@ -257,5 +311,26 @@ pub(super) fn see_all(reach: &mut [(f64, f64)], step: &AnyStep<'_>, variable: us
     }
     if let Some(turn) = step.series().and_then(|series| turn(series, variable)) {
         see(&mut reach[variable], turn);
+    }
+}
+
+/// Whether a step leads to infinity; then the reason is put down.
+pub(super) fn goes_to_infinity(step: &AnyStep<'_>, hopeless: &mut Option<String>) -> bool {
+    let beyond = step.y1.iter().any(|y| y.abs() > INFINITE);
+    if beyond {
+        *hopeless = Some(format!(
+            "it goes to infinity: a state is beyond {INFINITE:e} at t = {:.6e}",
+            step.t1
+        ));
+    }
+    beyond
+}
+
+/// That a run ends at a stable equilibrium.
+pub(super) fn caught(step: &AnyStep<'_>, equilibrium: Vector) -> Ended {
+    Ended::Steady {
+        time: step.t1,
+        equilibrium,
+        stable: true,
     }
 }

@@ -1,10 +1,10 @@
 //! The transient of a system of which no scale of time is known: how long it takes to swing, and between which values.
 
-use super::run::{GeneralRun, see_all};
-use super::{GeneralSweeper, SectionPlace};
+use super::run::{BETWEEN_LOOKS, GeneralRun, caught, goes_to_infinity, see_all};
+use super::{Enclosure, GeneralSweeper, SectionPlace};
 use crate::error::Result;
 use crate::integrate::{AnyStep, Control};
-use crate::section::{Ended, equilibrium_near};
+use crate::section::equilibrium_near;
 
 /// Steps of the first window; each later one has twice as many as the one before.
 const FIRST_WINDOW: usize = 512;
@@ -12,8 +12,7 @@ const FIRST_WINDOW: usize = 512;
 const LAST_WINDOW: usize = 1 << 16;
 /// A run that has turned round so often within a window has shown how it swings.
 const TURNS: usize = 6;
-/// Steps between two looks for an equilibrium, and how close it is.
-const BETWEEN_LOOKS: usize = 32;
+/// How close an equilibrium is that the run has come to.
 const AT_REST: f64 = 1e-7;
 /// A run may be away from its section for so many times the last window.
 const PATIENCE: f64 = 4.0;
@@ -32,7 +31,7 @@ impl GeneralSweeper {
         let mut window = FIRST_WINDOW;
         self.pass(run, window)?;
         let duration = loop {
-            if run.recorder.ended.is_some() {
+            if run.recorder.ended.is_some() || run.hopeless.is_some() {
                 return Ok(());
             }
             if run.leaves_rest() {
@@ -41,12 +40,13 @@ impl GeneralSweeper {
             let begun = run.time;
             run.begin_stage();
             let turns = self.pass(run, window)?;
+            run.end_window(turns);
             if turns >= TURNS || window >= LAST_WINDOW {
                 break run.time - begun;
             }
             window *= 2;
         };
-        if run.recorder.ended.is_some() {
+        if run.recorder.ended.is_some() || run.hopeless.is_some() {
             return Ok(());
         }
         run.watching.patience = PATIENCE * duration;
@@ -74,6 +74,9 @@ impl GeneralSweeper {
             reach,
             recorder,
             variable,
+            hopeless,
+            enclosed,
+            attraction,
             ..
         } = run;
         let mut observer = |step: &AnyStep<'_>| {
@@ -85,15 +88,20 @@ impl GeneralSweeper {
             see_all(reach, step, *variable);
             steps += 1;
             recorder.steps += 1;
-            if steps % BETWEEN_LOOKS == 0
-                && let Some((equilibrium, true)) = equilibrium_near(field, step.y1, AT_REST)
-            {
-                recorder.ended = Some(Ended::Steady {
-                    time: step.t1,
-                    equilibrium,
-                    stable: true,
-                });
+            if goes_to_infinity(step, hopeless) {
                 return Ok(Control::Stop);
+            }
+            if steps % BETWEEN_LOOKS == 0 {
+                let rest = match equilibrium_near(field, step.y1, AT_REST) {
+                    Some((equilibrium, true)) => Some(equilibrium),
+                    _ => enclosed.as_ref().and_then(|Enclosure(equations)| {
+                        attraction.of(field, &**equations, step.y1)
+                    }),
+                };
+                if let Some(equilibrium) = rest {
+                    recorder.ended = Some(caught(step, equilibrium));
+                    return Ok(Control::Stop);
+                }
             }
             Ok(match steps >= window {
                 true => Control::Stop,

@@ -6,6 +6,8 @@ use crate::section::Regime;
 
 /// Periods and stresses that agree to this, relatively, are those of one orbit: runs close in on it to far less.
 const SAME: f64 = 1e-4;
+/// What differs by less is the same, as of states at zero.
+const ROUNDING: f64 = 1e-9;
 
 /// Attractors with how many runs end on them, those with the most first; and the number of each run's. What is undecided is none.
 ///
@@ -54,6 +56,6 @@ fn same(a: &PointOutcome, b: &PointOutcome) -> bool {
         && stresses.is_none_or(|(a, b)| {
             // The range, not its middle, is what is large: stress may be near zero.
             let size = (a.1 - a.0).abs().max(a.0.abs()).max(a.1.abs());
-            (a.0 - b.0).abs().max((a.1 - b.1).abs()) <= SAME * size
+            (a.0 - b.0).abs().max((a.1 - b.1).abs()) <= (SAME * size).max(ROUNDING)
         })
 }

@@ -27,8 +27,20 @@ const DIAGONAL: &str = "ψ₁ = ψ₂ stays symmetric: not counted, its cells sh
 /// Of that line.
 const BLACK: usize = 7;
 
-/// The attractor that each start goes to, numbered by the size of their basins, of which equal states are no part. Points that
-/// are missing stay white; all beyond the eighth attractor share a colour. V_H and K are for the title.
+/// What the starts of basins are of.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Basins {
+    /// What stands above the map.
+    pub title: String,
+    /// What the starts are of, with units: across and upwards.
+    pub labels: [String; 2],
+    /// Whether starts with equal values are symmetric and stay so.
+    pub equal_stay_equal: bool,
+    /// Where no symmetry tells attractors apart: what is said of their range, and what it measures.
+    pub range_of: Option<(String, Quantity)>,
+}
+
+/// The attractor that each start (psi_1, psi_2) of two equal interfaces goes to, as [`basins_of_states`]. V_H and K are for the title.
 pub fn basin_map(
     outcomes: &[PointOutcome],
     (state_1, state_2): (&GridSide, &GridSide),
@@ -36,20 +48,38 @@ pub fn basin_map(
     units: &Units,
 ) -> Drawing {
     let label = |name| axis_label(name, Quantity::State, units);
-    let outward = |x| units.outward(Quantity::State, x);
-    let (x, x_edges) = state_1.axis(label("ψ₁ at the start"), outward);
-    let (y, y_edges) = state_2.axis(label("ψ₂ at the start"), outward);
-    let columns = state_1.values.len();
+    let basins = Basins {
+        title: format!("basins at {}", parameters(driving, stiffness, units)),
+        labels: [label("ψ₁ at the start"), label("ψ₂ at the start")],
+        equal_stay_equal: true,
+        range_of: None,
+    };
+    basins_of_states(outcomes, [state_1, state_2], basins, units)
+}
+
+/// The attractor that each start goes to, numbered by the size of their basins, of which equal states that stay so are no part. Points
+/// that are missing stay white; all beyond the eighth attractor share a colour. Values along the sides are in the user's units.
+pub fn basins_of_states(
+    outcomes: &[PointOutcome],
+    [first, second]: [&GridSide; 2],
+    basins: Basins,
+    units: &Units,
+) -> Drawing {
+    let [across, upwards] = basins.labels;
+    let (x, x_edges) = first.axis(across, |x| x);
+    let (y, y_edges) = second.axis(upwards, |y| y);
+    let columns = first.values.len();
     let equal = |number: usize| {
-        let start = state_1.values.get(number % columns.max(1));
-        start.is_some() && start == state_2.values.get(number / columns.max(1))
+        let start = first.values.get(number % columns.max(1));
+        let other = second.values.get(number / columns.max(1));
+        basins.equal_stay_equal && start.is_some() && start == other
     };
     let (symmetric, beside): (Vec<PointOutcome>, Vec<PointOutcome>) = outcomes
         .iter()
         .copied()
         .partition(|outcome| equal(outcome.number));
     let (all, of) = attractors(&beside);
-    let mut fills = vec![Vec::new(); columns * state_2.values.len()];
+    let mut fills = vec![Vec::new(); columns * second.values.len()];
     for (outcome, attractor) in beside.iter().zip(&of) {
         if let Some(cell) = fills.get_mut(outcome.number) {
             *cell = vec![attractor.map_or(RegimeKind::Undecided.shade(), tint)];
@@ -60,12 +90,11 @@ pub fn basin_map(
             fills[outcome.number] = fill;
         }
     }
-    let title = format!("basins at {}", parameters(driving, stiffness, units));
     let map = Cells {
         x_edges,
         y_edges,
         fills,
-        swatches: swatches(&all, &of, units),
+        swatches: swatches(&all, &of, (basins.range_of.as_ref(), units)),
     };
     let panel = Panel {
         series: if symmetric.is_empty() {
@@ -74,7 +103,7 @@ pub fn basin_map(
             vec![diagonal(&map)]
         },
         cells: Some(map),
-        ..Panel::new(title, x, y)
+        ..Panel::new(basins.title, x, y)
     };
     Drawing::columns(vec![vec![panel]])
 }
@@ -111,7 +140,11 @@ fn tint(attractor: usize) -> Shade {
 }
 
 /// The legend: each attractor with what it is and its share of the starts.
-fn swatches(all: &[(PointOutcome, usize)], of: &[Option<usize>], units: &Units) -> Vec<Swatch> {
+fn swatches(
+    all: &[(PointOutcome, usize)],
+    of: &[Option<usize>],
+    told: (Option<&(String, Quantity)>, &Units),
+) -> Vec<Swatch> {
     let share = |count: usize| 100.0 * count as f64 / of.len().max(1) as f64;
     let last = ORDER.len() - 1;
     let named = all
@@ -120,7 +153,7 @@ fn swatches(all: &[(PointOutcome, usize)], of: &[Option<usize>], units: &Units) 
         .enumerate()
         .map(|(i, (one, count))| Swatch {
             shades: vec![tint(i)],
-            label: format!("{}: {}, {:.1} %", i + 1, words(one, units), share(*count)),
+            label: format!("{}: {}, {:.1} %", i + 1, words(one, told), share(*count)),
         });
     let others: usize = all.iter().skip(last).map(|(_, count)| count).sum();
     let others = (others > 0).then(|| Swatch {
@@ -135,8 +168,8 @@ fn swatches(all: &[(PointOutcome, usize)], of: &[Option<usize>], units: &Units) 
     named.chain(others).chain(undecided).collect()
 }
 
-/// Regime, symmetry and period.
-fn words(one: &PointOutcome, units: &Units) -> String {
+/// Regime, symmetry and period; without a symmetry, the range where it is told.
+fn words(one: &PointOutcome, (range_of, units): (Option<&(String, Quantity)>, &Units)) -> String {
     let mut words = vec![one.regime.name().to_owned()];
     words.extend(one.symmetry.map(|symmetry| match symmetry {
         Symmetry::Symmetric => "symmetric".to_owned(),
@@ -149,13 +182,28 @@ fn words(one: &PointOutcome, units: &Units) -> String {
             .period
             .map(|period| units.outward(Quantity::Time, period));
         let unit = units.short_name(Quantity::Time);
-        words.extend(period.map(|period| format!("T = {} {unit}", four_digits(period))));
+        let period = period.map(|period| format!("T = {} {unit}", four_digits(period)));
+        words.extend(period.map(|period| period.trim_end().to_owned()));
+    }
+    if let (Some((name, quantity)), Some((least, most)), None) =
+        (range_of, one.stress_range, one.symmetry)
+    {
+        let [least, most] = [least, most].map(|x| four_digits(units.outward(*quantity, x)));
+        words.push(match one.regime {
+            Regime::Steady => format!("{name} = {least}"),
+            _ => format!("{name} from {least} to {most}"),
+        });
     }
     words.join(", ")
 }
 
-/// Enough to tell periods apart.
+/// Enough to tell attractors apart.
 fn four_digits(x: f64) -> String {
+    /// What is less is zero, but for rounding.
+    const NOTHING: f64 = 1e-9;
+    if x.abs() < NOTHING {
+        return "0".into();
+    }
     let digits = (3.0 - x.abs().log10().floor()).clamp(0.0, 9.0) as usize;
     format!("{x:.digits$}")
 }

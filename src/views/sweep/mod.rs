@@ -2,10 +2,12 @@
 
 mod attractors;
 mod basin;
+mod line;
 mod plane;
 pub(crate) mod tints;
 
-pub use basin::basin_map;
+pub use basin::{Basins, basin_map, basins_of_states};
+pub use line::regime_line;
 pub use plane::{parameter_map, regime_map};
 
 use crate::equilibrium::Symmetry;
@@ -26,7 +28,7 @@ pub struct PointOutcome {
     pub returns_per_period: Option<usize>,
     /// The period of an orbit.
     pub period: Option<f64>,
-    /// Least and largest stress.
+    /// Least and largest stress, or value of the state that the section is in.
     pub stress_range: Option<(f64, f64)>,
     /// The largest Lyapunov exponent.
     pub lyapunov_max: Option<Uncertain>,

@@ -82,7 +82,7 @@ fn drawn(
             .into_iter()
             .map(|fill| fill.into_iter().map(|(_, shade)| shade).collect())
             .collect(),
-        swatches: swatches(outcomes, &found, &exponents, striped, units),
+        swatches: legend(outcomes, &found, &exponents, striped, units),
     };
     let panel = Panel {
         cells: Some(map),
@@ -93,7 +93,7 @@ fn drawn(
 }
 
 /// What a cell shows of what its starts found: each regime once, in the order of the legend.
-fn told(found: &mut Vec<(RegimeKind, Shade)>) -> Vec<(RegimeKind, Shade)> {
+pub(super) fn told(found: &mut Vec<(RegimeKind, Shade)>) -> Vec<(RegimeKind, Shade)> {
     // Of chaos the darkest.
     found.sort_by(|a, b| {
         let lightness = a.1.lightness.total_cmp(&b.1.lightness);
@@ -107,10 +107,10 @@ fn told(found: &mut Vec<(RegimeKind, Shade)>) -> Vec<(RegimeKind, Shade)> {
 }
 
 /// The largest exponents of chaotic points.
-struct LargestExponents(Option<(f64, f64)>);
+pub(super) struct LargestExponents(Option<(f64, f64)>);
 
 impl LargestExponents {
-    fn of(outcomes: &[PointOutcome]) -> Self {
+    pub fn of(outcomes: &[PointOutcome]) -> Self {
         let chaotic = outcomes
             .iter()
             .filter(|one| RegimeKind::of(one) == RegimeKind::Chaotic);
@@ -122,7 +122,7 @@ impl LargestExponents {
     }
 
     /// The colour of a point.
-    fn shade(&self, outcome: &PointOutcome) -> Shade {
+    pub fn shade(&self, outcome: &PointOutcome) -> Shade {
         let kind = RegimeKind::of(outcome);
         match (kind, self.0, outcome.lyapunov_max) {
             (RegimeKind::Chaotic, Some((lo, hi)), Some(x)) if lo < hi => {
@@ -146,7 +146,7 @@ fn lighter(steps: f64) -> Shade {
 }
 
 /// The legend: the regimes that there are.
-fn swatches(
+pub(super) fn legend(
     outcomes: &[PointOutcome],
     found: &[Vec<(RegimeKind, Shade)>],
     exponents: &LargestExponents,

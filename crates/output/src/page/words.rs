@@ -97,7 +97,8 @@ pub fn anchor(id: &str) -> String {
         .collect()
 }
 
-/// The identifier as a reader calls it: `fig07` is Figure 7, `table1` is Table 1; any other is itself.
+/// The identifier as a reader calls it: `fig07` is Figure 7, `fig05-unfolded` is Figure 5, unfolded, `table1` is Table 1; any
+/// other is itself.
 pub fn label(id: &str) -> String {
     for (prefix, name) in [("fig", "Figure"), ("table", "Table")] {
         let number = id
@@ -106,7 +107,7 @@ pub fn label(id: &str) -> String {
         if let Some(number) =
             number.filter(|number| number.starts_with(|c: char| c.is_ascii_digit()))
         {
-            return format!("{name}\u{a0}{number}");
+            return format!("{name}\u{a0}{}", number.replacen('-', ", ", 1));
         }
     }
     id.to_owned()
