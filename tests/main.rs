@@ -23,6 +23,7 @@ mod browser;
 mod cli_input;
 mod cli_runs;
 mod cli_words;
+mod cluster_equilibria;
 mod continuation;
 mod curves_equilibria;
 mod curves_orbits;

@@ -63,9 +63,9 @@ pub struct SlabOptions {
     /// Friction law.
     #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
-    /// Number of frictional interfaces in the slab, 1 or 2
+    /// Number of frictional interfaces in the slab, 1 or 2; equilibria takes up to 600 equal ones
     #[arg(long, value_name = "N", default_value_t = 2)]
-    pub interfaces: u8,
+    pub interfaces: u16,
     /// Healing time R = t** V*/L [default: 100 L/V*; t** in s with --si]
     #[arg(long, value_name = "R", value_parser = number, allow_negative_numbers = true)]
     pub healing_time: Option<f64>,
