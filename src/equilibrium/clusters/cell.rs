@@ -77,10 +77,8 @@ impl Cell {
         };
         let nearest = [SLOW, FAST].into_iter().filter(|&i| curve.has()[i]);
         let nearest = nearest.map(|i| (i, distance(i)));
-        let (partner, distance) = { nearest }.min_by(|a, b| a.1.hi().total_cmp(&b.1.hi()))?;
-        if !(distance.hi() < BESIDE) {
-            return None;
-        }
+        let close = nearest.filter(|(_, distance)| distance.hi() < BESIDE);
+        let (partner, distance) = { close }.min_by(|a, b| a.1.hi().total_cmp(&b.1.hi()))?;
         let other = SLOW + FAST - partner;
         let [x, p, o] = [MIDDLE, partner, other].map(|i| self.rates[i]);
         let around = Interval::new(x.lo().min(p.lo()), x.hi().max(p.hi()));

@@ -78,7 +78,7 @@ fn radii(
     let slope = weighted(counts, &changes(curve, rates)).to_f64().abs();
     let mut radius = (2.0 * unknown / slope * x).max(x * f64::EPSILON);
     for _ in 0..TRIALS {
-        if !(radius < 0.5 * x) {
+        if radius.is_nan() || radius >= 0.5 * x {
             break;
         }
         let [low, high] = [x - radius, x + radius].map(Interval::constant);
