@@ -1,4 +1,5 @@
-//! The roots of a real polynomial of degree three at most, or four where one is known to lie between two numbers, each with a bound on its error, whatever the sizes of its coefficients.
+//! The roots of a real polynomial of degree three at most, or four where one is known to lie between two numbers, each with a bound on
+//! its error, whatever the sizes of its coefficients.
 //!
 //! Roots of a stiff equilibrium differ by hundreds of decades, where matrix algorithms have an absolute accuracy only, overflow
 //! or iterate for ever. Here all is done in 31 digits: a real root of a cubic by its sign change along ln |z|, the others from
@@ -198,18 +199,17 @@ fn real_root(p: &[Digits; 4]) -> Option<Digits> {
 fn polished(p: &[Digits], start: Digits) -> Digits {
     /// To a double root it halves the error only.
     const STEPS: usize = 100;
+    let slopes: Vec<Digits> = (1..p.len()).map(|j| p[j] * j as f64).collect();
+    // c_0 + c_1 x + .., and the same with the powers of x in the other order
+    let rising = |x: Digits, c: &[Digits]| c.iter().rev().fold(Digits::ZERO, |sum, &c| sum * x + c);
+    let falling = |x: Digits, c: &[Digits]| c.iter().fold(Digits::ZERO, |sum, &c| sum * x + c);
     let (mut z, mut last) = (start, f64::INFINITY);
     for _ in 0..STEPS {
-        let horner = |x: Digits, c: &mut dyn Iterator<Item = Digits>| {
-            c.fold(Digits::ZERO, |sum, c| sum * x + c)
-        };
-        let degrees = || p.iter().enumerate().map(|(j, &c)| c * j as f64).skip(1);
         let change = if z.to_f64().abs() > 1.0 {
             let w = z.recip();
-            z * (horner(w, &mut p.iter().copied()) / horner(w, &mut degrees()))
+            z * (falling(w, p) / falling(w, &slopes))
         } else {
-            horner(z, &mut p.iter().rev().copied())
-                / horner(z, &mut degrees().collect::<Vec<_>>().into_iter().rev())
+            rising(z, p) / rising(z, &slopes)
         };
         let size = change.to_f64().abs();
         // false for NaN too

@@ -3,8 +3,8 @@
 //!
 //! Next to an extremum the rate p on its other side changes by dp/d ln x = p g'(x)/g'(p), 0/0 at the extremum itself. With e half of the
 //! distance of ln x and ln p, m their middle and h, k the lower and the upper of them, g(h) = g(k) makes
-//! g'(m) = -e^2 g'''/6, so that g'(k)/e = g''(m) + e (g'''/2 - g'''/6), g'(h)/e = -g''(m) + e (g'''/2 - g'''/6) and (g'(h) + g'(k))/e^2 = g''' - g'''/3,
-//! each g''' being one of its values between h and k. What of the derivatives does not cancel is then a multiple of e, with bounds that
+//! g'(m) = -e^2 g'''/6, so that g'(k)/e = g''(m) + e (g'''/2 - g'''/6), g'(h)/e = -g''(m) + e (g'''/2 - g'''/6) and
+//! (g'(h) + g'(k))/e^2 = g''' - g'''/3, each g''' being one of its values between h and k. What of the derivatives does not cancel is then a multiple of e, with bounds that
 //! are sharp.
 
 use super::curve::{FAST, MIDDLE, Rates, SLOW, SteadyCurve, log_slopes, meet};

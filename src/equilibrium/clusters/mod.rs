@@ -1,8 +1,8 @@
 //! All equilibria of N equal interfaces under one stress.
 //!
 //! Each interface slides on one of the branches of the steady curve: slow, middle or fast. Up to the order of the interfaces an
-//! equilibrium is a share (n_s, n_m, n_f) of N with a stress under which the rates add up to V_H; those that slide alike are a cluster. The middle rate is the unknown,
-//! also where no interface slides at it: the stress falls from V_M to V_m, and the other rates fall with it.
+//! equilibrium is a share (n_s, n_m, n_f) of N with a stress under which the rates add up to V_H; those that slide alike are a cluster.
+//! The middle rate is the unknown, also where no interface slides at it: the stress falls from V_M to V_m, and the other rates with it.
 
 mod cell;
 mod curve;
