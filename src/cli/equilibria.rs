@@ -3,6 +3,7 @@
 use super::report::{self, Report};
 use super::text;
 use super::{Ending, say, written};
+use crate::equilibrium::{ClusterEigenvalue, EigenvalueKind};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{
@@ -14,9 +15,16 @@ use nalgebra::Complex;
 use serde_json::{Value, json};
 
 pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::of(&options.model, &[])? {
+    let slab = &options.model.slab;
+    let several = slab.has_clusters() && slab.text.system.is_none();
+    if !several && let Some(model) = TextModel::of(&options.model, &[])? {
         return text::equilibria::run(options, model, words);
     }
+    plan(options, words)
+}
+
+/// Of built-in laws.
+fn plan(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
     let plan = EquilibriaPlan::new(options)?;
     let report = Report::new(&options.output, words, &[])?;
     if options.output.explain {
@@ -67,9 +75,29 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
     let pair = |z: &Complex<f64>| [z.re, z.im].map(|x| units.outward(Quantity::Growth, x));
     // As many as there are, null where one is beyond the range of doubles
     let count = system.interfaces + 1;
-    let [eigenvalues, eigenvalue_uncertainty] = match &found.stability {
-        None => [Value::Null, Value::Null],
-        Some(stability) => {
+    let [eigenvalues, eigenvalue_uncertainty] = match (found.of_each(), found.of_clusters()) {
+        (None, None) => [Value::Null, Value::Null],
+        (_, Some(all)) => {
+            let value = |one: &ClusterEigenvalue| {
+                let mut told = json!({
+                    "value": pair(&one.value),
+                    "multiplicity": one.multiplicity,
+                    "kind": one.kind.name(),
+                });
+                if let EigenvalueKind::Within(cluster) = one.kind {
+                    told["cluster"] = json!(cluster + 1);
+                }
+                told
+            };
+            let radius = |one: &ClusterEigenvalue| {
+                Some(units.outward(Quantity::Growth, one.uncertainty)).filter(|x| x.is_finite())
+            };
+            [
+                all.iter().map(value).collect(),
+                all.iter().map(radius).collect(),
+            ]
+        }
+        (Some(stability), None) => {
             let known = |i| stability.eigenvalues.get(i).map(pair);
             let radius = |i| stability.uncertainty.get(i).copied();
             let radius = |i| radius(i).map(|x| units.outward(Quantity::Growth, x));
@@ -79,7 +107,7 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
             ]
         }
     };
-    json!({
+    let mut told = json!({
         "symmetry": equilibrium.symmetry.name(),
         "stress": report::uncertain(units, Quantity::Stress, equilibrium.stress),
         "state": out(Quantity::State, &equilibrium.state()),
@@ -90,7 +118,22 @@ fn object(found: &ClassifiedEquilibrium, system: &System) -> Value {
         "slip_rate_uncertainty": out(Quantity::SlipRate, &equilibrium.slip_rate_uncertainty()),
         "eigenvalues": eigenvalues,
         "eigenvalue_uncertainty": eigenvalue_uncertainty,
-        "verdict": found.stability.as_ref().map(|s| s.verdict.name()),
+        "verdict": found.stability.as_ref().map(|s| s.verdict().name()),
         "residual": found.residual,
-    })
+    });
+    if system.unequal.is_none() {
+        let state = equilibrium.state();
+        let cluster = |(count, i): (usize, usize)| {
+            json!({
+                "count": count,
+                "state": units.outward(Quantity::State, state[i]),
+                "log_state": units.outward(Quantity::LogState, equilibrium.log_state[i]),
+                "slip_rate": units.outward(Quantity::SlipRate, equilibrium.slip_rate[i]),
+            })
+        };
+        let clusters = equilibrium.clusters().into_iter();
+        told["clusters"] = clusters.map(cluster).collect();
+        told["arrangements"] = json!(equilibrium.arrangements());
+    }
+    told
 }

@@ -204,7 +204,7 @@ fn verdict(equilibrium: &Equilibrium, known: &InexactCoefficients) -> Verdict {
 }
 
 /// Stable where all of these are positive.
-fn all_positive(conditions: &[Interval]) -> Verdict {
+pub(super) fn all_positive(conditions: &[Interval]) -> Verdict {
     let signs = || conditions.iter().map(|x| x.sign());
     if signs().any(|sign| sign == Some(-1.0)) {
         Verdict::Unstable

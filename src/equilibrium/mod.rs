@@ -5,6 +5,7 @@
 //! rates. What either finds is then carried to 31 digits, and bounded (see `refine`).
 
 mod boxes;
+mod clusters;
 mod eigenvalues;
 mod interface;
 mod isolate;
@@ -19,6 +20,10 @@ mod spectrum;
 mod unequal;
 
 pub use boxes::{Enclosed, IntervalBox, IsolatedZero, ZerosInBox, zero_near, zeros_in_box};
+pub use clusters::{
+    ClusterEigenvalue, ClusterStability, EigenvalueKind, MOST_INTERFACES, cluster_stability,
+    cluster_steady_states,
+};
 pub use eigenvalues::{Stability, Verdict, eigenvalues, stability};
 pub use interface::LawOfEach;
 pub(crate) use interface::{Interface, routh_hurwitz};
@@ -86,6 +91,8 @@ pub struct Equilibrium {
     pub slip_rate: Vec<f64>,
     /// ln psi of each interface.
     pub log_state: Vec<f64>,
+    /// How many interfaces each of these numbers is of: one, but in a state that is told by its clusters.
+    pub counts: Vec<usize>,
     /// V_H.
     pub(crate) driving: f64,
     /// The slip rates in 31 digits.
@@ -135,6 +142,31 @@ impl Equilibrium {
         Self::at(law, driving, Symmetry::Asymmetric, &rates)
     }
 
+    /// The interfaces that slide alike, slowest first: how many they are, and the place of the first of them among the numbers of this
+    /// state.
+    pub fn clusters(&self) -> Vec<(usize, usize)> {
+        match self.symmetry {
+            Symmetry::Symmetric => vec![(self.counts.iter().sum(), 0)],
+            Symmetry::Asymmetric => self.counts.iter().copied().zip(0..).collect(),
+        }
+    }
+
+    /// How many equilibria of equal interfaces differ from this one by their order alone, with itself: N!/(n_1! n_2! ...).
+    pub fn arrangements(&self) -> f64 {
+        let mut placed = 0;
+        let mut all = 1.0;
+        for (count, _) in self.clusters() {
+            // of whole numbers up to 2^53 exactly, as each partial product is a binomial coefficient times what went before
+            let mut ways = 1.0;
+            for i in 1..=count {
+                placed += 1;
+                ways = (ways * placed as f64 / i as f64).round();
+            }
+            all *= ways;
+        }
+        all
+    }
+
     /// psi of each interface.
     pub fn state(&self) -> Vec<f64> {
         self.log_state.iter().map(|w| w.exp()).collect()
@@ -178,7 +210,9 @@ impl Equilibrium {
             (activation - law.log_strength(psi)).exp()
         };
         let rates: Vec<f64> = self.state().into_iter().enumerate().map(rate).collect();
-        let balance = (driving - rates.iter().sum::<f64>()).abs() / driving;
+        let each = rates.iter().zip(&self.counts);
+        let sum: f64 = each.map(|(v, &count)| v * count as f64).sum();
+        let balance = (driving - sum).abs() / driving;
         let evolutions = rates.iter().zip(self.state()).enumerate();
         let evolutions = evolutions.map(|(i, (&v, psi))| {
             let held = Jet {
@@ -216,6 +250,7 @@ impl Equilibrium {
             stress: stress.unwrap_or(Uncertain::new(f64::INFINITY, f64::INFINITY)),
             slip_rate: rates.iter().map(|(v, _)| v.to_f64()).collect(),
             log_state: states.iter().map(|(w, _)| *w).collect(),
+            counts: vec![1; rates.len()],
             driving,
             precise: rates.iter().map(|(v, _)| *v).collect(),
             rate_bounds,

@@ -1,4 +1,5 @@
-//! The roots of a real polynomial of degree three at most, each with a bound on its error, whatever the sizes of its coefficients.
+//! The roots of a real polynomial of degree three at most, or four where one is known to lie between two numbers, each with a bound on
+//! its error, whatever the sizes of its coefficients.
 //!
 //! Roots of a stiff equilibrium differ by hundreds of decades, where matrix algorithms have an absolute accuracy only, overflow
 //! or iterate for ever. Here all is done in 31 digits: a real root of a cubic by its sign change along ln |z|, the others from
@@ -50,6 +51,11 @@ type Digits = DoubleDouble;
 
 /// All roots of the polynomial with coefficients p, the constant first; a root that has no double is left out, and all are where a coefficient has none.
 pub(super) fn roots(p: &InexactCoefficients) -> Vec<RootDisc> {
+    roots_with(p, None)
+}
+
+/// The same; of a polynomial of degree four a real root lies between two numbers.
+pub(super) fn roots_with(p: &InexactCoefficients, between: Option<[f64; 2]>) -> Vec<RootDisc> {
     let values = &p.values;
     let degree = values.iter().rposition(|c| c.to_f64() != 0.0);
     if values.iter().any(|c| !c.is_finite()) {
@@ -59,7 +65,8 @@ pub(super) fn roots(p: &InexactCoefficients) -> Vec<RootDisc> {
         None | Some(0) => Vec::new(),
         Some(1) => vec![real(-values[0] / values[1])],
         Some(2) => quadratic([values[0], values[1], values[2]]).into(),
-        Some(_) => cubic([values[0], values[1], values[2], values[3]]),
+        Some(3) => cubic([values[0], values[1], values[2], values[3]]),
+        Some(_) => quartic(values, between),
     };
     // in two doubles what overflows may come out as no number
     let finite = |z: &Complex<f64>| z.re.is_finite() && z.im.is_finite();
@@ -104,26 +111,58 @@ fn cubic(p: [Digits; 4]) -> Vec<Complex<f64>> {
     let Some(z) = real_root(&p) else {
         return quadratic([p[0], p[1], p[2]]).into();
     };
+    let q = quotient(&p, z);
     let mut all = vec![real(z)];
+    all.extend(quadratic([q[0], q[1], q[2]]));
+    all
+}
+
+/// The real root between two numbers, at which the polynomial has unlike signs, and those of the quotient. A root that is so close to one of
+/// these that rounding has no sign there is looked for from it.
+fn quartic(p: &[Digits], between: Option<[f64; 2]>) -> Vec<Complex<f64>> {
+    let value = |z: f64| {
+        let (mut value, mut slope) = (Digits::ZERO, Digits::ZERO);
+        for &c in p.iter().rev() {
+            slope = slope * z + value;
+            value = value * z + c;
+        }
+        (value.to_f64(), slope.to_f64())
+    };
+    let Some([a, b]) = between else {
+        return Vec::new();
+    };
+    let step = |z: f64| {
+        let (value, slope) = value(z);
+        (value / slope).abs()
+    };
+    let nearest = if step(a) < step(b) { a } else { b };
+    let root = bracketed_root("a real eigenvalue", a, b, value).unwrap_or(nearest);
+    let z = polished(p, Digits::from(root));
+    let q = quotient(p, z);
+    let mut all = vec![real(z)];
+    all.extend(cubic([q[0], q[1], q[2], q[3]]));
+    all
+}
+
+/// The coefficients of the polynomial over that of one of its roots.
+fn quotient(p: &[Digits], z: Digits) -> Vec<Digits> {
+    let degree = p.len() - 1;
     if z.to_f64() == 0.0 {
-        all.extend(quadratic([p[1], p[2], p[3]]));
-        return all;
+        return p[1..].to_vec();
     }
-    // The quotient's coefficients from the top down to the term that is largest at z, and from the bottom up to it: neither
-    // recurrence subtracts like numbers.
+    // From the top down to the term that is largest at z, and from the bottom up to it: neither recurrence subtracts like numbers.
     let size = |j: usize| p[j].to_f64().abs().ln() + j as f64 * z.to_f64().abs().ln();
-    let largest = (0..4).max_by(|&i, &j| size(i).total_cmp(&size(j)));
-    let mut q = [p[3]; 3];
+    let largest = (0..=degree).max_by(|&i, &j| size(i).total_cmp(&size(j)));
+    let mut q = vec![p[degree]; degree];
     let top = largest.unwrap_or(0);
-    for i in (top..2).rev() {
+    for i in (top..degree - 1).rev() {
         q[i] = p[i + 1] + z * q[i + 1];
     }
-    for i in 0..top.min(2) {
+    for i in 0..top.min(degree - 1) {
         let below = if i == 0 { Digits::ZERO } else { q[i - 1] };
         q[i] = (below - p[i]) / z;
     }
-    all.extend(quadratic(q));
-    all
+    q
 }
 
 /// The real root on that side of 0 on which the polynomial certainly changes its sign.
@@ -157,20 +196,20 @@ fn real_root(p: &[Digits; 4]) -> Option<Digits> {
 }
 
 /// Newton's method from a root that is nearly known; stops where the corrections no longer shrink.
-fn polished(p: &[Digits; 4], start: Digits) -> Digits {
+fn polished(p: &[Digits], start: Digits) -> Digits {
     /// To a double root it halves the error only.
     const STEPS: usize = 100;
+    let slopes: Vec<Digits> = (1..p.len()).map(|j| p[j] * j as f64).collect();
+    // c_0 + c_1 x + .., and the same with the powers of x in the other order
+    let rising = |x: Digits, c: &[Digits]| c.iter().rev().fold(Digits::ZERO, |sum, &c| sum * x + c);
+    let falling = |x: Digits, c: &[Digits]| c.iter().fold(Digits::ZERO, |sum, &c| sum * x + c);
     let (mut z, mut last) = (start, f64::INFINITY);
     for _ in 0..STEPS {
         let change = if z.to_f64().abs() > 1.0 {
             let w = z.recip();
-            let value = ((p[0] * w + p[1]) * w + p[2]) * w + p[3];
-            let slope = (p[1] * w + p[2] * 2.0) * w + p[3] * 3.0;
-            z * (value / slope)
+            z * (falling(w, p) / falling(w, &slopes))
         } else {
-            let value = ((p[3] * z + p[2]) * z + p[1]) * z + p[0];
-            let slope = (p[3] * 3.0 * z + p[2] * 2.0) * z + p[1];
-            value / slope
+            rising(z, p) / rising(z, &slopes)
         };
         let size = change.to_f64().abs();
         // false for NaN too

@@ -3,7 +3,8 @@
 use super::options::EquilibriaOptions;
 use super::system::System;
 use crate::equilibrium::{
-    Equilibrium, LawOfEach, Solver, Stability, SteadyStates, Verdict, stability, steady_states,
+    ClusterEigenvalue, ClusterStability, Equilibrium, LawOfEach, Solver, Stability, SteadyStates,
+    Verdict, cluster_stability, cluster_steady_states, stability, steady_states,
     unequal_steady_states,
 };
 use crate::error::{Error, Result};
@@ -27,9 +28,46 @@ pub struct ClassifiedEquilibrium {
     /// The state.
     pub equilibrium: Equilibrium,
     /// Its eigenvalues and verdict, where the stiffness is given.
-    pub stability: Option<Stability>,
+    pub stability: Option<AnyStability>,
     /// The largest residual of its equations.
     pub residual: f64,
+}
+
+/// What is known of the stability of one or two interfaces, or of more.
+#[derive(Debug, Clone, PartialEq)]
+pub enum AnyStability {
+    /// Each eigenvalue by itself.
+    OfEach(Stability),
+    /// Those of clusters, and within these.
+    OfClusters(ClusterStability),
+}
+
+impl AnyStability {
+    /// Stable, unstable or undecided.
+    pub fn verdict(&self) -> Verdict {
+        match self {
+            AnyStability::OfEach(stability) => stability.verdict,
+            AnyStability::OfClusters(stability) => stability.verdict,
+        }
+    }
+}
+
+impl ClassifiedEquilibrium {
+    /// The eigenvalues of one or two interfaces, where the stiffness is given.
+    pub fn of_each(&self) -> Option<&Stability> {
+        match &self.stability {
+            Some(AnyStability::OfEach(stability)) => Some(stability),
+            _ => None,
+        }
+    }
+
+    /// Those of more.
+    pub fn of_clusters(&self) -> Option<&[ClusterEigenvalue]> {
+        match &self.stability {
+            Some(AnyStability::OfClusters(stability)) => Some(&stability.eigenvalues),
+            _ => None,
+        }
+    }
 }
 
 /// All steady states of a plan.
@@ -44,7 +82,8 @@ pub struct ClassifiedEquilibria {
 impl ClassifiedEquilibria {
     /// Whether their number or a verdict is undecided.
     pub fn undecided(&self) -> bool {
-        let verdict = |one: &ClassifiedEquilibrium| one.stability.as_ref().map(|s| s.verdict);
+        let verdict =
+            |one: &ClassifiedEquilibrium| one.stability.as_ref().map(AnyStability::verdict);
         let undecided = |one| verdict(one) == Some(Verdict::Undecided);
         !self.complete || self.equilibria.iter().any(undecided)
     }
@@ -56,7 +95,7 @@ impl EquilibriaPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &EquilibriaOptions) -> Result<Self> {
-        let system = System::new(&options.model)?;
+        let system = System::several(&options.model)?;
         for (name, given) in [("box", &options.within), ("start", &options.start)] {
             if given.is_some() {
                 return Err(Error::Input(format!(
@@ -65,8 +104,8 @@ impl EquilibriaPlan {
             }
         }
         let driving = system.needed_driving()?;
-        let differ = system.unequal.is_some();
-        let (solver_name, solver) = solver(options.solver.as_deref(), differ)?;
+        let alone = newton_alone(&system);
+        let (solver_name, solver) = solver(options.solver.as_deref(), alone)?;
         Ok(EquilibriaPlan {
             system,
             driving,
@@ -79,11 +118,12 @@ impl EquilibriaPlan {
     pub fn explain(&self) -> String {
         let asymmetric = match self.system.interfaces {
             _ if self.system.unequal.is_some() => return self.explain_unequal(),
+            1 => "off: one interface has none".to_owned(),
             2 => format!(
                 "{}, from a certain bracket around each solution",
                 self.solver_name
             ),
-            _ => "off: one interface has none".to_owned(),
+            _ => "each share of the slow, middle and fast branch of the law: signs in interval arithmetic bracket every solution, Newton's method in 31 digits".to_owned(),
         };
         let stability = self.explain_stability();
         format!(
@@ -121,7 +161,11 @@ impl EquilibriaPlan {
             Some(laws) => self.classified(laws, unequal_steady_states(laws, self.driving)?),
             None => {
                 let (law, interfaces) = (&self.system.law, self.system.interfaces);
-                let found = steady_states(law, self.driving, interfaces, self.solver)?;
+                let found = if interfaces > 2 {
+                    cluster_steady_states(law, self.driving, interfaces)?
+                } else {
+                    steady_states(law, self.driving, interfaces, self.solver)?
+                };
                 self.classified(law, found)
             }
         }
@@ -137,9 +181,13 @@ impl EquilibriaPlan {
     ) -> Result<ClassifiedEquilibria> {
         let classified = |equilibrium: Equilibrium| {
             let stiffness = self.system.stiffness;
-            let stability = stiffness
-                .map(|k| stability(laws, &equilibrium, k))
-                .transpose()?;
+            let stability = match stiffness {
+                None => None,
+                Some(k) if self.system.interfaces > 2 => Some(AnyStability::OfClusters(
+                    cluster_stability(&self.system.law, &equilibrium, k)?,
+                )),
+                Some(k) => Some(AnyStability::OfEach(stability(laws, &equilibrium, k)?)),
+            };
             Ok(ClassifiedEquilibrium {
                 residual: equilibrium.residual(laws, self.driving),
                 stability,
@@ -154,23 +202,33 @@ impl EquilibriaPlan {
     }
 }
 
-/// What finds the states; those of interfaces that differ are found by Newton's method alone.
-fn solver(name: Option<&str>, differ: bool) -> Result<(&'static str, Solver)> {
+/// Of whom Newton's method alone finds the states.
+fn newton_alone(system: &System) -> Option<&'static str> {
+    match (&system.unequal, system.interfaces) {
+        (Some(_), _) => Some("equal interfaces, and these differ"),
+        (None, 3..) => Some("one or two interfaces, and there are more"),
+        _ => None,
+    }
+}
+
+/// What finds the states; `alone` says why Newton's method alone does.
+fn solver(name: Option<&str>, alone: Option<&str>) -> Result<(&'static str, Solver)> {
     #[cfg(feature = "sundials")]
     const DEFAULT: &str = "kinsol";
     #[cfg(not(feature = "sundials"))]
     const DEFAULT: &str = "newton";
-    match name.unwrap_or(if differ { "newton" } else { DEFAULT }) {
-        "kinsol" if differ => Err(Error::Input(
-            "solver kinsol is for equal interfaces, and these differ; choose newton".into(),
-        )),
+    let default = if alone.is_some() { "newton" } else { DEFAULT };
+    match (name.unwrap_or(default), alone) {
+        ("kinsol", Some(why)) => Err(Error::Input(format!(
+            "solver kinsol is for {why}; choose newton"
+        ))),
         #[cfg(feature = "sundials")]
-        "kinsol" => Ok(("kinsol", Solver::Kinsol)),
+        ("kinsol", None) => Ok(("kinsol", Solver::Kinsol)),
         #[cfg(not(feature = "sundials"))]
-        "kinsol" => Err(Error::Input(
+        ("kinsol", None) => Err(Error::Input(
             "solver kinsol needs SUNDIALS, which this build is without; choose newton".into(),
         )),
-        "newton" => Ok(("newton", Solver::Newton)),
-        other => Err(Error::unknown("solver", other, &["kinsol", "newton"])),
+        ("newton", _) => Ok(("newton", Solver::Newton)),
+        (other, _) => Err(Error::unknown("solver", other, &["kinsol", "newton"])),
     }
 }

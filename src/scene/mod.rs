@@ -60,7 +60,7 @@ pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
-pub use equilibria::{ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
+pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;

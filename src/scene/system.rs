@@ -4,6 +4,7 @@ use super::options::{ModelOptions, SlabOptions};
 use super::program::Program;
 use super::unequal::OfOne;
 use super::units::{Quantity, TimeUnit, Units};
+use crate::equilibrium::MOST_INTERFACES;
 use crate::error::{Error, Result};
 use crate::friction::{
     AnyLaw, InterfaceConstants, Law, Parameters, ScaledLaw, UnequalLaws, positive, steady_stress,
@@ -52,7 +53,7 @@ impl SlabOptions {
     }
 
     /// How many interfaces there are: as many as are asked for, else as in all clusters, else 2.
-    pub(super) fn count(&self) -> u32 {
+    pub fn count(&self) -> u32 {
         let in_clusters = |text: &String| {
             let counts = text.split(',').map(|part| part.trim().parse().ok());
             let sum: Option<Vec<u32>> = counts.collect();
@@ -63,7 +64,7 @@ impl SlabOptions {
     }
 
     /// Whether there are clusters of interfaces, or more interfaces than two: they are made of the law's formulas.
-    pub(super) fn has_clusters(&self) -> bool {
+    pub fn has_clusters(&self) -> bool {
         self.clusters.is_some() || self.count() > 2
     }
 
@@ -107,7 +108,7 @@ pub struct System {
     pub unequal: Option<UnequalLaws>,
     /// The constants of each interface.
     pub constants: [InterfaceConstants; 2],
-    /// 1 or 2.
+    /// How many there are.
     pub interfaces: usize,
     /// V_H, where given.
     pub driving: Option<f64>,
@@ -130,11 +131,52 @@ impl System {
         Self::of(&options.slab, options.driving, options.stiffness)
     }
 
+    /// The same of any number of interfaces, which are equal where they are more than two.
+    ///
+    /// # Errors
+    /// As [`System::new`]; [`Error::Input`] for more than two that differ.
+    pub(super) fn several(options: &ModelOptions) -> Result<Self> {
+        let options = options.resolved()?;
+        let (slab, interfaces) = (&options.slab, options.slab.count() as usize);
+        if slab.clusters.is_some() {
+            return Err(Error::Input(
+                "`clusters`: all steady states are found, by clusters; leave it out".into(),
+            ));
+        }
+        if !(1..=MOST_INTERFACES).contains(&interfaces) {
+            let must = format!(
+                "between 1 and {MOST_INTERFACES}: of more the number of arrangements is no double"
+            );
+            return Err(Error::parameter("interfaces", interfaces, must));
+        }
+        if interfaces > 2 && slab.law_file().is_some() {
+            return Err(Error::Input(format!(
+                "`law` {} is from a file; the steady states of {interfaces} interfaces are of built-in laws, those of one or two of any law",
+                slab.law
+            )));
+        }
+        if interfaces > 2 && OfOne::read(slab)?.any() {
+            return Err(Error::Input(format!(
+                "`set`: the {interfaces} interfaces are equal, and none has a number of its own; two interfaces may differ"
+            )));
+        }
+        Self::counted(slab, interfaces, options.driving, options.stiffness)
+    }
+
     /// Checks a slab, and V_H and K where they are fixed.
     ///
     /// # Errors
     /// As [`System::new`].
     pub fn of(options: &SlabOptions, driving: Option<f64>, stiffness: Option<f64>) -> Result<Self> {
+        Self::counted(options, options.checked_interfaces()?, driving, stiffness)
+    }
+
+    fn counted(
+        options: &SlabOptions,
+        interfaces: usize,
+        driving: Option<f64>,
+        stiffness: Option<f64>,
+    ) -> Result<Self> {
         if options.text.system.is_some() {
             return Err(Error::Input(
                 "`system` names a system of one's own, and this command is of interfaces; integrate, equilibria, section, orbit, branch, locus and sweep take it".into(),
@@ -146,7 +188,6 @@ impl System {
                 options.law
             )));
         }
-        let interfaces = options.checked_interfaces()?;
         let of_one = OfOne::read(options)?;
         let first = of_one.first(options);
         let own = [0, 1].map(|i| of_one.constants(i, common(options, &first)));

@@ -79,6 +79,11 @@ impl OfOne {
         Ok(all)
     }
 
+    /// Whether an interface has a number of its own.
+    pub fn any(&self) -> bool {
+        self.0.as_flattened().iter().any(Option::is_some)
+    }
+
     /// The constants of an interface, of which `common` are those of both.
     pub fn constants(&self, interface: usize, common: [f64; COUNT]) -> [f64; COUNT] {
         let own = self.0[interface];
