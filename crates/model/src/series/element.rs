@@ -116,10 +116,19 @@ pub trait Element:
     }
     /// Whether every lane is finite.
     fn all_finite(self) -> bool;
-    /// The sums of a_j b_(n-1-j) over the j of the same remainder by four, n being the length of both, where the element has a faster
-    /// way to them.
+    /// The sums for four orders from k, with the products a_j b_(k-j) of coefficients from the fourth to before the k-th, where the element
+    /// has a faster way to them.
     #[inline(always)]
-    fn four_sums(_a: &[Self], _b: &[Self]) -> Option<[Self; 4]> {
+    fn sums_of_older(_sums: [Self; 4], _rows: [&[Self]; 2]) -> Option<[Self; 4]> {
+        None
+    }
+    /// What is added to the sums of three orders by newest coefficients of two rows, given the first of both; likewise.
+    #[inline(always)]
+    fn sums_with_newest(
+        _sums: [Self; 3],
+        _newest: [Self; 2],
+        _first: [&[Self; 3]; 2],
+    ) -> Option<[Self; 3]> {
         None
     }
     /// How many lanes there are.
@@ -270,8 +279,16 @@ impl Element for f64 {
 impl Element for DoubleDouble {
     const LANES: usize = 1;
     #[cfg(target_arch = "x86_64")]
-    fn four_sums(a: &[Self], b: &[Self]) -> Option<[Self; 4]> {
-        super::exact_products::four_sums(a, b)
+    fn sums_of_older(sums: [Self; 4], rows: [&[Self]; 2]) -> Option<[Self; 4]> {
+        super::exact_products::sums_of_older(sums, rows)
+    }
+    #[cfg(target_arch = "x86_64")]
+    fn sums_with_newest(
+        sums: [Self; 3],
+        newest: [Self; 2],
+        first: [&[Self; 3]; 2],
+    ) -> Option<[Self; 3]> {
+        super::exact_products::sums_with_newest(sums, newest, first)
     }
     #[inline(never)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {

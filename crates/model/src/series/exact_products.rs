@@ -41,6 +41,15 @@ impl Numbers {
         Self::normalised(product, error + (cross + self.lo * o.lo))
     }
 
+    /// One by one, if all are finite.
+    #[inline(always)]
+    fn exact(self) -> Option<[DoubleDouble; 4]> {
+        let (hi, lo) = (self.hi.lanes(), self.lo.lanes());
+        // Infinite or no number once, it is for good.
+        let finite = hi.iter().chain(&lo).all(|x| x.is_finite());
+        finite.then(|| std::array::from_fn(|i| DoubleDouble::of_finite(hi[i], lo[i])))
+    }
+
     #[inline(always)]
     fn sum(self, o: Self) -> Self {
         let (sum, error) = two_sum(self.hi, o.hi);
@@ -50,34 +59,53 @@ impl Numbers {
     }
 }
 
-/// The sums of a_j b_(n-1-j) over the j of the same remainder by four, n being the length of both; `None` where the processor has no
-/// such registers, or something on the way is not finite.
-pub(super) fn four_sums(a: &[DoubleDouble], b: &[DoubleDouble]) -> Option<[DoubleDouble; 4]> {
-    let simd = vectors::avx2()?;
+/// The sums for four orders from k, with the products a_j b_(k-j) of coefficients from the fourth to before the k-th; `None` where the
+/// processor has no such registers, or something on the way is not finite.
+pub(super) fn sums_of_older(
+    sums: [DoubleDouble; 4],
+    [a, b]: [&[DoubleDouble]; 2],
+) -> Option<[DoubleDouble; 4]> {
+    let (simd, zero) = (vectors::avx2()?, DoubleDouble::ZERO);
+    let ([b_0, b_1, b_2], newest) = (*b.first_chunk::<3>()?, a.last_chunk::<3>()?);
     let sums = simd.vectorize(
         #[inline(always)]
         || {
-            let zero = [DoubleDouble::ZERO; 4];
-            let mut sums = Numbers::of(simd, &zero);
-            let (left, left_rest) = a.as_chunks::<4>();
-            let (right_rest, right) = b.as_rchunks::<4>();
-            for (a, [b_3, b_2, b_1, b_0]) in left.iter().zip(right.iter().rev()) {
-                let b = Numbers::of(simd, &[*b_0, *b_1, *b_2, *b_3]);
-                sums = sums.sum(Numbers::of(simd, a).product(b));
+            let mut sums = Numbers::of(simd, &sums);
+            let mut add = |a: &DoubleDouble, b: [DoubleDouble; 4]| {
+                sums = sums.sum(Numbers::of(simd, &[*a; 4]).product(Numbers::of(simd, &b)));
+            };
+            for (a, b) in a.iter().zip(b.windows(4).rev()) {
+                add(a, [b[0], b[1], b[2], b[3]]);
             }
-            if !left_rest.is_empty() {
-                let (mut a, mut b) = (zero, zero);
-                let rest = left_rest.iter().zip(right_rest.iter().rev());
-                for (i, (of_a, of_b)) in rest.enumerate() {
-                    (a[i], b[i]) = (*of_a, *of_b);
-                }
-                sums = sums.sum(Numbers::of(simd, &a).product(Numbers::of(simd, &b)));
+            // What is left are products for the later ones of these orders.
+            add(&newest[0], [zero, b_0, b_1, b_2]);
+            add(&newest[1], [zero, zero, b_0, b_1]);
+            add(&newest[2], [zero, zero, zero, b_0]);
+            sums
+        },
+    );
+    sums.exact()
+}
+
+/// The sums of three orders with what newest coefficients of two rows add, given the first of both: the one times the first of the
+/// other.
+pub(super) fn sums_with_newest(
+    [a, b, c]: [DoubleDouble; 3],
+    newest: [DoubleDouble; 2],
+    first: [&[DoubleDouble; 3]; 2],
+) -> Option<[DoubleDouble; 3]> {
+    let (simd, zero) = (vectors::avx2()?, DoubleDouble::ZERO);
+    let sums = simd.vectorize(
+        #[inline(always)]
+        || {
+            let mut sums = Numbers::of(simd, &[a, b, c, zero]);
+            for (newest, [a, b, c]) in newest.iter().zip(first.iter().rev()) {
+                let first = Numbers::of(simd, &[*a, *b, *c, zero]);
+                sums = sums.sum(Numbers::of(simd, &[*newest; 4]).product(first));
             }
             sums
         },
     );
-    let (hi, lo) = (sums.hi.lanes(), sums.lo.lanes());
-    // Infinite or no number once, it is for good.
-    let finite = hi.iter().chain(&lo).all(|x| x.is_finite());
-    finite.then(|| std::array::from_fn(|i| DoubleDouble::of_finite(hi[i], lo[i])))
+    let [a, b, c, _] = sums.exact()?;
+    Some([a, b, c])
 }

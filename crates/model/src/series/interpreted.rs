@@ -60,15 +60,25 @@ pub struct Interpreted<'a, T> {
     rows: ProgramRows<T>,
     /// For the first coefficients elsewhere than where the series begin.
     probe: ProgramRows<T>,
+    /// Whether these are the ones at the state reached.
+    probed: bool,
     room: usize,
-    x: Vec<T>,
-    lost: Vec<T>,
+    reached: Reached<T>,
+    /// Where a step may lead.
+    next: Reached<T>,
     any: T,
     watched: usize,
     /// The unit of time of the series, and of the next one. The coefficients neither overflow nor vanish if it is near the
     /// step.
     unit: f64,
     next_unit: f64,
+}
+
+/// A state, and what rounding took from it.
+#[derive(Clone)]
+struct Reached<T> {
+    x: Vec<T>,
+    lost: Vec<T>,
 }
 
 impl<'a, T: Element> Interpreted<'a, T> {
@@ -91,15 +101,20 @@ impl<'a, T: Element> Interpreted<'a, T> {
         room: usize,
         any: T,
     ) -> Self {
-        let (zero, variables) = (any.like(0.0), program.variables());
+        let zeros = vec![any.like(0.0); program.variables()];
+        let reached = Reached {
+            x: zeros.clone(),
+            lost: zeros,
+        };
         Interpreted {
             rows: ProgramRows::new(&program, room, any),
             probe: ProgramRows::new(&program, 1, any),
+            probed: false,
             program,
             record,
             room,
-            x: vec![zero; variables],
-            lost: vec![zero; variables],
+            next: reached.clone(),
+            reached,
             any,
             watched,
             unit: 1.0,
@@ -109,12 +124,12 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// Begins at x.
     pub(super) fn begin(&mut self, x: &[T]) {
-        self.x.copy_from_slice(x);
-        self.lost.fill(self.any.like(0.0));
+        self.reached.x.copy_from_slice(x);
+        self.reached.lost.fill(self.any.like(0.0));
+        self.probed = false;
         self.record_here();
-        self.rows.level(0);
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
-        let sizes = || self.x.iter().map(|x| x.abs());
+        let sizes = || self.reached.x.iter().map(|x| x.abs());
         let largest = sizes().map(|x| x.largest_lane()).fold(0.0, f64::max);
         let least = self.any.like(f64::max(LEAST, largest * f64::EPSILON));
         let rate = |(i, size): (usize, T)| {
@@ -122,26 +137,29 @@ impl<'a, T: Element> Interpreted<'a, T> {
             (rate / size.max(least)).abs().largest_lane()
         };
         let rate = sizes().enumerate().map(rate).fold(0.0, f64::max);
-        self.next_unit = 1.0 / f64::max(rate, f64::MIN_POSITIVE);
+        self.next_unit = power_of_two(1.0 / f64::max(rate, f64::MIN_POSITIVE));
     }
 
-    /// The formula as it is here, if it is not the same everywhere, and the first coefficients of the variables.
+    /// The formula as it is here, if it is not the same everywhere, and the first coefficients.
     #[inline(always)]
     fn record_here(&mut self) {
         if self.program.branches {
-            let x: Vec<f64> = self.x.iter().map(|x| x.first()).collect();
+            let x: Vec<f64> = self.reached.x.iter().map(|x| x.first()).collect();
             self.program = (self.record)(&x);
             self.rows = ProgramRows::new(&self.program, self.room, self.any);
             self.probe = ProgramRows::new(&self.program, 1, self.any);
+            self.probed = false;
         }
-        for (i, x) in self.x.iter().enumerate() {
-            self.rows.set(i, 0, *x);
+        if self.probed {
+            self.rows.begin_as(&self.probe);
+        } else {
+            self.rows.begin(&self.reached.x);
         }
     }
 
     /// The state reached.
     pub(super) fn reached(&self) -> &[T] {
-        &self.x
+        &self.reached.x
     }
 
     /// What the program gives, and its series.
@@ -155,17 +173,16 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.unit = self.next_unit;
         self.record_here();
         for _ in 0..=SHORTER_UNITS {
+            self.rows.prepare();
             for k in 0..order {
-                self.rows.level(k);
-                let share = self.rows.one_over(k + 1) * self.unit;
-                for i in 0..self.x.len() {
-                    let rate = self.rows.coefficient(self.program.outputs[i], k);
-                    self.rows.set(i, k + 1, rate.scale(share));
+                if k > 0 {
+                    self.rows.level(k);
                 }
+                self.rows.integrate(k, self.unit);
             }
             // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the
             // coefficients do not overflow.
-            if (0..self.x.len()).all(|i| self.rows.row(i)[order].all_finite()) {
+            if (0..self.reached.x.len()).all(|i| self.rows.row(i)[order].all_finite()) {
                 break;
             }
             self.unit *= SHORTER;
@@ -196,7 +213,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
             let may_err = x.abs().mul_add(x.like(rtol), x.like(atol));
             (self.rows.row(i)[j] / may_err).abs().largest_lane()
         };
-        self.x.iter().enumerate().map(relative).fold(0.0, f64::max)
+        let x = self.reached.x.iter().enumerate();
+        x.map(relative).fold(0.0, f64::max)
     }
 
     /// The logarithm of a step, shortened to where the last terms cease to grow.
@@ -235,18 +253,18 @@ impl<'a, T: Element> Interpreted<'a, T> {
             DoubleDouble::from(h.copysign(limit.hi()))
         };
         let mut time = if whole { limit } else { step * self.unit };
-        let (mut x, mut lost) = self.evaluate(order, step);
-        if !finite(&x) || self.passes_kink(&x) {
+        self.evaluate(order, step);
+        if !finite(&self.next.x) || self.passes_kink() {
             step = self.shortened(order, step);
             if !step.is_finite() {
                 return step;
             }
             time = step * self.unit;
-            (x, lost) = self.evaluate(order, step);
+            self.evaluate(order, step);
+            self.probed = false;
         }
-        self.x = x;
-        self.lost = lost;
-        self.next_unit = time.hi().abs();
+        std::mem::swap(&mut self.reached, &mut self.next);
+        self.next_unit = power_of_two(time.hi().abs());
         time
     }
 
@@ -256,21 +274,24 @@ impl<'a, T: Element> Interpreted<'a, T> {
     #[inline(never)]
     fn shortened(&mut self, order: usize, mut h: DoubleDouble) -> DoubleDouble {
         let mut halvings = 0;
-        while !finite(&self.evaluate(order, h).0) {
+        self.evaluate(order, h);
+        while !finite(&self.next.x) {
             if halvings == HALVINGS {
                 return DoubleDouble::from(f64::NAN);
             }
             h = h * 0.5;
             halvings += 1;
+            self.evaluate(order, h);
         }
-        if !self.passes_kink(&self.evaluate(order, h).0) {
+        if !self.passes_kink() {
             return h;
         }
         // By bisection: a series does not reach beyond, and it happens once in a run.
         let (mut near, mut far) = (DoubleDouble::ZERO, h);
         for _ in 0..BISECTIONS {
             let middle = (near + far) * 0.5;
-            if self.passes_kink(&self.evaluate(order, middle).0) {
+            self.evaluate(order, middle);
+            if self.passes_kink() {
                 far = middle;
             } else {
                 near = middle;
@@ -281,14 +302,12 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// Whether a quantity whose sign the formula takes has another one there.
     #[inline(always)]
-    fn passes_kink(&mut self, x: &[T]) -> bool {
+    fn passes_kink(&mut self) -> bool {
         if self.program.kinks.is_empty() {
             return false;
         }
-        for (i, x) in x.iter().enumerate() {
-            self.probe.set(i, 0, *x);
-        }
-        self.probe.level(0);
+        self.probe.begin(&self.next.x);
+        self.probed = true;
         // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
         let changes = |&row: &usize| {
             let signs = self.rows.row(row)[0].sign() * self.probe.row(row)[0];
@@ -299,21 +318,20 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// The state after h units, and what rounding took from it.
     #[inline(always)]
-    fn evaluate(&self, order: usize, h: DoubleDouble) -> (Vec<T>, Vec<T>) {
+    fn evaluate(&mut self, order: usize, h: DoubleDouble) {
         let h = self.any.like_exact(h);
-        let (mut x, mut lost) = (self.x.clone(), self.lost.clone());
-        for i in 0..x.len() {
+        let Reached { x, lost } = &self.reached;
+        for (i, (x, lost)) in x.iter().zip(lost).enumerate() {
             let series = self.rows.row(i);
             let mut sum = series[order];
             for c in series[1..order].iter().rev() {
                 sum = sum.mul_add(h, *c);
             }
-            let change = sum.mul_add(h, lost[i]);
-            let reached = x[i] + change;
-            lost[i] = change - (reached - x[i]);
-            x[i] = reached;
+            let change = sum.mul_add(h, *lost);
+            let reached = *x + change;
+            self.next.x[i] = reached;
+            self.next.lost[i] = change - (reached - *x);
         }
-        (x, lost)
     }
 }
 
@@ -340,6 +358,15 @@ impl<T: Element> NullaryFnOnce for Advance<'_, '_, T> {
     }
 }
 
+/// The power of two that is next below x > 0: units of time that are such take nothing from coefficients.
+#[inline(always)]
+fn power_of_two(x: f64) -> f64 {
+    f64::max(
+        f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()),
+        f64::MIN_POSITIVE,
+    )
+}
+
 #[inline(always)]
 fn finite<T: Element>(x: &[T]) -> bool {
     x.iter().all(|x| x.all_finite())
@@ -356,7 +383,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
     }
 
     fn start(&mut self, y: &[f64]) {
-        let mut x = self.x.clone();
+        let mut x = self.reached.x.clone();
         for (&(row, lane), &y) in self.program.places.iter().zip(y) {
             // The first lane fills all, as of rows that have but one number.
             x[row] = if lane == 0 {
@@ -378,7 +405,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
 
     fn state(&self, i: usize) -> f64 {
         let (row, lane) = self.program.places[i];
-        self.x[row].lane(lane)
+        self.reached.x[row].lane(lane)
     }
 
     fn unit(&self) -> f64 {
@@ -401,7 +428,7 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
             return;
         }
         // A single interface stands in both places.
-        let at = self.x.len() + interface.min(self.watched - 1);
+        let at = self.reached.x.len() + interface.min(self.watched - 1);
         let (rate, lane) = (self.program.outputs[at], self.program.lanes[at]);
         for (k, to) in into.iter_mut().enumerate() {
             *to = self.rows.coefficient(rate, k).lane(lane);
@@ -433,7 +460,7 @@ impl<'a> Transported<'a> {
 
     /// The i-th variable of the state reached.
     pub fn polynomial(&self, i: usize) -> Jet3 {
-        self.solution.x[i]
+        self.solution.reached.x[i]
     }
 
     /// The i-th variable, and its time derivative, at a time after the beginning of the last step.

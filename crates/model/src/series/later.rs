@@ -28,8 +28,15 @@ pub(super) enum Later {
         to: usize,
         result: usize,
     },
-    /// An operation as it is.
-    Other(Instruction),
+    /// An operation, whose first operand is a multiple of the row that stands in its place.
+    Other(Instruction, Multiple),
+}
+
+/// A row that is a multiple of another, but for its first coefficient.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Multiple {
+    pub row: usize,
+    pub factor: DoubleDouble,
 }
 
 /// All of that, in order.
@@ -95,7 +102,8 @@ impl LaterOrders {
             match &sums[instruction.result] {
                 Some(terms) => terms.iter().for_each(|term| needed[term.row] = true),
                 None => {
-                    let operands = instruction.operation.operands();
+                    let (plain, _) = with_multiple(*instruction, sums);
+                    let operands = plain.operation.operands();
                     operands
                         .into_iter()
                         .flatten()
@@ -116,11 +124,29 @@ impl LaterOrders {
                         result: instruction.result,
                     });
                 }
-                None => later.all.push(Later::Other(instruction)),
+                None => {
+                    let (plain, multiple) = with_multiple(instruction, sums);
+                    later.all.push(Later::Other(plain, multiple));
+                }
             }
         }
         later
     }
+}
+
+/// The operation with the row of which its first operand is a multiple in the place of that.
+fn with_multiple(one: Instruction, sums: &[Option<Vec<Term>>]) -> (Instruction, Multiple) {
+    let multiple = |row, factor| Multiple { row, factor };
+    let Some(operand) = one.operation.of_multiple() else {
+        return (one, multiple(one.result, DoubleDouble::ONE));
+    };
+    let (row, factor) = match sums[operand].as_deref() {
+        Some([term]) if term.lane.is_none() && term.sign.is_none() => (term.row, term.factor),
+        _ => (operand, DoubleDouble::ONE),
+    };
+    let to = |at| if at == operand { row } else { at };
+    let operation = one.operation.moved(to);
+    (Instruction { operation, ..one }, multiple(operand, factor))
 }
 
 /// The terms of what is linear.

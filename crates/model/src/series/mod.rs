@@ -19,6 +19,7 @@ mod equations;
 mod event;
 #[cfg(target_arch = "x86_64")]
 mod exact_products;
+mod first_order;
 mod formula;
 #[cfg(target_arch = "x86_64")]
 mod functions;
@@ -27,6 +28,7 @@ mod interpreted;
 #[cfg(target_arch = "x86_64")]
 pub(crate) mod lanes;
 mod later;
+mod later_orders;
 mod linearised;
 mod placed;
 mod plain;

@@ -2,74 +2,68 @@
 //! computed at every order.
 
 use super::element::Element;
-use super::later::{Later, Term};
+use super::later::{Later, LaterOrders, Multiple, Term};
+use super::products::Sums;
 use super::program::{Instruction, Operation};
 use crate::number::DoubleDouble;
 
-/// An operation whose rows are where they begin among the coefficients.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct PlacedInstruction {
+/// An operation whose rows are where they begin among the coefficients, at all orders but the first.
+#[derive(Debug, Clone)]
+pub(super) struct PlacedInstruction<T> {
     pub operation: Operation,
     pub result: usize,
     pub spare: usize,
-    pub older: OlderSums,
+    /// Its first operand, which is a multiple of the row in its place.
+    pub operand: Multiple,
+    /// What holds for all orders of a step: what the newest coefficients of two rows count, and what the result is to be multiplied with.
+    pub counts: [T; 2],
+    pub inverse: T,
+    /// The rows of whose older coefficients it needs sums of products, and these sums.
+    pub products: Products,
+    pub sums: [Sums<T>; 2],
 }
 
-/// The sums of products of older coefficients that an operation needs: of a_j b_(k-j) over 0 < j < k.
+/// Rows of which products are needed.
 #[derive(Debug, Clone, Copy)]
-pub(super) enum OlderSums {
+pub(super) enum Products {
     Nothing,
-    One(usize, usize),
-    /// With the same a.
-    Two(usize, [usize; 2]),
+    One([usize; 2]),
+    Two([[usize; 2]; 2]),
 }
 
-/// What is carried out at later orders.
-#[derive(Debug, Clone, Copy)]
-pub(super) enum PlacedLater {
-    /// Of these terms.
-    Sum {
-        from: usize,
-        to: usize,
-        result: usize,
-    },
-    Other(PlacedInstruction),
-}
-
-impl PlacedInstruction {
-    /// With rows where they are placed.
-    pub fn new(one: &Instruction, place: impl Fn(usize) -> usize) -> Self {
-        let operation = one.operation.moved(&place);
-        let (result, spare) = (place(one.result), place(one.spare));
-        use OlderSums::{Nothing, One, Two};
-        let older = match operation {
-            Operation::Product(a, b) => One(a, b),
-            Operation::Quotient(_, b) => One(result, b),
-            Operation::Exponential(_) => One(spare, result),
+impl Products {
+    fn of(operation: Operation, result: usize, spare: usize, room: usize) -> Self {
+        use Products::{Nothing, One, Two};
+        match operation {
+            Operation::Product(a, b) => One([a, b]),
+            Operation::Quotient(_, b) => One([result, b]),
+            Operation::Exponential(_) => One([spare, result]),
             Operation::Logarithm(u)
             | Operation::Arctangent(_, u)
-            | Operation::InverseHyperbolicSine(_, u)
-            | Operation::HyperbolicTangent(_, u) => One(spare, u),
-            Operation::Hyperbolic(_, cosh) => Two(spare, [cosh, result]),
-            Operation::Circular(_, cos) => Two(spare, [cos, result]),
-            Operation::Power(a, _) => Two(a, [result, spare]),
-            Operation::Balanced(..) => {
-                let [e, f] = BALANCED.map(|before| result - place(before));
-                Two(spare, [e, f])
+            | Operation::InverseHyperbolicSine(_, u) => One([spare, u]),
+            Operation::HyperbolicTangent(_, u) => Two([[spare, u], [result, result]]),
+            Operation::Hyperbolic(_, other) | Operation::Circular(_, other) => {
+                Two([[spare, other], [spare, result]])
             }
+            Operation::Power(a, _) => Two([[a, result], [a, spare]]),
+            Operation::Balanced(..) => Two(BALANCED.map(|before| [spare, result - before * room])),
             _ => Nothing,
-        };
-        PlacedInstruction {
-            operation,
-            result,
-            spare,
-            older,
         }
     }
 }
 
 /// How many rows before that of a balance both exponentials stand.
 const BALANCED: [usize; 2] = [6, 5];
+
+/// What is carried out at later orders.
+#[derive(Debug, Clone)]
+pub(super) enum PlacedLater<T> {
+    Sum {
+        terms: Vec<PlacedTerm<T>>,
+        result: usize,
+    },
+    Other(PlacedInstruction<T>),
+}
 
 /// A term of later orders, whose row is where it begins among the coefficients.
 #[derive(Debug, Clone, Copy)]
@@ -82,29 +76,59 @@ pub(super) struct PlacedTerm<T> {
     pub sign: Option<usize>,
 }
 
-impl PlacedLater {
-    /// With rows where they are placed.
-    pub fn new(later: &Later, place: impl Fn(usize) -> usize) -> Self {
+/// With rows of so many coefficients one after the other.
+pub(super) fn placed(one: &Instruction, room: usize) -> Instruction {
+    let place = |row: usize| row * room;
+    Instruction {
+        operation: one.operation.moved(place),
+        result: place(one.result),
+        spare: place(one.spare),
+    }
+}
+
+impl<T: Element> PlacedLater<T> {
+    /// The same of one of these; `any` is any number.
+    pub fn new(later: &Later, all: &LaterOrders, room: usize, any: T) -> Self {
         match later {
-            Later::Sum { from, to, result } => PlacedLater::Sum {
-                from: *from,
-                to: *to,
-                result: place(*result),
-            },
-            Later::Other(one) => PlacedLater::Other(PlacedInstruction::new(one, place)),
+            Later::Sum { from, to, result } => {
+                let terms = all.terms[*from..*to].iter();
+                PlacedLater::Sum {
+                    terms: terms.map(|term| PlacedTerm::new(term, room, any)).collect(),
+                    result: result * room,
+                }
+            }
+            Later::Other(one, operand) => {
+                let Instruction {
+                    operation,
+                    result,
+                    spare,
+                } = placed(one, room);
+                PlacedLater::Other(PlacedInstruction {
+                    operation,
+                    result,
+                    spare,
+                    operand: Multiple {
+                        row: operand.row * room,
+                        ..*operand
+                    },
+                    counts: [any; 2],
+                    inverse: any,
+                    products: Products::of(operation, result, spare, room),
+                    sums: [Sums::new(any), Sums::new(any)],
+                })
+            }
         }
     }
 }
 
 impl<T: Element> PlacedTerm<T> {
-    /// With rows where they are placed; `any` is any number.
-    pub fn new(term: &Term, place: impl Fn(usize) -> usize, any: T) -> Self {
+    fn new(term: &Term, room: usize, any: T) -> Self {
         PlacedTerm {
-            row: place(term.row),
+            row: term.row * room,
             lane: term.lane,
             exact: term.factor,
             factor: any.like_exact(term.factor),
-            sign: term.sign.map(place),
+            sign: term.sign.map(|row| row * room),
         }
     }
 }

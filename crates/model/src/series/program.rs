@@ -99,6 +99,23 @@ impl Operation {
         }
     }
 
+    /// The operand of which a multiple does as well at all orders but the first.
+    pub fn of_multiple(self) -> Option<usize> {
+        match self {
+            Operation::Exponential(a)
+            | Operation::Logarithm(a)
+            | Operation::Hyperbolic(a, _)
+            | Operation::Circular(a, _)
+            | Operation::HyperbolicTangent(a, _)
+            | Operation::Arctangent(a, _)
+            | Operation::InverseHyperbolicSine(a, _)
+            | Operation::Power(a, _)
+            | Operation::Over(a, _) => Some(a),
+            Operation::Quotient(Source::Row(a), b) if a != b => Some(a),
+            _ => None,
+        }
+    }
+
     /// The same of rows that stand elsewhere.
     pub fn moved(self, mut at: impl FnMut(usize) -> usize) -> Self {
         use Operation::*;
