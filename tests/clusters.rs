@@ -99,7 +99,7 @@ fn orbits_of_clusters_meet_their_references() {
 /// The multipliers of states that part are those of the full space.
 #[test]
 fn multipliers_within_clusters_are_those_of_the_full_space() {
-    let cycle = [0.010867742834401131, 0.852316657340941186];
+    let cycle = [0.010_867_742_834_401_131, 0.852_316_657_340_941_2];
     for (clusters, driving, stiffness) in [([1, 2], 10.0, 0.14), ([2, 4], 20.0, 0.07)] {
         let loading = format!("--driving {driving} --stiffness {stiffness} --period-guess 3.115");
         let reduced = object(&format!(

@@ -83,8 +83,8 @@ impl Block {
         }
         self.compliance[k] = u;
         let mut v = [0.0; LANES];
-        for j in 0..=k {
-            let (s, u) = (activation[j], &self.compliance[k - j]);
+        let compliances = self.compliance[..=k].iter().rev();
+        for (s, u) in activation.iter().zip(compliances) {
             for l in 0..LANES {
                 v[l] += s * u[l];
             }
@@ -113,9 +113,9 @@ impl Block {
     #[inline(always)]
     fn strengths(&self, order: usize, later: f64) -> Lanes {
         let mut sum = self.strength[order];
-        for k in (0..order).rev() {
+        for term in self.strength[..order].iter().rev() {
             for l in 0..LANES {
-                sum[l] = sum[l] * later + self.strength[k][l];
+                sum[l] = sum[l] * later + term[l];
             }
         }
         sum

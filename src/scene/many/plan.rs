@@ -364,8 +364,11 @@ fn columns(names: Option<&str>, count: usize) -> Result<(Vec<Column<ManyInstant>
     Ok((columns, watched))
 }
 
-/// What one interface has, of its psi, v and slip.
-fn of_one(base: &str) -> Option<(Quantity, fn([f64; 3]) -> f64)> {
+/// From psi, v and slip of an interface to what a column shows.
+type OfOne = fn([f64; 3]) -> f64;
+
+/// What one interface has.
+fn of_one(base: &str) -> Option<(Quantity, OfOne)> {
     Some(match base {
         "state" => (Quantity::State, |[psi, ..]| psi),
         "log_state" => (Quantity::LogState, |[psi, ..]| psi.ln()),
