@@ -42,8 +42,8 @@ fn parameters_outside_their_domain_are_refused() {
     }
     refused(&model("--residual-strength -1"), "residual-strength is -1");
     refused(
-        &model("--interfaces 3"),
-        "interfaces is 3, but must be 1 or 2",
+        &model("--interfaces 0"),
+        "interfaces is 0, but must be at least 1",
     );
     refused(
         &model("--max-steps 0"),

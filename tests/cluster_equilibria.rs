@@ -417,8 +417,8 @@ fn what_several_interfaces_do_not_have_is_refused() {
         "solver kinsol is for one or two interfaces, and there are more; choose newton",
     );
     refused(
-        "branch equilibria --interfaces 3 --stiffness 0.14",
-        "interfaces is 3, but must be 1 or 2",
+        &model("--clusters 1,2"),
+        "all steady states are found, by clusters",
     );
 }
 

@@ -57,8 +57,8 @@ mod lanes;
 mod law_bifurcations;
 mod law_parameters;
 mod lyapunov;
-#[cfg(not(feature = "parquet"))]
 mod many;
+#[cfg(not(feature = "parquet"))]
 mod many_dimensions;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;

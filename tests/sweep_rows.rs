@@ -163,8 +163,8 @@ fn wrong_grids_are_refused_in_one_sentence() {
         ),
         (plane("0.1 --rtol 2"), "rtol is 2, but must be"),
         (
-            plane("0.1 --interfaces 3"),
-            "interfaces is 3, but must be 1 or 2",
+            plane("0.1 --interfaces 0"),
+            "interfaces is 0, but must be at least 1",
         ),
         (plane("0.1 --shard 0/3"), "shard is 0/3, but must be I/N"),
         (plane("0.1 --shard 4/3"), "shard is 4/3, but must be I/N"),

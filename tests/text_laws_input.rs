@@ -178,7 +178,7 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
             "damping is -0.1, but must be zero or positive, and finite",
         ),
         (format!("{run} --si"), "whose numbers have no units"),
-        (format!("{run} --interfaces 3"), "1 or 2"),
+        (format!("{run} --interfaces 9"), "at most 7 interfaces"),
         (
             format!("{run} --set beta=3"),
             "set is beta, but must be driving or stiffness",

@@ -86,6 +86,16 @@ impl Sampling {
         let meets = (t - end).abs() <= 1e-9 * interval;
         Some(if meets { end } else { t })
     }
+
+    /// As plans tell it.
+    pub(super) fn in_words(self) -> String {
+        match self {
+            Sampling::FinalOnly => "off: only the end is asked for".to_owned(),
+            Sampling::EveryStep => "a row at every step".to_owned(),
+            Sampling::Points(n) => format!("{n} rows equally spaced in time"),
+            Sampling::Every(dt) => format!("a row every {dt}"),
+        }
+    }
 }
 
 /// A run, checked, and only what its outputs need.

@@ -81,6 +81,7 @@ impl SlabOptions {
         match self.count() {
             1 => Ok(1),
             2 => Ok(2),
+            0 => Err(Error::parameter("interfaces", 0, "at least 1")),
             other => Err(Error::parameter("interfaces", other, "1 or 2")),
         }
     }

@@ -22,6 +22,8 @@ const SHARP: f64 = 1e-15;
 const ITERATIONS: usize = 60;
 /// What the period of an orbit in its last digits may be off, relatively.
 const ROUNDED: f64 = 1e-13;
+/// What a growth may be off zero, in units of its uncertainty.
+const CLOSE: f64 = 0.05;
 /// Ends that differ by less, relatively, are one.
 const SAME: f64 = 1e-14;
 
@@ -105,7 +107,7 @@ impl<'s, 'a> Splits<'s, 'a> {
                 at_high *= 0.5;
             }
             let (a, b) = (low.at[0], high.at[0]);
-            if here.abs() <= uncertainty || (b - a).abs() <= SAME * (1.0 + a.abs()) {
+            if here.abs() <= CLOSE * uncertainty || (b - a).abs() <= SAME * (1.0 + a.abs()) {
                 let slope = (value(&high) - value(&low)) / (b - a);
                 let off = (here.abs() + uncertainty) / slope.abs();
                 let mut split = self.split(next, off, i);

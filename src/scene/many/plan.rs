@@ -139,12 +139,7 @@ impl ManyPlan {
 
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
-        let rows = match self.sampling {
-            Sampling::FinalOnly => "off: only the end is asked for".to_owned(),
-            Sampling::EveryStep => "a row at every step".to_owned(),
-            Sampling::Points(n) => format!("{n} rows equally spaced in time"),
-            Sampling::Every(dt) => format!("a row every {dt}"),
-        };
+        let rows = self.sampling.in_words();
         let count = self.interfaces.count();
         format!(
             "plan of this run
@@ -301,7 +296,12 @@ fn start(
     }
     let numbers = text.split(',').map(number).collect::<Result<Vec<f64>>>()?;
     match numbers.split_first() {
-        Some((tau, states)) if states.len() == count => Ok((*tau, states.to_vec())),
+        Some((&tau, states)) if states.len() == count => {
+            for &psi in states {
+                positive("psi in `start`", psi)?;
+            }
+            Ok((positive("tau in `start`", tau)?, states.to_vec()))
+        }
         _ => Err(unreadable()),
     }
 }

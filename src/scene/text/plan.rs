@@ -201,12 +201,7 @@ impl TextPlan {
 
     /// The plan, one subject a line.
     pub fn explain(&self) -> String {
-        let rows = match self.sampling {
-            Sampling::FinalOnly => "off: only the end is asked for".to_owned(),
-            Sampling::EveryStep => "a row at every step".to_owned(),
-            Sampling::Points(n) => format!("{n} rows equally spaced in time"),
-            Sampling::Every(dt) => format!("a row every {dt}"),
-        };
+        let rows = self.sampling.in_words();
         let estimate = match self.estimate {
             Some(Companion::Tighter(second)) => format!(
                 "on: twice the distance to a second run by auto with rtol {:e}, and the rounding of the start by a tangent flow",
