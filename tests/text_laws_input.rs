@@ -189,7 +189,7 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
         ),
         (
             format!("{run} --start 1,2"),
-            "must be TAU,PSI1,PSI2 or near-symmetric[:EPS]",
+            "must be TAU,PSI1,PSI2, near-symmetric[:EPS]",
         ),
         (format!("{run} --start 1,2,-1"), "psi in --start"),
         (
