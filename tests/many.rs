@@ -130,6 +130,42 @@ fn every_ageing_law_runs_as_alone() {
     }
 }
 
+/// Rates of 1e18 V* and times of 1e16 L/V*: the unit of time follows.
+#[test]
+fn no_scale_of_time_is_assumed() {
+    for (law, constants, (driving, stiffness), start, until) in [
+        ("regularised-ageing", "", (1.0, 2.0), ("25", "1e-9"), 3.0),
+        (
+            "spinodal",
+            "--healing-time 1e16",
+            (1e-14, 1e-3),
+            ("4", "0.01"),
+            1e15,
+        ),
+    ] {
+        let run = |interfaces: u32, psi: &str| {
+            let n = f64::from(interfaces);
+            object(&format!(
+                "integrate --law {law} {constants} --interfaces {interfaces} --driving {:e} --stiffness {:e} --start {},{psi} --until {until:e} \
+                 --final-only --rtol 1e-13 --method taylor",
+                driving * n,
+                stiffness / n,
+                start.0
+            ))
+        };
+        let alone = run(1, start.1);
+        let many = run(8, &[start.1; 8].join(","));
+        let [made, known] = [&many, &alone].map(|one| number(one, "/result/final/stress"));
+        close(made, known, 1e-10);
+        let [made, known] = [(&many, "state_max"), (&alone, "state_1")]
+            .map(|(one, name)| number(one, &format!("/result/final/{name}")));
+        close(made, known, 1e-10);
+        let [made, known] = [(&many, "slip"), (&alone, "slip_1")]
+            .map(|(one, name)| number(one, &format!("/result/final/{name}")));
+        close(made / 8.0, known, 1e-10);
+    }
+}
+
 /// Sums are taken in an order of their own: vectors and cores change no digit.
 #[test]
 fn digits_do_not_depend_on_vectors_and_cores() {

@@ -82,6 +82,7 @@ impl ManyTaylor {
             time: DoubleDouble::ZERO,
             stress: DoubleDouble::from(stress),
             series: [0.0; MOST + 1],
+            rates: [0.0; MOST],
             unit: FIRST,
             steps: 0,
         };
@@ -94,9 +95,8 @@ impl ManyTaylor {
                     limit: self.max_steps,
                 });
             }
-            solution.expand();
+            let longest = solution.expanded(self.tolerance);
             let left = (DoubleDouble::from(until) - solution.time).hi();
-            let longest = solution.longest(self.tolerance);
             let ends = longest >= left;
             let length = if ends { left } else { longest };
             let begin = solution.time;
@@ -108,7 +108,7 @@ impl ManyTaylor {
             if !(length > 0.0 && end.hi() > begin.hi() || ends) {
                 return Err(Error::StepTooSmall {
                     t: begin.hi(),
-                    h: length,
+                    h: if length.is_nan() { 0.0 } else { length },
                 });
             }
             let goes_on = observer(&ManyStep {
@@ -136,6 +136,8 @@ pub struct ManySolution<'a> {
     stress: DoubleDouble,
     /// Of tau, in `unit`.
     series: [f64; MOST + 1],
+    /// Of the sum of all slip rates.
+    rates: [f64; MOST],
     unit: f64,
     steps: usize,
 }
@@ -165,6 +167,25 @@ impl ManySolution<'_> {
         self.steps
     }
 
+    /// Makes the series from here on, in a unit of time in which they have doubles, and tells the longest step that the tolerance
+    /// allows; not a number where there is no such unit.
+    fn expanded(&mut self, tolerance: f64) -> f64 {
+        /// A smaller unit, so often.
+        const SMALLER: f64 = 1e-6;
+        const TRIES: usize = 40;
+        /// In a much longer step the last terms would have been smaller than any double.
+        const LONGEST: f64 = 1e4;
+        for _ in 0..TRIES {
+            self.expand();
+            let longest = self.longest(tolerance);
+            if !longest.is_nan() {
+                return longest.min(LONGEST * self.unit);
+            }
+            self.unit *= SMALLER;
+        }
+        f64::NAN
+    }
+
     /// The series of all variables from here on.
     fn expand(&mut self) {
         let (mut activation, mut other) = ([0.0; MOST], [0.0; MOST]);
@@ -190,6 +211,7 @@ impl ManySolution<'_> {
                 }
             }
             let total = self.total(&activation, k);
+            self.rates[k] = total;
             let driving = if k == 0 { loading.driving } else { 0.0 };
             let rate = loading.stiffness * (driving - total);
             self.series[k + 1] = self.unit * rate / (k + 1) as f64;
@@ -359,11 +381,24 @@ impl ManyStep<'_> {
     pub fn slip(&self, interface: usize, time: f64) -> f64 {
         let (at, lane) = (interface / LANES, interface % LANES);
         let rates = &self.solution.blocks[at].rate[..self.solution.order];
+        self.integral(rates.iter().map(|rate| rate[lane]), time)
+    }
+
+    /// The same of all together.
+    pub fn slip_of_all(&self, time: f64) -> f64 {
+        let rates = &self.solution.rates[..self.solution.order];
+        self.integral(rates.iter().copied(), time)
+    }
+
+    /// The integral of a series, term by term.
+    fn integral(
+        &self,
+        series: impl DoubleEndedIterator<Item = f64> + ExactSizeIterator,
+        time: f64,
+    ) -> f64 {
         let later = self.units(time);
-        let terms = rates.iter().enumerate().rev();
-        let mean = terms.fold(0.0, |sum, (k, rate)| {
-            sum * later + rate[lane] / (k + 1) as f64
-        });
+        let terms = series.enumerate().rev();
+        let mean = terms.fold(0.0, |sum, (k, term)| sum * later + term / (k + 1) as f64);
         mean * later * self.solution.unit
     }
 }

@@ -64,7 +64,8 @@ pub struct SlabOptions {
     /// Friction law.
     #[arg(long, value_name = "NAME", help = laws(), default_value = "spinodal", value_parser = Names::of(AnyLaw::NAMES), hide_possible_values = true)]
     pub law: String,
-    /// Number N of frictional interfaces, which all share the stress [default: as many as in all clusters, or 2]
+    /// Number N of frictional interfaces, which all share the stress: up to 7 that move on their own, up to 600 in equilibria, up to
+    /// millions in integrate [default: as many as in all clusters, or 2]
     #[arg(long, value_name = "N")]
     pub interfaces: Option<u32>,
     /// Equal interfaces in clusters that move alike: how many there are in each, which together are N. States, slip rates and starts

@@ -41,7 +41,12 @@ pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium
         };
         columns.extend((0..CLUSTERS).map(count));
         columns.push(Column::new("arrangements", Number, |row: &Row| {
-            row.equilibrium.arrangements().into()
+            /// Whole numbers up to this are exact as doubles.
+            const EXACT: f64 = (1_u64 << 53) as f64;
+            match row.equilibrium.arrangements() {
+                ways if ways < EXACT => CellValue::from(ways as usize),
+                ways => ways.into(),
+            }
         }));
     }
     let state = each("state", State, Equilibrium::state);

@@ -145,7 +145,8 @@ impl GeneralRow {
                 columns.push(Column::new(name, exponent, entry));
             }
             for (i, cluster) in subject.clusters().into_iter().enumerate() {
-                let entry = move |row: &Row| row.within.get(i).copied().into();
+                let known = move |row: &Row| row.within.get(i).copied().filter(|x| x.is_finite());
+                let entry = move |row: &Row| known(row).into();
                 columns.push(Column::new(format!("within_{cluster}"), exponent, entry));
             }
             columns.push(Column::new("verdict", Number, |row: &Row| {

@@ -155,8 +155,8 @@ impl ManyPlan {
             crate::error::count(self.max_steps),
             crate::error::count(self.interfaces.memory() / 1_000_000),
             match self.watched.len() {
-                0 => "of all together, by the balance of stress".to_owned(),
-                n => format!("of {n} interfaces, term by term"),
+                0 => "of all together, term by term".to_owned(),
+                n => format!("of all together and of {n} interfaces, term by term"),
             }
         )
     }

@@ -20,6 +20,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         plan,
         sink,
         pictured: plan.pictured(),
+        slip: DoubleDouble::ZERO,
         slips: vec![DoubleDouble::ZERO; plan.watched.len()],
         row: Vec::new(),
         sampled: 0,
@@ -59,7 +60,9 @@ struct Watch<'a> {
     plan: &'a ManyPlan,
     sink: &'a mut dyn Sink,
     pictured: Vec<Column<ManyInstant>>,
-    /// Those of the watched interfaces at the beginning of the step.
+    /// The slip of all together at the beginning of the step.
+    slip: DoubleDouble,
+    /// Those of the watched interfaces there.
     slips: Vec<DoubleDouble>,
     row: Vec<f64>,
     sampled: usize,
@@ -100,6 +103,7 @@ impl Watch<'_> {
             Sampling::FinalOnly if ends => self.emit(step, end),
             _ => {}
         }
+        self.slip = self.slip + step.slip_of_all(end);
         for (slip, &interface) in self.slips.iter_mut().zip(&plan.watched) {
             *slip = *slip + step.slip(interface, end);
         }
@@ -124,8 +128,7 @@ impl Watch<'_> {
         ManyInstant {
             time,
             stress,
-            // K (V_H t - slip) = tau - tau(0)
-            slip: loading.driving * time - (stress - plan.start.0) / loading.stiffness,
+            slip: (self.slip + step.slip_of_all(time)).hi(),
             extent: match whole {
                 true => step.extent(time, mean),
                 false => Extent::NONE,
