@@ -205,12 +205,6 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
             "has no range of log_state_1",
         ),
         (
-            format!(
-                "sweep --law {file} --basin --driving 1 --stiffness 1 --state-1 1:2:2 --state-2 1:2:2"
-            ),
-            "basin",
-        ),
-        (
             "integrate --law nowhere.toml --driving 1 --stiffness 1 --until 1".into(),
             "nowhere.toml",
         ),
