@@ -133,14 +133,25 @@ fn every_ageing_law_runs_as_alone() {
 /// Rates of 1e18 V* and times of 1e16 L/V*: the unit of time follows.
 #[test]
 fn no_scale_of_time_is_assumed() {
-    for (law, constants, (driving, stiffness), start, until) in [
-        ("regularised-ageing", "", (1.0, 2.0), ("25", "1e-9"), 3.0),
+    // While the state of the second heals, dpsi/dt = (1 - psi)/R, the stress rises by K V_H t: by quadrature in 30 digits. What slip takes
+    // of the state, 3e-9 of what heals, is left out.
+    let healing = (5.334_314_909_497_934e-9, 1e-8);
+    for (law, constants, (driving, stiffness), start, until, slip) in [
+        (
+            "regularised-ageing",
+            "",
+            (1.0, 2.0),
+            ("25", "1e-9"),
+            3.0,
+            None,
+        ),
         (
             "spinodal",
             "--healing-time 1e16",
             (1e-14, 1e-3),
             ("4", "0.01"),
             1e15,
+            Some(healing),
         ),
     ] {
         let run = |interfaces: u32, psi: &str| {
@@ -155,14 +166,12 @@ fn no_scale_of_time_is_assumed() {
         };
         let alone = run(1, start.1);
         let many = run(8, &[start.1; 8].join(","));
-        let [made, known] = [&many, &alone].map(|one| number(one, "/result/final/stress"));
-        close(made, known, 1e-10);
-        let [made, known] = [(&many, "state_max"), (&alone, "state_1")]
-            .map(|(one, name)| number(one, &format!("/result/final/{name}")));
-        close(made, known, 1e-10);
-        let [made, known] = [(&many, "slip"), (&alone, "slip_1")]
-            .map(|(one, name)| number(one, &format!("/result/final/{name}")));
-        close(made / 8.0, known, 1e-10);
+        let known = |name: &str| number(&alone, &format!("/result/final/{name}"));
+        let made = |name: &str| number(&many, &format!("/result/final/{name}"));
+        close(made("stress"), known("stress"), 1e-10);
+        close(made("state_max"), known("state_1"), 1e-10);
+        let (slip, tolerance) = slip.unwrap_or_else(|| (known("slip_1"), 1e-10));
+        close(made("slip") / 8.0, slip, tolerance);
     }
 }
 

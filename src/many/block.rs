@@ -148,7 +148,8 @@ impl NullaryFnOnce for NextOrder<'_> {
     }
 }
 
-/// The largest of the last two coefficients over the first, of all strengths.
+/// The largest of the last two coefficients over the first, of all strengths; that before the last of the slip rates too, which are known
+/// to one order less, and of which slips are made.
 pub(super) struct LastTerms<'a> {
     pub blocks: &'a [Block],
     pub order: usize,
@@ -161,16 +162,17 @@ impl NullaryFnOnce for LastTerms<'_> {
     fn call(self) -> [f64; 2] {
         let mut most = [[0.0_f64; LANES]; 2];
         for block in self.blocks {
-            for (back, most) in most.iter_mut().enumerate() {
-                let term = &block.strength[self.order - back];
+            let last = [&block.strength[self.order], &block.strength[0]];
+            let before = [&block.strength[self.order - 1], &block.strength[0]];
+            let rates = [&block.rate[self.order - 1], &block.rate[0]];
+            for (i, [term, first]) in [(0, last), (1, before), (1, rates)] {
                 for l in 0..LANES {
-                    let ratio = (term[l] / block.strength[0][l]).abs();
-                    // What is not a number is to be seen.
-                    most[l] = if ratio > most[l] || ratio.is_nan() {
-                        ratio
-                    } else {
-                        most[l]
-                    };
+                    let ratio = (term[l] / first[l]).abs();
+                    // What is not a number is to be seen; but nothing slides where there is no interface.
+                    let unknown = ratio.is_nan() && first[l] != 0.0;
+                    if ratio > most[i][l] || unknown {
+                        most[i][l] = ratio;
+                    }
                 }
             }
         }
