@@ -171,19 +171,7 @@ fn another_parameter_of_equal_interfaces_gives_what_its_own_sweep_gives() {
 }
 
 /// The law of the paper, as a file has it.
-const SPINODAL: &str =
-    "slip_rate = \"gamma*sinh(tau)/(residual_strength + (1 + healing_time)*psi)^beta\"
-evolution = \"(1 - psi)/healing_time - v*psi\"
-[parameters]
-healing_time = 100.0
-residual_strength = 0.001
-direct_effect = 0.0349
-evolution_effect = 0.0489
-reference_friction = 0.369
-[where]
-gamma = \"2*exp(-reference_friction/direct_effect)\"
-beta = \"evolution_effect/direct_effect\"
-";
+const SPINODAL: &str = include_str!("../scenes/laws/spinodal.toml");
 
 #[test]
 fn a_law_from_a_file_gives_what_the_built_in_one_gives() {

@@ -69,19 +69,7 @@ fn a_particle_below_the_hill_stays_in_its_well() {
 }
 
 /// The law of the paper, as a file has it.
-const SPINODAL: &str =
-    "slip_rate = \"gamma*sinh(tau)/(residual_strength + (1 + healing_time)*psi)^beta\"
-evolution = \"(1 - psi)/healing_time - v*psi\"
-[parameters]
-healing_time = 100.0
-residual_strength = 0.001
-direct_effect = 0.0349
-evolution_effect = 0.0489
-reference_friction = 0.369
-[where]
-gamma = \"2*exp(-reference_friction/direct_effect)\"
-beta = \"evolution_effect/direct_effect\"
-";
+const SPINODAL: &str = include_str!("../scenes/laws/spinodal.toml");
 
 #[test]
 fn basins_of_all_ways_to_have_equal_interfaces_agree() {

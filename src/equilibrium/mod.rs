@@ -317,6 +317,23 @@ pub struct SteadyStates {
     pub complete: bool,
 }
 
+impl SteadyStates {
+    /// One more, unless it turns out to be none: then the number is not certain.
+    fn add(&mut self, state: Equilibrium, laws: &impl LawOfEach, driving: f64) {
+        if state.residual(laws, driving) <= VANISHING {
+            self.equilibria.push(state);
+        } else {
+            self.complete = false;
+        }
+    }
+
+    fn sorted(mut self) -> Self {
+        self.equilibria
+            .sort_by(|a, b| b.stress.value.total_cmp(&a.stress.value));
+        self
+    }
+}
+
 /// All steady states of one or two interfaces with this law at V_H, for every stiffness.
 ///
 /// ```
@@ -360,15 +377,8 @@ pub fn steady_states(
             states.push(Equilibrium::at_rest(law, driving));
         }
         for state in states {
-            if state.residual(law, driving) <= VANISHING {
-                found.equilibria.push(state);
-            } else {
-                found.complete = false;
-            }
+            found.add(state, law, driving);
         }
     }
-    found
-        .equilibria
-        .sort_by(|a, b| b.stress.value.total_cmp(&a.stress.value));
-    Ok(found)
+    Ok(found.sorted())
 }

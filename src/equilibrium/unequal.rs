@@ -8,7 +8,7 @@
 //! Neumaier, A. (1990). Interval Methods for Systems of Equations, chapter 5. Cambridge University Press.
 
 use super::refine::newton;
-use super::{Equilibrium, OF_31_DIGITS, SteadyStates, Symmetry, VANISHING};
+use super::{Equilibrium, OF_31_DIGITS, SteadyStates, Symmetry};
 use crate::error::Result;
 use crate::friction::{
     Law, ScaledLaw, UnequalLaws, positive, rounding, steady_log_slope, steady_slope, steady_stress,
@@ -65,17 +65,10 @@ pub fn unequal_steady_states(laws: &UnequalLaws, driving: f64) -> Result<SteadyS
         for bracket in brackets {
             let state = part.state(bracket)?;
             found.complete &= state.radius.is_finite();
-            if state.residual(laws, driving) <= VANISHING {
-                found.equilibria.push(state);
-            } else {
-                found.complete = false;
-            }
+            found.add(state, laws, driving);
         }
     }
-    found
-        .equilibria
-        .sort_by(|a, b| b.stress.value.total_cmp(&a.stress.value));
-    Ok(found)
+    Ok(found.sorted())
 }
 
 /// The part of (0, V_H) in which one interface is the slower one.

@@ -12,7 +12,7 @@ mod stability;
 
 pub use stability::{ClusterEigenvalue, ClusterStability, EigenvalueKind, cluster_stability};
 
-use super::{Equilibrium, SteadyStates, Symmetry, VANISHING};
+use super::{Equilibrium, SteadyStates, Symmetry};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, positive};
 use crate::number::DoubleDouble;
@@ -80,17 +80,10 @@ pub fn cluster_steady_states(
         }
         for (rates, radii) in states {
             let state = of_share(law, driving, &counts, &rates, &radii);
-            if state.residual(law, driving) <= VANISHING {
-                found.equilibria.push(state);
-            } else {
-                found.complete = false;
-            }
+            found.add(state, law, driving);
         }
     }
-    found
-        .equilibria
-        .sort_by(|a, b| b.stress.value.total_cmp(&a.stress.value));
-    Ok(found)
+    Ok(found.sorted())
 }
 
 /// The state in which all slide alike.
