@@ -494,6 +494,28 @@ fn share(law: &AnyLaw, state: &Equilibrium) -> [usize; 3] {
     counts
 }
 
+/// The middle branch has no end in doubles, and its other end is so far away that the ratio of both is no double.
+#[test]
+fn a_branch_from_the_smallest_rate_to_large_ones_is_searched() {
+    let parameters = Parameters::new(0.0349, 0.0349 * 1.02, 0.369, 100.0, 1e-3);
+    let law = AnyLaw::named(
+        "regularised-ageing",
+        parameters.and_then(|p| p.damped(4e-3)).expect("valid"),
+    );
+    let law = law.expect("known");
+    assert!(law.weakens_from_rest() && law.steady_extrema()[0] > 4.0);
+    let found = all(&law, 1e4, 3);
+    assert!(!found.equilibria.is_empty());
+    // as two interfaces: their search has cells of its own
+    assert_eq!(
+        steady_states(&law, 1e4, 2, Solver::Newton)
+            .expect("solved")
+            .equilibria
+            .len(),
+        all(&law, 1e4, 2).equilibria.len()
+    );
+}
+
 fn laws() -> impl Strategy<Value = AnyLaw> {
     let damping = prop_oneof![Just(0.0), (-6.0..0.0_f64).prop_map(|log| 10f64.powf(log))];
     let numbers = (1.02..3.0_f64, 0.0..8.0_f64, -6.0..-1.0_f64, damping);

@@ -527,6 +527,14 @@ fn ranges_refuse_nonsense() {
     let range = Range::parse("driving", "0.1:0.3:7").unwrap();
     assert_eq!((range.value(0), range.value(6)), (0.1, 0.3));
     assert_eq!(Range::parse("driving", &range.text()).unwrap(), range);
+    // the ratio of both ends is no double
+    let wide = Range::parse("driving", "1e-300:1e300:7log").unwrap();
+    for (value, exponent) in wide.values().zip([-300, -200, -100, 0, 100, 200, 300]) {
+        assert!(
+            (value.log10() - f64::from(exponent)).abs() < 1e-12,
+            "{value:e}"
+        );
+    }
     let log = Range::parse("driving", " 1e-3 : 10 : 5log").unwrap();
     assert!((log.value(2) - 0.1).abs() < 1e-16);
     assert_eq!(Range::parse("driving", &log.text()).unwrap(), log);

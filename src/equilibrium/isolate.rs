@@ -9,7 +9,7 @@
 
 use crate::error::Result;
 use crate::friction::{Law, steady_log_activation, steady_log_slope};
-use crate::number::{Difference, Interval, Jet, Real, bracketed_root};
+use crate::number::{Difference, Interval, Jet, Real, bracketed_root, log_ratio};
 
 /// Halvings of a piece towards each of its ends, in ln s, at which the sign of phi' is looked at: turning points gather
 /// at the ends, where one of the two stresses has its extremum (near the fold V_sn at 2e-6 of V_M).
@@ -127,7 +127,7 @@ fn turning_points(law: &impl Law, driving: f64, low: f64, high: f64) -> Result<V
     if slow * fast > 0.0 {
         return Ok(Vec::new());
     }
-    let (a, width) = (low.ln(), (high / low).ln());
+    let (a, width) = (low.ln(), log_ratio(low, high));
     let graded = (1..=GRADING).flat_map(|j| [0.5_f64.powi(j), 1.0 - 0.5_f64.powi(j)]);
     let even = (1..PARTS).map(|j| f64::from(j) / f64::from(PARTS));
     let mut samples: Vec<f64> = graded.chain(even).map(|x| (a + width * x).exp()).collect();

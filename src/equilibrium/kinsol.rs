@@ -7,7 +7,7 @@ use super::isolate::Bracket;
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State};
 use crate::friction::{Law, steady_log_activation};
-use crate::number::{Difference, Jet, Real};
+use crate::number::{Difference, Jet, Real, log_ratio};
 use crate::sundials::{Kinsol, KinsolSettings, Residual, Strategy};
 
 /// Where in the bracket, as fractions of its logarithmic width, the iteration starts, in turn until one ends inside.
@@ -70,7 +70,7 @@ fn in_bracket(
     driving: f64,
     bracket: Bracket,
 ) -> Result<f64> {
-    let width = (bracket.high / bracket.low).ln();
+    let width = log_ratio(bracket.low, bracket.high);
     let mut last = None;
     for fraction in STARTS {
         let slow = (bracket.low.ln() + fraction * width).exp();

@@ -13,7 +13,7 @@ use crate::error::Result;
 use crate::friction::{
     Law, ScaledLaw, UnequalLaws, positive, rounding, steady_log_slope, steady_slope, steady_stress,
 };
-use crate::number::{DoubleDouble, Interval, Jet, Real, bracketed_root};
+use crate::number::{DoubleDouble, Interval, Jet, Real, bracketed_root, log_ratio};
 
 /// Pieces that are looked at, at most, in each part.
 const MOST: usize = 20_000;
@@ -167,7 +167,7 @@ impl<'a> Part<'a> {
                 return (found, false);
             }
             let within = Interval::new(a, b);
-            let width = (b / a).ln();
+            let width = log_ratio(a, b);
             let at = |part: f64| (a.ln() + part * width).exp();
             let middle = at(0.5);
             let slope = self.slope_within(within, middle);

@@ -8,6 +8,7 @@ use crate::friction::{
     Extremum, Formulas, Law, ScaledLaw, StiffnessMaximum, critical_stiffness, positive,
     steady_stress,
 };
+use crate::number::between_in_log;
 
 /// The slip rates from, to where none are given.
 const GRID: (f64, f64) = (1e-3, 1e6);
@@ -142,11 +143,10 @@ pub(super) fn slip_rates(options: &LawOptions, units: &Units) -> Result<Vec<f64>
     if !(2..=MOST_POINTS).contains(&n) {
         return Err(Error::parameter("points", n, "from 2 to 1e7"));
     }
-    let ratio = (to / from).ln();
     let slip_rate = |i| match i {
         0 => from,
         _ if i + 1 == n => to,
-        _ => from * (ratio * i as f64 / (n - 1) as f64).exp(),
+        _ => between_in_log(from, to, i as f64 / (n - 1) as f64),
     };
     Ok((0..n).map(slip_rate).collect())
 }

@@ -1,6 +1,7 @@
 //! The values of a grid along one of its axes.
 
 use crate::error::{Error, Result, option_name};
+use crate::number::between_in_log;
 
 /// More values than this along one axis are a slip of the pen.
 const MOST: usize = 10_000_000;
@@ -135,7 +136,7 @@ impl Range {
         }
         let part = i as f64 / last as f64;
         if self.log {
-            self.from * (part * (self.to / self.from).ln()).exp()
+            between_in_log(self.from, self.to, part)
         } else {
             self.from + part * (self.to - self.from)
         }

@@ -8,7 +8,7 @@ use crate::continuation::{CurvePoint, ZeroProblem};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::friction::{AnyLaw, Formulas, Law, steady_log_activation};
-use crate::number::{Difference, Jet, Real};
+use crate::number::{Difference, Jet, Real, log_ratio};
 use nalgebra::{DMatrix, DVector};
 
 /// Below this z the quotient is its series: the term left out is of the fourth order.
@@ -80,7 +80,7 @@ impl CurveVariables {
     /// u of these rates.
     pub fn unknown(self, law: &AnyLaw, [slow, fast]: [f64; 2]) -> DVector<f64> {
         let ratio = if slow > 0.0 {
-            (fast / slow).ln()
+            log_ratio(slow, fast)
         } else {
             // the slower one, smaller than any double, has healed
             let healed = law.log_strength(law.steady_state(0.0));

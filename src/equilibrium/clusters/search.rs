@@ -8,7 +8,7 @@
 
 use super::cell::{Cell, between_nodes, weighted};
 use super::curve::{FAST, MIDDLE, Rates, SteadyCurve};
-use crate::number::{Interval, Real};
+use crate::number::{Interval, Real, log_ratio};
 
 /// The first cells towards an extremum, in ln x.
 const INNERMOST: f64 = 1e-3;
@@ -164,7 +164,7 @@ impl Run {
 /// The ends of the first cells.
 fn nodes(curve: &SteadyCurve<'_>, low: Interval, high: Interval) -> Vec<Rates<Interval>> {
     let (a, b) = (low.leading(), high.leading());
-    let width = (b / a).ln();
+    let width = log_ratio(a, b);
     let half = 0.5 * width;
     let mut steps = Vec::new();
     let (mut at, mut step) = (0.0, INNERMOST.min(0.1 * half));

@@ -10,6 +10,7 @@ mod difference;
 mod double_double;
 mod interval;
 mod jet;
+mod logarithm;
 pub mod polynomial;
 mod root;
 mod uncertain;
@@ -22,6 +23,7 @@ pub use double_double::DoubleDouble;
 pub(crate) use double_double::two_sum;
 pub use interval::Interval;
 pub use jet::Jet;
+pub use logarithm::{between_in_log, log_ratio};
 pub use root::{bracketed_root, enclosing_radius};
 pub use uncertain::Uncertain;
 
