@@ -4,7 +4,7 @@ use crate::command::{csv, number, object, refused_in_one_line};
 use serde_json::Value;
 use std::process::Command;
 use twinslip::friction::{AnyLaw, Parameters};
-use twinslip::many::{ManyInterfaces, ManyTaylor};
+use twinslip::many::{ManyInterfaces, ManyTaylor, OneOfMany};
 use twinslip::model::Loading;
 
 fn spinodal() -> AnyLaw {
@@ -89,8 +89,11 @@ fn two_that_differ_are_those_of_the_other_engine() {
         AnyLaw::Spinodal(parameters.expect("parameters").spinodal())
     };
     let laws = [
-        (law(100.0, 1e-3, 0.0489), 1.0),
-        (law(80.0, 2e-3, 0.047), 1.5),
+        OneOfMany::from(law(100.0, 1e-3, 0.0489)),
+        OneOfMany {
+            slip_length: 1.5,
+            ..law(80.0, 2e-3, 0.047).into()
+        },
     ];
     let loading = Loading::new(10.0, 0.14).expect("positive");
     let interfaces = ManyInterfaces::new(&laws, loading).expect("laws that age");

@@ -19,9 +19,9 @@ impl PlannedRun for ManyPlan {
 
     fn numerics(&self) -> Value {
         json!({
-            "method": "taylor",
+            "method": self.method.name(),
             "asked": self.asked_method,
-            "order": self.taylor.order(),
+            "order": self.method.order(),
             "rtol": self.rtol,
             "max_steps": self.max_steps,
             "dimension": self.start.1.len() + 1,

@@ -1,8 +1,10 @@
 //! What the interfaces are: each with its own constants, or all alike.
 
-use super::block::{Block, Constants, LANES};
+use super::block::Layout;
+use super::constants::{Constants, Kind, LANES, Lanes, OneOfMany, Single, of};
+use super::share::Share;
 use crate::error::{Error, Result};
-use crate::friction::{AgeingForm, AnyLaw, Law};
+use crate::friction::positive;
 use crate::model::Loading;
 
 /// Interfaces that share the stress, with laws whose state ages.
@@ -22,9 +24,9 @@ use crate::model::Loading;
 /// ```
 #[derive(Debug, Clone, PartialEq)]
 pub struct ManyInterfaces {
-    pub(super) count: usize,
+    pub(super) share: Share,
     pub(super) constants: Vec<Constants>,
-    pub(super) exponential: bool,
+    pub(super) kind: Kind,
     /// V_H and K.
     pub loading: Loading,
 }
@@ -34,108 +36,150 @@ impl ManyInterfaces {
     ///
     /// # Errors
     /// [`Error::Parameter`] for none, and for a law that is not of this kind.
-    pub fn alike(law: &AnyLaw, count: usize, loading: Loading) -> Result<Self> {
-        if count == 0 {
-            return Err(Error::parameter("interfaces", count, "at least 1"));
+    pub fn alike(one: impl Into<OneOfMany>, count: usize, loading: Loading) -> Result<Self> {
+        Self::alike_in(Share::all(count), &one.into(), loading)
+    }
+
+    /// The same, of which this process holds a share.
+    ///
+    /// # Errors
+    /// As [`ManyInterfaces::alike`].
+    pub fn alike_in(share: Share, one: &OneOfMany, loading: Loading) -> Result<Self> {
+        if share.count() == 0 {
+            return Err(Error::parameter("interfaces", 0, "at least 1"));
         }
-        let one = of_lanes([form(law)?; LANES], [1.0; LANES]);
-        let mut constants = vec![one];
-        let beside = count % LANES;
+        let single = Single::new(one)?;
+        let constants = Constants::of([single; LANES]);
+        let held = share.held().len();
+        let beside = held % LANES;
+        let mut all = vec![constants];
         if beside != 0 {
-            constants = vec![one; count.div_ceil(LANES)];
-            let last = &mut constants[count / LANES];
+            all = vec![constants; held.div_ceil(LANES)];
             // What stands beside the last one is no interface.
-            last.factor[beside..].fill(0.0);
+            all[held / LANES].factor[beside..].fill(0.0);
         }
         Ok(ManyInterfaces {
-            count,
-            constants,
-            exponential: form(law)?.exponential,
+            share,
+            constants: all,
+            kind: Kind {
+                exponential: single.exponential,
+                own_stress: single.own_stress(),
+                slip: single.slip,
+            },
             loading,
         })
     }
 
-    /// Each with its law, and its slip length in units of that of the first, in which times and rates are measured too.
+    /// Each as it is.
     ///
     /// # Errors
     /// [`Error::Parameter`] for none, for laws that are not of this kind, and for direct effects that are partly exponential.
-    pub fn new(laws: &[(AnyLaw, f64)], loading: Loading) -> Result<Self> {
-        let Some((first, _)) = laws.first() else {
+    pub fn new(all: &[OneOfMany], loading: Loading) -> Result<Self> {
+        let share = Share::all(all.len());
+        Self::new_in(share, all.iter().copied().map(Ok), loading)
+    }
+
+    /// Of the share that this process holds each as it is, one after the other.
+    ///
+    /// # Errors
+    /// As [`ManyInterfaces::new`], and those of the iterator.
+    pub fn new_in(
+        share: Share,
+        mut held: impl Iterator<Item = Result<OneOfMany>>,
+        loading: Loading,
+    ) -> Result<Self> {
+        if share.count() == 0 {
             return Err(Error::parameter("interfaces", 0, "at least 1"));
-        };
-        let exponential = form(first)?.exponential;
-        let mut constants = Vec::with_capacity(laws.len().div_ceil(LANES));
-        for block in laws.chunks(LANES) {
-            // What stands beside the last one is no interface.
-            let at = |lane: usize| block[lane.min(block.len() - 1)];
-            let mut forms = [form(first)?; LANES];
-            for (lane, one) in forms.iter_mut().enumerate() {
-                *one = form(&at(lane).0)?;
-                if one.exponential != exponential {
-                    let name = at(lane).0.name();
-                    return Err(Error::parameter("law", name, "of one kind for all"));
-                }
-                if lane >= block.len() {
-                    one.gamma0 = 0.0;
-                }
+        }
+        let count = share.held().len();
+        let mut kind: Option<Kind> = None;
+        let mut constants = Vec::with_capacity(count.div_ceil(LANES));
+        let mut lanes: Vec<Single> = Vec::with_capacity(LANES);
+        for i in 0..count {
+            let one = held.next().unwrap_or_else(|| {
+                Err(Error::parameter(
+                    "the number of laws",
+                    i,
+                    format!("{count}"),
+                ))
+            })?;
+            let single = Single::new(&one)?;
+            let kind = kind.get_or_insert(Kind {
+                exponential: single.exponential,
+                own_stress: false,
+                slip: single.slip,
+            });
+            if (single.exponential, single.slip) != (kind.exponential, kind.slip) {
+                let name = one.law.name();
+                return Err(Error::parameter("law", name, "of one kind for all"));
             }
-            let lengths = std::array::from_fn(|lane| at(lane).1);
-            constants.push(of_lanes(forms, lengths));
+            kind.own_stress |= single.own_stress();
+            lanes.push(single);
+            if lanes.len() == LANES || i + 1 == count {
+                // What stands beside the last one is no interface.
+                let mut none = single;
+                none.factor = 0.0;
+                let of_lanes = |lane: usize| lanes.get(lane).copied().unwrap_or(none);
+                constants.push(Constants::of(std::array::from_fn(of_lanes)));
+                lanes.clear();
+            }
         }
         Ok(ManyInterfaces {
-            count: laws.len(),
+            share,
             constants,
-            exponential,
+            kind: kind.unwrap_or(Kind {
+                exponential: false,
+                own_stress: false,
+                slip: false,
+            }),
             loading,
         })
     }
 
     /// How many there are.
     pub fn count(&self) -> usize {
-        self.count
+        self.share.count()
     }
 
-    /// Bytes that a run takes, without rows.
-    pub fn memory(&self) -> usize {
-        self.count.div_ceil(LANES) * size_of::<Block>()
-            + self.constants.len() * size_of::<Constants>()
-            + self.count * size_of::<f64>()
+    /// Which this process holds.
+    pub fn share(&self) -> &Share {
+        &self.share
     }
 
-    /// The blocks at the beginning.
-    pub(super) fn blocks(&self, states: &[f64]) -> Vec<Block> {
-        let all = states.chunks(LANES).enumerate();
-        let block = |(i, states): (usize, &[f64])| {
-            let of = super::block::of(&self.constants, i);
-            Block::at(std::array::from_fn(|lane| {
+    /// Blocks held here.
+    pub(super) fn blocks(&self) -> usize {
+        self.share.held().len().div_ceil(LANES)
+    }
+
+    /// Whether a run can begin in this stress and these states.
+    pub(super) fn checked(&self, stress: f64, states: &[f64]) -> Result<()> {
+        positive("tau in `start`", stress)?;
+        for &psi in states {
+            positive("psi in `start`", psi)?;
+        }
+        let held = self.share.held().len();
+        if states.len() != held {
+            let must = format!("{held}, one for each interface");
+            return Err(Error::parameter("the number of states", states.len(), must));
+        }
+        Ok(())
+    }
+
+    /// Bytes of the constants.
+    pub(super) fn constants_memory(&self) -> usize {
+        self.constants.len() * size_of::<Constants>()
+    }
+
+    /// The rows of all blocks at the beginning, of the states held here.
+    pub(super) fn rows(&self, layout: Layout, states: &[f64]) -> Vec<Lanes> {
+        let mut rows = vec![[0.0; LANES]; layout.rows() * self.blocks()];
+        for (i, states) in states.chunks(LANES).enumerate() {
+            let of = of(&self.constants, i);
+            rows[i * layout.rows()] = std::array::from_fn(|lane| {
                 let psi = states[lane.min(states.len() - 1)];
-                of.rest[lane] + of.slope[lane] * psi
-            }))
-        };
-        all.map(block).collect()
-    }
-}
-
-fn form(law: &AnyLaw) -> Result<AgeingForm> {
-    let ages = law.ageing_form().filter(|_| law.damping() == 0.0);
-    ages.ok_or_else(|| {
-        let what = match law.damping() {
-            0.0 => "one whose state ages: spinodal, bounded, regularised-ageing or dieterich-ruina",
-            _ => "without damping",
-        };
-        Error::parameter("the law of many interfaces", law.name(), what)
-    })
-}
-
-fn of_lanes(forms: [AgeingForm; LANES], lengths: [f64; LANES]) -> Constants {
-    let half = |form: &AgeingForm| if form.exponential { 0.5 } else { 1.0 };
-    Constants {
-        beta: forms.map(|form| form.beta),
-        factor: forms.map(|form| half(&form) * form.gamma0),
-        rest: forms.map(|form| form.strength[0]),
-        slope: forms.map(|form| form.strength[1]),
-        source: forms.map(|form| form.healing[0]),
-        relaxation: forms.map(|form| form.healing[1]),
-        per_length: lengths.map(|length| 1.0 / length),
+                of.strength(self.kind, psi, lane)
+            });
+        }
+        rows
     }
 }

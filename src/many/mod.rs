@@ -6,9 +6,29 @@
 //! whatever the machine's vectors and cores.
 
 mod block;
+mod constants;
+#[cfg(feature = "sundials")]
+mod cvode;
+mod field;
 mod interfaces;
+mod local;
+mod method;
+mod rosenbrock;
+mod share;
+mod state;
+mod step;
 mod taylor;
+mod vectors;
 
 pub use block::Extent;
+pub use constants::OneOfMany;
+#[cfg(feature = "sundials")]
+pub use cvode::ManyCvode;
+pub use field::Slips;
 pub use interfaces::ManyInterfaces;
-pub use taylor::{ManySolution, ManyStep, ManyTaylor};
+pub use method::ManyMethod;
+pub use rosenbrock::ManyRosenbrock;
+pub use share::{Processes, Share};
+pub use state::ManyState;
+pub use step::ManyStep;
+pub use taylor::{ManySolution, ManyTaylor};

@@ -1,19 +1,18 @@
 //! Taylor's method for all interfaces at once.
 
 use super::block::{
-    Advance, Block, Extent, LANES, LastTerms, Look, MOST, NextOrder, larger, of, vectorised,
+    Advance, Extent, LastTerms, Layout, Look, MOST, NextOrder, Shared, larger, look_at,
 };
+use super::constants::{Constants, LANES, Lanes, of};
 use super::interfaces::ManyInterfaces;
+use super::share::CHUNK;
+use super::step::ManyStep;
+use super::vectors::Vectorised;
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::number::{DoubleDouble, polynomial::evaluate};
 use rayon::prelude::*;
 
-/// Blocks whose slip rates are added up together: on this, and on nothing that differs from machine to machine, the digits of sums
-/// depend.
-const CHUNK: usize = 64;
-/// Interfaces from which on several cores pay.
-const MANY: usize = 8192;
 /// The first unit of time: a step follows from it.
 const FIRST: f64 = 1e-3;
 
@@ -50,12 +49,22 @@ impl ManyTaylor {
         })
     }
 
+    /// Bytes that a run takes, without rows.
+    pub fn memory(&self, interfaces: &ManyInterfaces) -> usize {
+        let layout = Layout {
+            order: self.order,
+            kind: interfaces.kind,
+        };
+        let rows = interfaces.blocks() * layout.rows() * size_of::<Lanes>();
+        rows + interfaces.constants_memory() + interfaces.share.held().len() * size_of::<f64>()
+    }
+
     /// The order of its series.
     pub fn order(&self) -> usize {
         self.order
     }
 
-    /// From (tau, psi of every interface) at time 0 on, until a time, or until the observer says `false`; it sees every step.
+    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every step.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a stress or states that are not positive, or too few of these; [`Error::StepTooSmall`],
@@ -65,26 +74,24 @@ impl ManyTaylor {
         interfaces: &'a ManyInterfaces,
         (stress, states): (f64, &[f64]),
         until: f64,
-        observer: &mut dyn FnMut(&ManyStep<'_>) -> Result<bool>,
+        observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
     ) -> Result<ManySolution<'a>> {
-        positive("tau in `start`", stress)?;
-        for &psi in states {
-            positive("psi in `start`", psi)?;
-        }
-        if states.len() != interfaces.count {
-            let must = format!("{}, one for each interface", interfaces.count);
-            return Err(Error::parameter("the number of states", states.len(), must));
-        }
+        interfaces.checked(stress, states)?;
+        let layout = Layout {
+            order: self.order,
+            kind: interfaces.kind,
+        };
         let mut solution = ManySolution {
             interfaces,
-            blocks: interfaces.blocks(states),
-            order: self.order,
+            rows: interfaces.rows(layout, states),
+            layout,
             time: DoubleDouble::ZERO,
             stress: DoubleDouble::from(stress),
             series: [0.0; MOST + 1],
             rates: [0.0; MOST],
             unit: FIRST,
             steps: 0,
+            sums: Vec::new(),
         };
         solution.series[0] = stress;
         while solution.time.hi() < until {
@@ -111,7 +118,7 @@ impl ManyTaylor {
                     h: if length.is_nan() { 0.0 } else { length },
                 });
             }
-            let goes_on = observer(&ManyStep {
+            let goes_on = observer(&TaylorStep {
                 solution: &solution,
                 length,
                 end: end.hi(),
@@ -130,8 +137,9 @@ impl ManyTaylor {
 #[derive(Debug, Clone)]
 pub struct ManySolution<'a> {
     interfaces: &'a ManyInterfaces,
-    blocks: Vec<Block>,
-    order: usize,
+    /// Of every block those that its layout says.
+    rows: Vec<Lanes>,
+    layout: Layout,
     time: DoubleDouble,
     stress: DoubleDouble,
     /// Of tau, in `unit`.
@@ -140,6 +148,8 @@ pub struct ManySolution<'a> {
     rates: [f64; MOST],
     unit: f64,
     steps: usize,
+    /// Of the chunks, while an order is made.
+    sums: Vec<f64>,
 }
 
 impl ManySolution<'_> {
@@ -153,18 +163,54 @@ impl ManySolution<'_> {
         self.stress.hi()
     }
 
-    /// psi of an interface there.
+    /// psi there of an interface that is held here.
     ///
     /// # Panics
-    /// Where there are fewer interfaces.
+    /// Where it is not.
     pub fn state(&self, interface: usize) -> f64 {
-        let (block, lane) = (interface / LANES, interface % LANES);
-        self.blocks[block].state(of(&self.interfaces.constants, block), lane)
+        let (block, lane) = self.place(interface);
+        let rows = self.block(block);
+        of(&self.interfaces.constants, block).state(self.layout.kind, rows[0][lane], lane)
     }
 
     /// Steps so far.
     pub fn steps(&self) -> usize {
         self.steps
+    }
+
+    /// The block and the lane of an interface.
+    fn place(&self, interface: usize) -> (usize, usize) {
+        let here = interface - self.interfaces.share.held().start;
+        (here / LANES, here % LANES)
+    }
+
+    fn block(&self, block: usize) -> &[Lanes] {
+        let rows = self.layout.rows();
+        &self.rows[block * rows..][..rows]
+    }
+
+    /// The rows of a chunk.
+    fn chunk(&self, chunk: usize) -> &[Lanes] {
+        let rows = CHUNK * self.layout.rows();
+        let begin = chunk * rows;
+        &self.rows[begin..self.rows.len().min(begin + rows)]
+    }
+
+    /// Works on the rows of every chunk, with its number.
+    fn on_chunks<T: Send>(
+        &mut self,
+        made: &mut Vec<T>,
+        work: impl Fn(usize, &mut [Lanes]) -> T + Send + Sync,
+    ) {
+        let rows = CHUNK * self.layout.rows();
+        let each = |(chunk, rows): (usize, &mut [Lanes])| work(chunk, rows);
+        if self.interfaces.share.is_large() {
+            let chunks = self.rows.par_chunks_mut(rows).enumerate();
+            chunks.map(each).collect_into_vec(made);
+        } else {
+            made.clear();
+            made.extend(self.rows.chunks_mut(rows).enumerate().map(each));
+        }
     }
 
     /// Makes the series from here on, in a unit of time in which they have doubles, and tells the longest step that the tolerance
@@ -189,12 +235,13 @@ impl ManySolution<'_> {
     /// The series of all variables from here on.
     fn expand(&mut self) {
         let (mut activation, mut other) = ([0.0; MOST], [0.0; MOST]);
-        let loading = self.interfaces.loading;
-        for k in 0..self.order {
+        let interfaces = self.interfaces;
+        let (loading, kind) = (interfaces.loading, self.layout.kind);
+        for k in 0..self.layout.order {
             // s = sinh tau, or e^tau, and its derivative in tau.
             let tau = self.series[0];
             if k == 0 {
-                (activation[0], other[0]) = match self.interfaces.exponential {
+                (activation[0], other[0]) = match kind.exponential {
                     true => (tau.exp(), tau.exp()),
                     false => (tau.sinh(), tau.cosh()),
                 };
@@ -202,11 +249,11 @@ impl ManySolution<'_> {
                 for j in 1..=k {
                     let slope = j as f64 * self.series[j] / k as f64;
                     activation[k] += slope * other[k - j];
-                    if !self.interfaces.exponential {
+                    if !kind.exponential {
                         other[k] += slope * activation[k - j];
                     }
                 }
-                if self.interfaces.exponential {
+                if kind.exponential {
                     other[k] = activation[k];
                 }
             }
@@ -220,36 +267,40 @@ impl ManySolution<'_> {
 
     /// The sum of the k-th coefficients of all slip rates.
     fn total(&mut self, activation: &[f64; MOST], k: usize) -> f64 {
-        let unit = self.unit;
-        let constants = &self.interfaces.constants;
-        let add = |(at, blocks): (usize, &mut [Block])| {
-            vectorised(NextOrder {
-                constants: chunk(constants, at, blocks.len()),
-                blocks,
-                activation,
-                k,
-                unit,
-            })
+        let (layout, interfaces) = (self.layout, self.interfaces);
+        let stress = self.series;
+        let shared = Shared {
+            stress: &stress,
+            activation,
+            unit: self.unit,
         };
-        if self.interfaces.count >= MANY {
-            let chunks = self.blocks.par_chunks_mut(CHUNK).enumerate();
-            let sums: Vec<f64> = chunks.map(add).collect();
-            return sums.iter().sum();
-        }
-        self.blocks.chunks_mut(CHUNK).enumerate().map(add).sum()
+        let mut sums = std::mem::take(&mut self.sums);
+        self.on_chunks(&mut sums, |at, blocks| {
+            NextOrder {
+                constants: chunk(&interfaces.constants, at),
+                blocks,
+                layout,
+                shared,
+                k,
+            }
+            .vectorised()
+        });
+        let total = interfaces.share.sum(&sums);
+        self.sums = sums;
+        total
     }
 
     /// The longest step that the tolerance allows, by the last two terms of all series (Jorba and Zou 2005).
     fn longest(&self, tolerance: f64) -> f64 {
-        let order = self.order;
-        let look = |blocks: &[Block]| vectorised(LastTerms { blocks, order });
+        let layout = self.layout;
+        let order = layout.order;
+        let share = &self.interfaces.share;
         let both = |a: [f64; 2], b: [f64; 2]| [larger(a[0], b[0]), larger(a[1], b[1])];
-        let most = if self.interfaces.count >= MANY {
-            let chunks = self.blocks.par_chunks(CHUNK);
-            chunks.map(look).reduce(|| [0.0; 2], both)
-        } else {
-            self.blocks.chunks(CHUNK).map(look).fold([0.0; 2], both)
-        };
+        let of_chunks = share.by_chunks(|at| {
+            let blocks = self.chunk(at);
+            LastTerms { blocks, layout }.vectorised()
+        });
+        let most = share.largest(of_chunks.into_iter().fold([0.0; 2], both));
         let size = 1.0 + self.series[0].abs();
         let own = [order, order - 1].map(|k| self.series[k].abs() / size);
         let most = both(most, own);
@@ -263,14 +314,11 @@ impl ManySolution<'_> {
     }
 
     fn advance(&mut self, length: f64) {
-        let (order, by) = (self.order, length / self.unit);
-        let go = |blocks: &mut [Block]| vectorised(Advance { blocks, order, by });
-        if self.interfaces.count >= MANY {
-            self.blocks.par_chunks_mut(CHUNK).for_each(go);
-        } else {
-            self.blocks.chunks_mut(CHUNK).for_each(go);
-        }
-        let change = evaluate(&self.series[1..=order], by) * by;
+        let (layout, by) = (self.layout, length / self.unit);
+        self.on_chunks(&mut Vec::new(), |_, blocks| {
+            Advance { blocks, layout, by }.vectorised();
+        });
+        let change = evaluate(&self.series[1..=layout.order], by) * by;
         self.stress = self.stress + change;
         self.series[0] = self.stress.hi();
         if length > 0.0 {
@@ -281,31 +329,21 @@ impl ManySolution<'_> {
 }
 
 /// The constants of the blocks of a chunk: one for all, or each its own.
-fn chunk<T>(all: &[T], at: usize, count: usize) -> &[T] {
+fn chunk(all: &[Constants], chunk: usize) -> &[Constants] {
     match all {
         [_] => all,
-        _ => &all[at * CHUNK..][..count],
+        _ => &all[chunk * CHUNK..],
     }
 }
 
-/// A step, from its beginning to its end.
-pub struct ManyStep<'a> {
+/// A step by the series at its beginning.
+struct TaylorStep<'a> {
     solution: &'a ManySolution<'a>,
     length: f64,
     end: f64,
 }
 
-impl ManyStep<'_> {
-    /// The time at its beginning.
-    pub fn begin(&self) -> f64 {
-        self.solution.time.hi()
-    }
-
-    /// The time at its end.
-    pub fn end(&self) -> f64 {
-        self.end
-    }
-
+impl TaylorStep<'_> {
     /// How many units a time is after the beginning.
     fn units(&self, time: f64) -> f64 {
         let since = if time == self.end {
@@ -314,80 +352,6 @@ impl ManyStep<'_> {
             (DoubleDouble::from(time) - self.solution.time).hi()
         };
         since / self.solution.unit
-    }
-
-    /// tau at a time of the step.
-    pub fn stress(&self, time: f64) -> f64 {
-        let series = &self.solution.series[1..=self.solution.order];
-        let units = self.units(time);
-        (self.solution.stress + evaluate(series, units) * units).hi()
-    }
-
-    /// s(tau) without its factor.
-    fn activation(&self, time: f64) -> f64 {
-        let tau = self.stress(time);
-        match self.solution.interfaces.exponential {
-            true => tau.exp(),
-            false => tau.sinh(),
-        }
-    }
-
-    /// What all interfaces do at a time of the step; `sliding` counts those that are faster than this.
-    pub fn extent(&self, time: f64, faster_than: f64) -> Extent {
-        let solution = self.solution;
-        let (later, activation) = (self.units(time), self.activation(time));
-        let constants = &solution.interfaces.constants;
-        let look = |(at, blocks): (usize, &[Block])| {
-            vectorised(Look {
-                constants: chunk(constants, at, blocks.len()),
-                blocks,
-                order: solution.order,
-                later,
-                activation,
-                faster_than,
-            })
-        };
-        let all: Vec<Extent> = if solution.interfaces.count >= MANY {
-            let chunks = solution.blocks.par_chunks(CHUNK).enumerate();
-            chunks.map(look).collect()
-        } else {
-            solution
-                .blocks
-                .chunks(CHUNK)
-                .enumerate()
-                .map(look)
-                .collect()
-        };
-        all.into_iter().fold(Extent::NONE, Extent::and)
-    }
-
-    /// psi and v of an interface at a time of the step.
-    ///
-    /// # Panics
-    /// Where there are fewer interfaces, as the next.
-    pub fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
-        let (at, lane) = (interface / LANES, interface % LANES);
-        let block = &self.solution.blocks[at];
-        let of = of(&self.solution.interfaces.constants, at);
-        let later = self.units(time);
-        let terms = block.strength[..=self.solution.order].iter().rev();
-        let strength = terms.fold(0.0, |sum, term| sum * later + term[lane]);
-        let psi = (strength - of.rest[lane]) / of.slope[lane];
-        let v = self.activation(time) * of.factor[lane] * strength.powf(-of.beta[lane]);
-        [psi, v]
-    }
-
-    /// How far an interface slips from the beginning of the step to a time of it.
-    pub fn slip(&self, interface: usize, time: f64) -> f64 {
-        let (at, lane) = (interface / LANES, interface % LANES);
-        let rates = &self.solution.blocks[at].rate[..self.solution.order];
-        self.integral(rates.iter().map(|rate| rate[lane]), time)
-    }
-
-    /// The same of all together.
-    pub fn slip_of_all(&self, time: f64) -> f64 {
-        let rates = &self.solution.rates[..self.solution.order];
-        self.integral(rates.iter().copied(), time)
     }
 
     /// The integral of a series, term by term.
@@ -400,5 +364,59 @@ impl ManyStep<'_> {
         let terms = series.enumerate().rev();
         let mean = terms.fold(0.0, |sum, (k, term)| sum * later + term / (k + 1) as f64);
         mean * later * self.solution.unit
+    }
+}
+
+impl ManyStep for TaylorStep<'_> {
+    fn begin(&self) -> f64 {
+        self.solution.time.hi()
+    }
+
+    fn end(&self) -> f64 {
+        self.end
+    }
+
+    fn stress(&self, time: f64) -> f64 {
+        let series = &self.solution.series[1..=self.solution.layout.order];
+        let units = self.units(time);
+        (self.solution.stress + evaluate(series, units) * units).hi()
+    }
+
+    fn extent(&self, time: f64, faster_than: f64) -> Extent {
+        let solution = self.solution;
+        let (later, stress) = (self.units(time), self.stress(time));
+        let constants = &solution.interfaces.constants;
+        let share = &solution.interfaces.share;
+        let of_chunks = share.by_chunks(|at| {
+            Look {
+                constants: chunk(constants, at),
+                blocks: solution.chunk(at),
+                layout: solution.layout,
+                later,
+                stress,
+                faster_than,
+            }
+            .vectorised()
+        });
+        share.extent(&of_chunks)
+    }
+
+    fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
+        let solution = self.solution;
+        let (block, lane) = solution.place(interface);
+        let of = of(&solution.interfaces.constants, block);
+        let at = (self.units(time), self.stress(time));
+        look_at((solution.block(block), solution.layout), (of, lane), at)
+    }
+
+    fn slip(&self, interface: usize, time: f64) -> f64 {
+        let (block, lane) = self.solution.place(interface);
+        let rates = self.solution.layout.rate(self.solution.block(block));
+        self.integral(rates.iter().map(|rate| rate[lane]), time)
+    }
+
+    fn slip_of_all(&self, time: f64) -> f64 {
+        let rates = &self.solution.rates[..self.solution.layout.order];
+        self.integral(rates.iter().copied(), time)
     }
 }

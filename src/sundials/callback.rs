@@ -18,9 +18,9 @@ use std::ptr;
 use sundials_sys::{N_Vector, SUNMatrix};
 
 /// What a callback tells C.
-const GOOD: c_int = 0;
+pub(super) const GOOD: c_int = 0;
 const RECOVERABLE: c_int = 1;
-const FATAL: c_int = -1;
+pub(super) const FATAL: c_int = -1;
 
 /// Functions whose zeros are events, evaluated at (t, y) into a slice.
 pub type Events<'a, const N: usize> = &'a dyn Fn(f64, &State<N>, &mut [f64]);
@@ -96,7 +96,7 @@ pub(super) struct Guard {
 impl Guard {
     /// Runs user code; `None` if it panicked, now or before: once a panic is pending no further user code runs.
     #[inline(always)]
-    fn run<T>(&self, code: impl FnOnce() -> T) -> Option<T> {
+    pub(super) fn run<T>(&self, code: impl FnOnce() -> T) -> Option<T> {
         if self.panicked.get() {
             return None;
         }
@@ -113,7 +113,7 @@ impl Guard {
 
     /// Tells C that a value is not finite: another, shorter step may help.
     #[cold]
-    fn refuse(&self, what: &'static str) -> c_int {
+    pub(super) fn refuse(&self, what: &'static str) -> c_int {
         self.not_finite.set(Some(what));
         RECOVERABLE
     }

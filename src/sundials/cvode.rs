@@ -77,7 +77,7 @@ const STANDSTILL: usize = 200;
 pub(super) struct CvodeMemory(NonNull<c_void>);
 
 impl CvodeMemory {
-    fn new(method: MultistepMethod, context: &Context) -> Result<Self> {
+    pub(super) fn new(method: MultistepMethod, context: &Context) -> Result<Self> {
         let lmm = match method {
             MultistepMethod::Bdf => sundials_sys::CV_BDF,
             MultistepMethod::Adams => sundials_sys::CV_ADAMS,

@@ -15,7 +15,7 @@ use sundials_sys::{
 };
 
 /// SUNLS_LUFACT_FAIL: positive, hence recoverable with another step.
-const SINGULAR: c_int = 808;
+pub(super) const SINGULAR: c_int = 808;
 
 /// The content of our matrices.
 pub(super) struct Newton<const N: usize> {
@@ -29,6 +29,12 @@ pub(super) struct Newton<const N: usize> {
 pub(super) struct Matrix(NonNull<sundials_sys::_generic_SUNMatrix>);
 
 impl Matrix {
+    /// # Safety
+    /// A live matrix that nothing else owns.
+    pub(super) unsafe fn owned(a: NonNull<sundials_sys::_generic_SUNMatrix>) -> Self {
+        Matrix(a)
+    }
+
     /// SUNDIALS's dense matrix.
     pub fn dense<const N: usize>(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer than its matrix.
@@ -63,6 +69,12 @@ impl Drop for Matrix {
 pub(super) struct LinearSolver(NonNull<sundials_sys::_generic_SUNLinearSolver>);
 
 impl LinearSolver {
+    /// # Safety
+    /// A live solver that nothing else owns.
+    pub(super) unsafe fn owned(s: NonNull<sundials_sys::_generic_SUNLinearSolver>) -> Self {
+        LinearSolver(s)
+    }
+
     /// SUNDIALS's dense direct solver.
     pub fn dense(context: &Context, y: &NVector, a: &Matrix) -> Result<Self> {
         // SAFETY: live objects of one context, which the solver keeps longer.

@@ -16,6 +16,7 @@ mod callback;
 mod cvode;
 mod events;
 mod kinsol;
+mod large;
 mod linear_solver;
 mod native;
 mod output;
@@ -26,6 +27,7 @@ mod vector;
 pub use callback::{Events, Forcing, Problem};
 pub use cvode::{Arrival, Cvode, Mode, MultistepMethod, Operations, Reason};
 pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residual, Strategy};
+pub(crate) use large::{LargeCvode, LinearTime};
 
 pub use sensitivity::{ErrorControl, Sensitivity, SensitivityMethod};
 

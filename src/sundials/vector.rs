@@ -61,6 +61,12 @@ pub(super) unsafe fn write<S: Storage, const N: usize>(v: N_Vector, y: &State<N>
 pub(super) struct NVector(NonNull<sundials_sys::_generic_N_Vector>);
 
 impl NVector {
+    /// # Safety
+    /// A live vector that nothing else owns.
+    pub(super) unsafe fn owned(v: NonNull<sundials_sys::_generic_N_Vector>) -> Self {
+        NVector(v)
+    }
+
     /// A vector of SUNDIALS's own, zero.
     pub fn serial<const N: usize>(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer than its vectors.

@@ -2,18 +2,16 @@
 
 use super::control::Controller;
 use crate::error::{Error, Result};
-use crate::field::{State, VectorField};
-use crate::integrate::{Control, Work, step_underflow};
+use crate::integrate::{Control, Work};
 
 /// Something that can be moved by a step, and stays where it is until the step is accepted.
-pub(super) trait Steppable<const N: usize> {
+pub(crate) trait Steppable {
     /// Order of the error estimate in h, that is order of the lower of the two solutions, plus one.
-    const ERROR_ORDER: u32;
+    fn error_order(&self) -> u32;
 
-    fn field(&self) -> &dyn VectorField<N>;
     fn work(&mut self) -> &mut Work;
-    /// Where it is.
-    fn state(&self) -> &State<N>;
+    /// Why steps of about h no longer change t.
+    fn underflow(&self, t: f64, h: f64) -> Error;
     /// Tries a step; the norm of its error, or `None` if something was not finite.
     fn attempt(&mut self, h: f64) -> Option<f64>;
     /// |J| where it is, and where the tried step ends, which must have been looked at.
@@ -26,7 +24,7 @@ pub(super) trait Steppable<const N: usize> {
 
 /// From `t.0` to `t.1` with the first step `h`, signed; `seen` is told of each step before the carried advances.
 #[inline]
-pub(super) fn drive<M: Steppable<N>, const N: usize>(
+pub(crate) fn drive<M: Steppable>(
     carried: &mut M,
     t: (f64, f64),
     mut h: f64,
@@ -34,7 +32,7 @@ pub(super) fn drive<M: Steppable<N>, const N: usize>(
     mut seen: impl FnMut(&M, f64, f64) -> Result<Control>,
 ) -> Result<()> {
     let (mut now, end) = t;
-    let mut controller = Controller::new(M::ERROR_ORDER);
+    let mut controller = Controller::new(carried.error_order());
     let mut tried = 0;
     let mut refused = None;
     while now != end {
@@ -47,7 +45,7 @@ pub(super) fn drive<M: Steppable<N>, const N: usize>(
         let step = next - now;
         // Nothing, or rounded up again to what was just refused: no shorter step can be added to t.
         if step == 0.0 || refused == Some(step) || !step.is_finite() {
-            return Err(step_underflow(carried.field(), now, h, carried.state()));
+            return Err(carried.underflow(now, h));
         }
         let error = carried.attempt(step);
         let accepted = error.is_some_and(|error| error <= 1.0);

@@ -15,9 +15,9 @@
 //! Such a variable is better eliminated by it.
 
 pub(crate) mod control;
-mod drive;
+pub(crate) mod drive;
 pub(crate) mod factors;
-mod stages;
+pub(crate) mod stages;
 mod tangent;
 mod trajectory;
 

@@ -74,7 +74,7 @@ impl<const N: usize> Linearisation<N> {
 }
 
 /// The error estimate is the difference of the two solutions: it is of the order of the lower one, plus one.
-pub(super) const fn error_order(tableau: &Tableau) -> u32 {
+pub(crate) const fn error_order(tableau: &Tableau) -> u32 {
     if tableau.order < tableau.embedded_order {
         tableau.order + 1
     } else {

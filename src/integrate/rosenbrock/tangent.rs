@@ -12,9 +12,10 @@ use super::control::error_norm;
 use super::drive::Steppable;
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
+use crate::error::Error;
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::tableau::MAX_STAGES;
-use crate::integrate::{Tolerances, Work};
+use crate::integrate::{Tolerances, Work, step_underflow};
 use std::marker::PhantomData;
 
 /// f, J, and D2f(y)[e_b, .] for every b at one state.
@@ -145,19 +146,17 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
     }
 }
 
-impl<S: Scheme, const N: usize> Steppable<N> for Bundle<'_, S, N> {
-    const ERROR_ORDER: u32 = error_order(&S::TABLEAU);
-
-    fn field(&self) -> &dyn VectorField<N> {
-        self.field
+impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
+    fn error_order(&self) -> u32 {
+        const { error_order(&S::TABLEAU) }
     }
 
     fn work(&mut self) -> &mut Work {
         self.work
     }
 
-    fn state(&self) -> &State<N> {
-        &self.y
+    fn underflow(&self, t: f64, h: f64) -> Error {
+        step_underflow(self.field, t, h, &self.y)
     }
 
     #[inline]

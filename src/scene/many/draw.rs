@@ -5,13 +5,31 @@ use crate::scene::options::SlabOptions;
 use crate::sweep::RandomStart;
 
 /// What may be drawn.
-const NAMES: [&str; 5] = [
+const NAMES: [&str; 7] = [
     "healing_time",
     "residual_strength",
+    "direct_effect",
     "evolution_effect",
     "reference_friction",
     "slip_length",
+    "normal_stress",
 ];
+
+/// What an interface has in units of the nominal ones.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Drawn {
+    pub slip_length: f64,
+    pub normal_stress: f64,
+}
+
+impl Default for Drawn {
+    fn default() -> Self {
+        Drawn {
+            slip_length: 1.0,
+            normal_stress: 1.0,
+        }
+    }
+}
 
 /// A constant that each interface has of its own, equally likely anywhere between two values or, by logarithm, in any part of their
 /// ratio.
@@ -65,10 +83,10 @@ impl Draw {
     }
 
     /// Gives the options of an interface its next value.
-    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, length: &mut f64) {
+    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, drawn: &mut Drawn) {
         let value = if self.by_logarithm {
-            let drawn = random.between((self.from.ln(), self.to.ln())).exp();
-            drawn.clamp(self.from, self.to)
+            let value = random.between((self.from.ln(), self.to.ln())).exp();
+            value.clamp(self.from, self.to)
         } else {
             random.between((self.from, self.to))
         };
@@ -77,7 +95,9 @@ impl Draw {
             "residual_strength" => slab.residual_strength = Some(value),
             "evolution_effect" => slab.evolution_effect = Some(value),
             "reference_friction" => slab.reference_friction = Some(value),
-            _ => *length = value,
+            "direct_effect" => slab.direct_effect = Some(value),
+            "slip_length" => drawn.slip_length = value,
+            _ => drawn.normal_stress = value,
         }
     }
 }

@@ -1,17 +1,23 @@
 //! A run of many interfaces from options: what they are, where they start, and what rows hold.
 
-use super::draw::Draw;
+use super::draw::{Draw, Drawn};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
 use crate::integrate::Choice;
-use crate::many::{Extent, ManyInterfaces, ManyTaylor};
+#[cfg(feature = "sundials")]
+use crate::many::ManyCvode;
+use crate::many::{
+    Extent, ManyInterfaces, ManyMethod, ManyRosenbrock, ManyTaylor, OneOfMany, Slips,
+};
 use crate::model::Loading;
 use crate::scene::column::Column;
-use crate::scene::options::{IntegrateOptions, ModelOptions, SlabOptions};
+use crate::scene::options::{IntegrateOptions, ModelOptions, NumericsOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, Sampling, USUAL_START, sampling, until};
 use crate::scene::system::{Described, HEALING_TIME};
 use crate::scene::text::SPREAD;
 use crate::scene::units::{Quantity, Units};
+#[cfg(feature = "sundials")]
+use crate::sundials::MultistepMethod;
 use crate::sweep::RandomStart;
 use serde_json::{Map, Value, json};
 
@@ -33,7 +39,9 @@ pub struct ManyPlan {
     /// Whether the run is drawn.
     pub picture: bool,
     /// The method.
-    pub taylor: ManyTaylor,
+    pub method: ManyMethod,
+    /// The slips that columns are of.
+    pub slips: Slips,
     /// The method's name as it was asked for.
     pub asked_method: String,
     /// The tolerance.
@@ -91,23 +99,27 @@ impl ManyPlan {
         let loading = Loading::new(driving, needed("stiffness", model.stiffness)?)?;
         let draws = options.draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
-        let laws = laws(&model.slab, (&draws, options.seed), count)?;
-        let interfaces = match &laws[..] {
-            [(law, _)] => ManyInterfaces::alike(law, count, loading)?,
-            _ => ManyInterfaces::new(&laws, loading)?,
+        let all = interfaces(&model.slab, (&draws, options.seed), count)?;
+        let interfaces = match &all[..] {
+            [one] => ManyInterfaces::alike(*one, count, loading)?,
+            _ => ManyInterfaces::new(&all, loading)?,
         };
-        let start = start(options.start.as_deref(), &laws, (count, driving))?;
+        let start = start(options.start.as_deref(), &all, (count, driving))?;
         let units = Units::none();
         let until = until(options)?;
         let (columns, watched) = columns(options.columns.as_deref(), count)?;
-        let method = Choice::named(&options.numerics.method)?;
-        if !matches!(method, Choice::Auto | Choice::Taylor) {
-            return Err(Error::Input(format!(
-                "`method` {}: many interfaces are integrated by taylor",
-                method.name()
-            )));
-        }
-        let taylor = ManyTaylor::new(options.numerics.rtol, options.numerics.max_steps)?;
+        let method = method(&options.numerics)?;
+        let picture = options.plot.is_some();
+        let slips = Slips {
+            of_all: picture || columns.iter().any(|column| column.name == "slip"),
+            of: { watched.iter().copied() }
+                .filter(|i| {
+                    columns
+                        .iter()
+                        .any(|column| column.name == format!("slip_{}", i + 1))
+                })
+                .collect(),
+        };
         Ok(ManyPlan {
             echo: echo(&model.slab, (count, loading), (&draws, options.seed)),
             interfaces,
@@ -116,8 +128,9 @@ impl ManyPlan {
             sampling: sampling(options, &units, until)?,
             columns,
             watched,
-            picture: options.plot.is_some(),
-            taylor,
+            picture,
+            method,
+            slips,
             asked_method: options.numerics.method.clone(),
             rtol: options.numerics.rtol,
             max_steps: options.numerics.max_steps,
@@ -144,19 +157,30 @@ impl ManyPlan {
         format!(
             "plan of this run
   interfaces        {}, under one stress
-  method            taylor, order {}, all of them at once
+  method            {}, order {}, all of them at once
   tolerance         {:e} of every psi and of 1 + |tau|, at most {} steps
   memory            {} MB
   trajectory        {rows}
   slips             {}",
             crate::error::count(count),
-            self.taylor.order(),
+            self.method.name(),
+            match self.method {
+                ManyMethod::Taylor(taylor) => taylor.order().to_string(),
+                ManyMethod::Rosenbrock(_) => format!(
+                    "{}, linear systems with an arrow matrix",
+                    self.method.order()
+                ),
+                #[cfg(feature = "sundials")]
+                ManyMethod::Cvode(_) => "1 to 5, linear systems with an arrow matrix".to_owned(),
+            },
             self.rtol,
             crate::error::count(self.max_steps),
-            crate::error::count(self.interfaces.memory() / 1_000_000),
-            match self.watched.len() {
-                0 => "of all together, term by term".to_owned(),
-                n => format!("of all together and of {n} interfaces, term by term"),
+            crate::error::count(self.method.memory(&self.interfaces) / 1_000_000),
+            match (self.slips.of_all, self.slips.of.len()) {
+                (false, 0) => "none".to_owned(),
+                (true, 0) => "of all together".to_owned(),
+                (false, n) => format!("of {n} interfaces"),
+                (true, n) => format!("of all together and of {n} interfaces"),
             }
         )
     }
@@ -175,24 +199,18 @@ impl Described for ManyPlan {
 /// What many interfaces do not have.
 fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
     let slab = &model.slab;
-    let set = |name: &str| slab.text.set.iter().any(|set| set.starts_with(name));
     let numbered = |set: &String| {
         let name = set.split('=').next().unwrap_or_default();
         let index = name.rsplit('_').next().unwrap_or_default();
         !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
     };
-    let asked: [(&str, bool, &str); 7] = [
+    let asked: [(&str, bool, &str); 6] = [
         (
             "law",
             slab.law_file().is_some(),
             "from a file can have at most 7 interfaces that move on their own",
         ),
         ("si", slab.si, "many interfaces are computed without units"),
-        (
-            "damping",
-            slab.damping.is_some_and(|eta| eta != 0.0) || set("damping"),
-            "many interfaces have none yet",
-        ),
         (
             "program",
             options.program.is_some(),
@@ -220,38 +238,65 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
     }
 }
 
-/// The law and the slip length of each; one alone where all are equal.
-fn laws(
+/// The method of that name.
+fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
+    let (rtol, max_steps) = (numerics.rtol, numerics.max_steps);
+    Ok(match Choice::named(&numerics.method)? {
+        Choice::Auto | Choice::Taylor => ManyMethod::Taylor(ManyTaylor::new(rtol, max_steps)?),
+        Choice::Rosenbrock(method) => {
+            ManyMethod::Rosenbrock(ManyRosenbrock::new(method, rtol, max_steps)?)
+        }
+        #[cfg(feature = "sundials")]
+        Choice::Cvode(MultistepMethod::Bdf) => ManyMethod::Cvode(ManyCvode::new(rtol, max_steps)?),
+        #[cfg(feature = "sundials")]
+        Choice::Cvode(MultistepMethod::Adams) => {
+            return Err(Error::Input(format!(
+                "`method` {}: many interfaces are integrated by taylor, a Rosenbrock method or cvode-bdf",
+                numerics.method
+            )));
+        }
+    })
+}
+
+/// Each interface; one alone where all are equal.
+fn interfaces(
     slab: &SlabOptions,
     (draws, seed): (&[Draw], u64),
     count: usize,
-) -> Result<Vec<(AnyLaw, f64)>> {
-    let law = |slab: &SlabOptions| {
-        let healing_time = slab.healing_time.unwrap_or(HEALING_TIME);
-        let parameters = Parameters::new(slab.a(), slab.b(), slab.a_v(), healing_time, slab.c())?;
-        AnyLaw::named(&slab.law, parameters)
+) -> Result<Vec<OneOfMany>> {
+    let damping = slab.damping.unwrap_or(0.0);
+    let one = |own: &SlabOptions, drawn: Drawn| {
+        let healing_time = own.healing_time.unwrap_or(HEALING_TIME);
+        let parameters = Parameters::new(own.a(), own.b(), own.a_v(), healing_time, own.c())?;
+        Ok(OneOfMany {
+            law: AnyLaw::named(&own.law, parameters)?,
+            damping,
+            slip_length: drawn.slip_length,
+            // both in units of the nominal a sigma
+            stress_factor: slab.a() / (own.a() * drawn.normal_stress),
+        })
     };
     if draws.is_empty() {
-        return Ok(vec![(law(slab)?, 1.0)]);
+        return Ok(vec![one(slab, Drawn::default())?]);
     }
     // A stream for each constant: what one draws does not depend on the others.
     let mut streams: Vec<RandomStart> = (1..=draws.len())
         .map(|stream| RandomStart::new(seed, stream))
         .collect();
-    let mut one = |_| {
-        let (mut own, mut length) = (slab.clone(), 1.0);
+    let mut next = |_| {
+        let (mut own, mut drawn) = (slab.clone(), Drawn::default());
         for (draw, random) in draws.iter().zip(&mut streams) {
-            draw.put(random, &mut own, &mut length);
+            draw.put(random, &mut own, &mut drawn);
         }
-        Ok((law(&own)?, length))
+        one(&own, drawn)
     };
-    (0..count).map(&mut one).collect()
+    (0..count).map(&mut next).collect()
 }
 
 /// tau and psi of each, as `--start` gives them.
 fn start(
     text: Option<&str>,
-    laws: &[(AnyLaw, f64)],
+    all: &[OneOfMany],
     (count, driving): (usize, f64),
 ) -> Result<(f64, Vec<f64>)> {
     let text = text.unwrap_or(SPREAD);
@@ -265,15 +310,16 @@ fn start(
         number.ok_or_else(unreadable)
     };
     let rate = driving / count as f64;
-    let law = |i: usize| &laws[i.min(laws.len() - 1)];
-    let steady = |i: usize| {
-        let (law, length) = law(i);
-        law.steady_state(rate / length).ln()
-    };
     let near = |moved: &mut dyn FnMut(usize) -> f64| {
-        let state = |i: usize| beside(&law(i).0, steady(i), moved(i)).exp();
+        let state = |i: usize| {
+            let one = &all[i.min(all.len() - 1)];
+            let steady = one.law.steady_state(rate / one.slip_length).ln();
+            beside(&one.law, steady, moved(i)).exp()
+        };
         let states = (0..count).map(state).collect();
-        (steady_stress(&laws[0].0, rate), states)
+        let first = &all[0];
+        let friction = steady_stress(&first.law, rate) / first.stress_factor;
+        (friction + first.damping * rate, states)
     };
     if let Some(rest) = text.strip_prefix(USUAL_START) {
         let by = match rest.strip_prefix(':') {
@@ -396,6 +442,7 @@ fn echo(
         ("direct_effect", json!(slab.a())),
         ("evolution_effect", json!(slab.b())),
         ("reference_friction", json!(slab.a_v())),
+        ("damping", json!(slab.damping.unwrap_or(0.0))),
         ("si", json!(false)),
     ];
     if !draws.is_empty() {

@@ -30,27 +30,34 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         last: None,
     };
     let start = (stress, states.as_slice());
-    let end = plan
-        .taylor
-        .flow(&plan.interfaces, start, plan.until, &mut |step| {
-            Ok(watch.see(step))
-        });
+    let end = plan.method.flow(
+        &plan.interfaces,
+        start,
+        plan.until,
+        &plan.slips,
+        &mut |step| Ok(watch.see(step)),
+    );
     if let Err(error @ Error::Parameter { .. }) = end {
         return Err(error);
     }
-    let steps = watch.steps;
+    let (work, failure) = match end {
+        Ok(work) => (work, None),
+        Err(error) => {
+            let work = Work {
+                steps: watch.steps,
+                ..Work::default()
+            };
+            (work, Some(error))
+        }
+    };
     Ok(RunOutcome {
         last: watch.last,
         events: Vec::new(),
-        work: Work {
-            steps,
-            rhs: steps * plan.taylor.order(),
-            ..Work::default()
-        },
+        work,
         errors: None,
         error_estimate: None,
         estimate_failure: None,
-        failure: end.err(),
+        failure,
         stopped: watch.stopped,
     })
 }
@@ -74,7 +81,7 @@ struct Watch<'a> {
 
 impl Watch<'_> {
     /// Whether to go on.
-    fn see(&mut self, step: &ManyStep<'_>) -> bool {
+    fn see(&mut self, step: &dyn ManyStep) -> bool {
         let plan = self.plan;
         let end = step.end();
         let first = !std::mem::replace(&mut self.begun, true);
@@ -103,9 +110,9 @@ impl Watch<'_> {
             Sampling::FinalOnly if ends => self.emit(step, end),
             _ => {}
         }
-        self.slip = self.slip + step.slip_of_all(end);
+        self.slip = self.slip + self.slip_of_all(step, end);
         for (slip, &interface) in self.slips.iter_mut().zip(&plan.watched) {
-            *slip = *slip + step.slip(interface, end);
+            *slip = *slip + slip_of(plan, step, interface, end);
         }
         self.steps += 1;
         if self.sink.reached(end / plan.until) == Control::Stop {
@@ -114,21 +121,28 @@ impl Watch<'_> {
         !self.stopped
     }
 
-    fn instant(&self, step: &ManyStep<'_>, time: f64, whole: bool) -> ManyInstant {
+    fn slip_of_all(&self, step: &dyn ManyStep, time: f64) -> f64 {
+        match self.plan.slips.of_all {
+            true => step.slip_of_all(time),
+            false => 0.0,
+        }
+    }
+
+    fn instant(&self, step: &dyn ManyStep, time: f64, whole: bool) -> ManyInstant {
         let plan = self.plan;
         let loading = plan.interfaces.loading;
         let stress = step.stress(time);
         let each = plan.watched.iter().zip(&self.slips);
         let each = each.map(|(&interface, before)| {
             let [psi, v] = step.interface(interface, time);
-            let slip = *before + step.slip(interface, time);
+            let slip = *before + slip_of(plan, step, interface, time);
             [psi, v, slip.hi()]
         });
         let mean = loading.driving / plan.interfaces.count() as f64;
         ManyInstant {
             time,
             stress,
-            slip: (self.slip + step.slip_of_all(time)).hi(),
+            slip: (self.slip + self.slip_of_all(step, time)).hi(),
             extent: match whole {
                 true => step.extent(time, mean),
                 false => Extent::NONE,
@@ -137,7 +151,7 @@ impl Watch<'_> {
         }
     }
 
-    fn draw(&mut self, step: &ManyStep<'_>, time: f64) {
+    fn draw(&mut self, step: &dyn ManyStep, time: f64) {
         let at = self.instant(step, time, true);
         let units = self.plan.units();
         let cells = self.pictured.iter().map(|column| column.number(&at, units));
@@ -146,7 +160,7 @@ impl Watch<'_> {
         self.sink.drawn(&self.row);
     }
 
-    fn emit(&mut self, step: &ManyStep<'_>, time: f64) {
+    fn emit(&mut self, step: &dyn ManyStep, time: f64) {
         let at = self.instant(step, time, self.plan.needs_extent());
         let units = self.plan.units();
         let columns = self.plan.columns.iter();
@@ -157,5 +171,13 @@ impl Watch<'_> {
         if self.sink.row(&self.row) == Control::Stop {
             self.stopped = true;
         }
+    }
+}
+
+/// What is not asked for is not there.
+fn slip_of(plan: &ManyPlan, step: &dyn ManyStep, interface: usize, time: f64) -> f64 {
+    match plan.slips.of.contains(&interface) {
+        true => step.slip(interface, time),
+        false => 0.0,
     }
 }

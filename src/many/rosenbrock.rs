@@ -1,0 +1,334 @@
+//! Rosenbrock methods for all interfaces at once: every stage is one linear system with an arrow matrix, solved in linear time.
+//!
+//! The controller of steps is that of the few dimensions. A step is accepted if no ln psi errs by more than the tolerance, tau by no more than
+//! the tolerance times 1 + |tau|, and no slip by more than the tolerance times itself and a slip that is told beforehand.
+
+use super::block::Extent;
+use super::constants::LANES;
+use super::field::{Arrow, ManyField, Slips};
+use super::interfaces::ManyInterfaces;
+use super::share::CHUNK;
+use super::state::{ManyState, Scales};
+use super::step::ManyStep;
+use crate::error::{Error, Result};
+use crate::friction::positive;
+use crate::integrate::rosenbrock::drive::{Steppable, drive};
+use crate::integrate::rosenbrock::stages::error_order;
+
+use crate::integrate::{Control, RosenbrockMethod, Tableau, Work};
+use rayon::prelude::*;
+use std::cell::RefCell;
+
+/// A Rosenbrock method with its tolerance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ManyRosenbrock {
+    method: RosenbrockMethod,
+    tolerance: f64,
+    max_steps: usize,
+}
+
+impl ManyRosenbrock {
+    /// # Errors
+    /// [`Error::Parameter`] for a tolerance or a bound on steps that is not positive.
+    pub fn new(method: RosenbrockMethod, tolerance: f64, max_steps: usize) -> Result<Self> {
+        positive("rtol", tolerance)?;
+        if max_steps == 0 {
+            return Err(Error::parameter("max-steps", 0, "at least 1"));
+        }
+        Ok(ManyRosenbrock {
+            method,
+            tolerance: tolerance.max(f64::EPSILON),
+            max_steps,
+        })
+    }
+
+    /// The method.
+    pub fn method(&self) -> RosenbrockMethod {
+        self.method
+    }
+
+    /// Bytes that a run takes, without rows.
+    pub fn memory(&self, interfaces: &ManyInterfaces) -> usize {
+        // stages, two matrices with their factors, and y, the next one, f twice, two sums, the error and dense output
+        let vectors = self.method.tableau().stages + 2 * 4 + 8;
+        let held = interfaces.blocks() * LANES * size_of::<f64>();
+        vectors * held + interfaces.constants_memory()
+    }
+
+    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every
+    /// step, with the slips that are asked for.
+    ///
+    /// # Errors
+    /// As [`super::ManyTaylor::flow`], and [`Error::NonFinite`].
+    pub fn flow<'a>(
+        &self,
+        interfaces: &'a ManyInterfaces,
+        (stress, states): (f64, &[f64]),
+        until: f64,
+        slips: &Slips,
+        observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
+    ) -> Result<ManyState<'a>> {
+        interfaces.checked(stress, states)?;
+        let field = ManyField::new(interfaces, slips);
+        let y = field.start(stress, states);
+        let scales = Scales::new(&field, self.tolerance, until);
+        let tableau = self.method.tableau();
+        let none = || vec![0.0; y.len()];
+        let mut carried = Carried {
+            scales,
+            tableau,
+            f: none(),
+            next: none(),
+            last_f: none(),
+            ahead_f: none(),
+            argument: none(),
+            stages: vec![none(); tableau.stages],
+            here: Arrow::default(),
+            ahead: Arrow::default(),
+            work: Work::default(),
+            field,
+            y,
+        };
+        carried.work.rhs += 1;
+        carried.work.jacobians += 1;
+        carried.field.rates(&carried.y, &mut carried.f);
+        carried.field.linearise(&carried.y, &mut carried.here);
+        let fastest = carried.field.largest(&carried.here);
+        if !carried.scales.are_finite(&carried.field, &carried.f) || !fastest.is_finite() {
+            return Err(Error::NonFinite {
+                what: "the right-hand side or its Jacobian",
+                t: 0.0,
+            });
+        }
+        // A first step that resolves the fastest motion: the controller makes the next ones longer.
+        let resolved = self.tolerance.powf(1.0 / f64::from(tableau.order)) / fastest;
+        let mut time = 0.0;
+        if until > 0.0 {
+            drive(
+                &mut carried,
+                (0.0, until),
+                resolved.min(until),
+                self.max_steps,
+                |carried, begin, end| {
+                    time = end;
+                    let goes_on = observer(&DenseStep {
+                        carried,
+                        begin,
+                        end,
+                        at: RefCell::new((f64::NAN, Vec::new())),
+                    })?;
+                    Ok(if goes_on {
+                        Control::Continue
+                    } else {
+                        Control::Stop
+                    })
+                },
+            )?;
+        }
+        let Carried { field, y, work, .. } = carried;
+        Ok(ManyState::new(field, y, time, work))
+    }
+}
+
+/// A state on its way.
+struct Carried<'a> {
+    field: ManyField<'a>,
+    scales: Scales,
+    tableau: &'static Tableau,
+    y: Vec<f64>,
+    f: Vec<f64>,
+    /// The end of the tried step, f at its last stage and at its end.
+    next: Vec<f64>,
+    last_f: Vec<f64>,
+    ahead_f: Vec<f64>,
+    argument: Vec<f64>,
+    stages: Vec<Vec<f64>>,
+    here: Arrow,
+    ahead: Arrow,
+    work: Work,
+}
+
+/// `made` = start + the sum of weights times vectors.
+fn combine(made: &mut [f64], start: Option<&[f64]>, weights: &[f64], vectors: &[Vec<f64>]) {
+    const PIECE: usize = CHUNK * LANES;
+    let terms = || {
+        weights
+            .iter()
+            .zip(vectors)
+            .filter(|(weight, _)| **weight != 0.0)
+    };
+    let work = |(piece, made): (usize, &mut [f64])| {
+        let at = piece * PIECE;
+        match start {
+            Some(start) => made.copy_from_slice(&start[at..][..made.len()]),
+            None => made.fill(0.0),
+        }
+        for (weight, vector) in terms() {
+            for (sum, x) in made.iter_mut().zip(&vector[at..]) {
+                *sum += weight * x;
+            }
+        }
+    };
+    if made.len() >= super::share::MANY {
+        made.par_chunks_mut(PIECE).enumerate().for_each(work);
+    } else {
+        made.chunks_mut(PIECE).enumerate().for_each(work);
+    }
+}
+
+impl Steppable for Carried<'_> {
+    fn error_order(&self) -> u32 {
+        error_order(self.tableau)
+    }
+
+    fn work(&mut self) -> &mut Work {
+        &mut self.work
+    }
+
+    fn underflow(&self, t: f64, h: f64) -> Error {
+        Error::StepTooSmall { t, h }
+    }
+
+    fn attempt(&mut self, h: f64) -> Option<f64> {
+        let tableau = self.tableau;
+        self.work.factorisations += 1;
+        let diagonal = 1.0 / (h * tableau.gamma);
+        if !self.field.factorise(diagonal, &mut self.here) {
+            return None;
+        }
+        self.work.rhs += tableau.stages - 1;
+        self.stages[0].copy_from_slice(&self.f);
+        self.field.solve(&self.here, &mut self.stages[0]);
+        for i in 1..tableau.stages {
+            let (known, rest) = self.stages.split_at_mut(i);
+            combine(&mut self.argument, Some(&self.y), &tableau.a[i][..i], known);
+            self.field.rates(&self.argument, &mut self.last_f);
+            let coupling = tableau.c[i].map(|c| c / h);
+            combine(&mut rest[0], Some(&self.last_f), &coupling[..i], known);
+            self.field.solve(&self.here, &mut rest[0]);
+        }
+        let stages = tableau.stages;
+        combine(
+            &mut self.next,
+            Some(&self.y),
+            &tableau.m[..stages],
+            &self.stages,
+        );
+        combine(&mut self.argument, None, &tableau.e[..stages], &self.stages);
+        self.scales
+            .norm(&self.field, &self.argument, (&self.y, &self.next))
+    }
+
+    fn fastest(&self) -> (f64, f64) {
+        (
+            self.field.largest(&self.here),
+            self.field.largest(&self.ahead),
+        )
+    }
+
+    fn look_ahead(&mut self) -> bool {
+        if self.tableau.ends_at_last_stage {
+            std::mem::swap(&mut self.ahead_f, &mut self.last_f);
+        } else {
+            self.work.rhs += 1;
+            self.field.rates(&self.next, &mut self.ahead_f);
+        }
+        self.work.jacobians += 1;
+        self.field.linearise(&self.next, &mut self.ahead);
+        self.scales.are_finite(&self.field, &self.ahead_f)
+    }
+
+    fn advance(&mut self) {
+        std::mem::swap(&mut self.y, &mut self.next);
+        std::mem::swap(&mut self.f, &mut self.ahead_f);
+        std::mem::swap(&mut self.here, &mut self.ahead);
+    }
+}
+
+/// A step with its continuous solution.
+struct DenseStep<'a, 'f> {
+    carried: &'a Carried<'f>,
+    begin: f64,
+    end: f64,
+    /// The state at the time last asked for.
+    at: RefCell<(f64, Vec<f64>)>,
+}
+
+impl DenseStep<'_, '_> {
+    /// Looks at the state at a time of the step.
+    fn with<R>(&self, time: f64, look: impl FnOnce(&ManyField<'_>, &[f64]) -> R) -> R {
+        let carried = self.carried;
+        if time == self.begin {
+            return look(&carried.field, &carried.y);
+        }
+        if time == self.end {
+            return look(&carried.field, &carried.next);
+        }
+        let mut at = self.at.borrow_mut();
+        if at.0 != time {
+            at.0 = time;
+            at.1.resize(carried.y.len(), 0.0);
+            let theta = (time - self.begin) / (self.end - self.begin);
+            self.interpolate(theta, &mut at.1);
+        }
+        look(&carried.field, &at.1)
+    }
+
+    fn interpolate(&self, theta: f64, made: &mut [f64]) {
+        let Carried {
+            tableau,
+            y,
+            next,
+            stages,
+            ..
+        } = self.carried;
+        let rest = 1.0 - theta;
+        // y (1 - theta) + theta (next + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
+        let weights: Vec<f64> = (0..tableau.stages)
+            .map(|i| {
+                let [a, b, c] = [0, 1, 2].map(|l| tableau.d[l][i]);
+                theta * rest * (a + (b + c * theta) * theta)
+            })
+            .collect();
+        combine(made, None, &weights, stages);
+        for (made, (y, next)) in made.iter_mut().zip(y.iter().zip(next)) {
+            *made += rest * y + theta * next;
+        }
+    }
+
+    /// By how much a number of the state changes from the beginning of the step.
+    fn change(&self, time: f64, place: usize) -> f64 {
+        self.with(time, |_, y| y[place]) - self.carried.y[place]
+    }
+}
+
+impl ManyStep for DenseStep<'_, '_> {
+    fn begin(&self) -> f64 {
+        self.begin
+    }
+
+    fn end(&self) -> f64 {
+        self.end
+    }
+
+    fn stress(&self, time: f64) -> f64 {
+        self.with(time, |field, y| y[field.stress()])
+    }
+
+    fn extent(&self, time: f64, faster_than: f64) -> Extent {
+        self.with(time, |field, y| field.extent(y, faster_than))
+    }
+
+    fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
+        self.with(time, |field, y| field.interface(y, interface))
+    }
+
+    fn slip(&self, interface: usize, time: f64) -> f64 {
+        let place = self.carried.field.slip(interface);
+        self.change(time, place.expect("a slip that is asked for"))
+    }
+
+    fn slip_of_all(&self, time: f64) -> f64 {
+        self.change(time, self.carried.field.slip_of_all())
+    }
+}
