@@ -48,7 +48,7 @@ pub trait PlannedRun {
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     if ManyPlan::is_of(options) {
-        return integrate(&ManyPlan::new(options)?, options, words);
+        return super::many::run(options, words);
     }
     // A program may say itself which V_H is the first.
     let free: &[&str] = if options.program.is_some() {
@@ -111,7 +111,7 @@ impl PlannedRun for Plan {
     }
 }
 
-fn integrate(
+pub fn integrate(
     plan: &impl PlannedRun,
     options: &IntegrateOptions,
     words: &[String],

@@ -1,12 +1,66 @@
 //! `twinslip integrate` of many interfaces.
 
-use super::integrate::PlannedRun;
+use super::Ending;
+use super::integrate::{PlannedRun, integrate};
+use super::ranks::Joined;
 use super::stream::StreamOut;
 use crate::error::Result;
+#[cfg(feature = "mpi")]
+use crate::integrate::Control;
+use crate::many::Processes;
+#[cfg(feature = "mpi")]
+use crate::many::Share;
 use crate::output::{RowList, plot};
-use crate::scene::{Described, Keeping, ManyPlan, Program, Quantity, RunOutcome, run_many};
+#[cfg(feature = "mpi")]
+use crate::scene::Sink;
+use crate::scene::{
+    Described, IntegrateOptions, Keeping, ManyPlan, Program, Quantity, RunOutcome, run_many,
+};
 use crate::views;
 use serde_json::{Value, json};
+
+pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+    match Joined::join()? {
+        None => integrate(&ManyPlan::new(options, Processes::One)?, options, words),
+        #[cfg(feature = "mpi")]
+        Some(_joined) => by_ranks(options, words),
+        #[cfg(not(feature = "mpi"))]
+        Some(joined) => match joined {},
+    }
+}
+
+/// The ranks integrate together, and the first one writes. What is wrong with the input, all of them see, and one says.
+#[cfg(feature = "mpi")]
+fn by_ranks(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+    let plan = ManyPlan::new(options, Processes::Ranks);
+    let leads = Share::new(1, Processes::Ranks).rank() == 0;
+    if leads {
+        let plan = plan?;
+        let ended = integrate(&plan, options, words);
+        plan.dismiss();
+        return ended;
+    }
+    if let Ok(plan) = plan {
+        // A failure on the way is the same in all.
+        let _same = run_many(&plan, &mut Silent);
+    }
+    Ok(Ending::Done)
+}
+
+/// Of a process that writes nothing.
+#[cfg(feature = "mpi")]
+struct Silent;
+
+#[cfg(feature = "mpi")]
+impl Sink for Silent {
+    fn row(&mut self, _: &[f64]) -> Control {
+        Control::Continue
+    }
+
+    fn reached(&mut self, _: f64) -> Control {
+        Control::Continue
+    }
+}
 
 impl PlannedRun for ManyPlan {
     fn explain(&self, _: Keeping) -> String {

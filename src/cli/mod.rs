@@ -13,6 +13,8 @@ mod many;
 mod merge;
 mod orbit;
 mod progress;
+#[cfg_attr(not(feature = "mpi"), path = "no_ranks.rs")]
+mod ranks;
 mod report;
 mod reproduce;
 mod resume;

@@ -13,6 +13,8 @@ mod field;
 mod interfaces;
 mod local;
 mod method;
+#[cfg(feature = "mpi")]
+mod ranks;
 mod rosenbrock;
 mod share;
 mod state;

@@ -17,12 +17,12 @@ const GROUPS: usize = 4096;
 /// Interfaces from which on several cores pay.
 pub(super) const MANY: usize = 8192;
 
-/// What the processes of a run tell each other.
+/// The processes of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Processes {
     /// There is one alone.
     One,
-    /// The ranks of MPI.
+    /// The ranks of MPI, which has been started.
     #[cfg(feature = "mpi")]
     Ranks,
 }
@@ -31,27 +31,28 @@ pub enum Processes {
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Share {
     count: usize,
-    held: Range<usize>,
-    chunks_in_group: usize,
+    rank: usize,
+    ranks: usize,
     processes: Processes,
 }
 
 impl Share {
     /// All interfaces, in one process.
     pub fn all(count: usize) -> Self {
-        Share::of(count, 0, 1, Processes::One)
+        Share::new(count, Processes::One)
     }
 
-    /// Those of a rank of some.
-    pub(super) fn of(count: usize, rank: usize, ranks: usize, processes: Processes) -> Self {
-        let chunks = count.div_ceil(HELD);
-        let chunks_in_group = chunks.div_ceil(GROUPS);
-        let groups = chunks.div_ceil(chunks_in_group.max(1));
-        let begin = |rank: usize| (groups * rank / ranks * chunks_in_group * HELD).min(count);
+    /// What this one of the processes holds of so many interfaces.
+    pub fn new(count: usize, processes: Processes) -> Self {
+        let (rank, ranks) = match processes {
+            Processes::One => (0, 1),
+            #[cfg(feature = "mpi")]
+            Processes::Ranks => super::ranks::place(),
+        };
         Share {
             count,
-            held: begin(rank)..begin(rank + 1),
-            chunks_in_group,
+            rank,
+            ranks,
             processes,
         }
     }
@@ -61,19 +62,47 @@ impl Share {
         self.count
     }
 
+    /// The number of this process among all.
+    pub fn rank(&self) -> usize {
+        self.rank
+    }
+
+    /// How many processes there are.
+    pub fn ranks(&self) -> usize {
+        self.ranks
+    }
+
+    fn chunks_in_group(&self) -> usize {
+        self.count.div_ceil(HELD).div_ceil(GROUPS).max(1)
+    }
+
+    /// The groups of a process.
+    fn groups(&self, rank: usize) -> Range<usize> {
+        let groups = self.count.div_ceil(HELD).div_ceil(self.chunks_in_group());
+        let begin = |rank: usize| groups * rank / self.ranks;
+        begin(rank)..begin(rank + 1)
+    }
+
+    /// The numbers, from 0, of the interfaces that a process holds.
+    fn held_by(&self, rank: usize) -> Range<usize> {
+        let groups = self.groups(rank);
+        let place = |group: usize| (group * self.chunks_in_group() * HELD).min(self.count);
+        place(groups.start)..place(groups.end)
+    }
+
     /// The numbers, from 0, of those held here.
     pub fn held(&self) -> Range<usize> {
-        self.held.clone()
+        self.held_by(self.rank)
     }
 
     /// Whether several cores pay.
     pub(super) fn is_large(&self) -> bool {
-        self.held.len() >= MANY
+        self.held().len() >= MANY
     }
 
     /// Results of work on the chunks, in their order.
     pub(super) fn by_chunks<T: Send>(&self, work: impl Fn(usize) -> T + Send + Sync) -> Vec<T> {
-        let chunks = self.held.len().div_ceil(HELD);
+        let chunks = self.held().len().div_ceil(HELD);
         if self.is_large() {
             (0..chunks).into_par_iter().map(work).collect()
         } else {
@@ -83,53 +112,61 @@ impl Share {
 
     /// The sum over the chunks of all processes.
     pub(super) fn sum(&self, of_chunks: &[f64]) -> f64 {
-        let [sum] = self.sums(of_chunks.iter().map(|x| [*x]));
-        sum
+        let chunks = self.chunks_in_group();
+        if chunks == 1 && self.processes == Processes::One {
+            return of_chunks.iter().sum();
+        }
+        let groups: Vec<f64> = of_chunks
+            .chunks(chunks)
+            .map(|group| group.iter().sum())
+            .collect();
+        self.gathered(&groups, |rank| self.groups(rank).len())
+            .iter()
+            .sum()
     }
 
-    /// Several sums at once.
-    pub(super) fn sums<const N: usize>(
-        &self,
-        mut of_chunks: impl ExactSizeIterator<Item = [f64; N]>,
-    ) -> [f64; N] {
-        let add = |sum: [f64; N], x: [f64; N]| std::array::from_fn(|i| sum[i] + x[i]);
-        if self.processes == Processes::One && self.chunks_in_group <= 1 {
-            return of_chunks.fold([0.0; N], add);
-        }
-        let mut groups =
-            Vec::with_capacity(N * of_chunks.len().div_ceil(self.chunks_in_group.max(1)));
-        while of_chunks.len() > 0 {
-            let group = of_chunks.by_ref().take(self.chunks_in_group);
-            groups.extend(group.fold([0.0; N], add));
-        }
-        let all = self.gathered(groups);
-        all.as_chunks::<N>().0.iter().copied().fold([0.0; N], add)
-    }
-
-    /// What all processes have, in their order.
-    pub(super) fn gathered(&self, own: Vec<f64>) -> Vec<f64> {
+    /// What all processes have, in their order, of which each has so many.
+    fn gathered(&self, own: &[f64], count: impl Fn(usize) -> usize) -> Vec<f64> {
         match self.processes {
-            Processes::One => own,
+            Processes::One => {
+                debug_assert_eq!(own.len(), count(0));
+                own.to_vec()
+            }
             #[cfg(feature = "mpi")]
-            Processes::Ranks => super::ranks::gathered(own),
+            Processes::Ranks => super::ranks::gathered(own, count),
+        }
+    }
+
+    /// A number of every interface, in all processes, of which each knows its own.
+    pub fn of_all(&self, held: &[f64]) -> Vec<f64> {
+        self.gathered(held, |rank| self.held_by(rank).len())
+    }
+
+    /// What one process knows, and all others have zeros for.
+    pub fn told(&self, own: &mut [f64]) {
+        if self.processes == Processes::One {
+            return;
+        }
+        let all = self.gathered(own, |_| own.len());
+        own.fill(0.0);
+        for of_rank in all.chunks(own.len().max(1)) {
+            for (sum, x) in own.iter_mut().zip(of_rank) {
+                *sum += x;
+            }
         }
     }
 
     /// What the chunks of all processes do together.
     pub(super) fn extent(&self, of_chunks: &[Extent]) -> Extent {
         let own = of_chunks.iter().copied().fold(Extent::NONE, Extent::and);
-        if self.processes == Processes::One && self.chunks_in_group <= 1 {
+        if self.chunks_in_group() == 1 && self.processes == Processes::One {
             return own;
         }
-        let slip_rates = of_chunks.iter().map(|extent| [extent.slip_rate]);
-        let [slip_rate] = self.sums(slip_rates);
-        let parts = [
-            own.state[0],
-            own.state[1],
-            own.slip_rate_max,
-            own.sliding as f64,
-        ];
-        let all = self.gathered(parts.to_vec());
+        let slip_rates: Vec<f64> = of_chunks.iter().map(|extent| extent.slip_rate).collect();
+        let slip_rate = self.sum(&slip_rates);
+        let sliding = own.sliding as f64;
+        let parts = [own.state[0], own.state[1], own.slip_rate_max, sliding];
+        let all = self.gathered(&parts, |_| parts.len());
         let all = all.as_chunks::<4>().0.iter();
         let all = all.map(|&[low, high, fastest, sliding]| Extent {
             state: [low, high],
@@ -144,12 +181,15 @@ impl Share {
     }
 
     /// The largest of all processes, or what is not a number.
-    pub(super) fn largest<const N: usize>(&self, own: [f64; N]) -> [f64; N] {
+    pub fn largest<const N: usize>(&self, own: [f64; N]) -> [f64; N] {
         if self.processes == Processes::One {
             return own;
         }
-        let all = self.gathered(own.to_vec());
+        let all = self.gathered(&own, |_| N);
         let both = |a: [f64; N], b: &[f64; N]| std::array::from_fn(|i| larger(a[i], b[i]));
-        all.as_chunks::<N>().0.iter().fold([0.0; N], both)
+        all.as_chunks::<N>()
+            .0
+            .iter()
+            .fold([f64::NEG_INFINITY; N], both)
     }
 }

@@ -32,6 +32,14 @@ impl RandomStart {
         RandomStart(generator)
     }
 
+    /// The same stream behind so many numbers.
+    #[must_use]
+    pub fn after(mut self, numbers: usize) -> Self {
+        // a number is two words of the generator
+        self.0.set_word_pos(2 * numbers as u128);
+        self
+    }
+
     /// The next number, equally likely anywhere between two.
     pub fn between(&mut self, (low, high): (f64, f64)) -> f64 {
         let part = (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;

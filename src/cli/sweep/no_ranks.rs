@@ -1,6 +1,7 @@
 //! Ranks of MPI in a build without it: there are none.
 
-use crate::error::{Error, Result};
+use crate::cli::ranks::Joined;
+use crate::error::Result;
 use crate::scene::SweepPlan;
 use crate::sweep::{SweepRow, SweepSettings, UnitShare};
 use std::ops::ControlFlow;
@@ -13,22 +14,9 @@ impl Ranks {
     /// Makes sure that this process is alone.
     ///
     /// # Errors
-    /// [`Error::Input`] if mpirun has started several, which would all write the same file.
+    /// Those of [`Joined::join`].
     pub fn join() -> Result<Option<Self>> {
-        let several = |name: &str| {
-            let size = std::env::var(name).ok().and_then(|n| n.parse().ok());
-            size.is_some_and(|size: usize| size > 1)
-        };
-        if ["OMPI_COMM_WORLD_SIZE", "PMI_SIZE"]
-            .into_iter()
-            .any(several)
-        {
-            return Err(Error::Input(
-                "mpirun has started several processes, but this build knows nothing of MPI; build it with --features mpi"
-                    .into(),
-            ));
-        }
-        Ok(None)
+        Ok(Joined::join()?.map(|joined| match joined {}))
     }
 
     pub fn leads(&self) -> bool {

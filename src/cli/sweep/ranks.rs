@@ -4,10 +4,10 @@
 //! nothing when all is done. A rank that dies ends the run, as MPI has it; what is written stays.
 
 use super::wire;
+use crate::cli::ranks::Joined;
 use crate::error::{Error, Result};
 use crate::scene::SweepPlan;
 use crate::sweep::{SweepRow, SweepSettings, Sweeper, UnitShare};
-use mpi::environment::Universe;
 use mpi::topology::SimpleCommunicator;
 use mpi::traits::{Communicator, Destination, Source};
 use std::collections::BTreeMap;
@@ -30,7 +30,7 @@ pub struct Ranks {
     /// Of the other ranks those that wait for an answer.
     idle: Vec<i32>,
     // Ends MPI when it is dropped, after all else.
-    _universe: Universe,
+    _joined: Joined,
 }
 
 impl Ranks {
@@ -39,26 +39,10 @@ impl Ranks {
     /// # Errors
     /// [`Error::Input`] if MPI does not start.
     pub fn join() -> Result<Option<Self>> {
-        let started = ["OMPI_COMM_WORLD_SIZE", "PMIX_RANK", "PMI_RANK", "PMI_SIZE"];
-        if !started.iter().any(|name| std::env::var_os(name).is_some()) {
-            return Ok(None);
-        }
-        let universe = mpi::initialize()
-            .ok_or_else(|| Error::Input("MPI is there but does not start".into()))?;
-        let world = universe.world();
-        if world.size() < 2 {
-            return Ok(None);
-        }
-        // A rank that only unwinds would leave the others waiting.
-        let told = std::panic::take_hook();
-        std::panic::set_hook(Box::new(move |panic| {
-            told(panic);
-            std::process::abort();
-        }));
-        Ok(Some(Ranks {
-            world,
+        Ok(Joined::join()?.map(|joined| Ranks {
+            world: joined.world(),
             idle: Vec::new(),
-            _universe: universe,
+            _joined: joined,
         }))
     }
 

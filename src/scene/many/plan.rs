@@ -7,7 +7,8 @@ use crate::integrate::Choice;
 #[cfg(feature = "sundials")]
 use crate::many::ManyCvode;
 use crate::many::{
-    Extent, ManyInterfaces, ManyMethod, ManyRosenbrock, ManyTaylor, OneOfMany, Slips,
+    Extent, ManyInterfaces, ManyMethod, ManyRosenbrock, ManyTaylor, OneOfMany, Processes, Share,
+    Slips,
 };
 use crate::model::Loading;
 use crate::scene::column::Column;
@@ -20,6 +21,8 @@ use crate::scene::units::{Quantity, Units};
 use crate::sundials::MultistepMethod;
 use crate::sweep::RandomStart;
 use serde_json::{Map, Value, json};
+use std::cell::Cell;
+use std::ops::Range;
 
 /// A run of many interfaces, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -50,6 +53,8 @@ pub struct ManyPlan {
     pub max_steps: usize,
     units: Units,
     echo: Map<String, Value>,
+    /// Whether its run has begun.
+    begun: Cell<bool>,
 }
 
 /// A point of a run.
@@ -78,11 +83,11 @@ impl ManyPlan {
         !options.draw.is_empty() || slab.count() >= MANY && !named
     }
 
-    /// Checks the options.
+    /// Checks the options, of which this one of the processes computes a share.
     ///
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
-    pub fn new(options: &IntegrateOptions) -> Result<Self> {
+    pub fn new(options: &IntegrateOptions, processes: Processes) -> Result<Self> {
         let model = options.model.resolved()?;
         refused(options, &model)?;
         let count = model.slab.count() as usize;
@@ -99,12 +104,19 @@ impl ManyPlan {
         let loading = Loading::new(driving, needed("stiffness", model.stiffness)?)?;
         let draws = options.draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
-        let all = interfaces(&model.slab, (&draws, options.seed), count)?;
-        let interfaces = match &all[..] {
-            [one] => ManyInterfaces::alike(*one, count, loading)?,
-            _ => ManyInterfaces::new(&all, loading)?,
+        let share = Share::new(count, processes);
+        let drawn = |range| interfaces(&model.slab, (&draws, options.seed), range);
+        let (first, all) = (drawn(0..1)?[0], drawn(share.held())?);
+        let interfaces = if draws.is_empty() {
+            ManyInterfaces::alike_in(share, &first, loading)?
+        } else {
+            ManyInterfaces::new_in(share, all.iter().copied().map(Ok), loading)?
         };
-        let start = start(options.start.as_deref(), &all, (count, driving))?;
+        let start = start(
+            options.start.as_deref(),
+            (&first, &all),
+            (interfaces.share(), driving),
+        )?;
         let units = Units::none();
         let until = until(options)?;
         let (columns, watched) = columns(options.columns.as_deref(), count)?;
@@ -135,7 +147,22 @@ impl ManyPlan {
             rtol: options.numerics.rtol,
             max_steps: options.numerics.max_steps,
             units,
+            begun: Cell::new(false),
         })
+    }
+
+    /// Waits for all processes to begin; whether they do.
+    pub fn begin(&self) -> bool {
+        self.begun.set(true);
+        let [all] = self.interfaces.share().largest([0.0]);
+        all == 0.0
+    }
+
+    /// Lets the other processes go where this one has not come to the run.
+    pub fn dismiss(&self) {
+        if !self.begun.replace(true) {
+            self.interfaces.share().largest([f64::NAN]);
+        }
     }
 
     /// The columns of the points of a picture.
@@ -258,11 +285,11 @@ fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
     })
 }
 
-/// Each interface; one alone where all are equal.
+/// Each interface of a range; one alone where all are equal.
 fn interfaces(
     slab: &SlabOptions,
     (draws, seed): (&[Draw], u64),
-    count: usize,
+    range: Range<usize>,
 ) -> Result<Vec<OneOfMany>> {
     let damping = slab.damping.unwrap_or(0.0);
     let one = |own: &SlabOptions, drawn: Drawn| {
@@ -281,7 +308,7 @@ fn interfaces(
     }
     // A stream for each constant: what one draws does not depend on the others.
     let mut streams: Vec<RandomStart> = (1..=draws.len())
-        .map(|stream| RandomStart::new(seed, stream))
+        .map(|stream| RandomStart::new(seed, stream).after(range.start))
         .collect();
     let mut next = |_| {
         let (mut own, mut drawn) = (slab.clone(), Drawn::default());
@@ -290,15 +317,16 @@ fn interfaces(
         }
         one(&own, drawn)
     };
-    (0..count).map(&mut next).collect()
+    range.map(&mut next).collect()
 }
 
 /// tau and psi of each, as `--start` gives them.
 fn start(
     text: Option<&str>,
-    all: &[OneOfMany],
-    (count, driving): (usize, f64),
+    (first, all): (&OneOfMany, &[OneOfMany]),
+    (share, driving): (&Share, f64),
 ) -> Result<(f64, Vec<f64>)> {
+    let (count, held) = (share.count(), share.held());
     let text = text.unwrap_or(SPREAD);
     let unreadable = || {
         Error::Input(format!(
@@ -312,12 +340,11 @@ fn start(
     let rate = driving / count as f64;
     let near = |moved: &mut dyn FnMut(usize) -> f64| {
         let state = |i: usize| {
-            let one = &all[i.min(all.len() - 1)];
+            let one = &all[(i - held.start).min(all.len() - 1)];
             let steady = one.law.steady_state(rate / one.slip_length).ln();
             beside(&one.law, steady, moved(i)).exp()
         };
-        let states = (0..count).map(state).collect();
-        let first = &all[0];
+        let states = held.clone().map(state).collect();
         let friction = steady_stress(&first.law, rate) / first.stress_factor;
         (friction + first.damping * rate, states)
     };
@@ -337,7 +364,7 @@ fn start(
             ["", by, seed] => (number(by)?, seed.parse().map_err(|_| unreadable())?),
             _ => return Err(unreadable()),
         };
-        let mut random = RandomStart::new(seed, 0);
+        let mut random = RandomStart::new(seed, 0).after(held.start);
         return Ok(near(&mut |_| by * random.between((-1.0, 1.0))));
     }
     let numbers = text.split(',').map(number).collect::<Result<Vec<f64>>>()?;
@@ -346,7 +373,7 @@ fn start(
             for &psi in states {
                 positive("psi in `start`", psi)?;
             }
-            Ok((positive("tau in `start`", tau)?, states.to_vec()))
+            Ok((positive("tau in `start`", tau)?, states[held].to_vec()))
         }
         _ => Err(unreadable()),
     }

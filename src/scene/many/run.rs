@@ -15,6 +15,9 @@ use crate::scene::system::Described;
 /// # Errors
 /// [`Error::Parameter`] for a start that is refused; a failure on the way is in [`RunOutcome::failure`].
 pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
+    if !plan.begin() {
+        return Err(Error::Input("another process has not begun".into()));
+    }
     let (stress, states) = (plan.start.0, &plan.start.1);
     let mut watch = Watch {
         plan,
@@ -118,6 +121,10 @@ impl Watch<'_> {
         if self.sink.reached(end / plan.until) == Control::Stop {
             self.stopped = true;
         }
+        // What stops one process stops all.
+        let own = f64::from(u8::from(self.stopped));
+        let [stopped] = plan.interfaces.share().largest([own]);
+        self.stopped = stopped > 0.0;
         !self.stopped
     }
 
@@ -132,12 +139,18 @@ impl Watch<'_> {
         let plan = self.plan;
         let loading = plan.interfaces.loading;
         let stress = step.stress(time);
+        let share = plan.interfaces.share();
         let each = plan.watched.iter().zip(&self.slips);
         let each = each.map(|(&interface, before)| {
+            if !share.held().contains(&interface) {
+                return [0.0; 3];
+            }
             let [psi, v] = step.interface(interface, time);
             let slip = *before + slip_of(plan, step, interface, time);
             [psi, v, slip.hi()]
         });
+        let mut each: Vec<[f64; 3]> = each.collect();
+        share.told(each.as_flattened_mut());
         let mean = loading.driving / plan.interfaces.count() as f64;
         ManyInstant {
             time,
@@ -147,7 +160,7 @@ impl Watch<'_> {
                 true => step.extent(time, mean),
                 false => Extent::NONE,
             },
-            each: each.collect(),
+            each,
         }
     }
 
@@ -176,7 +189,8 @@ impl Watch<'_> {
 
 /// What is not asked for is not there.
 fn slip_of(plan: &ManyPlan, step: &dyn ManyStep, interface: usize, time: f64) -> f64 {
-    match plan.slips.of.contains(&interface) {
+    let here = plan.interfaces.share().held().contains(&interface);
+    match here && plan.slips.of.contains(&interface) {
         true => step.slip(interface, time),
         false => 0.0,
     }
