@@ -5,9 +5,10 @@ use super::constants::LANES;
 use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
 use super::state::{ManyState, Scales};
-use super::step::ManyStep;
+use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
+use crate::integrate::Work;
 use crate::sundials::{LargeCvode, LinearTime};
 use std::cell::RefCell;
 
@@ -54,56 +55,82 @@ impl ManyCvode {
         slips: &Slips,
         observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
     ) -> Result<ManyState<'a>> {
-        interfaces.checked(stress, states)?;
+        let beginning = Beginning::Start(stress, states);
+        self.run(interfaces, beginning, until, slips, &mut Looking(observer))
+    }
+
+    /// The same from any beginning on, with all that an observer may see.
+    ///
+    /// # Errors
+    /// As [`ManyCvode::flow`].
+    pub fn run<'a>(
+        &self,
+        interfaces: &'a ManyInterfaces,
+        beginning: Beginning<'_>,
+        until: f64,
+        slips: &Slips,
+        observer: &mut dyn ManyObserver,
+    ) -> Result<ManyState<'a>> {
         let field = ManyField::new(interfaces, slips);
-        let y = field.start(stress, states);
-        let scales = Scales::new(&field, self.tolerance, until);
+        let (mut time, mut steps, mut y) = field.begun(beginning)?;
+        let mut work = Work::default();
+        let mut goes_on = true;
+        while goes_on && time < until {
+            let mut cvode = self.begun(ManyField::new(interfaces, slips), y, (time, until))?;
+            let left = until_save(observer, steps);
+            let mut slipped = cvode.state()[field.logs()..].to_vec();
+            let mut done = 0;
+            while goes_on && done < left && time < until {
+                if steps + done >= self.max_steps {
+                    return Err(Error::TooManySteps {
+                        t: time,
+                        end: until,
+                        limit: self.max_steps,
+                    });
+                }
+                let end = cvode.step()?;
+                done += 1;
+                if end == time {
+                    continue;
+                }
+                goes_on = observer.step(&CvodeStep {
+                    cvode: &cvode,
+                    begin: time,
+                    end,
+                    slipped: &slipped,
+                    at: RefCell::new((f64::NAN, Vec::new())),
+                })?;
+                slipped.copy_from_slice(&cvode.state()[field.logs()..]);
+                time = end;
+            }
+            steps += done;
+            work += cvode.work()?;
+            y = cvode.state().to_vec();
+            if done == left {
+                field.forget_slips(&mut y);
+                observer.save(&field.saved(time, steps, &y))?;
+            }
+        }
+        Ok(ManyState::new(field, y, time, work))
+    }
+
+    fn begun<'a>(
+        &self,
+        field: ManyField<'a>,
+        y: Vec<f64>,
+        (time, until): (f64, f64),
+    ) -> Result<LargeCvode<Scaled<'a>>> {
         let mut arrow = Arrow::default();
         field.linearise(&y, &mut arrow);
         let fastest = field.largest(&arrow);
-        drop(arrow);
         if !fastest.is_finite() {
-            let what = "the Jacobian at the start";
-            return Err(Error::NonFinite { what, t: 0.0 });
+            let what = "the Jacobian";
+            return Err(Error::NonFinite { what, t: time });
         }
         // CVODE's own first step is never below a hundred spacings of the end, in which a fast start is over.
-        let first = (self.tolerance.sqrt() / fastest).min(until);
-        let logs = field.logs();
-        let mut slipped = y[logs..].to_vec();
-        let system = Scaled { field, scales };
-        let mut cvode = LargeCvode::new(system, y, until, first)?;
-        let mut time = 0.0;
-        let mut steps = 0;
-        while time < until {
-            if steps == self.max_steps {
-                return Err(Error::TooManySteps {
-                    t: time,
-                    end: until,
-                    limit: self.max_steps,
-                });
-            }
-            let end = cvode.step()?;
-            steps += 1;
-            if end == time {
-                continue;
-            }
-            let goes_on = observer(&CvodeStep {
-                cvode: &cvode,
-                begin: time,
-                end,
-                slipped: &slipped,
-                at: RefCell::new((f64::NAN, Vec::new())),
-            })?;
-            slipped.copy_from_slice(&cvode.state()[logs..]);
-            time = end;
-            if !goes_on {
-                break;
-            }
-        }
-        let work = cvode.work()?;
-        let y = cvode.state().to_vec();
-        let field = ManyField::new(interfaces, slips);
-        Ok(ManyState::new(field, y, time, work))
+        let first = (self.tolerance.sqrt() / fastest).min(until - time);
+        let scales = Scales::new(&field, self.tolerance, until);
+        LargeCvode::new(Scaled { field, scales }, y, (time, until), first)
     }
 }
 

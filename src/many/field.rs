@@ -8,6 +8,8 @@ use super::constants::{LANES, of};
 use super::interfaces::ManyInterfaces;
 use super::local::Local;
 use super::share::CHUNK;
+use super::step::{Beginning, Saved};
+use crate::error::{Error, Result};
 use rayon::prelude::*;
 
 /// Numbers of a chunk.
@@ -82,6 +84,51 @@ impl<'a> ManyField<'a> {
         }
         y[self.stress()] = stress;
         y
+    }
+
+    /// The time, the steps and y at a beginning.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] for a stress or states that are not positive, or too few of these.
+    pub fn begun(&self, beginning: Beginning<'_>) -> Result<(f64, usize, Vec<f64>)> {
+        match beginning {
+            Beginning::Start(stress, states) => {
+                self.interfaces.checked(stress, states)?;
+                Ok((0.0, 0, self.start(stress, states)))
+            }
+            Beginning::Saved(saved) => {
+                let mut y = vec![0.0; self.len()];
+                y[..saved.held.len()].copy_from_slice(&saved.held);
+                let &[stress, slip] = &saved.shared[..] else {
+                    return Err(Error::Input("what was saved is of another method".into()));
+                };
+                y[self.stress()] = stress;
+                if self.of_all {
+                    y[self.slip_of_all()] = slip;
+                }
+                Ok((saved.time[0], saved.steps, y))
+            }
+        }
+    }
+
+    /// What a run at a time needs to go on. Slips of single interfaces are counted from there.
+    pub fn saved(&self, time: f64, steps: usize, y: &[f64]) -> Saved {
+        let slip = if self.of_all {
+            y[self.slip_of_all()]
+        } else {
+            0.0
+        };
+        Saved {
+            time: [time, 0.0],
+            steps,
+            shared: vec![y[self.stress()], slip],
+            held: y[..self.interfaces.share.held().len()].to_vec(),
+        }
+    }
+
+    /// Lets the slips of single interfaces begin at 0.
+    pub fn forget_slips(&self, y: &mut [f64]) {
+        y[self.first_slip()..].fill(0.0);
     }
 
     /// dy/dt.
@@ -316,4 +363,27 @@ pub(crate) struct Arrow {
     by_stress_inside: f64,
     /// The last pivot.
     tip: f64,
+}
+
+/// x with (d I - J) x = b for J at (tau, psi of each), both as (of each, of tau): for tests.
+#[doc(hidden)]
+pub fn arrow_solution(
+    interfaces: &ManyInterfaces,
+    (stress, states): (f64, &[f64]),
+    diagonal: f64,
+    b: &[f64],
+) -> Option<Vec<f64>> {
+    let field = ManyField::new(interfaces, &Slips::default());
+    let y = field.start(stress, states);
+    let mut arrow = Arrow::default();
+    field.linearise(&y, &mut arrow);
+    let ready = field.factorise(diagonal, &mut arrow);
+    let mut x = vec![0.0; field.len()];
+    x[..states.len()].copy_from_slice(&b[..states.len()]);
+    x[field.stress()] = b[states.len()];
+    field.solve(&arrow, &mut x);
+    let tau = x[field.stress()];
+    x.truncate(states.len());
+    x.push(tau);
+    ready.then_some(x)
 }

@@ -1,7 +1,6 @@
 //! What the interfaces are: each with its own constants, or all alike.
 
-use super::block::Layout;
-use super::constants::{Constants, Kind, LANES, Lanes, OneOfMany, Single, of};
+use super::constants::{Constants, Kind, LANES, OneOfMany, Single};
 use super::share::Share;
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -168,18 +167,5 @@ impl ManyInterfaces {
     /// Bytes of the constants.
     pub(super) fn constants_memory(&self) -> usize {
         self.constants.len() * size_of::<Constants>()
-    }
-
-    /// The rows of all blocks at the beginning, of the states held here.
-    pub(super) fn rows(&self, layout: Layout, states: &[f64]) -> Vec<Lanes> {
-        let mut rows = vec![[0.0; LANES]; layout.rows() * self.blocks()];
-        for (i, states) in states.chunks(LANES).enumerate() {
-            let of = of(&self.constants, i);
-            rows[i * layout.rows()] = std::array::from_fn(|lane| {
-                let psi = states[lane.min(states.len() - 1)];
-                of.strength(self.kind, psi, lane)
-            });
-        }
-        rows
     }
 }

@@ -5,7 +5,7 @@ use super::cvode::ManyCvode;
 use super::field::Slips;
 use super::interfaces::ManyInterfaces;
 use super::rosenbrock::ManyRosenbrock;
-use super::step::ManyStep;
+use super::step::{Beginning, ManyObserver};
 use super::taylor::ManyTaylor;
 use crate::error::Result;
 use crate::integrate::Work;
@@ -53,35 +53,36 @@ impl ManyMethod {
         }
     }
 
-    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every
-    /// step, with the slips that are asked for.
+    /// From a beginning on until a time, or until the observer says `false`, with the slips that are asked for.
     ///
     /// # Errors
     /// Those of the methods.
-    pub fn flow(
+    pub fn run(
         &self,
         interfaces: &ManyInterfaces,
-        start: (f64, &[f64]),
+        beginning: Beginning<'_>,
         until: f64,
         slips: &Slips,
-        observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
+        observer: &mut dyn ManyObserver,
     ) -> Result<Work> {
         match self {
             ManyMethod::Taylor(method) => {
-                let end = method.flow(interfaces, start, until, observer)?;
+                let end = method.run(interfaces, beginning, until, observer)?;
                 Ok(Work {
                     steps: end.steps(),
                     rhs: end.steps() * method.order(),
                     ..Work::default()
                 })
             }
-            ManyMethod::Rosenbrock(method) => Ok(method
-                .flow(interfaces, start, until, slips, observer)?
-                .work()),
+            ManyMethod::Rosenbrock(method) => {
+                let end = method.run(interfaces, beginning, until, slips, observer)?;
+                Ok(end.work())
+            }
             #[cfg(feature = "sundials")]
-            ManyMethod::Cvode(method) => Ok(method
-                .flow(interfaces, start, until, slips, observer)?
-                .work()),
+            ManyMethod::Cvode(method) => {
+                let end = method.run(interfaces, beginning, until, slips, observer)?;
+                Ok(end.work())
+            }
         }
     }
 }

@@ -26,11 +26,11 @@ pub use block::Extent;
 pub use constants::OneOfMany;
 #[cfg(feature = "sundials")]
 pub use cvode::ManyCvode;
-pub use field::Slips;
+pub use field::{Slips, arrow_solution};
 pub use interfaces::ManyInterfaces;
 pub use method::ManyMethod;
 pub use rosenbrock::ManyRosenbrock;
 pub use share::{Processes, Share};
 pub use state::ManyState;
-pub use step::ManyStep;
+pub use step::{Beginning, ManyObserver, ManyStep, Saved};
 pub use taylor::{ManySolution, ManyTaylor};

@@ -9,7 +9,7 @@ use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
 use super::share::CHUNK;
 use super::state::{ManyState, Scales};
-use super::step::ManyStep;
+use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::rosenbrock::drive::{Steppable, drive};
@@ -68,14 +68,66 @@ impl ManyRosenbrock {
         slips: &Slips,
         observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
     ) -> Result<ManyState<'a>> {
-        interfaces.checked(stress, states)?;
+        let beginning = Beginning::Start(stress, states);
+        self.run(interfaces, beginning, until, slips, &mut Looking(observer))
+    }
+
+    /// The same from any beginning on, with all that an observer may see.
+    ///
+    /// # Errors
+    /// As [`ManyRosenbrock::flow`].
+    pub fn run<'a>(
+        &self,
+        interfaces: &'a ManyInterfaces,
+        beginning: Beginning<'_>,
+        until: f64,
+        slips: &Slips,
+        observer: &mut dyn ManyObserver,
+    ) -> Result<ManyState<'a>> {
         let field = ManyField::new(interfaces, slips);
-        let y = field.start(stress, states);
-        let scales = Scales::new(&field, self.tolerance, until);
+        let (mut time, mut steps, y) = field.begun(beginning)?;
+        let mut carried = self.carried(field, y, until);
+        let mut goes_on = true;
+        while goes_on && time < until {
+            let left = until_save(observer, steps);
+            let mut done = 0;
+            let first = carried.first_step(self.tolerance, time)?;
+            let allowed = self.max_steps.saturating_sub(steps);
+            drive(
+                &mut carried,
+                (time, until),
+                first.min(until - time),
+                allowed,
+                |carried, begin, end| {
+                    (time, done) = (end, done + 1);
+                    goes_on = observer.step(&DenseStep {
+                        carried,
+                        begin,
+                        end,
+                        at: RefCell::new((f64::NAN, Vec::new())),
+                    })?;
+                    Ok(if goes_on && done < left {
+                        Control::Continue
+                    } else {
+                        Control::Stop
+                    })
+                },
+            )?;
+            steps += done;
+            if done == left {
+                carried.field.forget_slips(&mut carried.y);
+                observer.save(&carried.field.saved(time, steps, &carried.y))?;
+            }
+        }
+        let Carried { field, y, work, .. } = carried;
+        Ok(ManyState::new(field, y, time, work))
+    }
+
+    fn carried<'a>(&self, field: ManyField<'a>, y: Vec<f64>, until: f64) -> Carried<'a> {
         let tableau = self.method.tableau();
         let none = || vec![0.0; y.len()];
-        let mut carried = Carried {
-            scales,
+        Carried {
+            scales: Scales::new(&field, self.tolerance, until),
             tableau,
             f: none(),
             next: none(),
@@ -88,45 +140,7 @@ impl ManyRosenbrock {
             work: Work::default(),
             field,
             y,
-        };
-        carried.work.rhs += 1;
-        carried.work.jacobians += 1;
-        carried.field.rates(&carried.y, &mut carried.f);
-        carried.field.linearise(&carried.y, &mut carried.here);
-        let fastest = carried.field.largest(&carried.here);
-        if !carried.scales.are_finite(&carried.field, &carried.f) || !fastest.is_finite() {
-            return Err(Error::NonFinite {
-                what: "the right-hand side or its Jacobian",
-                t: 0.0,
-            });
         }
-        // A first step that resolves the fastest motion: the controller makes the next ones longer.
-        let resolved = self.tolerance.powf(1.0 / f64::from(tableau.order)) / fastest;
-        let mut time = 0.0;
-        if until > 0.0 {
-            drive(
-                &mut carried,
-                (0.0, until),
-                resolved.min(until),
-                self.max_steps,
-                |carried, begin, end| {
-                    time = end;
-                    let goes_on = observer(&DenseStep {
-                        carried,
-                        begin,
-                        end,
-                        at: RefCell::new((f64::NAN, Vec::new())),
-                    })?;
-                    Ok(if goes_on {
-                        Control::Continue
-                    } else {
-                        Control::Stop
-                    })
-                },
-            )?;
-        }
-        let Carried { field, y, work, .. } = carried;
-        Ok(ManyState::new(field, y, time, work))
     }
 }
 
@@ -146,6 +160,22 @@ struct Carried<'a> {
     here: Arrow,
     ahead: Arrow,
     work: Work,
+}
+
+impl Carried<'_> {
+    /// Makes f and J where it is, and tells a first step that resolves the fastest motion: the controller makes the next ones longer.
+    fn first_step(&mut self, tolerance: f64, t: f64) -> Result<f64> {
+        self.work.rhs += 1;
+        self.work.jacobians += 1;
+        self.field.rates(&self.y, &mut self.f);
+        self.field.linearise(&self.y, &mut self.here);
+        let fastest = self.field.largest(&self.here);
+        if !self.scales.are_finite(&self.field, &self.f) || !fastest.is_finite() {
+            let what = "the right-hand side or its Jacobian";
+            return Err(Error::NonFinite { what, t });
+        }
+        Ok(tolerance.powf(1.0 / f64::from(self.tableau.order)) / fastest)
+    }
 }
 
 /// `made` = start + the sum of weights times vectors.

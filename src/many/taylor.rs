@@ -6,7 +6,7 @@ use super::block::{
 use super::constants::{Constants, LANES, Lanes, of};
 use super::interfaces::ManyInterfaces;
 use super::share::CHUNK;
-use super::step::ManyStep;
+use super::step::{Beginning, Looking, ManyObserver, ManyStep, Saved};
 use super::vectors::Vectorised;
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -64,7 +64,8 @@ impl ManyTaylor {
         self.order
     }
 
-    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every step.
+    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every
+    /// step.
     ///
     /// # Errors
     /// [`Error::Parameter`] for a stress or states that are not positive, or too few of these; [`Error::StepTooSmall`],
@@ -76,24 +77,22 @@ impl ManyTaylor {
         until: f64,
         observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
     ) -> Result<ManySolution<'a>> {
-        interfaces.checked(stress, states)?;
-        let layout = Layout {
-            order: self.order,
-            kind: interfaces.kind,
-        };
-        let mut solution = ManySolution {
-            interfaces,
-            rows: interfaces.rows(layout, states),
-            layout,
-            time: DoubleDouble::ZERO,
-            stress: DoubleDouble::from(stress),
-            series: [0.0; MOST + 1],
-            rates: [0.0; MOST],
-            unit: FIRST,
-            steps: 0,
-            sums: Vec::new(),
-        };
-        solution.series[0] = stress;
+        let beginning = Beginning::Start(stress, states);
+        self.run(interfaces, beginning, until, &mut Looking(observer))
+    }
+
+    /// The same from any beginning on, with all that an observer may see.
+    ///
+    /// # Errors
+    /// As [`ManyTaylor::flow`].
+    pub fn run<'a>(
+        &self,
+        interfaces: &'a ManyInterfaces,
+        beginning: Beginning<'_>,
+        until: f64,
+        observer: &mut dyn ManyObserver,
+    ) -> Result<ManySolution<'a>> {
+        let mut solution = self.begun(interfaces, beginning)?;
         while solution.time.hi() < until {
             if solution.steps == self.max_steps {
                 return Err(Error::TooManySteps {
@@ -118,17 +117,65 @@ impl ManyTaylor {
                     h: if length.is_nan() { 0.0 } else { length },
                 });
             }
-            let goes_on = observer(&TaylorStep {
+            let goes_on = observer.step(&TaylorStep {
                 solution: &solution,
                 length,
                 end: end.hi(),
             })?;
             solution.advance(length);
             solution.time = end;
+            if observer
+                .save_every()
+                .is_some_and(|every| solution.steps.is_multiple_of(every))
+            {
+                observer.save(&solution.saved())?;
+            }
             if !goes_on {
                 break;
             }
         }
+        Ok(solution)
+    }
+
+    fn begun<'a>(
+        &self,
+        interfaces: &'a ManyInterfaces,
+        beginning: Beginning<'_>,
+    ) -> Result<ManySolution<'a>> {
+        let layout = Layout {
+            order: self.order,
+            kind: interfaces.kind,
+        };
+        let mut solution = ManySolution {
+            interfaces,
+            rows: vec![[0.0; LANES]; layout.rows() * interfaces.blocks()],
+            layout,
+            time: DoubleDouble::ZERO,
+            stress: DoubleDouble::ZERO,
+            series: [0.0; MOST + 1],
+            rates: [0.0; MOST],
+            unit: FIRST,
+            steps: 0,
+            sums: Vec::new(),
+        };
+        match beginning {
+            Beginning::Start(stress, states) => {
+                interfaces.checked(stress, states)?;
+                solution.stress = DoubleDouble::from(stress);
+                solution.put(states, |of, psi, lane| of.strength(layout.kind, psi, lane));
+            }
+            Beginning::Saved(saved) => {
+                let &[high, low, unit] = &saved.shared[..] else {
+                    return Err(Error::Input("what was saved is of another method".into()));
+                };
+                solution.stress = DoubleDouble::new(high, low);
+                solution.unit = unit;
+                solution.time = DoubleDouble::new(saved.time[0], saved.time[1]);
+                solution.steps = saved.steps;
+                solution.put(&saved.held, |_, strength, _| strength);
+            }
+        }
+        solution.series[0] = solution.stress.hi();
         Ok(solution)
     }
 }
@@ -176,6 +223,28 @@ impl ManySolution<'_> {
     /// Steps so far.
     pub fn steps(&self) -> usize {
         self.steps
+    }
+
+    /// Makes strengths of a number of every interface held here.
+    fn put(&mut self, held: &[f64], strength: impl Fn(&Constants, f64, usize) -> f64) {
+        let rows = self.layout.rows();
+        for (i, held) in held.chunks(LANES).enumerate() {
+            let of = of(&self.interfaces.constants, i);
+            self.rows[i * rows] =
+                std::array::from_fn(|lane| strength(of, held[lane.min(held.len() - 1)], lane));
+        }
+    }
+
+    /// What the run needs to go on.
+    fn saved(&self) -> Saved {
+        let strengths = self.rows.iter().step_by(self.layout.rows()).flatten();
+        let held = self.interfaces.share.held().len();
+        Saved {
+            time: [self.time.hi(), self.time.lo()],
+            steps: self.steps,
+            shared: vec![self.stress.hi(), self.stress.lo(), self.unit],
+            held: strengths.take(held).copied().collect(),
+        }
     }
 
     /// The block and the lane of an interface.

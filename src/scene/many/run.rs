@@ -3,7 +3,7 @@
 use super::plan::{ManyInstant, ManyPlan};
 use crate::error::{Error, Result};
 use crate::integrate::{Control, Work};
-use crate::many::{Extent, ManyStep};
+use crate::many::{Beginning, Extent, ManyObserver, ManyStep};
 use crate::number::DoubleDouble;
 use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
@@ -32,13 +32,12 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         stopped: false,
         last: None,
     };
-    let start = (stress, states.as_slice());
-    let end = plan.method.flow(
+    let end = plan.method.run(
         &plan.interfaces,
-        start,
+        Beginning::Start(stress, states),
         plan.until,
         &plan.slips,
-        &mut |step| Ok(watch.see(step)),
+        &mut watch,
     );
     if let Err(error @ Error::Parameter { .. }) = end {
         return Err(error);
@@ -80,6 +79,12 @@ struct Watch<'a> {
     begun: bool,
     stopped: bool,
     last: Option<Vec<f64>>,
+}
+
+impl ManyObserver for Watch<'_> {
+    fn step(&mut self, step: &dyn ManyStep) -> Result<bool> {
+        Ok(self.see(step))
+    }
 }
 
 impl Watch<'_> {

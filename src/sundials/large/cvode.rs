@@ -17,7 +17,7 @@ use sundials_sys::{N_Vector, SUNMatrix};
 /// Steps in a row that may leave t where it is.
 const STANDSTILL: usize = 200;
 
-/// An integration by BDF of orders 1 to 5 from time 0 on.
+/// An integration by BDF of orders 1 to 5.
 pub(crate) struct LargeCvode<S: LinearTime> {
     // In the order in which they must go.
     memory: CvodeMemory,
@@ -35,11 +35,16 @@ pub(crate) struct LargeCvode<S: LinearTime> {
 }
 
 impl<S: LinearTime> LargeCvode<S> {
-    /// From y0 at time 0 towards a time, with this first step.
+    /// From y0 at a time towards another, with this first step.
     ///
     /// # Errors
     /// [`Error::Sundials`] if SUNDIALS can't allocate, or is not of the version of its headers.
-    pub fn new(system: S, y0: Vec<f64>, until: f64, first_step: f64) -> Result<Self> {
+    pub fn new(
+        system: S,
+        y0: Vec<f64>,
+        (from, until): (f64, f64),
+        first_step: f64,
+    ) -> Result<Self> {
         let messages = Stable::new(Messages::default());
         let frame = Stable::new(Frame::new(system));
         let context = Context::new(&messages)?;
@@ -58,7 +63,7 @@ impl<S: LinearTime> LargeCvode<S> {
             check!(
                 CV,
                 &messages,
-                CVodeInit(m, Some(right_hand_side::<S>), 0.0, state.as_ptr())
+                CVodeInit(m, Some(right_hand_side::<S>), from, state.as_ptr())
             )?;
             check!(CV, &messages, CVodeWFtolerances(m, Some(weights::<S>)))?;
             check!(CV, &messages, CVodeSetMaxHnilWarns(m, -1))?;
@@ -84,7 +89,7 @@ impl<S: LinearTime> LargeCvode<S> {
             _context: context,
             frame,
             messages,
-            time: 0.0,
+            time: from,
             until,
             stalled: 0,
         })
