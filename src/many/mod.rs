@@ -7,8 +7,10 @@
 
 mod block;
 mod interfaces;
+mod slip_events;
 mod taylor;
 
 pub use block::Extent;
 pub use interfaces::ManyInterfaces;
+pub use slip_events::{ManyEvent, Participation, SlipEvents, UnderWay};
 pub use taylor::{ManySolution, ManyStep, ManyTaylor};

@@ -11,9 +11,9 @@ use rayon::prelude::*;
 
 /// Blocks whose slip rates are added up together: on this, and on nothing that differs from machine to machine, the digits of sums
 /// depend.
-const CHUNK: usize = 64;
+pub(super) const CHUNK: usize = 64;
 /// Interfaces from which on several cores pay.
-const MANY: usize = 8192;
+pub(super) const MANY: usize = 8192;
 /// The first unit of time: a step follows from it.
 const FIRST: f64 = 1e-3;
 
@@ -304,6 +304,34 @@ impl ManyStep<'_> {
     /// The time at its end.
     pub fn end(&self) -> f64 {
         self.end
+    }
+
+    /// The series of all interfaces.
+    pub(super) fn blocks(&self) -> &[Block] {
+        &self.solution.blocks
+    }
+
+    /// The order of the series, and the length of the step in their unit.
+    pub(super) fn expanded(&self) -> (usize, f64) {
+        (self.solution.order, self.length / self.solution.unit)
+    }
+
+    /// The unit of time of the series.
+    pub(super) fn unit(&self) -> f64 {
+        self.solution.unit
+    }
+
+    /// The series of the sum of all slip rates.
+    pub(super) fn total_rates(&self) -> &[f64] {
+        &self.solution.rates[..self.solution.order]
+    }
+
+    /// The time and tau so many units after the beginning.
+    pub(super) fn moment(&self, units: f64) -> (DoubleDouble, f64) {
+        let solution = self.solution;
+        let change = evaluate(&solution.series[1..=solution.order], units) * units;
+        let time = solution.time + units * solution.unit;
+        (time, (solution.stress + change).hi())
     }
 
     /// How many units a time is after the beginning.

@@ -23,6 +23,15 @@ pub(super) struct Draw {
     by_logarithm: bool,
 }
 
+/// The values of a constant, of each interface one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Its name.
+    pub name: &'static str,
+    /// Its values.
+    pub values: Vec<f64>,
+}
+
 impl Draw {
     /// From `NAME=A:B` or `NAME=A:Blog`.
     ///
@@ -58,14 +67,22 @@ impl Draw {
         })
     }
 
+    /// Room for the values that are drawn.
+    pub fn none_drawn(&self) -> Drawn {
+        Drawn {
+            name: self.name,
+            values: Vec::new(),
+        }
+    }
+
     /// As it was asked for.
     pub fn told(&self) -> String {
         let log = if self.by_logarithm { "log" } else { "" };
         format!("{}={:?}:{:?}{log}", self.name, self.from, self.to)
     }
 
-    /// Gives the options of an interface its next value.
-    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, length: &mut f64) {
+    /// Gives the options of an interface its next value, and tells it.
+    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, length: &mut f64) -> f64 {
         let value = if self.by_logarithm {
             let drawn = random.between((self.from.ln(), self.to.ln())).exp();
             drawn.clamp(self.from, self.to)
@@ -79,5 +96,6 @@ impl Draw {
             "reference_friction" => slab.reference_friction = Some(value),
             _ => *length = value,
         }
+        value
     }
 }

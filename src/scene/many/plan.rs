@@ -1,6 +1,7 @@
 //! A run of many interfaces from options: what they are, where they start, and what rows hold.
 
-use super::draw::Draw;
+use super::catalogue::CataloguePlan;
+use super::draw::{Draw, Drawn};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
 use crate::integrate::Choice;
@@ -32,6 +33,10 @@ pub struct ManyPlan {
     pub watched: Vec<usize>,
     /// Whether the run is drawn.
     pub picture: bool,
+    /// What is asked for of slip events.
+    pub catalogue: Option<CataloguePlan>,
+    /// The constants that are drawn, where they are shown.
+    pub drawn: Vec<Drawn>,
     /// The method.
     pub taylor: ManyTaylor,
     /// The method's name as it was asked for.
@@ -67,7 +72,10 @@ impl ManyPlan {
     pub fn is_of(options: &IntegrateOptions) -> bool {
         let slab = &options.model.slab;
         let named = slab.text.system.is_some() || slab.clusters.is_some();
-        !options.draw.is_empty() || slab.count() >= MANY && !named
+        // The events of one or two have a meaning of their own, and laws from files have none.
+        let listed = options.events.is_some() && slab.law_file().is_none();
+        let least = if listed { 3 } else { MANY };
+        !options.draw.is_empty() || slab.count() >= least && !named
     }
 
     /// Checks the options.
@@ -91,7 +99,12 @@ impl ManyPlan {
         let loading = Loading::new(driving, needed("stiffness", model.stiffness)?)?;
         let draws = options.draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
-        let laws = laws(&model.slab, (&draws, options.seed), count)?;
+        let mut drawn: Vec<Drawn> = draws.iter().map(Draw::none_drawn).collect();
+        let laws = laws(&model.slab, (&draws, options.seed), count, &mut drawn)?;
+        let catalogue = CataloguePlan::new(options, driving / count as f64)?;
+        if !catalogue.is_some_and(|catalogue| catalogue.participation) {
+            drawn.clear();
+        }
         let interfaces = match &laws[..] {
             [(law, _)] => ManyInterfaces::alike(law, count, loading)?,
             _ => ManyInterfaces::new(&laws, loading)?,
@@ -117,6 +130,8 @@ impl ManyPlan {
             columns,
             watched,
             picture: options.plot.is_some(),
+            catalogue,
+            drawn,
             taylor,
             asked_method: options.numerics.method.clone(),
             rtol: options.numerics.rtol,
@@ -148,7 +163,8 @@ impl ManyPlan {
   tolerance         {:e} of every psi and of 1 + |tau|, at most {} steps
   memory            {} MB
   trajectory        {rows}
-  slips             {}",
+  slips             {}
+  events            {}",
             crate::error::count(count),
             self.taylor.order(),
             self.rtol,
@@ -157,6 +173,19 @@ impl ManyPlan {
             match self.watched.len() {
                 0 => "of all together, term by term".to_owned(),
                 n => format!("of all together and of {n} interfaces, term by term"),
+            },
+            match &self.catalogue {
+                None => "off: `events` is not given".to_owned(),
+                Some(catalogue) => format!(
+                    "any interface faster than {} V_H/N = {}, by the roots of the rates' series where their terms do not rule them out{}",
+                    catalogue.threshold,
+                    catalogue.rate,
+                    if catalogue.participation {
+                        "; the part that each takes is kept"
+                    } else {
+                        ""
+                    }
+                ),
             }
         )
     }
@@ -181,7 +210,7 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
         let index = name.rsplit('_').next().unwrap_or_default();
         !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
     };
-    let asked: [(&str, bool, &str); 7] = [
+    let asked: [(&str, bool, &str); 6] = [
         (
             "law",
             slab.law_file().is_some(),
@@ -197,11 +226,6 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
             "program",
             options.program.is_some(),
             "V_H is constant for many interfaces",
-        ),
-        (
-            "events",
-            options.events.is_some(),
-            "stick-slip events are of one or two interfaces",
         ),
         (
             "estimate_error",
@@ -220,11 +244,12 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
     }
 }
 
-/// The law and the slip length of each; one alone where all are equal.
+/// The law and the slip length of each; one alone where all are equal. What is drawn is told too.
 fn laws(
     slab: &SlabOptions,
     (draws, seed): (&[Draw], u64),
     count: usize,
+    drawn: &mut [Drawn],
 ) -> Result<Vec<(AnyLaw, f64)>> {
     let law = |slab: &SlabOptions| {
         let healing_time = slab.healing_time.unwrap_or(HEALING_TIME);
@@ -240,8 +265,9 @@ fn laws(
         .collect();
     let mut one = |_| {
         let (mut own, mut length) = (slab.clone(), 1.0);
-        for (draw, random) in draws.iter().zip(&mut streams) {
-            draw.put(random, &mut own, &mut length);
+        for ((draw, random), drawn) in draws.iter().zip(&mut streams).zip(&mut *drawn) {
+            let value = draw.put(random, &mut own, &mut length);
+            drawn.values.push(value);
         }
         Ok((law(&own)?, length))
     };

@@ -3,7 +3,7 @@
 use super::plan::{ManyInstant, ManyPlan};
 use crate::error::{Error, Result};
 use crate::integrate::{Control, Work};
-use crate::many::{Extent, ManyStep};
+use crate::many::{Extent, ManyStep, SlipEvents};
 use crate::number::DoubleDouble;
 use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
@@ -16,9 +16,11 @@ use crate::scene::system::Described;
 /// [`Error::Parameter`] for a start that is refused; a failure on the way is in [`RunOutcome::failure`].
 pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     let (stress, states) = (plan.start.0, &plan.start.1);
+    let events = plan.catalogue.map(|asked| asked.events(&plan.interfaces));
     let mut watch = Watch {
         plan,
         sink,
+        events: events.transpose()?,
         pictured: plan.pictured(),
         slip: DoubleDouble::ZERO,
         slips: vec![DoubleDouble::ZERO; plan.watched.len()],
@@ -42,6 +44,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     Ok(RunOutcome {
         last: watch.last,
         events: Vec::new(),
+        catalogue: watch.events.map(Into::into),
         work: Work {
             steps,
             rhs: steps * plan.taylor.order(),
@@ -59,6 +62,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
 struct Watch<'a> {
     plan: &'a ManyPlan,
     sink: &'a mut dyn Sink,
+    events: Option<SlipEvents>,
     pictured: Vec<Column<ManyInstant>>,
     /// The slip of all together at the beginning of the step.
     slip: DoubleDouble,
@@ -96,6 +100,9 @@ impl Watch<'_> {
                 self.draw(step, step.begin() + length * part as f64 / PICTURED as f64);
             }
             self.draw(step, end);
+        }
+        if let Some(events) = &mut self.events {
+            events.see(step);
         }
         let ends = end >= plan.until;
         match plan.sampling {
