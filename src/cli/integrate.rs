@@ -6,13 +6,14 @@ use super::stream::StreamOut;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Format, Place, RowList, object, plot};
+use crate::output::{Format, Place, RowList, object, plot, seven_digits};
 use crate::scene::{
-    Change, Described, IntegrateOptions, Keeping, ManyPlan, Plan, Program, Quantity, RunOutcome,
-    TextModel, TextPlan, explain,
+    Change, Described, IntegrateOptions, Keeping, ManyPlan, OutputOptions, Plan, Program, Quantity,
+    RunOutcome, TextModel, TextPlan, explain,
 };
-use crate::views;
+use crate::views::{self, Listed, Listing};
 use serde_json::{Map, Value, json};
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
@@ -28,9 +29,9 @@ pub trait PlannedRun {
     fn columns(&self) -> Vec<(String, Quantity)>;
     /// The columns of the points of a picture.
     fn pictured(&self) -> Vec<(String, Quantity)>;
-    /// Of how many interfaces there are events; `None` where they are not asked for.
-    fn interfaces_of_events(&self) -> Option<usize> {
-        None
+    /// The tables beside the rows.
+    fn beside<'a>(&'a self, _: &'a RunOutcome) -> Beside<'a> {
+        Beside::default()
     }
     /// How V_H changes on the way, where it does.
     fn program(&self) -> Option<&Program>;
@@ -44,6 +45,19 @@ pub trait PlannedRun {
     fn run(&self, out: &mut StreamOut) -> Result<RunOutcome>;
     /// The picture of these points.
     fn picture(&self, drawn: &RowList) -> plot::Drawing;
+    /// The picture of the events, of runs that have one.
+    fn picture_of_events(&self, _: &RunOutcome) -> Option<plot::Drawing> {
+        None
+    }
+}
+
+/// Tables beside the rows of a run, those that are asked for.
+#[derive(Default)]
+pub struct Beside<'a> {
+    /// The events.
+    pub events: Option<Box<dyn Listing + 'a>>,
+    /// What each interface does in them.
+    pub participation: Option<Box<dyn Listing + 'a>>,
 }
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
@@ -90,8 +104,16 @@ impl PlannedRun for Plan {
         views::names(&self.pictured(), false)
     }
 
-    fn interfaces_of_events(&self) -> Option<usize> {
-        self.events.map(|_| self.system.interfaces)
+    fn beside<'a>(&'a self, outcome: &'a RunOutcome) -> Beside<'a> {
+        let events = self.events.map(|_| Listed {
+            columns: views::event_columns(self.system.interfaces),
+            rows: Cow::Borrowed(&*outcome.events),
+            units: &self.system.units,
+        });
+        Beside {
+            events: events.map(|events| Box::new(events) as _),
+            participation: None,
+        }
     }
 
     fn program(&self) -> Option<&Program> {
@@ -116,15 +138,17 @@ pub fn integrate(
     options: &IntegrateOptions,
     words: &[String],
 ) -> Result<Ending> {
-    if let Some(path) = &options.plot {
+    let pictures = [&options.plot, &options.plot_events];
+    for path in pictures.into_iter().flatten() {
         plot::PictureFormat::of(path)?;
     }
-    let events = events_place(options)?;
-    let events_path = events.as_ref().map(|(path, _)| path.as_path());
-    let others: Vec<&Path> = [options.plot.as_deref(), events_path]
-        .into_iter()
-        .flatten()
-        .collect();
+    let places = [
+        place(&options.output, "events", &options.events)?,
+        place(&options.output, "participation", &options.participation)?,
+    ];
+    let tables = places.iter().flatten().map(|(path, _)| path.as_path());
+    let pictures = pictures.into_iter().flatten().map(PathBuf::as_path);
+    let others: Vec<&Path> = pictures.chain(tables).collect();
     let report = Report::new(&options.output, words, &others)?;
     let kept = report.format == Format::Json;
     if options.output.explain {
@@ -156,11 +180,18 @@ pub fn integrate(
     if let Some(error) = broken {
         return written(Err(error), &report.place);
     }
-    let ending = write(plan, &report, &rows, &outcome, events.as_ref())?;
+    let beside = plan.beside(&outcome);
+    let events = beside.events.as_ref().map(|events| events.count());
+    let ending = write(plan, &report, (&rows, &beside), &outcome, &places)?;
+    drop(beside);
     if let Some(path) = &options.plot {
         plot::write(path, &plan.picture(&drawn))?;
     }
-    let events = plan.interfaces_of_events().map(|_| outcome.events.len());
+    if let Some(path) = &options.plot_events
+        && let Some(picture) = plan.picture_of_events(&outcome)
+    {
+        plot::write(path, &picture)?;
+    }
     report.say(summary(&outcome, events, seconds));
     report.ended(match outcome.failure {
         Some(error) => Err(error),
@@ -169,17 +200,19 @@ pub fn integrate(
     })
 }
 
-/// The file of the events table: the one that is named, or one beside the file of the rows; `None` where events are in the
+/// Where a table goes that has a file of its own.
+type TablePlace = Option<(PathBuf, Format)>;
+
+/// The file of a table beside the rows: the one that is named, or one beside the file of the rows; `None` where it is in the
 /// object, or below the table on the standard output.
 ///
 /// # Errors
-/// [`Error::Input`] where events would stand below the rows of one CSV, and where a file is named for those of an object.
-fn events_place(options: &IntegrateOptions) -> Result<Option<(PathBuf, Format)>> {
-    let Some(named) = &options.events else {
+/// [`Error::Input`] where it would stand below the rows of one CSV, and where a file is named for that of an object.
+fn place(output: &OutputOptions, name: &str, asked: &Option<PathBuf>) -> Result<TablePlace> {
+    let Some(named) = asked else {
         return Ok(None);
     };
     let named = Some(named.clone()).filter(|path| !path.as_os_str().is_empty());
-    let output = &options.output;
     let file = output
         .output
         .as_deref()
@@ -188,63 +221,79 @@ fn events_place(options: &IntegrateOptions) -> Result<Option<(PathBuf, Format)>>
     let format = Format::choose(output.format.as_deref(), file, terminal)?;
     match (format, named, file) {
         (Format::Json, Some(named), _) => Err(Error::Input(format!(
-            "--events {}: a JSON object holds its events itself; leave the file out",
+            "--{name} {}: a JSON object holds its {name} itself; leave the file out",
             named.display()
         ))),
         (Format::Json, None, _) | (Format::Table, None, None) => Ok(None),
         (_, Some(named), _) => Ok(Some((named, Format::Csv))),
-        (Format::Csv, None, None) => Err(Error::Input(
-            "--events needs a file of its own where rows go to standard output as CSV: --events FILE, or -o FILE, --format json or --format table"
-                .into(),
-        )),
+        (Format::Csv, None, None) => Err(Error::Input(format!(
+            "--{name} needs a file of its own where rows go to standard output as CSV: --{name} FILE, or -o FILE, --format json or --format table"
+        ))),
         (_, None, Some(file)) => {
-            let mut name = file.file_stem().unwrap_or_default().to_owned();
-            name.push(".events.");
-            name.push(file.extension().unwrap_or("csv".as_ref()));
-            Ok(Some((file.with_file_name(name), format)))
+            let mut beside = file.file_stem().unwrap_or_default().to_owned();
+            beside.push(format!(".{name}."));
+            beside.push(file.extension().unwrap_or("csv".as_ref()));
+            Ok(Some((file.with_file_name(beside), format)))
         }
     }
 }
 
-/// The object, or the events after the rows.
+/// The object, or the tables after the rows.
 fn write(
     plan: &impl PlannedRun,
     report: &Report<'_>,
-    rows: &RowList,
+    (rows, beside): (&RowList, &Beside<'_>),
     outcome: &RunOutcome,
-    events: Option<&(PathBuf, Format)>,
+    places: &[TablePlace; 2],
 ) -> Result<Ending> {
     if report.format == Format::Json {
         let bytes = report.envelope(
             plan.system(),
             plan.numerics(),
-            result(plan, rows, outcome),
+            result(plan, rows, beside, outcome),
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
         return written(report.place.write(&bytes), &report.place);
     }
-    let Some(interfaces) = plan.interfaces_of_events() else {
-        return Ok(Ending::Done);
-    };
-    let place = Place::new(events.map(|(path, _)| path.as_path()));
+    for (table, place) in [&beside.events, &beside.participation]
+        .into_iter()
+        .zip(places)
+    {
+        if let Some(table) = table {
+            let ending = write_table(plan, report, &**table, place)?;
+            if ending != Ending::Done {
+                return Ok(ending);
+            }
+        }
+    }
+    Ok(Ending::Done)
+}
+
+/// A table in its file, or below the others.
+fn write_table(
+    plan: &impl PlannedRun,
+    report: &Report<'_>,
+    table: &dyn Listing,
+    own: &TablePlace,
+) -> Result<Ending> {
+    let place = Place::new(own.as_ref().map(|(path, _)| path.as_path()));
     let mut to = place.stream()?;
     let mut remarks = Vec::new();
-    let begun = if events.is_some() {
+    let begun = if own.is_some() {
         remarks = report.remarks(plan.system(), &plan.numerics());
         Ok(())
     } else {
         writeln!(to)
     };
-    let (columns, units) = (views::event_columns(interfaces), plan.system().units());
-    let (names, quantities): (Vec<_>, Vec<_>) = views::names(&columns, false).into_iter().unzip();
+    let units = plan.system().units();
+    let (names, quantities): (Vec<_>, Vec<_>) = table.names().into_iter().unzip();
     let unit_names = unit_names(units, quantities.into_iter());
-    let format = events.map_or(report.format, |(_, format)| *format);
+    let format = own.as_ref().map_or(report.format, |(_, format)| *format);
     let all = begun
         .and_then(|()| report.rows_as(format, to, &remarks, &names, &unit_names))
         .and_then(|mut writer| {
-            let mut events = outcome.events.iter();
-            events.try_for_each(|event| writer.row(&views::cells(&columns, event, units, false)))
+            (0..table.count()).try_for_each(|row| writer.row(&table.cells(row)))
         });
     written(all, &place)
 }
@@ -259,11 +308,14 @@ struct IntegrationResult<'a> {
     program: Option<Vec<Value>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     events: Option<Vec<Map<String, Value>>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    participation: Option<Vec<Map<String, Value>>>,
 }
 
 fn result<'a>(
     plan: &impl PlannedRun,
     rows: &'a RowList,
+    beside: &Beside<'_>,
     outcome: &RunOutcome,
 ) -> IntegrationResult<'a> {
     let last = outcome.last.as_ref().map(|row| {
@@ -275,16 +327,14 @@ fn result<'a>(
         }
         last
     });
-    let events = plan.interfaces_of_events().map(|interfaces| {
-        let columns = views::event_columns(interfaces);
-        let object = |event| views::object(&columns, event, plan.system().units());
-        outcome.events.iter().map(object).collect()
-    });
+    let objects =
+        |table: &Option<Box<dyn Listing + '_>>| table.as_ref().map(|table| table.objects());
     IntegrationResult {
         rows,
         last,
         program: plan.program().map(changes),
-        events,
+        events: objects(&beside.events),
+        participation: objects(&beside.participation),
     }
 }
 
@@ -308,6 +358,16 @@ fn summary(outcome: &RunOutcome, events: Option<usize>, seconds: f64) -> String 
     if let Some(events) = events {
         let events = several(events, "event", "events");
         text.push_str(&format!(", {events}"));
+    }
+    let catalogue = outcome.catalogue.as_ref();
+    if let Some(open) = catalogue.and_then(|catalogue| catalogue.under_way) {
+        let participants = several(open.participants, "participant", "participants");
+        let since = open.since.map_or("the start".to_owned(), |t| {
+            format!("t = {}", seven_digits(t))
+        });
+        text.push_str(&format!(
+            " and one under way since {since} with {participants}"
+        ));
     }
     if let Some(estimate) = outcome.error_estimate {
         text.push_str(&format!(", error estimate {estimate:.1e}"));

@@ -1,7 +1,7 @@
 //! `twinslip integrate` of many interfaces.
 
 use super::Ending;
-use super::integrate::{PlannedRun, integrate};
+use super::integrate::{Beside, PlannedRun, integrate};
 use super::ranks::Joined;
 use super::stream::StreamOut;
 use crate::error::Result;
@@ -16,8 +16,9 @@ use crate::scene::Sink;
 use crate::scene::{
     Described, IntegrateOptions, Keeping, ManyPlan, Program, Quantity, RunOutcome, run_many,
 };
-use crate::views;
+use crate::views::{self, Listed};
 use serde_json::{Value, json};
+use std::borrow::Cow;
 
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     match Joined::join()? {
@@ -90,6 +91,26 @@ impl PlannedRun for ManyPlan {
         views::names(&self.pictured(), false)
     }
 
+    fn beside<'a>(&'a self, outcome: &'a RunOutcome) -> Beside<'a> {
+        let catalogue = outcome.catalogue.as_ref();
+        let count = self.interfaces.count();
+        let events = catalogue.map(|catalogue| Listed {
+            columns: views::many_event_columns(count),
+            rows: Cow::Borrowed(&*catalogue.events),
+            units: self.units(),
+        });
+        let all = catalogue.and_then(|catalogue| catalogue.participants(&self.drawn));
+        let participation = all.map(|rows| Listed {
+            columns: views::participation_columns(&self.drawn),
+            rows: Cow::Owned(rows),
+            units: self.units(),
+        });
+        Beside {
+            events: events.map(|events| Box::new(events) as _),
+            participation: participation.map(|all| Box::new(all) as _),
+        }
+    }
+
     fn program(&self) -> Option<&Program> {
         None
     }
@@ -104,5 +125,10 @@ impl PlannedRun for ManyPlan {
 
     fn picture(&self, drawn: &RowList) -> plot::Drawing {
         views::many_run(self, drawn)
+    }
+
+    fn picture_of_events(&self, outcome: &RunOutcome) -> Option<plot::Drawing> {
+        let catalogue = outcome.catalogue.as_ref();
+        catalogue.map(|catalogue| views::picture_of_events(self, &catalogue.events))
     }
 }

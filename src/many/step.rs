@@ -1,6 +1,7 @@
 //! What an observer of a run sees: every step, with everything at any time of it, and from time to time all that is needed to go on.
 
 use super::block::Extent;
+use super::taylor::StepSeries;
 use crate::error::Result;
 
 /// A step of all interfaces, from its beginning to its end.
@@ -28,6 +29,11 @@ pub trait ManyStep {
 
     /// The same of all interfaces together.
     fn slip_of_all(&self, time: f64) -> f64;
+
+    /// The power series that the step is made of, where it is.
+    fn series(&self) -> Option<StepSeries<'_>> {
+        None
+    }
 }
 
 /// All that a run needs to go on as if nothing had happened.

@@ -412,6 +412,43 @@ struct TaylorStep<'a> {
     end: f64,
 }
 
+/// The power series of a step, at its beginning.
+#[derive(Debug, Clone, Copy)]
+pub struct StepSeries<'a> {
+    solution: &'a ManySolution<'a>,
+    length: f64,
+}
+
+impl<'a> StepSeries<'a> {
+    /// The rows of all blocks, and which these are.
+    pub(super) fn rows(&self) -> (&'a [Lanes], Layout) {
+        (&self.solution.rows, self.solution.layout)
+    }
+
+    /// The length of the step in the unit of the series.
+    pub(super) fn length(&self) -> f64 {
+        self.length / self.solution.unit
+    }
+
+    /// The unit of time of the series.
+    pub(super) fn unit(&self) -> f64 {
+        self.solution.unit
+    }
+
+    /// Of the sum of all slip rates.
+    pub(super) fn total_rates(&self) -> &'a [f64] {
+        &self.solution.rates[..self.solution.layout.order]
+    }
+
+    /// The time and tau so many units after the beginning.
+    pub(super) fn moment(&self, units: f64) -> (DoubleDouble, f64) {
+        let solution = self.solution;
+        let change = evaluate(&solution.series[1..=solution.layout.order], units) * units;
+        let time = solution.time + units * solution.unit;
+        (time, (solution.stress + change).hi())
+    }
+}
+
 impl TaylorStep<'_> {
     /// How many units a time is after the beginning.
     fn units(&self, time: f64) -> f64 {
@@ -487,5 +524,12 @@ impl ManyStep for TaylorStep<'_> {
     fn slip_of_all(&self, time: f64) -> f64 {
         let rates = &self.solution.rates[..self.solution.layout.order];
         self.integral(rates.iter().copied(), time)
+    }
+
+    fn series(&self) -> Option<StepSeries<'_>> {
+        Some(StepSeries {
+            solution: self.solution,
+            length: self.length,
+        })
     }
 }

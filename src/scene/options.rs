@@ -235,14 +235,19 @@ pub struct IntegrateOptions {
     #[arg(long, value_name = "NAMES", help_heading = "Run")]
     pub columns: Option<String>,
     /// Find stick-slip events: times between a maximum and a minimum of stress, when the interfaces together slip faster
-    /// than V_H. In JSON they are result.events; a table on standard output is followed by theirs; in CSV they go to FILE, or
+    /// than V_H. Of three interfaces and more: times in which at least one slips faster than a threshold. In JSON they are result.events; a table on standard output is followed by theirs; in CSV they go to FILE, or
     /// beside -o RUN.csv to RUN.events.csv
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, help_heading = "Run")]
     pub events: Option<PathBuf>,
     /// Count events whose total slip rate exceeds X times V_H [default: 2]; with --program times the V_H of that moment, so that a
-    /// hold, in which all slip is faster than V_H = 0, counts as one
+    /// hold, in which all slip is faster than V_H = 0, counts as one. Of three interfaces and more each slips while it is faster than X times
+    /// V_H/N [default: 10]
     #[arg(long, value_name = "X", requires = "events", value_parser = number, allow_negative_numbers = true, help_heading = "Run")]
     pub event_threshold: Option<f64>,
+    /// With --events of three interfaces and more: in how many events each interface slips, how far, and its constants that are drawn. In
+    /// JSON these are result.participation; else they go to FILE, or beside -o RUN.csv to RUN.participation.csv
+    #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, requires = "events", help_heading = "Run")]
+    pub participation: Option<PathBuf>,
     /// Estimate the error of the last row by a second run with 100 times tighter tolerances, below --rtol 1e-12 by the
     /// reference
     #[arg(long, help_heading = "Run")]
@@ -256,6 +261,15 @@ pub struct IntegrateOptions {
     /// Draw stress, states and slip rates in time, and the phase plane, as FILE.svg or FILE.png
     #[arg(long, value_name = "FILE", help_heading = "Output")]
     pub plot: Option<PathBuf>,
+    /// With --events of three interfaces and more: draw how many events there are of each size, and how many interfaces slip in each, as
+    /// FILE.svg or FILE.png
+    #[arg(
+        long,
+        value_name = "FILE",
+        requires = "events",
+        help_heading = "Output"
+    )]
+    pub plot_events: Option<PathBuf>,
     /// Where results go.
     #[command(flatten)]
     pub output: OutputOptions,

@@ -154,6 +154,15 @@ impl Plan {
             }
             Some(program) => System::programmed(&options.model, program)?,
         };
+        let of_many = [
+            ("participation", options.participation.is_some()),
+            ("plot-events", options.plot_events.is_some()),
+        ];
+        if let Some((name, _)) = of_many.into_iter().find(|(_, asked)| *asked) {
+            return Err(Error::Input(format!(
+                "`{name}` is of the events of three interfaces and more; of one or two `events` has all"
+            )));
+        }
         let text = options.start.as_deref().unwrap_or(USUAL_START);
         let start = start(text, &system, &loading)?;
         let dimension = Dimension::of(&system, &start);

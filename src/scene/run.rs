@@ -4,6 +4,7 @@ use super::column::Column;
 use super::estimate::{estimate, timed};
 use super::event::{Detector, SlipEvent};
 use super::instant::Instant;
+use super::many::Catalogue;
 use super::plan::{Plan, Point, Sampling};
 use super::program::Stretch;
 use super::slip::{Slips, at, slips};
@@ -38,6 +39,8 @@ pub struct RunOutcome {
     pub last: Option<Vec<f64>>,
     /// The events, dimensionless.
     pub events: Vec<SlipEvent>,
+    /// The slip events of a run of many interfaces, where they are asked for.
+    pub catalogue: Option<Catalogue>,
     /// What it cost, the second run of an error estimate included.
     pub work: Work,
     /// Estimate of the global error of the last row, the largest of all states, not below it: relative to stress and psi, and of a
@@ -301,6 +304,7 @@ impl<'a> RunObserver<'a> {
         RunOutcome {
             last: known.then_some(self.row),
             events: self.detector.map_or_else(Vec::new, Detector::into_events),
+            catalogue: None,
             work: Work::default(),
             error_estimate: None,
             errors: None,

@@ -5,10 +5,12 @@ use crate::scene::{CellValue, Column, Quantity, Units};
 use serde_json::{Map, Value, json};
 
 mod bifurcation;
+mod catalogue;
 mod diagram;
 mod equilibria;
 mod general;
 mod law;
+mod listing;
 mod many;
 mod map;
 mod orbit;
@@ -18,10 +20,12 @@ pub(crate) mod sweep;
 mod text;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
+pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
 pub use general::{general_branches, general_curves, general_lines, quantity_label};
 pub use law::law_columns;
+pub use listing::{Listed, Listing};
 pub use many::many_run;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;

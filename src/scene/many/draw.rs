@@ -17,14 +17,14 @@ const NAMES: [&str; 7] = [
 
 /// What an interface has in units of the nominal ones.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Drawn {
+pub(super) struct InUnits {
     pub slip_length: f64,
     pub normal_stress: f64,
 }
 
-impl Default for Drawn {
+impl Default for InUnits {
     fn default() -> Self {
-        Drawn {
+        InUnits {
             slip_length: 1.0,
             normal_stress: 1.0,
         }
@@ -39,6 +39,15 @@ pub(super) struct Draw {
     from: f64,
     to: f64,
     by_logarithm: bool,
+}
+
+/// The values of a constant, of each interface one.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawn {
+    /// Its name.
+    pub name: &'static str,
+    /// Its values.
+    pub values: Vec<f64>,
 }
 
 impl Draw {
@@ -76,14 +85,22 @@ impl Draw {
         })
     }
 
+    /// Room for the values that are drawn.
+    pub fn none_drawn(&self) -> Drawn {
+        Drawn {
+            name: self.name,
+            values: Vec::new(),
+        }
+    }
+
     /// As it was asked for.
     pub fn told(&self) -> String {
         let log = if self.by_logarithm { "log" } else { "" };
         format!("{}={:?}:{:?}{log}", self.name, self.from, self.to)
     }
 
-    /// Gives the options of an interface its next value.
-    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, drawn: &mut Drawn) {
+    /// Gives the options of an interface its next value, and tells it.
+    pub fn put(&self, random: &mut RandomStart, slab: &mut SlabOptions, own: &mut InUnits) -> f64 {
         let value = if self.by_logarithm {
             let value = random.between((self.from.ln(), self.to.ln())).exp();
             value.clamp(self.from, self.to)
@@ -96,8 +113,9 @@ impl Draw {
             "evolution_effect" => slab.evolution_effect = Some(value),
             "reference_friction" => slab.reference_friction = Some(value),
             "direct_effect" => slab.direct_effect = Some(value),
-            "slip_length" => drawn.slip_length = value,
-            _ => drawn.normal_stress = value,
+            "slip_length" => own.slip_length = value,
+            _ => own.normal_stress = value,
         }
+        value
     }
 }

@@ -1,8 +1,11 @@
 //! Runs of many interfaces: more than move on their own elsewhere, or with constants drawn at random.
 
+mod catalogue;
 mod draw;
 mod plan;
 mod run;
 
+pub use catalogue::{Catalogue, CataloguePlan, Participant};
+pub use draw::Drawn;
 pub use plan::{ManyInstant, ManyPlan};
 pub use run::run_many;

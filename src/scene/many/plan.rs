@@ -1,6 +1,7 @@
 //! A run of many interfaces from options: what they are, where they start, and what rows hold.
 
-use super::draw::{Draw, Drawn};
+use super::catalogue::CataloguePlan;
+use super::draw::{Draw, Drawn, InUnits};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
 use crate::integrate::Choice;
@@ -41,6 +42,10 @@ pub struct ManyPlan {
     pub watched: Vec<usize>,
     /// Whether the run is drawn.
     pub picture: bool,
+    /// What is asked for of slip events.
+    pub catalogue: Option<CataloguePlan>,
+    /// The constants that are drawn, where they are shown.
+    pub drawn: Vec<Drawn>,
     /// The method.
     pub method: ManyMethod,
     /// The slips that columns are of.
@@ -80,7 +85,10 @@ impl ManyPlan {
     pub fn is_of(options: &IntegrateOptions) -> bool {
         let slab = &options.model.slab;
         let named = slab.text.system.is_some() || slab.clusters.is_some();
-        !options.draw.is_empty() || slab.count() >= MANY && !named
+        // The events of one or two have a meaning of their own, and laws from files have none.
+        let listed = options.events.is_some() && slab.law_file().is_none();
+        let least = if listed { 3 } else { MANY };
+        !options.draw.is_empty() || slab.count() >= least && !named
     }
 
     /// Checks the options, of which this one of the processes computes a share.
@@ -105,8 +113,14 @@ impl ManyPlan {
         let draws = options.draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
         let share = Share::new(count, processes);
-        let drawn = |range| interfaces(&model.slab, (&draws, options.seed), range);
-        let (first, all) = (drawn(0..1)?[0], drawn(share.held())?);
+        let mut drawn: Vec<Drawn> = draws.iter().map(Draw::none_drawn).collect();
+        let by = (&draws[..], options.seed);
+        let first = interfaces(&model.slab, by, 0..1, &mut drawn.clone())?[0];
+        let all = interfaces(&model.slab, by, share.held(), &mut drawn)?;
+        let catalogue = CataloguePlan::new(options, driving / count as f64)?;
+        if !catalogue.is_some_and(|catalogue| catalogue.participation) {
+            drawn.clear();
+        }
         let interfaces = if draws.is_empty() {
             ManyInterfaces::alike_in(share, &first, loading)?
         } else {
@@ -121,6 +135,19 @@ impl ManyPlan {
         let until = until(options)?;
         let (columns, watched) = columns(options.columns.as_deref(), count)?;
         let method = method(&options.numerics)?;
+        if catalogue.is_some() {
+            if !matches!(method, ManyMethod::Taylor(_)) {
+                let name = method.name();
+                return Err(Error::Input(format!(
+                    "`method` {name}: slip events are found on power series; take taylor, or leave out `events`"
+                )));
+            }
+            if interfaces.share().ranks() > 1 {
+                return Err(Error::Input(
+                    "`events`: slip events are found by one process alone; leave them out, or start one without mpirun".into(),
+                ));
+            }
+        }
         let picture = options.plot.is_some();
         let slips = Slips {
             of_all: picture || columns.iter().any(|column| column.name == "slip"),
@@ -141,6 +168,8 @@ impl ManyPlan {
             columns,
             watched,
             picture,
+            catalogue,
+            drawn,
             method,
             slips,
             asked_method: options.numerics.method.clone(),
@@ -188,7 +217,8 @@ impl ManyPlan {
   tolerance         {:e} of every psi and of 1 + |tau|, at most {} steps
   memory            {} MB
   trajectory        {rows}
-  slips             {}",
+  slips             {}
+  events            {}",
             crate::error::count(count),
             self.method.name(),
             match self.method {
@@ -208,6 +238,19 @@ impl ManyPlan {
                 (true, 0) => "of all together".to_owned(),
                 (false, n) => format!("of {n} interfaces"),
                 (true, n) => format!("of all together and of {n} interfaces"),
+            },
+            match &self.catalogue {
+                None => "off: `events` is not given".to_owned(),
+                Some(catalogue) => format!(
+                    "any interface faster than {} V_H/N = {}, by the roots of the rates' series where their terms do not rule them out{}",
+                    catalogue.threshold,
+                    catalogue.rate,
+                    if catalogue.participation {
+                        "; the part that each takes is kept"
+                    } else {
+                        ""
+                    }
+                ),
             }
         )
     }
@@ -231,7 +274,7 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
         let index = name.rsplit('_').next().unwrap_or_default();
         !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
     };
-    let asked: [(&str, bool, &str); 6] = [
+    let asked: [(&str, bool, &str); 5] = [
         (
             "law",
             slab.law_file().is_some(),
@@ -242,11 +285,6 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
             "program",
             options.program.is_some(),
             "V_H is constant for many interfaces",
-        ),
-        (
-            "events",
-            options.events.is_some(),
-            "stick-slip events are of one or two interfaces",
         ),
         (
             "estimate_error",
@@ -285,37 +323,39 @@ fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
     })
 }
 
-/// Each interface of a range; one alone where all are equal.
+/// Each interface of a range; one alone where all are equal. What is drawn is told too.
 fn interfaces(
     slab: &SlabOptions,
     (draws, seed): (&[Draw], u64),
     range: Range<usize>,
+    drawn: &mut [Drawn],
 ) -> Result<Vec<OneOfMany>> {
     let damping = slab.damping.unwrap_or(0.0);
-    let one = |own: &SlabOptions, drawn: Drawn| {
+    let one = |own: &SlabOptions, units: InUnits| {
         let healing_time = own.healing_time.unwrap_or(HEALING_TIME);
         let parameters = Parameters::new(own.a(), own.b(), own.a_v(), healing_time, own.c())?;
         Ok(OneOfMany {
             law: AnyLaw::named(&own.law, parameters)?,
             damping,
-            slip_length: drawn.slip_length,
+            slip_length: units.slip_length,
             // both in units of the nominal a sigma
-            stress_factor: slab.a() / (own.a() * drawn.normal_stress),
+            stress_factor: slab.a() / (own.a() * units.normal_stress),
         })
     };
     if draws.is_empty() {
-        return Ok(vec![one(slab, Drawn::default())?]);
+        return Ok(vec![one(slab, InUnits::default())?]);
     }
     // A stream for each constant: what one draws does not depend on the others.
     let mut streams: Vec<RandomStart> = (1..=draws.len())
         .map(|stream| RandomStart::new(seed, stream).after(range.start))
         .collect();
     let mut next = |_| {
-        let (mut own, mut drawn) = (slab.clone(), Drawn::default());
-        for (draw, random) in draws.iter().zip(&mut streams) {
-            draw.put(random, &mut own, &mut drawn);
+        let (mut own, mut units) = (slab.clone(), InUnits::default());
+        for ((draw, random), drawn) in draws.iter().zip(&mut streams).zip(&mut *drawn) {
+            let value = draw.put(random, &mut own, &mut units);
+            drawn.values.push(value);
         }
-        one(&own, drawn)
+        one(&own, units)
     };
     range.map(&mut next).collect()
 }

@@ -3,7 +3,7 @@
 use super::plan::{ManyInstant, ManyPlan};
 use crate::error::{Error, Result};
 use crate::integrate::{Control, Work};
-use crate::many::{Beginning, Extent, ManyObserver, ManyStep};
+use crate::many::{Beginning, Extent, ManyObserver, ManyStep, SlipEvents};
 use crate::number::DoubleDouble;
 use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
@@ -19,9 +19,11 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         return Err(Error::Input("another process has not begun".into()));
     }
     let (stress, states) = (plan.start.0, &plan.start.1);
+    let events = plan.catalogue.map(|asked| asked.events(&plan.interfaces));
     let mut watch = Watch {
         plan,
         sink,
+        events: events.transpose()?,
         pictured: plan.pictured(),
         slip: DoubleDouble::ZERO,
         slips: vec![DoubleDouble::ZERO; plan.watched.len()],
@@ -55,6 +57,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
     Ok(RunOutcome {
         last: watch.last,
         events: Vec::new(),
+        catalogue: watch.events.map(Into::into),
         work,
         errors: None,
         error_estimate: None,
@@ -68,6 +71,7 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
 struct Watch<'a> {
     plan: &'a ManyPlan,
     sink: &'a mut dyn Sink,
+    events: Option<SlipEvents>,
     pictured: Vec<Column<ManyInstant>>,
     /// The slip of all together at the beginning of the step.
     slip: DoubleDouble,
@@ -111,6 +115,9 @@ impl Watch<'_> {
                 self.draw(step, step.begin() + length * part as f64 / PICTURED as f64);
             }
             self.draw(step, end);
+        }
+        if let (Some(events), Some(series)) = (&mut self.events, step.series()) {
+            events.see(&series);
         }
         let ends = end >= plan.until;
         match plan.sampling {

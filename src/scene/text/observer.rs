@@ -188,6 +188,7 @@ impl<'a> TextObserver<'a> {
         RunOutcome {
             last: known.then_some(self.row),
             events: Vec::new(),
+            catalogue: None,
             work: Work::default(),
             errors: None,
             error_estimate: None,
