@@ -6,7 +6,7 @@ use super::stream::StreamOut;
 use super::words::{count, several, time};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
-use crate::output::{Format, Place, RowList, object, plot, seven_digits};
+use crate::output::{Format, Over, Place, RowList, object, plot, seven_digits};
 use crate::scene::{
     Change, Described, IntegrateOptions, Keeping, ManyPlan, OutputOptions, Plan, Program, Quantity,
     RunOutcome, TextModel, TextPlan, explain,
@@ -41,6 +41,10 @@ pub trait PlannedRun {
     }
     /// Whether anything is seen between start and end.
     fn observed(&self) -> bool;
+    /// Of rows of an earlier run that are gone on with, how many bytes stay.
+    fn kept_bytes(&self) -> Option<u64> {
+        None
+    }
     /// Goes along it.
     fn run(&self, out: &mut StreamOut) -> Result<RunOutcome>;
     /// The picture of these points.
@@ -63,6 +67,11 @@ pub struct Beside<'a> {
 pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
     if ManyPlan::is_of(options) {
         return super::many::run(options, words);
+    }
+    if options.checkpoint.is_some() {
+        return Err(Error::Input(
+            "`checkpoint` is of runs of many interfaces: from 8 on that move on their own, or with `draw`".into(),
+        ));
     }
     // A program may say itself which V_H is the first.
     let free: &[&str] = if options.program.is_some() {
@@ -149,7 +158,11 @@ pub fn integrate(
     let tables = places.iter().flatten().map(|(path, _)| path.as_path());
     let pictures = pictures.into_iter().flatten().map(PathBuf::as_path);
     let others: Vec<&Path> = pictures.chain(tables).collect();
-    let report = Report::new(&options.output, words, &others)?;
+    let kept_bytes = plan.kept_bytes();
+    let report = match kept_bytes {
+        None => Report::new(&options.output, words, &others)?,
+        Some(_) => Report::over(&options.output, words, &others, Over::All)?,
+    };
     let kept = report.format == Format::Json;
     if options.output.explain {
         let keeping = if kept {
@@ -161,7 +174,11 @@ pub fn integrate(
     }
     let remarks = report.remarks(plan.system(), &plan.numerics());
     let columns = (plan.columns(), plan.system().units());
-    let mut out = match StreamOut::new(&report, remarks, columns, kept) {
+    let begun = match kept_bytes {
+        Some(bytes) if bytes > 0 => StreamOut::after(&report, columns.0, bytes),
+        _ => StreamOut::new(&report, remarks, columns, kept),
+    };
+    let mut out = match begun {
         Ok(out) => out.drawing(plan.pictured()),
         Err(error) => return written(Err(error), &report.place),
     };

@@ -1,6 +1,7 @@
 //! The command line: arguments, messages and exit codes. Data goes to standard output or a file, all talk to standard error.
 
 mod branch;
+mod checkpoint;
 mod continuation;
 mod equilibria;
 mod examples;

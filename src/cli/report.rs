@@ -39,7 +39,8 @@ impl<'a> Report<'a> {
         Self::over(options, words, others, over)
     }
 
-    fn over(
+    /// The same where a file of rows may be replaced that others would be refused.
+    pub fn over(
         options: &OutputOptions,
         words: &'a [String],
         others: &[&Path],

@@ -4,7 +4,7 @@ use super::interrupt;
 use super::progress::Progress;
 use super::report::{Report, unit_names};
 use crate::integrate::Control;
-use crate::output::{Cell, Format, RowList, RowWriter};
+use crate::output::{Cell, CsvRows, Format, RowList, RowWriter};
 use crate::scene::{Quantity, Sink, Units};
 use std::io;
 
@@ -39,6 +39,19 @@ impl StreamOut {
         Ok(StreamOut {
             keep,
             writer: Some(report.begin(remarks, &names, &units)?),
+            ..Self::kept(report, columns)
+        })
+    }
+
+    /// Goes on with the CSV of an earlier run, after so many bytes of it.
+    pub fn after(
+        report: &Report<'_>,
+        columns: Vec<(String, Quantity)>,
+        bytes: u64,
+    ) -> io::Result<Self> {
+        Ok(StreamOut {
+            keep: false,
+            writer: Some(Box::new(CsvRows::after(report.stream(bytes)?))),
             ..Self::kept(report, columns)
         })
     }

@@ -108,7 +108,7 @@ impl ManyCvode {
             y = cvode.state().to_vec();
             if done == left {
                 field.forget_slips(&mut y);
-                observer.save(&field.saved(time, steps, &y))?;
+                observer.save(field.saved(time, steps, &y))?;
             }
         }
         Ok(ManyState::new(field, y, time, work))

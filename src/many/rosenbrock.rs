@@ -116,7 +116,7 @@ impl ManyRosenbrock {
             steps += done;
             if done == left {
                 carried.field.forget_slips(&mut carried.y);
-                observer.save(&carried.field.saved(time, steps, &carried.y))?;
+                observer.save(carried.field.saved(time, steps, &carried.y))?;
             }
         }
         let Carried { field, y, work, .. } = carried;

@@ -137,9 +137,15 @@ impl Share {
         }
     }
 
-    /// A number of every interface, in all processes, of which each knows its own.
-    pub fn of_all(&self, held: &[f64]) -> Vec<f64> {
-        self.gathered(held, |rank| self.held_by(rank).len())
+    /// A number of every interface, in the first process, of which each knows its own.
+    pub fn at_first(&self, held: Vec<f64>) -> Vec<f64> {
+        match self.processes {
+            Processes::One => held,
+            #[cfg(feature = "mpi")]
+            Processes::Ranks => {
+                super::ranks::gathered_at_first(&held, |rank| self.held_by(rank).len())
+            }
+        }
     }
 
     /// What one process knows, and all others have zeros for.

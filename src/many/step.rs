@@ -37,7 +37,7 @@ pub trait ManyStep {
 }
 
 /// All that a run needs to go on as if nothing had happened.
-#[derive(Debug, Clone, PartialEq, serde::Serialize, serde::Deserialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Saved {
     /// The time reached, in two doubles.
     pub time: [f64; 2],
@@ -46,7 +46,6 @@ pub struct Saved {
     /// What all processes know: tau, and what else the method has.
     pub shared: Vec<f64>,
     /// A number of every interface that is held here.
-    #[serde(skip)]
     pub held: Vec<f64>,
 }
 
@@ -77,7 +76,7 @@ pub trait ManyObserver {
     ///
     /// # Errors
     /// What ends the run as a failure.
-    fn save(&mut self, _saved: &Saved) -> Result<()> {
+    fn save(&mut self, _saved: Saved) -> Result<()> {
         Ok(())
     }
 }

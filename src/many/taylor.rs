@@ -128,7 +128,7 @@ impl ManyTaylor {
                 .save_every()
                 .is_some_and(|every| solution.steps.is_multiple_of(every))
             {
-                observer.save(&solution.saved())?;
+                observer.save(solution.saved())?;
             }
             if !goes_on {
                 break;

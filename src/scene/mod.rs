@@ -72,7 +72,10 @@ pub use general::{
 pub use instant::{Instant, run_columns};
 pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
-pub use many::{Catalogue, CataloguePlan, Drawn, ManyInstant, ManyPlan, Participant, run_many};
+pub use many::{
+    Catalogue, CataloguePlan, Drawn, ManyCheckpoint, ManyInstant, ManyPlan, Participant, Saving,
+    run_many,
+};
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,
     OutputOptions, SectionOptions, SlabOptions,

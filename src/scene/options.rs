@@ -248,6 +248,13 @@ pub struct IntegrateOptions {
     /// JSON these are result.participation; else they go to FILE, or beside -o RUN.csv to RUN.participation.csv
     #[arg(long, value_name = "FILE", num_args = 0..=1, default_missing_value = "", value_parser = path, requires = "events", help_heading = "Run")]
     pub participation: Option<PathBuf>,
+    /// Of many interfaces, with rows in a CSV file: save the run in FILE again and again. A run that was killed goes on from there to the
+    /// same bytes when the same command is given again; when it is complete, FILE is removed
+    #[arg(long, value_name = "FILE", value_parser = path, help_heading = "Run")]
+    pub checkpoint: Option<PathBuf>,
+    /// Steps between two checkpoints
+    #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, requires = "checkpoint", help_heading = "Run")]
+    pub checkpoint_steps: usize,
     /// Estimate the error of the last row by a second run with 100 times tighter tolerances, below --rtol 1e-12 by the
     /// reference
     #[arg(long, help_heading = "Run")]

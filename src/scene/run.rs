@@ -4,7 +4,7 @@ use super::column::Column;
 use super::estimate::{estimate, timed};
 use super::event::{Detector, SlipEvent};
 use super::instant::Instant;
-use super::many::Catalogue;
+use super::many::{Catalogue, ManyCheckpoint};
 use super::plan::{Plan, Point, Sampling};
 use super::program::Stretch;
 use super::slip::{Slips, at, slips};
@@ -29,6 +29,13 @@ pub trait Sink {
     fn drawn(&mut self, _point: &[f64]) {}
     /// The run has come to this fraction of its time.
     fn reached(&mut self, fraction: f64) -> Control;
+    /// Keeps what a run of many interfaces needs to go on after the rows so far.
+    ///
+    /// # Errors
+    /// What keeps it from being written.
+    fn save(&mut self, _checkpoint: &ManyCheckpoint) -> Result<()> {
+        Ok(())
+    }
 }
 
 /// What a run came to.

@@ -78,6 +78,11 @@ pub fn whole_line(from: &mut impl BufRead) -> Result<Option<String>> {
 /// The name of the last column of rows that can be gone on with.
 pub const ROW_CHECK: &str = "row_check";
 
+/// The CRC-32 of bytes.
+pub fn check_sum(bytes: &[u8]) -> u32 {
+    crc32fast::hash(bytes)
+}
+
 /// The CRC-32 of a line's text and of a key, which says which row it is: a row that was changed, cut, moved or repeated, or
 /// before which one is missing, does not have it.
 fn row_check(key: &str, text: &str) -> u32 {
@@ -174,6 +179,11 @@ impl<W: Write> CsvRows<W> {
         to.write_all(&head(remarks, columns))?;
         to.flush()?;
         Ok(CsvRows { to })
+    }
+
+    /// Goes on after rows that are there.
+    pub fn after(to: W) -> Self {
+        CsvRows { to }
     }
 }
 

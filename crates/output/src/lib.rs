@@ -10,7 +10,9 @@ pub mod plot;
 mod rowfile;
 mod table;
 
-pub use csv::{CsvRows, Head, ROW_CHECK, checked_cells, checked_line, damage, head, whole_line};
+pub use csv::{
+    CsvRows, Head, ROW_CHECK, check_sum, checked_cells, checked_line, damage, head, whole_line,
+};
 pub use json::{Envelope, RowList, object, uncertain};
 pub use place::{Place, remove_temporary, write_whole, write_whole_by};
 pub use rowfile::{OURS, Over, RowFile, Status};

@@ -4,8 +4,10 @@ mod catalogue;
 mod draw;
 mod plan;
 mod run;
+mod saved;
 
 pub use catalogue::{Catalogue, CataloguePlan, Participant};
 pub use draw::Drawn;
 pub use plan::{ManyInstant, ManyPlan};
 pub use run::run_many;
+pub use saved::{ManyCheckpoint, Saving};

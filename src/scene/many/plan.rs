@@ -2,6 +2,7 @@
 
 use super::catalogue::CataloguePlan;
 use super::draw::{Draw, Drawn, InUnits};
+use super::saved::Saving;
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
 use crate::integrate::Choice;
@@ -56,6 +57,8 @@ pub struct ManyPlan {
     pub rtol: f64,
     /// The bound on steps.
     pub max_steps: usize,
+    /// Whether it can be gone on with.
+    pub saving: Saving,
     units: Units,
     echo: Map<String, Value>,
     /// Whether its run has begun.
@@ -175,6 +178,7 @@ impl ManyPlan {
             asked_method: options.numerics.method.clone(),
             rtol: options.numerics.rtol,
             max_steps: options.numerics.max_steps,
+            saving: Saving::default(),
             units,
             begun: Cell::new(false),
         })

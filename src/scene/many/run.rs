@@ -1,9 +1,10 @@
 //! A run of many interfaces: from a plan to rows.
 
 use super::plan::{ManyInstant, ManyPlan};
+use super::saved::ManyCheckpoint;
 use crate::error::{Error, Result};
 use crate::integrate::{Control, Work};
-use crate::many::{Beginning, Extent, ManyObserver, ManyStep, SlipEvents};
+use crate::many::{Beginning, Extent, ManyObserver, ManyStep, Saved, SlipEvents};
 use crate::number::DoubleDouble;
 use crate::scene::column::Column;
 use crate::scene::plan::Sampling;
@@ -19,11 +20,19 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         return Err(Error::Input("another process has not begun".into()));
     }
     let (stress, states) = (plan.start.0, &plan.start.1);
-    let events = plan.catalogue.map(|asked| asked.events(&plan.interfaces));
+    let from = plan.saving.from.as_ref();
+    let events = match (plan.catalogue, from) {
+        (None, _) => None,
+        (Some(asked), None) => Some(asked.events(&plan.interfaces)?),
+        (Some(asked), Some(from)) => {
+            let saved = SlipEvents::restored(&plan.interfaces, asked.rate, &from.events);
+            Some(saved?)
+        }
+    };
     let mut watch = Watch {
         plan,
         sink,
-        events: events.transpose()?,
+        events,
         pictured: plan.pictured(),
         slip: DoubleDouble::ZERO,
         slips: vec![DoubleDouble::ZERO; plan.watched.len()],
@@ -34,9 +43,15 @@ pub fn run_many(plan: &ManyPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         stopped: false,
         last: None,
     };
+    let mut beginning = Beginning::Start(stress, states);
+    if let Some(from) = from {
+        watch.go_on(&from.rows);
+        watch.steps = from.state.steps;
+        beginning = Beginning::Saved(&from.state);
+    }
     let end = plan.method.run(
         &plan.interfaces,
-        Beginning::Start(stress, states),
+        beginning,
         plan.until,
         &plan.slips,
         &mut watch,
@@ -89,9 +104,45 @@ impl ManyObserver for Watch<'_> {
     fn step(&mut self, step: &dyn ManyStep) -> Result<bool> {
         Ok(self.see(step))
     }
+
+    fn save_every(&self) -> Option<usize> {
+        self.plan.saving.every
+    }
+
+    fn save(&mut self, state: Saved) -> Result<()> {
+        let held = self.plan.interfaces.share().at_first(state.held);
+        let checkpoint = ManyCheckpoint {
+            state: Saved { held, ..state },
+            rows: self.so_far(),
+            events: self.events.as_ref().map_or(Vec::new(), SlipEvents::saved),
+        };
+        self.sink.save(&checkpoint)
+    }
 }
 
 impl Watch<'_> {
+    /// How far the rows are.
+    fn so_far(&self) -> Vec<f64> {
+        let slips = [self.slip].into_iter().chain(self.slips.iter().copied());
+        let mut numbers = vec![self.sampled as f64];
+        numbers.extend(slips.flat_map(|slip| [slip.hi(), slip.lo()]));
+        numbers.extend(self.last.iter().flatten());
+        numbers
+    }
+
+    /// Goes on from there.
+    fn go_on(&mut self, so_far: &[f64]) {
+        let mut numbers = so_far.iter().copied();
+        let mut next = || numbers.next().unwrap_or_default();
+        self.begun = true;
+        self.sampled = next() as usize;
+        for slip in [&mut self.slip].into_iter().chain(&mut self.slips) {
+            *slip = DoubleDouble::new(next(), next());
+        }
+        let last: Vec<f64> = numbers.collect();
+        self.last = (!last.is_empty()).then_some(last);
+    }
+
     /// Whether to go on.
     fn see(&mut self, step: &dyn ManyStep) -> bool {
         let plan = self.plan;

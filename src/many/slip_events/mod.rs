@@ -4,14 +4,16 @@
 //! from which on none is above. Crossings are roots of the series of the rates. In a step of the tolerance these change by little: a
 //! bound by the sums of the absolute terms tells for nearly all interfaces, eight at a time, that they do not cross at all.
 
-use super::block::{Layout, MOST};
-use super::constants::{LANES, Lanes};
-use super::interfaces::ManyInterfaces;
-use super::share::{CHUNK, MANY};
-use super::taylor::StepSeries;
-use super::vectors::Vectorised;
+mod saved;
+
 use crate::error::Result;
 use crate::friction::positive;
+use crate::many::block::{Layout, MOST};
+use crate::many::constants::{LANES, Lanes};
+use crate::many::interfaces::ManyInterfaces;
+use crate::many::share::{CHUNK, MANY};
+use crate::many::taylor::StepSeries;
+use crate::many::vectors::Vectorised;
 use crate::number::DoubleDouble;
 use crate::number::polynomial::{Crossing, evaluate, roots};
 use crate::series::Zeros;
