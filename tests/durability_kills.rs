@@ -282,3 +282,106 @@ fn an_interrupt_says_what_is_kept() {
     let temporary = |name: &String| name.ends_with(".tmp");
     assert!(!contents(&place).iter().any(temporary));
 }
+
+/// Runs of many interfaces, twenty kills each: with their events by power series, and by methods that begin anew at each checkpoint.
+#[test]
+fn a_killed_run_of_many_interfaces_ends_in_the_same_bytes() {
+    const KILLS: usize = 20;
+    let place = folder("durable-many");
+    let methods: &[(&str, &str)] = &[
+        ("taylor", "--events --participation"),
+        ("rodas5p", ""),
+        #[cfg(feature = "sundials")]
+        ("cvode-bdf", ""),
+    ];
+    for (method, also) in methods {
+        let [rows, saved] = ["run.csv", "run.saved"].map(|name| place.join(name));
+        let command = format!(
+            "integrate -q --interfaces 100 --driving 100 --stiffness 0.01 --start spread:1 --until 3 --points 200 \
+             --columns time,stress,slip,slip_rate_max,state_1,slip_7 --draw residual_strength=8e-4:1.2e-3 --method {method} {also} \
+             -o {} --checkpoint {} --checkpoint-steps 10",
+            rows.display(),
+            saved.display()
+        );
+        let all: Vec<PathBuf> = match also.is_empty() {
+            true => vec![rows.clone()],
+            false => ["run.csv", "run.events.csv", "run.participation.csv"]
+                .map(|name| place.join(name))
+                .to_vec(),
+        };
+        let begun = Instant::now();
+        computed(&command);
+        let span = begun.elapsed().as_micros() as u64;
+        assert!(
+            !saved.exists(),
+            "{method}: a complete run leaves no checkpoint"
+        );
+        let known: Vec<Vec<u8>> = all
+            .iter()
+            .map(|path| fs::read(path).expect("written"))
+            .collect();
+        assert!(known[0].len() > 10_000);
+        fs::remove_file(&rows).expect("there");
+        let mut gone_on = 0;
+        for _ in 0..KILLS {
+            let mut child = begin(&command);
+            std::thread::sleep(Duration::from_micros(random() % span / 2));
+            child.kill().expect("SIGKILL");
+            child.wait().expect("it ends");
+            gone_on += usize::from(saved.exists());
+        }
+        assert!(gone_on > 0, "{method}: no kill fell into a run");
+        computed(&command);
+        for (path, known) in all.iter().zip(&known) {
+            let made = fs::read(path).expect("written");
+            assert!(made == *known, "{method}: {}", path.display());
+        }
+    }
+}
+
+#[test]
+fn a_checkpoint_of_another_run_is_refused() {
+    let place = folder("checkpoint-of-another");
+    let [rows, saved] = ["run.csv", "run.saved"].map(|name| place.join(name));
+    let command = |more: &str| {
+        format!(
+            "integrate -q --interfaces 20 --driving 20 --stiffness 0.05 --start spread:1 --until 1e5 {more} -o {} --checkpoint {} --checkpoint-steps 5",
+            rows.display(),
+            saved.display()
+        )
+    };
+    let mut child = begin(&command(""));
+    grown(&rows, 5000);
+    child.kill().expect("SIGKILL");
+    child.wait().expect("it ends");
+    refused(&command("--rtol 1e-9"), "another run, as numerics differs");
+    refused(
+        &command("--seed 2 --draw slip_length=1:2"),
+        "another run, as draw differs",
+    );
+    let mut bytes = fs::read(&saved).expect("written");
+    let middle = bytes.len() / 2;
+    bytes[middle] ^= 1;
+    fs::write(&saved, &bytes).expect("written");
+    refused(&command(""), "no checkpoint of this version, or is damaged");
+    bytes[middle] ^= 1;
+    fs::write(&saved, &bytes).expect("written");
+    let beginning = fs::read(&rows).expect("written")[..10].to_vec();
+    fs::write(&rows, beginning).expect("written");
+    refused(&command(""), "has lost rows");
+    for (more, sentence) in [
+        ("--format json", "only rows in CSV"),
+        ("--plot a.svg", "draw the rows"),
+        ("--checkpoint-steps 0", "cannot be used multiple times"),
+    ] {
+        refused(&command(more), sentence);
+    }
+    refused(
+        "integrate --interfaces 9 --driving 10 --stiffness 0.1 --until 1 --checkpoint a",
+        "-o FILE.csv",
+    );
+    refused(
+        "integrate --driving 10 --stiffness 0.1 --until 1 --checkpoint a -o b.csv",
+        "of runs of many interfaces",
+    );
+}

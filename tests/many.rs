@@ -233,7 +233,7 @@ fn what_many_can_not_be_is_said() {
         ),
         ("--si", "computed without units"),
         ("--program 0.5:1", "V_H is constant"),
-        ("--events e.csv", "one or two interfaces"),
+        ("--events e.csv --method rodas5p", "found on power series"),
         #[cfg(feature = "sundials")]
         ("--method cvode-adams", "a Rosenbrock method or cvode-bdf"),
         #[cfg(not(feature = "sundials"))]

@@ -69,11 +69,22 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "number",
         ],
     ),
-    ("many", &["model", "friction", "series", "number"]),
+    (
+        "many",
+        &[
+            "integrate",
+            "model",
+            "friction",
+            "series",
+            "number",
+            "sundials",
+        ],
+    ),
     (
         "scene",
         &[
             "many",
+            "sundials",
             "sweep",
             "bifurcation",
             "orbit",
@@ -93,6 +104,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "views",
         &[
             "scene",
+            "many",
             "sweep",
             "bifurcation",
             "orbit",
@@ -125,6 +137,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "paper",
             "views",
             "scene",
+            "many",
             "sweep",
             "bifurcation",
             "orbit",

@@ -112,7 +112,7 @@ impl Single {
             stress_factor,
             damping: stress_factor * one.damping,
         };
-        if let AnyLaw::Slip(law) = one.law {
+        if let Some(law) = one.law.slip_form() {
             return Ok(Single {
                 slip: true,
                 ..common(true, law.beta, law.gamma0)

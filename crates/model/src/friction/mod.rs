@@ -120,10 +120,24 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
         None
     }
 
+    /// The constants of a law whose state obeys the slip law; `None` where another one.
+    fn slip_form(&self) -> Option<SlipForm> {
+        None
+    }
+
     /// V_T = V*/c, where high-velocity strengthening sets in (Weeks 1993).
     fn transition_rate(&self) -> Option<f64> {
         None
     }
+}
+
+/// v = (gamma0/2) e^tau psi^(-beta), dpsi/dt = -v psi ln(v psi).
+#[derive(Debug, Clone, Copy)]
+pub struct SlipForm {
+    /// beta
+    pub beta: f64,
+    /// gamma0
+    pub gamma0: f64,
 }
 
 /// v = s(tau) (a_0 + a_1 psi)^(-beta), dpsi/dt = g_0 + g_1 psi - |v| psi.
@@ -454,6 +468,9 @@ impl Law for AnyLaw {
     }
     fn ageing_form(&self) -> Option<AgeingForm> {
         with_law!(self, law => law.ageing_form())
+    }
+    fn slip_form(&self) -> Option<SlipForm> {
+        with_law!(self, law => law.slip_form())
     }
     fn transition_rate(&self) -> Option<f64> {
         with_law!(self, law => law.transition_rate())

@@ -2,7 +2,7 @@
 //!
 //! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
 
-use super::{DieterichRuina, Formulas, Law, Parameters};
+use super::{DieterichRuina, Formulas, Law, Parameters, SlipForm};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
@@ -100,6 +100,13 @@ impl Law for Slip {
             None,
             None,
         ]
+    }
+
+    fn slip_form(&self) -> Option<SlipForm> {
+        Some(SlipForm {
+            beta: self.beta,
+            gamma0: self.gamma0,
+        })
     }
 
     fn log_activation(&self, tau: f64) -> f64 {
