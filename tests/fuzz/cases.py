@@ -117,7 +117,7 @@ class Make:
         if self.chance(0.35):
             options.append(("law", self.one_of(LAWS)))
         if self.chance(0.3):
-            options.append(("interfaces", self.one_of(["1", "2", "2", "0", "3"] if self.wild else ["1", "2", "2"])))
+            options.append(("interfaces", self.one_of(["1", "2", "2", "0", "9"] if self.wild else ["1", "2", "2"])))
         for name, low, high in [
             ("healing-time", 1, 1e4), ("residual-strength", 1e-5, 0.5), ("direct-effect", 0.005, 0.06),
             ("evolution-effect", 0.005, 0.1), ("reference-friction", 0.1, 1),
