@@ -231,7 +231,6 @@ fn what_many_can_not_be_is_said() {
         ),
         ("--si", "computed without units"),
         ("--program 0.5:1", "V_H is constant"),
-        ("--events e.csv", "one or two interfaces"),
         ("--method cvode-bdf", "integrated by taylor"),
         ("--estimate-error", "have no estimate"),
         ("--set residual_strength_2=1", "by --draw"),
