@@ -99,6 +99,7 @@ mod section_regimes;
 #[cfg(not(feature = "parquet"))]
 mod sections_of_systems;
 mod series_of_interfaces;
+mod slip_events;
 mod solution_curves;
 mod stress;
 mod strong_resonance;

@@ -69,30 +69,44 @@ fn participation(event: &ManyEvent, count: usize) -> f64 {
 
 /// How many events are at least as large as each, and how many interfaces slip in each.
 pub fn picture_of_events(plan: &ManyPlan, events: &[ManyEvent]) -> Drawing {
+    /// So many points need not be small.
+    const FEW: usize = 50;
     let count = plan.interfaces.count();
     let mut slips: Vec<f64> = events.iter().map(|event| event.slip).collect();
     slips.sort_by(f64::total_cmp);
     let larger = (1..=slips.len()).rev().map(|n| n as f64).collect();
+    let onsets = events.iter().map(|event| event.onset).collect();
+    let shares = events.iter().map(|event| participation(event, count));
     let several = match events.len() {
         0 => "no events".to_owned(),
         1 => "1 event".to_owned(),
         n => format!("{} events", crate::error::count(n)),
     };
-    let onsets = events.iter().map(|event| event.onset).collect();
-    let shares = events.iter().map(|event| participation(event, count));
+    let points = |x: Vec<f64>, y: Vec<f64>| {
+        let points = PlotSeries::dots("", x, y);
+        let few = events.len() <= FEW;
+        vec![if few { points.wide() } else { points }]
+    };
+    let size = Axis::log("slip of all participants S");
+    // Without points an axis has no ends of its own.
+    let size = match events {
+        [] => size.within(1.0, 10.0),
+        _ => size,
+    };
+    let most = 10.0_f64.max(1.25 * events.len() as f64);
     Drawing::columns(vec![
         vec![Panel {
-            series: vec![PlotSeries::dots("", slips, larger)],
+            series: points(slips, larger),
             ..Panel::new(
-                format!("{several} of {count} interfaces"),
-                Axis::log("slip of all participants S"),
-                Axis::log("events with at least this S"),
+                format!("{several} of {} interfaces", crate::error::count(count)),
+                size,
+                Axis::log("events with at least this S").within(0.8, most),
             )
         }],
         vec![Panel {
-            series: vec![PlotSeries::dots("", onsets, shares.collect())],
+            series: points(onsets, shares.collect()),
             ..Panel::new(
-                "who slips",
+                "share that slips",
                 Axis::linear("onset t").within(0.0, plan.until),
                 Axis::log("participants / N").within(0.8 / count as f64, 1.25),
             )
