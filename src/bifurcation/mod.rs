@@ -2,6 +2,7 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
+pub mod clusters;
 pub mod equilibria;
 pub mod general;
 pub mod orbits;
@@ -316,6 +317,8 @@ impl LocusRow {
 pub enum Event {
     /// A point of a branch.
     Branch(BranchRow),
+    /// A point of a branch of equilibria of many interfaces.
+    Cluster(clusters::ClusterRow),
     /// A point of a curve.
     Locus(LocusRow),
     /// A special point.

@@ -7,6 +7,7 @@ use super::locus::CurveChoice;
 use super::options::{ModelOptions, Names, OutputOptions, count, number};
 use super::orbit::SECOND_METHOD;
 use super::system::System;
+use super::unequal::OfOne;
 use crate::bifurcation::MAX_POINTS;
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
@@ -130,6 +131,24 @@ pub struct BranchOptions {
 }
 
 impl BranchOptions {
+    /// Whether equilibria of many equal interfaces with a law that is built in are followed along V_H or K: by the shares of the
+    /// interfaces on the branches of the steady curve, all of them.
+    ///
+    /// # Errors
+    /// [`Error::Parameter`] and [`Error::Input`] for what `set` says of single interfaces.
+    pub fn by_shares(&self) -> Result<bool> {
+        let slab = &self.model.slab;
+        let along = self.along.as_deref().unwrap_or("driving");
+        Ok(self.of.as_deref() == Some("equilibria")
+            && ["driving", "stiffness"].contains(&along)
+            && slab.count() > 2
+            && slab.clusters.is_none()
+            && slab.text.system.is_none()
+            && slab.law_file().is_none()
+            && self.search.start.is_none()
+            && !OfOne::read(slab)?.any())
+    }
+
     /// The interfaces, where branches are followed in any parameter: they differ, or neither V_H nor K varies.
     ///
     /// # Errors

@@ -23,7 +23,7 @@ pub fn branches(
     let stress = |x| units.outward(Quantity::Stress, x);
     let least = |row: &BranchRow| stress(row.stress_range.0);
     let most = |row: &BranchRow| stress(row.stress_range.1);
-    let at = |row: &BranchRow| along.of(row, units);
+    let at = |row: &BranchRow| along.of(row.driving, row.stiffness, units);
     let mut series = branch_lines(rows, &at, &most, true);
     let mut points = marks(rows, &at, &most, true);
     if orbits {
@@ -70,7 +70,7 @@ pub fn branches(
 }
 
 /// The parameter that stays fixed, with its value.
-fn fixed(along: &BranchParameter, slab: &InterfaceSystem, units: &Units) -> String {
+pub(super) fn fixed(along: &BranchParameter, slab: &InterfaceSystem, units: &Units) -> String {
     match along.parameter {
         Parameter::Driving => value("K", Quantity::Stiffness, slab.loading.stiffness, units),
         Parameter::Stiffness => value("V_H", Quantity::SlipRate, slab.loading.driving, units),

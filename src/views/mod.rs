@@ -5,6 +5,7 @@ use crate::scene::{CellValue, Column, Quantity, Units};
 use serde_json::{Map, Value, json};
 
 mod bifurcation;
+mod clusters;
 mod diagram;
 mod equilibria;
 mod general;
@@ -18,6 +19,7 @@ pub(crate) mod sweep;
 mod text;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
+pub use clusters::{cluster_columns, staircase};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
 pub use general::{general_branches, general_curves, general_lines, quantity_label};
