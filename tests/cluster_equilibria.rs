@@ -122,7 +122,7 @@ fn states_and_eigenvalues_match_the_reference() {
 }
 
 /// The Jacobian matrix of (tau, ln psi_1, .., ln psi_N), row by row.
-fn jacobian(law: &AnyLaw, state: &Equilibrium, stiffness: f64) -> DMatrix<f64> {
+pub fn jacobian(law: &AnyLaw, state: &Equilibrium, stiffness: f64) -> DMatrix<f64> {
     let each: Vec<f64> = { state.log_state.iter().zip(&state.counts) }
         .flat_map(|(&w, &count)| vec![w; count])
         .collect();
@@ -142,7 +142,7 @@ fn jacobian(law: &AnyLaw, state: &Equilibrium, stiffness: f64) -> DMatrix<f64> {
 }
 
 /// The eigenvalues of a matrix. The iteration may not end where one is there several times: then it is tried in another basis.
-fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+pub fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
     let n = matrix.nrows();
     let tried = (0..20).find_map(|k| {
         let other = |i: usize, j: usize| (1.0 + ((7 * i + 3 * j + 1) * (k + 1)) as f64).sin();

@@ -24,6 +24,7 @@ mod browser;
 mod cli_input;
 mod cli_runs;
 mod cli_words;
+mod cluster_branches;
 mod cluster_equilibria;
 mod clusters;
 mod continuation;

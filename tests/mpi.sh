@@ -49,6 +49,26 @@ for grid in "--driving 0.14:0.5:20 --stiffness 0.34:0.5:20" "--driving 0.14:0.5:
     done
 done
 
+# Many interfaces, each rank its share of them, by all methods of this build, and gone on with by another number of ranks.
+many=(integrate -q --interfaces 5000 --driving 5000 --stiffness 0.0003 --start spread:1 --draw residual_strength=8e-4:1.2e-3
+    --columns time,stress,slip,slip_rate,slip_rate_max,sliding,state_min,state_max,state_1,slip_rate_4999,slip_2500 --until 0.1 --force)
+methods=(taylor rodas5p)
+! "$program" integrate --help | grep -q cvode-bdf || methods+=(cvode-bdf)
+for method in "${methods[@]}"; do
+    "$program" "${many[@]}" --method "$method" -o "$folder/many.csv"
+    cp "$folder/many.csv" "$folder/alone.csv"
+    for n in 2 4; do
+        rm "$folder/many.csv"
+        mpirun --oversubscribe -n "$n" "$program" "${many[@]}" --method "$method" -o "$folder/many.csv"
+        same <(grep -v '^# command' "$folder/alone.csv") <(grep -v '^# command' "$folder/many.csv") "$n ranks, many interfaces by $method"
+    done
+    rm "$folder/many.csv"
+    saving=("${many[@]}" --method "$method" -o "$folder/many.csv" --checkpoint "$folder/saved" --checkpoint-steps 2)
+    # Ended early by the bound on steps: what is saved stays.
+    mpirun --oversubscribe -n 3 "$program" "${saving[@]}" --max-steps 5 2>"$folder/said" && exit 1
+    grep -q "5 steps" "$folder/said"
+done
+
 words=(--driving 0.14:0.5:20 --stiffness 0.34:0.5:20)
 done_with "$program" sweep -q "${words[@]}" -o "$folder/alone.csv"
 

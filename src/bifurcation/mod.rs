@@ -2,6 +2,7 @@
 //!
 //! Everything found is handed on as soon as it is known, as an [`Event`]: what was computed before an interruption is not lost.
 
+pub mod clusters;
 pub mod equilibria;
 pub mod general;
 pub mod orbits;
@@ -292,6 +293,8 @@ pub struct LocusRow {
     pub criticality: Option<Criticality>,
     /// What is special here.
     pub label: Option<Label>,
+    /// Of more than two interfaces: how many slide on the slow, the middle and the fast branch of the steady curve.
+    pub share: Option<[usize; 3]>,
 }
 
 impl LocusRow {
@@ -306,6 +309,7 @@ impl LocusRow {
             angle_over_pi: None,
             criticality: None,
             label: None,
+            share: None,
         }
     }
 }
@@ -316,6 +320,8 @@ impl LocusRow {
 pub enum Event {
     /// A point of a branch.
     Branch(BranchRow),
+    /// A point of a branch of equilibria of many interfaces.
+    Cluster(clusters::ClusterRow),
     /// A point of a curve.
     Locus(LocusRow),
     /// A special point.

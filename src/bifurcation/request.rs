@@ -1,7 +1,7 @@
 //! What a request must be.
 
 use super::{BranchRequest, LocusRequest};
-use crate::equilibrium::Symmetry;
+use crate::equilibrium::{MOST_INTERFACES, Symmetry};
 use crate::error::{Error, Result};
 use crate::orbit::InterfaceSystem;
 
@@ -10,7 +10,19 @@ impl BranchRequest {
     /// [`Error::Parameter`] or [`Error::Input`] unless there is something to follow: a slab, a range of positive values with
     /// two different ends, positive step limit and tolerance.
     pub fn checked(&self) -> Result<()> {
-        checked(&self.slab, self.symmetry, self.step, self.tolerance)?;
+        self.checked_up_to(2)
+    }
+
+    /// The same of any number of equal interfaces.
+    ///
+    /// # Errors
+    /// As of [`BranchRequest::checked`].
+    pub(super) fn checked_of_many(&self) -> Result<()> {
+        self.checked_up_to(MOST_INTERFACES)
+    }
+
+    fn checked_up_to(&self, most: usize) -> Result<()> {
+        checked(&self.slab, most, self.symmetry, self.step, self.tolerance)?;
         positive("driving", self.slab.loading.driving)?;
         positive("stiffness", self.slab.loading.stiffness)?;
         range("range", self.range)?;
@@ -22,7 +34,19 @@ impl LocusRequest {
     /// # Errors
     /// As of [`BranchRequest::checked`].
     pub fn checked(&self) -> Result<()> {
-        checked(&self.slab, self.symmetry, self.step, self.tolerance)?;
+        self.checked_up_to(2)
+    }
+
+    /// The same of any number of equal interfaces.
+    ///
+    /// # Errors
+    /// As of [`BranchRequest::checked`].
+    pub(super) fn checked_of_many(&self) -> Result<()> {
+        self.checked_up_to(MOST_INTERFACES)
+    }
+
+    fn checked_up_to(&self, most: usize) -> Result<()> {
+        checked(&self.slab, most, self.symmetry, self.step, self.tolerance)?;
         range("driving range", self.driving)?;
         range("stiffness range", self.stiffness)?;
         values("wanted driving", &self.at_driving)?;
@@ -42,12 +66,17 @@ impl LocusRequest {
 
 fn checked(
     slab: &InterfaceSystem,
+    most: usize,
     symmetry: Option<Symmetry>,
     step: f64,
     tolerance: f64,
 ) -> Result<()> {
-    if !(1..=2).contains(&slab.interfaces) {
-        return Err(Error::parameter("interfaces", slab.interfaces, "1 or 2"));
+    if !(1..=most).contains(&slab.interfaces) {
+        let must = match most {
+            2 => "1 or 2".to_owned(),
+            _ => format!("between 1 and {most}"),
+        };
+        return Err(Error::parameter("interfaces", slab.interfaces, must));
     }
     if slab.interfaces == 1 && symmetry == Some(Symmetry::Asymmetric) {
         return Err(Error::Input(

@@ -3,32 +3,58 @@
 use super::continuation::Task;
 use super::rows::{SlabRow, special_row};
 use super::{Ending, general, say, special};
+use crate::bifurcation::clusters::ClusterRow;
 use crate::bifurcation::{BranchRow, Special, orbits};
 use crate::error::Result;
-use crate::scene::{BranchKind, BranchOptions, BranchPlan, Described, TextModel, TextSubject};
+use crate::output::plot;
+use crate::scene::{
+    BranchKind, BranchOptions, BranchPlan, Column, Described, TextModel, TextSubject,
+};
 use crate::views;
 use std::ops::ControlFlow;
 
 pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::of(
-        &options.model,
-        &[options.along.as_deref().unwrap_or("driving")],
-    )? {
-        let search = &options.search;
-        let subject = TextSubject::new(
-            model,
-            search.within.as_deref(),
-            search.start.as_deref(),
-            search.period_guess,
-            options.of.as_deref() == Some("orbits"),
-        )?;
-        return general::branch(options, &subject, words);
-    }
-    if let Some(subject) = options.any_parameter()? {
-        return general::branch(options, &subject, words);
+    if !options.by_shares()? {
+        if let Some(model) = TextModel::of(
+            &options.model,
+            &[options.along.as_deref().unwrap_or("driving")],
+        )? {
+            let search = &options.search;
+            let subject = TextSubject::new(
+                model,
+                search.within.as_deref(),
+                search.start.as_deref(),
+                search.period_guess,
+                options.of.as_deref() == Some("orbits"),
+            )?;
+            return general::branch(options, &subject, words);
+        }
+        if let Some(subject) = options.any_parameter()? {
+            return general::branch(options, &subject, words);
+        }
     }
     options.search.unused()?;
     let plan = BranchPlan::new(options)?;
+    if plan.system.interfaces > 2 {
+        let columns = views::cluster_columns();
+        return follow(options, words, &plan, columns, &|rows: &[ClusterRow]| {
+            views::staircase(rows, &plan.along, &plan.request.slab, &plan.system)
+        });
+    }
+    let columns = views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces);
+    follow(options, words, &plan, columns, &|rows: &[BranchRow]| {
+        views::branches(rows, &plan.along, &plan.request.slab, &plan.system)
+    })
+}
+
+/// Follows the branches, whose rows are of one kind.
+fn follow<R: SlabRow>(
+    options: &BranchOptions,
+    words: &[String],
+    plan: &BranchPlan,
+    columns: Vec<Column<R>>,
+    picture: &dyn Fn(&[R]) -> plot::Drawing,
+) -> Result<Ending> {
     let units = plan.system.units();
     let again = |one: &Special| {
         let second = plan.following.second;
@@ -38,9 +64,9 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
     let task = Task {
         system: &plan.system,
         names: vec![],
-        columns: views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces),
+        columns,
         special_columns: views::special_columns(),
-        read: (&|cell| BranchRow::read(cell, units), &|cell| {
+        read: (&|cell| R::read(cell, units), &|cell| {
             special_row(cell, units)
         }),
         lines: &|special, checks| special::lines(special, checks, units),
@@ -59,9 +85,9 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
         &report,
         |known, seen| {
             plan.follow(known, &mut |event| {
-                BranchRow::found(event).map_or(ControlFlow::Continue(()), &mut *seen)
+                R::found(event).map_or(ControlFlow::Continue(()), &mut *seen)
             })
         },
-        |rows, _| views::branches(rows, &plan.along, &plan.request.slab, &plan.system),
+        |rows, _| picture(rows),
     )
 }

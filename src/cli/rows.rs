@@ -1,5 +1,6 @@
 //! The rows of branches and of curves, and the way back from CSV.
 
+use crate::bifurcation::clusters::{ClusterOfRow, ClusterRow};
 use crate::bifurcation::{BranchRow, Criticality, Event, Label, LocusRow, Special};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::number::Uncertain;
@@ -127,6 +128,18 @@ fn criticality(cell: &dyn Fn(&str) -> String) -> Option<Criticality> {
     sides.into_iter().find(|side| side.name() == name)
 }
 
+fn verdict(cell: &dyn Fn(&str) -> String) -> Option<Verdict> {
+    let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
+    let name = cell("verdict");
+    verdicts.into_iter().find(|verdict| verdict.name() == name)
+}
+
+/// How many interfaces slide on the slow, the middle and the fast branch.
+fn share(cell: &dyn Fn(&str) -> String) -> Option<[usize; 3]> {
+    let count = |name: &str| cell(name).parse().ok();
+    Some([count("slow")?, count("middle")?, count("fast")?])
+}
+
 /// A special point from the cells of a CSV in the user's units.
 pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Special> {
     let uncertain = |name: &str, quantity| uncertain(cell, units, name, quantity);
@@ -185,7 +198,6 @@ impl SlabRow for BranchRow {
                 maybe(&format!("{name}_2"), quantity).unwrap_or(first),
             ])
         };
-        let verdicts = [Verdict::Stable, Verdict::Unstable, Verdict::Undecided];
         Some(BranchRow {
             branch: cell("branch").parse().ok()?,
             symmetry: Symmetry::named(&cell("symmetry"))?,
@@ -201,9 +213,60 @@ impl SlabRow for BranchRow {
             slip_rate: both("slip_rate", Quantity::SlipRate)?,
             // Not shown but in the line itself, which is kept as it stands.
             ln_abs_multiplier: [None; 2],
-            verdict: verdicts
-                .into_iter()
-                .find(|&verdict| verdict.name() == cell("verdict"))?,
+            verdict: verdict(cell)?,
+            label: Label::named(&cell("label")),
+        })
+    }
+}
+
+impl CurveRow for ClusterRow {
+    type Special = Special;
+    const WHOLE: &'static str = "branch";
+    const WHOLES: &'static str = "branches";
+
+    fn number(&self) -> usize {
+        self.branch
+    }
+
+    fn place(&self, _: &[&str], units: &Units) -> String {
+        loading(self.driving, self.stiffness, units)
+    }
+
+    fn undecided(&self) -> bool {
+        self.verdict == Verdict::Undecided && matches!(self.label, None | Some(Label::Uz))
+    }
+}
+
+impl SlabRow for ClusterRow {
+    fn of(event: Event) -> Option<Self> {
+        match event {
+            Event::Cluster(row) => Some(row),
+            _ => None,
+        }
+    }
+
+    fn read(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Self> {
+        let number = |name: &str, quantity| {
+            let x = cell(name).parse::<f64>().ok()?;
+            Some(units.inward(quantity, x))
+        };
+        let count = |name: &str| cell(name).parse::<usize>().ok();
+        let cluster = |i: usize| {
+            Some(ClusterOfRow {
+                count: count(&format!("count_{i}"))?,
+                state: number(&format!("state_{i}"), Quantity::State)?,
+                slip_rate: number(&format!("slip_rate_{i}"), Quantity::SlipRate)?,
+            })
+        };
+        Some(ClusterRow {
+            branch: count("branch")?,
+            share: share(cell)?,
+            driving: number("driving", Quantity::SlipRate)?,
+            stiffness: number("stiffness", Quantity::Stiffness)?,
+            stress: number("stress", Quantity::Stress)?,
+            clusters: (1..=3).map_while(cluster).collect(),
+            unstable: count("unstable")?,
+            verdict: verdict(cell)?,
             label: Label::named(&cell("label")),
         })
     }
@@ -248,6 +311,7 @@ impl SlabRow for LocusRow {
             angle_over_pi: number("angle_over_pi"),
             criticality: criticality(cell),
             label: Label::named(&cell("label")),
+            share: share(cell),
         })
     }
 }

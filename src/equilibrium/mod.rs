@@ -20,6 +20,10 @@ mod spectrum;
 mod unequal;
 
 pub use boxes::{Enclosed, IntervalBox, IsolatedZero, ZerosInBox, zero_near, zeros_in_box};
+pub(crate) use clusters::{
+    Along, Bracket, EquilibriumCurve, FAST, MIDDLE, SLOW, Share, ShareState, SteadyCurve,
+    SteadyPoint, constant, share_states, shares,
+};
 pub use clusters::{
     ClusterEigenvalue, ClusterStability, EigenvalueKind, MOST_INTERFACES, cluster_stability,
     cluster_steady_states,

@@ -257,7 +257,7 @@ impl<'a> Pieces<'a> {
                     voice.says(Reached::Points(rows.len()));
                 }
                 Event::Special(point) => special.push(point),
-                Event::Locus(_) => {}
+                Event::Locus(_) | Event::Cluster(_) => {}
             }
             self.flow()
         })?;
@@ -282,7 +282,7 @@ impl<'a> Pieces<'a> {
                     voice.says(Reached::Points(rows.len()));
                 }
                 Event::Special(point) => special.push(point),
-                Event::Branch(_) => {}
+                Event::Branch(_) | Event::Cluster(_) => {}
             }
             self.flow()
         })?;

@@ -4,7 +4,7 @@ use super::continuation::BranchOptions;
 use super::following::{self, Following, landings, range};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{BranchRequest, BranchRow, EventObserver, Parameter, equilibria, orbits};
+use crate::bifurcation::{BranchRequest, EventObserver, Parameter, clusters, equilibria, orbits};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::model::Loading;
@@ -76,11 +76,11 @@ impl BranchParameter {
         }
     }
 
-    /// Its value at a row, in the user's units.
-    pub fn of(&self, row: &BranchRow, units: &Units) -> f64 {
+    /// Its value at a V_H and a K, in the user's units.
+    pub fn of(&self, driving: f64, stiffness: f64, units: &Units) -> f64 {
         let x = match self.parameter {
-            Parameter::Driving => row.driving,
-            Parameter::Stiffness => row.stiffness,
+            Parameter::Driving => driving,
+            Parameter::Stiffness => stiffness,
         };
         units.outward(self.quantity, x)
     }
@@ -127,7 +127,11 @@ impl BranchPlan {
     pub fn new(options: &BranchOptions) -> Result<Self> {
         let of = BranchKind::named(options.of.as_deref())?;
         let along = BranchParameter::named(options.along.as_deref().unwrap_or("driving"))?;
-        let system = System::new(&options.model)?.alike("branch")?;
+        let system = match of {
+            BranchKind::Equilibria => System::several(&options.model)?,
+            BranchKind::Orbits => System::new(&options.model)?,
+        };
+        let system = system.alike("branch")?;
         let units = &system.units;
         let ends = along.ends(options, units)?;
         let loading = loading(&system, &along, ends.0)?;
@@ -177,6 +181,9 @@ impl BranchPlan {
         let out = |x| self.system.units.outward(self.along.quantity, x);
         let (from, to) = self.request.range;
         let method = match self.of {
+            BranchKind::Equilibria if self.system.interfaces > 2 => {
+                "each share of the slow, middle and fast branch of the law over its middle rate; the characteristic polynomials"
+            }
             BranchKind::Equilibria => {
                 "all steady states in closed form or from certain brackets; the characteristic polynomials"
             }
@@ -204,6 +211,9 @@ impl BranchPlan {
             ..self.request.clone()
         };
         match self.of {
+            BranchKind::Equilibria if self.system.interfaces > 2 => {
+                clusters::branch(&request, seen)
+            }
             BranchKind::Equilibria => equilibria::branch(&request, seen),
             BranchKind::Orbits => orbits::branch(&request, seen),
         }

@@ -6,6 +6,7 @@ use serde_json::{Map, Value, json};
 
 mod bifurcation;
 mod catalogue;
+mod clusters;
 mod diagram;
 mod equilibria;
 mod general;
@@ -21,6 +22,7 @@ mod text;
 
 pub use bifurcation::{branch_columns, locus_columns, special_columns};
 pub use catalogue::{many_event_columns, participation_columns, picture_of_events};
+pub use clusters::{cluster_columns, staircase};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
 pub use general::{general_branches, general_curves, general_lines, quantity_label};

@@ -208,7 +208,7 @@ fn product(a: &ComplexVector, b: &ComplexVector) -> Complex {
 
 /// l_1, and the size of the terms whose sum it is.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct FirstLyapunov {
+pub(in crate::bifurcation) struct FirstLyapunov {
     pub value: f64,
     pub scale: f64,
 }
@@ -223,7 +223,7 @@ impl FirstLyapunov {
 }
 
 /// At the equilibrium with these slip rates, one per interface, where the eigenvalues +-i omega cross at stiffness K.
-pub(super) fn first_lyapunov(
+pub(in crate::bifurcation) fn first_lyapunov(
     law: &impl Law,
     rates: &[Number],
     k: Number,

@@ -12,19 +12,19 @@ use crate::number::{
 
 /// The places of the slow branch (v < V_M, the stress rises with v), of the middle one (V_M < v < V_m, it falls) and of the fast one
 /// (v > V_m, it rises again) in whatever there is for each.
-pub(super) const SLOW: usize = 0;
-pub(super) const MIDDLE: usize = 1;
-pub(super) const FAST: usize = 2;
+pub(crate) const SLOW: usize = 0;
+pub(crate) const MIDDLE: usize = 1;
+pub(crate) const FAST: usize = 2;
 
 /// A slip rate on each branch, all under one stress.
-pub(super) type Rates<T> = [T; 3];
+pub(crate) type Rates<T> = [T; 3];
 
 /// What a search for a bracket multiplies a rate by.
 const STRIDE: f64 = 8.0;
 
 /// The steady curve of a law that weakens between V_M and V_m, or beyond V_M, or from rest to V_m.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct SteadyCurve<'a> {
+pub(crate) struct SteadyCurve<'a> {
     pub law: &'a AnyLaw,
     /// V_M lies in here, where there is one.
     pub peak: Option<Interval>,
@@ -60,6 +60,20 @@ impl<'a> SteadyCurve<'a> {
     pub fn has(&self) -> [bool; 3] {
         let (slow, fast) = (self.peak.is_some(), self.trough.is_some());
         [slow, slow || fast, fast]
+    }
+
+    /// The extremum at which the middle branch meets the slow or the fast one.
+    pub fn extremum(&self, branch: usize) -> Option<Interval> {
+        match branch {
+            SLOW => self.peak,
+            FAST => self.trough,
+            _ => None,
+        }
+    }
+
+    /// A rate of the fast branch beyond this one is any beyond it.
+    pub fn fastest(&self) -> f64 {
+        self.fastest
     }
 
     /// The branch on which a rate certainly lies.

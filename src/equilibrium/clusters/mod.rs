@@ -4,19 +4,22 @@
 //! equilibrium is a share (n_s, n_m, n_f) of N with a stress under which the rates add up to V_H; those that slide alike are a cluster.
 //! The middle rate is the unknown, also where no interface slides at it: the stress falls from V_M to V_m, and the other rates with it.
 
+mod along;
 mod cell;
 mod curve;
 mod root;
 mod search;
 mod stability;
 
+pub(crate) use along::{Along, Bracket, EquilibriumCurve, Share, SteadyPoint, constant};
+pub(crate) use curve::{FAST, MIDDLE, SLOW, SteadyCurve};
 pub use stability::{ClusterEigenvalue, ClusterStability, EigenvalueKind, cluster_stability};
 
 use super::{Equilibrium, SteadyStates, Symmetry};
 use crate::error::{Error, Result};
 use crate::friction::{AnyLaw, positive};
 use crate::number::DoubleDouble;
-use curve::{FAST, MIDDLE, Rates, SLOW, SteadyCurve};
+use curve::Rates;
 use search::Cells;
 
 /// The largest number of interfaces: of more the number of arrangements, up to 3^N, is no double.
@@ -43,6 +46,34 @@ pub fn cluster_steady_states(
     driving: f64,
     interfaces: usize,
 ) -> Result<SteadyStates> {
+    let mut found = SteadyStates {
+        equilibria: Vec::new(),
+        complete: true,
+    };
+    let complete = share_states(law, driving, interfaces, |one| {
+        found.add(one.state, law, driving);
+    })?;
+    found.complete &= complete;
+    Ok(found.sorted())
+}
+
+/// A steady state with its share, and the middle rate under its stress: where all slide alike theirs.
+pub(crate) struct ShareState {
+    pub share: Share,
+    pub rate: DoubleDouble,
+    pub state: Equilibrium,
+}
+
+/// All of them, and whether their number is certain.
+///
+/// # Errors
+/// As [`cluster_steady_states`].
+pub(crate) fn share_states(
+    law: &AnyLaw,
+    driving: f64,
+    interfaces: usize,
+    mut seen: impl FnMut(ShareState),
+) -> Result<bool> {
     positive("driving", driving)?;
     if !(1..=MOST_INTERFACES).contains(&interfaces) {
         return Err(Error::parameter(
@@ -51,39 +82,42 @@ pub fn cluster_steady_states(
             format!("between 1 and {MOST_INTERFACES}"),
         ));
     }
-    let mut found = SteadyStates {
-        equilibria: vec![alike(law, driving, interfaces)],
-        complete: true,
-    };
+    seen(ShareState {
+        share: [0, interfaces, 0],
+        rate: DoubleDouble::from(driving) / interfaces as f64,
+        state: alike(law, driving, interfaces),
+    });
     let Some(curve) = SteadyCurve::new(law, 4.0 * driving) else {
-        found.complete = interfaces == 1;
-        return Ok(found);
+        return Ok(interfaces == 1);
     };
     let shares = shares(curve.has(), interfaces);
     if shares.is_empty() {
-        return Ok(found);
+        return Ok(true);
     }
-    found.complete &= curve.branch(driving / interfaces as f64).is_some();
+    let mut complete = curve.branch(driving / interfaces as f64).is_some();
     let mut cells = Cells::new(curve, driving);
-    for counts in shares {
-        let isolation = cells.isolate(&counts, driving);
-        found.complete &= isolation.certain;
+    for share in shares {
+        let isolation = cells.isolate(&share, driving);
+        complete &= isolation.certain;
         let mut states = Vec::new();
         if isolation.at_rest {
-            let fast = DoubleDouble::from(driving) / counts[FAST] as f64;
+            let fast = DoubleDouble::from(driving) / share[FAST] as f64;
             let rates = [DoubleDouble::ZERO, DoubleDouble::ZERO, fast];
             let tiny = f64::MIN_POSITIVE;
             states.push((rates, [tiny, tiny, fast.to_f64() * f64::EPSILON]));
         }
         for bracket in isolation.brackets {
-            states.push(root::in_bracket(&curve, &counts, driving, bracket)?);
+            states.push(root::in_bracket(&curve, &share, driving, bracket)?);
         }
         for (rates, radii) in states {
-            let state = of_share(law, driving, &counts, &rates, &radii);
-            found.add(state, law, driving);
+            seen(ShareState {
+                share,
+                rate: rates[MIDDLE],
+                state: of_share(law, driving, &share, &rates, &radii),
+            });
         }
     }
-    Ok(found.sorted())
+    Ok(complete)
 }
 
 /// The state in which all slide alike.
@@ -110,7 +144,7 @@ fn of_share(
 }
 
 /// All shares of two branches and more.
-fn shares(has: [bool; 3], interfaces: usize) -> Vec<Rates<usize>> {
+pub(crate) fn shares(has: [bool; 3], interfaces: usize) -> Vec<Rates<usize>> {
     let mut all = Vec::new();
     for slow in 0..=interfaces {
         for fast in 0..=interfaces - slow {

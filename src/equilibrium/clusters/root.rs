@@ -47,7 +47,7 @@ pub(super) fn in_bracket(
 }
 
 /// d v/d ln x on each branch.
-fn changes<T: Real>(curve: &SteadyCurve<'_>, rates: &Rates<T>) -> Rates<T> {
+pub(super) fn changes<T: Real>(curve: &SteadyCurve<'_>, rates: &Rates<T>) -> Rates<T> {
     let has = curve.has();
     std::array::from_fn(|i| match i {
         MIDDLE => rates[i],
@@ -58,7 +58,7 @@ fn changes<T: Real>(curve: &SteadyCurve<'_>, rates: &Rates<T>) -> Rates<T> {
     })
 }
 
-fn radii(
+pub(super) fn radii(
     curve: &SteadyCurve<'_>,
     counts: &Rates<usize>,
     driving: f64,

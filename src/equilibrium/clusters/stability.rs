@@ -115,20 +115,9 @@ pub fn cluster_stability(
     })
 }
 
-/// The characteristic polynomial over the larger one of K and 1, its constant first, then s of each cluster. What is not there is zero.
-fn coefficients<T: Real>(
-    law: &AnyLaw,
-    counts: &[usize],
-    rates: &[T],
-    stiffness: f64,
-) -> [T; COUNT] {
+/// The characteristic polynomial A + K B of clusters, the constants of A and of B first. What is not there is zero.
+pub(super) fn characteristic<T: Real>(counts: &[usize], each: &[Interface<T>]) -> [[T; WITHIN]; 2] {
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
-    let (m, k) = if stiffness > 1.0 {
-        (one / stiffness, one)
-    } else {
-        (one, T::constant(stiffness))
-    };
-    let each: Vec<_> = rates.iter().map(|&v| Interface::at(law, v)).collect();
     // the product of (z - s_j), all or all but one
     let product = |without: Option<usize>| {
         let mut p = [zero; WITHIN];
@@ -144,16 +133,38 @@ fn coefficients<T: Real>(
         p
     };
     let all = product(None);
-    let mut sum = [zero; COUNT];
-    for j in 1..WITHIN {
-        sum[j] = all[j - 1] * m;
-    }
+    let mut parts = [[zero; WITHIN]; 2];
+    parts[0][1..].copy_from_slice(&all[..WITHIN - 1]);
     for (i, interface) in each.iter().enumerate() {
         let others = product(Some(i));
-        let weight = k * counts[i] as f64;
         for j in 0..WITHIN {
-            sum[j] = sum[j] + (all[j] * interface.compliance + others[j] * interface.a_s) * weight;
+            let term = all[j] * interface.compliance + others[j] * interface.a_s;
+            parts[1][j] = parts[1][j] + term * counts[i] as f64;
         }
+    }
+    parts
+}
+
+/// The characteristic polynomial over the larger one of K and 1, its constant first, then s of each cluster. What is not there is zero.
+fn coefficients<T: Real>(
+    law: &AnyLaw,
+    counts: &[usize],
+    rates: &[T],
+    stiffness: f64,
+) -> [T; COUNT] {
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
+    let (m, k) = if stiffness > 1.0 {
+        (one / stiffness, one)
+    } else {
+        (one, T::constant(stiffness))
+    };
+    let each: Vec<_> = rates.iter().map(|&v| Interface::at(law, v)).collect();
+    let [free, stiff] = characteristic(counts, &each);
+    let mut sum = [zero; COUNT];
+    for j in 0..WITHIN {
+        sum[j] = free[j] * m + stiff[j] * k;
+    }
+    for (i, interface) in each.iter().enumerate() {
         sum[WITHIN + i] = interface.s;
     }
     sum
