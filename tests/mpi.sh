@@ -64,9 +64,20 @@ for method in "${methods[@]}"; do
     done
     rm "$folder/many.csv"
     saving=("${many[@]}" --method "$method" -o "$folder/many.csv" --checkpoint "$folder/saved" --checkpoint-steps 2)
-    # Ended early by the bound on steps: what is saved stays.
-    mpirun --oversubscribe -n 3 "$program" "${saving[@]}" --max-steps 5 2>"$folder/said" && exit 1
-    grep -q "5 steps" "$folder/said"
+    "$program" "${saving[@]}"
+    cp "$folder/many.csv" "$folder/alone.csv"
+    rm "$folder/many.csv"
+    mpirun --oversubscribe -n 3 "$program" "${saving[@]}" &
+    for ((i = 0; i < 2000; i++)); do
+        [ -s "$folder/saved" ] && [ "$(stat -c %s "$folder/saved")" -gt 40000 ] && break
+        kill -0 $! 2>/dev/null || break
+        sleep 0.002
+    done
+    pkill -KILL -f "$folder/saved" || true
+    wait || true
+    mpirun --oversubscribe -n 2 "$program" "${saving[@]}"
+    same <(grep -v '^# command' "$folder/alone.csv") <(grep -v '^# command' "$folder/many.csv") "2 ranks go on where 3 were killed, by $method"
+    [ ! -e "$folder/saved" ]
 done
 
 words=(--driving 0.14:0.5:20 --stiffness 0.34:0.5:20)
