@@ -5,8 +5,10 @@ use crate::command::{csv, folder, object, refused, twinslip};
 use crate::common::heard::{Heard, slab, spinodal, two};
 use crate::common::{assert_close, number};
 use std::ops::ControlFlow::Continue;
-use twinslip::bifurcation::clusters::{ClusterRow, branch};
-use twinslip::bifurcation::{BranchRequest, Event, Label, Parameter, Special, equilibria};
+use twinslip::bifurcation::clusters::{ClusterRow, branch, locus};
+use twinslip::bifurcation::{
+    BranchRequest, Event, Label, LocusKind, LocusRequest, Parameter, Special, equilibria,
+};
 use twinslip::equilibrium::{
     Equilibrium, Symmetry, Verdict, cluster_stability, cluster_steady_states,
 };
@@ -363,4 +365,58 @@ fn what_makes_no_sense_is_refused_in_a_sentence() {
         "branch equilibria --interfaces 3 --along stiffness",
         "--driving V_H is missing",
     );
+}
+
+/// The special points of curves with this label, by V_H.
+fn on_curves(special: &[Special], label: Label) -> Vec<&Special> {
+    let mut these: Vec<_> = special.iter().filter(|one| one.label == label).collect();
+    these.sort_by(|a, b| a.driving.value.total_cmp(&b.driving.value));
+    these
+}
+
+#[test]
+fn curves_of_two_interfaces_are_the_same_either_way() {
+    for kind in [LocusKind::Hopf, LocusKind::Pitchfork, LocusKind::SaddleNode] {
+        let request = LocusRequest {
+            at_stiffness: vec![0.05, 0.14],
+            ..LocusRequest::new(two(1.0, 1.0), kind, RANGE, (1e-3, 1.0))
+        };
+        let known = Heard::of_all(|seen| equilibria::locus(&request, seen));
+        let made = Heard::of_all(|seen| locus(&request, seen));
+        for label in [Label::Uz, Label::Top] {
+            let [known, made] = [&known, &made].map(|heard| on_curves(&heard.special, label));
+            assert_eq!(known.len(), made.len(), "{kind:?} {label:?}");
+            for (a, b) in known.into_iter().zip(made) {
+                let what = format!("{kind:?}: {a:?} {b:?}");
+                for (a, b) in [(a.driving, b.driving), (a.stiffness, b.stiffness)] {
+                    assert_close(b.value, a.value, 1e-12, &what);
+                    let apart = (a.value - b.value).abs();
+                    assert!(apart <= a.uncertainty + b.uncertainty, "{what}");
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn curves_of_three_interfaces_cross_a_stiffness_at_the_hopf_points_there() {
+    let slab = slab(spinodal(), 3, 1.0, 1.0);
+    let request = LocusRequest {
+        at_stiffness: vec![0.12],
+        ..LocusRequest::new(slab, LocusKind::Hopf, RANGE, (1e-3, 1.0))
+    };
+    let curves = Heard::of_all(|seen| locus(&request, seen));
+    let crossings = on_curves(&curves.special, Label::Uz);
+    let (_, special) = told(&along_driving(spinodal(), 3, 0.12));
+    let points = on_curves(&special, Label::Hb);
+    assert_eq!(points.len(), 6);
+    assert_eq!(crossings.len(), points.len());
+    for (a, b) in crossings.into_iter().zip(points) {
+        assert_close(a.driving.value, b.driving.value, 1e-13, "a Hopf point");
+    }
+    let refusal = LocusRequest {
+        kind: LocusKind::Torus,
+        ..request
+    };
+    assert!(locus(&refusal, &mut |_| Continue(())).is_err());
 }

@@ -293,6 +293,8 @@ pub struct LocusRow {
     pub criticality: Option<Criticality>,
     /// What is special here.
     pub label: Option<Label>,
+    /// Of more than two interfaces: how many slide on the slow, the middle and the fast branch of the steady curve.
+    pub share: Option<[usize; 3]>,
 }
 
 impl LocusRow {
@@ -307,6 +309,7 @@ impl LocusRow {
             angle_over_pi: None,
             criticality: None,
             label: None,
+            share: None,
         }
     }
 }

@@ -34,7 +34,19 @@ impl LocusRequest {
     /// # Errors
     /// As of [`BranchRequest::checked`].
     pub fn checked(&self) -> Result<()> {
-        checked(&self.slab, 2, self.symmetry, self.step, self.tolerance)?;
+        self.checked_up_to(2)
+    }
+
+    /// The same of any number of equal interfaces.
+    ///
+    /// # Errors
+    /// As of [`BranchRequest::checked`].
+    pub(super) fn checked_of_many(&self) -> Result<()> {
+        self.checked_up_to(MOST_INTERFACES)
+    }
+
+    fn checked_up_to(&self, most: usize) -> Result<()> {
+        checked(&self.slab, most, self.symmetry, self.step, self.tolerance)?;
         range("driving range", self.driving)?;
         range("stiffness range", self.stiffness)?;
         values("wanted driving", &self.at_driving)?;

@@ -12,22 +12,24 @@ use crate::views;
 use std::ops::ControlFlow;
 
 pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
-    if let Some(model) = TextModel::of(
-        &options.model,
-        &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
-    )? {
-        let search = &options.search;
-        let subject = TextSubject::new(
-            model,
-            search.within.as_deref(),
-            search.start.as_deref(),
-            search.period_guess,
-            CurveChoice::named(options.of.as_deref())?.of_orbits(),
-        )?;
-        return general::locus(options, &subject, words);
-    }
-    if let Some(subject) = options.any_parameter()? {
-        return general::locus(options, &subject, words);
+    if !options.by_shares()? {
+        if let Some(model) = TextModel::of(
+            &options.model,
+            &plane(options.plane.as_deref().unwrap_or("driving,stiffness"))?,
+        )? {
+            let search = &options.search;
+            let subject = TextSubject::new(
+                model,
+                search.within.as_deref(),
+                search.start.as_deref(),
+                search.period_guess,
+                CurveChoice::named(options.of.as_deref())?.of_orbits(),
+            )?;
+            return general::locus(options, &subject, words);
+        }
+        if let Some(subject) = options.any_parameter()? {
+            return general::locus(options, &subject, words);
+        }
     }
     options.search.unused()?;
     let plan = LocusPlan::new(options)?;
@@ -40,7 +42,7 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
     let task = Task {
         system: &plan.system,
         names: vec![],
-        columns: views::locus_columns(),
+        columns: views::locus_columns(plan.system.interfaces),
         special_columns: views::special_columns(),
         read: (&|cell| LocusRow::read(cell, units), &|cell| {
             special_row(cell, units)

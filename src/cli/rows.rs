@@ -134,6 +134,12 @@ fn verdict(cell: &dyn Fn(&str) -> String) -> Option<Verdict> {
     verdicts.into_iter().find(|verdict| verdict.name() == name)
 }
 
+/// How many interfaces slide on the slow, the middle and the fast branch.
+fn share(cell: &dyn Fn(&str) -> String) -> Option<[usize; 3]> {
+    let count = |name: &str| cell(name).parse().ok();
+    Some([count("slow")?, count("middle")?, count("fast")?])
+}
+
 /// A special point from the cells of a CSV in the user's units.
 pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Special> {
     let uncertain = |name: &str, quantity| uncertain(cell, units, name, quantity);
@@ -254,7 +260,7 @@ impl SlabRow for ClusterRow {
         };
         Some(ClusterRow {
             branch: count("branch")?,
-            share: [count("slow")?, count("middle")?, count("fast")?],
+            share: share(cell)?,
             driving: number("driving", Quantity::SlipRate)?,
             stiffness: number("stiffness", Quantity::Stiffness)?,
             stress: number("stress", Quantity::Stress)?,
@@ -305,6 +311,7 @@ impl SlabRow for LocusRow {
             angle_over_pi: number("angle_over_pi"),
             criticality: criticality(cell),
             label: Label::named(&cell("label")),
+            share: share(cell),
         })
     }
 }

@@ -71,7 +71,7 @@ impl Sheet {
     /// Adds curves, in the columns of the command `locus`, and their special points.
     pub fn add_curves(&mut self, name: &str, curves: &Curves) {
         let units = &curves.plan.system.units;
-        self.add_rows(name.into(), &locus_columns(), &curves.rows, units);
+        self.add_rows(name.into(), &locus_columns(2), &curves.rows, units);
         self.add_special(name, &curves.special, units);
     }
 

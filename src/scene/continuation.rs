@@ -137,16 +137,11 @@ impl BranchOptions {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`] for what `set` says of single interfaces.
     pub fn by_shares(&self) -> Result<bool> {
-        let slab = &self.model.slab;
         let along = self.along.as_deref().unwrap_or("driving");
         Ok(self.of.as_deref() == Some("equilibria")
             && ["driving", "stiffness"].contains(&along)
-            && slab.count() > 2
-            && slab.clusters.is_none()
-            && slab.text.system.is_none()
-            && slab.law_file().is_none()
             && self.search.start.is_none()
-            && !OfOne::read(slab)?.any())
+            && many_and_equal(&self.model)?)
     }
 
     /// The interfaces, where branches are followed in any parameter: they differ, or neither V_H nor K varies.
@@ -171,7 +166,30 @@ impl BranchOptions {
     }
 }
 
+/// Whether there are more than two interfaces, all equal, with a law that is built in.
+fn many_and_equal(model: &ModelOptions) -> Result<bool> {
+    let slab = &model.slab;
+    Ok(slab.count() > 2
+        && slab.clusters.is_none()
+        && slab.text.system.is_none()
+        && slab.law_file().is_none()
+        && !OfOne::read(slab)?.any())
+}
+
 impl LocusOptions {
+    /// Whether curves of equilibria of many equal interfaces are asked for, in the plane of V_H and K: of all their shares.
+    ///
+    /// # Errors
+    /// As of [`BranchOptions::by_shares`].
+    pub fn by_shares(&self) -> Result<bool> {
+        let names = plane(self.plane.as_deref().unwrap_or("driving,stiffness"))?;
+        Ok(!CurveChoice::named(self.of.as_deref())?.of_orbits()
+            && names.contains(&"driving")
+            && names.contains(&"stiffness")
+            && self.search.start.is_none()
+            && many_and_equal(&self.model)?)
+    }
+
     /// The interfaces, where curves are followed in any plane: they differ, or not both V_H and K vary.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use super::following::{self, Following, landings, number, range};
 use super::general::by_name;
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, equilibria, orbits};
+use crate::bifurcation::{EventObserver, LocusKind, LocusRequest, clusters, equilibria, orbits};
 use crate::error::{Error, Result, option_name};
 use crate::model::Loading;
 use crate::orbit::InterfaceSystem;
@@ -181,7 +181,11 @@ impl LocusPlan {
         let options = &by_flags(options)?;
         let curve = CurveChoice::named(options.of.as_deref())?;
         not_fixed(options)?;
-        let system = System::new(&options.model)?.alike("locus")?;
+        let system = match curve.orbits {
+            false => System::several(&options.model)?,
+            true => System::new(&options.model)?,
+        };
+        let system = system.alike("locus")?;
         let rates = (Quantity::SlipRate, &system.units);
         let stiffnesses = (Quantity::Stiffness, &system.units);
         let driving = ends(
@@ -271,6 +275,8 @@ impl LocusPlan {
         };
         if self.curve.orbits {
             orbits::locus(&request, seen)
+        } else if self.system.interfaces > 2 {
+            clusters::locus(&request, seen)
         } else {
             equilibria::locus(&request, seen)
         }

@@ -61,11 +61,11 @@ pub fn branch_columns(orbits: bool, interfaces: usize) -> Vec<Column<BranchRow>>
     columns
 }
 
-/// The columns of curves.
-pub fn locus_columns() -> Vec<Column<LocusRow>> {
+/// The columns of curves, of more than two interfaces with their share.
+pub fn locus_columns(interfaces: usize) -> Vec<Column<LocusRow>> {
     use Quantity::{Number, SlipRate, Stiffness, Time};
     type Row = LocusRow;
-    vec![
+    let mut columns = vec![
         Column::uncertain("driving", SlipRate, |row: &Row| row.driving.into()),
         Column::uncertain("stiffness", Stiffness, |row: &Row| row.stiffness.into()),
         Column::new("period", Time, |row: &Row| row.period.into()),
@@ -80,7 +80,16 @@ pub fn locus_columns() -> Vec<Column<LocusRow>> {
         }),
         Column::new("curve", Number, |row: &Row| row.curve.into()),
         Column::new("symmetry", Number, |row: &Row| row.symmetry.name().into()),
-    ]
+    ];
+    if interfaces > 2 {
+        for (i, name) in ["slow", "middle", "fast"].into_iter().enumerate() {
+            columns.push(Column::new(name, Number, move |row: &Row| {
+                let count = row.share.map(|share| share[i]);
+                count.map_or(CellValue::Number(None), CellValue::from)
+            }));
+        }
+    }
+    columns
 }
 
 /// The columns of special points.

@@ -82,7 +82,7 @@ pub fn staircase(
     if marks.len() > MOST_MARKS {
         marks.clear();
     }
-    let series = lines(rows, &x, &y);
+    let series = lines(rows, slab.interfaces, &x, &y);
     let symbol = match along.parameter {
         Parameter::Driving => "V_H",
         Parameter::Stiffness => "K",
@@ -107,9 +107,12 @@ pub fn staircase(
 /// What there are most of is drawn first, what is stable last.
 fn lines(
     rows: &[ClusterRow],
+    interfaces: usize,
     x: &dyn Fn(&ClusterRow) -> f64,
     y: &dyn Fn(&ClusterRow) -> f64,
 ) -> Vec<PlotSeries> {
+    /// The stairs of more interfaces would run into each other.
+    const MOST_WIDE: usize = 10;
     let names = ["all alike", "two clusters", "three clusters"];
     let clusters = |branch: &[ClusterRow]| {
         let most = branch.iter().map(|row| row.clusters.len()).max();
@@ -120,31 +123,25 @@ fn lines(
         .into_iter()
         .flat_map(|s| [(s, 3), (s, 2), (s, 1)])
     {
-        let (mut xs, mut ys, mut left_out) = (Vec::new(), Vec::new(), Vec::new());
+        let stroke = match stable {
+            true => Stroke::Solid,
+            false => Stroke::Dashed,
+        };
         for branch in rows.chunk_by(|a, b| a.branch == b.branch) {
             let belongs = |pair: &[ClusterRow]| solid(&pair[0], &pair[1]) == stable;
             if clusters(branch) != number || !branch.windows(2).any(belongs) {
                 continue;
             }
-            xs.extend(branch.iter().map(x).chain([f64::NAN]));
-            ys.extend(branch.iter().map(y).chain([f64::NAN]));
-            left_out.extend(branch.windows(2).map(|pair| !belongs(pair)));
-            left_out.extend([true, true]);
+            let (xs, ys) = (branch.iter().map(x), branch.iter().map(y));
+            all.push(PlotSeries {
+                // all of it, so that a part goes on into the next one
+                left_out: branch.windows(2).map(|pair| !belongs(pair)).collect(),
+                wide: stable && interfaces <= MOST_WIDE,
+                ..PlotSeries::new("", xs.collect(), ys.collect())
+                    .stroke(stroke)
+                    .colour(number - 1)
+            });
         }
-        if xs.is_empty() {
-            continue;
-        }
-        let stroke = match stable {
-            true => Stroke::Solid,
-            false => Stroke::Dashed,
-        };
-        all.push(PlotSeries {
-            left_out,
-            wide: stable,
-            ..PlotSeries::new("", xs, ys)
-                .stroke(stroke)
-                .colour(number - 1)
-        });
     }
     for (i, name) in names.into_iter().enumerate() {
         if let Some(first) = all.iter_mut().find(|one| one.colour == Some(i)) {

@@ -1,7 +1,7 @@
 //! Bifurcation diagrams, and curves in the plane of V_H and K.
 
 use crate::bifurcation::{BranchRow, Label, LocusRow, Parameter, Special};
-use crate::equilibrium::Verdict;
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::orbit::InterfaceSystem;
 use crate::output::plot::{Axis, Drawing, Mark, Panel, PlotSeries, Stroke};
 use crate::output::seven_digits;
@@ -217,6 +217,15 @@ pub(super) fn distinct(points: impl Iterator<Item = (Label, f64, f64)>, named: b
     marks.into_iter().map(|(_, mark)| mark).collect()
 }
 
+/// Of many interfaces, how many slide slowly, at a middle rate and fast.
+fn share(row: &LocusRow) -> String {
+    match row.share {
+        Some(_) if row.symmetry == Symmetry::Symmetric => "all alike".to_owned(),
+        Some([slow, middle, fast]) => format!("({slow}, {middle}, {fast})"),
+        None => String::new(),
+    }
+}
+
 /// K against V_H; where multipliers have an angle, that beside it.
 pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units) -> Drawing {
     let driving = |x| units.outward(Quantity::SlipRate, x);
@@ -224,11 +233,23 @@ pub fn curves(rows: &[LocusRow], special: &[Special], name: &str, units: &Units)
     let x = Axis::log(axis_label("V_H", Quantity::SlipRate, units));
     let series = |y: &dyn Fn(&LocusRow) -> f64| -> Vec<PlotSeries> {
         let pieces = rows.chunk_by(|a, b| a.curve == b.curve);
+        let mut known: Vec<String> = Vec::new();
         pieces
             .map(|curve| {
                 let driving = curve.iter().map(|row| driving(row.driving.value));
-                let series = PlotSeries::new("", driving.collect(), curve.iter().map(y).collect());
-                series.colour(curve[0].curve)
+                let (driving, y) = (driving.collect(), curve.iter().map(y).collect());
+                let share = share(&curve[0]);
+                if share.is_empty() {
+                    return PlotSeries::new("", driving, y).colour(curve[0].curve);
+                }
+                // the curves of a share have one colour, and one name
+                match known.iter().position(|other| *other == share) {
+                    Some(colour) => PlotSeries::new("", driving, y).colour(colour),
+                    None => {
+                        known.push(share.clone());
+                        PlotSeries::new(share, driving, y).colour(known.len() - 1)
+                    }
+                }
             })
             .collect()
     };

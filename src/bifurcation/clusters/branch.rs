@@ -6,10 +6,11 @@ use super::{ClusterOfRow, ClusterRow};
 use crate::bifurcation::equilibria::special::Teller;
 use crate::bifurcation::{BranchRequest, EventObserver, Label, Parameter, Special};
 use crate::equilibrium::{
-    Equilibrium, EquilibriumCurve, FAST, MIDDLE, SLOW, Share, ShareState, SteadyCurve, Symmetry,
-    cluster_stability, share_states, shares,
+    Equilibrium, EquilibriumCurve, FAST, MIDDLE, SLOW, Share, ShareState, SteadyCurve, SteadyPoint,
+    Symmetry, cluster_stability, share_states, shares,
 };
 use crate::error::{Error, Result};
+use crate::friction::AnyLaw;
 use crate::number::Uncertain;
 use std::ops::ControlFlow;
 
@@ -20,9 +21,7 @@ pub(super) fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result
         Parameter::Stiffness => request.slab.loading.driving,
     };
     let law = &request.slab.law;
-    let steady = SteadyCurve::new(law, 4.0 * most).ok_or_else(|| {
-        Error::Input("an extremum of the steady stress is not certainly one: what branches there are is not known".into())
-    })?;
+    let steady = steady_curve(law, most)?;
     let mut run = Run {
         request,
         steady,
@@ -35,6 +34,27 @@ pub(super) fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result
         Parameter::Stiffness => run.along_stiffness()?,
     };
     Ok(())
+}
+
+/// The steady curve, for V_H up to a largest one.
+///
+/// # Errors
+/// [`Error::Input`] where an extremum is not certainly one.
+pub(super) fn steady_curve(law: &AnyLaw, most: f64) -> Result<SteadyCurve<'_>> {
+    SteadyCurve::new(law, 4.0 * most).ok_or_else(|| {
+        Error::Input("an extremum of the steady stress is not certainly one: what branches there are is not known".into())
+    })
+}
+
+/// A share as it is told: of interfaces that all slide alike the branch is that of their rate.
+pub(super) fn told_share(steady: &SteadyCurve<'_>, share: &Share, point: &SteadyPoint) -> Share {
+    let alike = share.iter().filter(|&&n| n > 0).count() == 1;
+    let mut told = *share;
+    if alike {
+        told = [0; 3];
+        told[steady.branch(point.rate()).unwrap_or(MIDDLE)] = share.iter().sum();
+    }
+    told
 }
 
 /// A stretch of a branch: a share, and whether its middle rate falls on the way.
@@ -51,7 +71,7 @@ struct Run<'a> {
     branches: usize,
 }
 
-impl Run<'_> {
+impl<'a> Run<'a> {
     fn wants(&self, symmetry: Symmetry) -> bool {
         self.request
             .symmetry
@@ -156,7 +176,8 @@ impl Run<'_> {
                     .curve
                     .state(&station.share, station.driving, &station.point);
                 let stiffness = self.request.slab.loading.stiffness;
-                let row = self.row(&station.share, &state, station.driving, stiffness)?;
+                let at = (&station.share, &station.point);
+                let row = self.row(at, &state, station.driving, stiffness)?;
                 let row = ClusterRow {
                     label: station.label,
                     ..row
@@ -180,7 +201,7 @@ impl Run<'_> {
 
     fn row(
         &self,
-        share: &Share,
+        (share, point): (&Share, &SteadyPoint),
         state: &Equilibrium,
         driving: f64,
         stiffness: f64,
@@ -193,15 +214,9 @@ impl Run<'_> {
             state,
             slip_rate,
         });
-        let mut told = *share;
-        if let [count] = state.counts[..] {
-            // all alike, along all of the steady curve
-            told = [0; 3];
-            told[self.steady.branch(state.slip_rate[0]).unwrap_or(MIDDLE)] = count;
-        }
         Ok(ClusterRow {
             branch: self.branches - 1,
-            share: told,
+            share: told_share(&self.steady, share, point),
             driving,
             stiffness,
             stress: state.stress.value,
@@ -251,7 +266,8 @@ impl Run<'_> {
         let ends = [from, to].into_iter().filter(|k| !request.at.contains(k));
         all.extend(ends.map(|k| (k, Some(plain(Label::Ep, k)))));
         all.extend(request.at.iter().map(|&k| (k, Some(plain(Label::Uz, k)))));
-        for hopf in self.hopf_at(one) {
+        let (curve, point) = self.place_of(one);
+        for hopf in hopf_at(curve, one, &point) {
             let special = hopf.special();
             let special = Special {
                 driving: exact(driving),
@@ -269,7 +285,7 @@ impl Run<'_> {
         for (k, special) in all {
             let row = ClusterRow {
                 label: special.as_ref().map(|special| special.label),
-                ..self.row(&one.share, &one.state, driving, k)?
+                ..self.row((&one.share, &point), &one.state, driving, k)?
             };
             if self.tell(row, special).is_break() {
                 return Ok(ControlFlow::Break(()));
@@ -278,22 +294,30 @@ impl Run<'_> {
         Ok(ControlFlow::Continue(()))
     }
 
-    fn hopf_at(&self, one: &ShareState) -> Vec<ShareHopf<'_>> {
+    fn place_of(&self, one: &ShareState) -> (EquilibriumCurve<'a>, SteadyPoint) {
         let curve = match one.state.symmetry {
             Symmetry::Symmetric => EquilibriumCurve::Alike(&self.request.slab.law),
             Symmetry::Asymmetric => EquilibriumCurve::Shares(self.steady),
         };
-        let point = curve.point(one.rate);
-        let all = point.oscillation(&one.share).stiffnesses().into_iter();
-        let at = |stiffness| ShareHopf {
-            curve,
-            share: one.share,
-            point: point.clone(),
-            stiffness,
-            along: Parameter::Stiffness,
-        };
-        all.map(at).collect()
+        (curve, curve.point(one.rate))
     }
+}
+
+/// The Hopf points of a state along K.
+fn hopf_at<'a>(
+    curve: EquilibriumCurve<'a>,
+    one: &ShareState,
+    point: &SteadyPoint,
+) -> Vec<ShareHopf<'a>> {
+    let all = point.oscillation(&one.share).stiffnesses().into_iter();
+    let at = |stiffness| ShareHopf {
+        curve,
+        share: one.share,
+        point: point.clone(),
+        stiffness,
+        along: Parameter::Stiffness,
+    };
+    all.map(at).collect()
 }
 
 /// The branches on which not all slide alike, those of two clusters first.

@@ -3,7 +3,7 @@
 use super::special::{ShareHopf, fold, meeting};
 use crate::bifurcation::{BranchRequest, Label, Special};
 use crate::equilibrium::{
-    EquilibriumCurve, FAST, MIDDLE, SLOW, Share, SteadyCurve, SteadyPoint, constant,
+    Bracket, EquilibriumCurve, FAST, MIDDLE, SLOW, Share, SteadyCurve, SteadyPoint, constant,
 };
 use crate::error::Result;
 use crate::friction::AnyLaw;
@@ -56,7 +56,7 @@ impl Station {
 /// A curve of equilibria, whatever the share, at rates between which nothing is missed.
 pub(super) struct Course<'a> {
     pub curve: EquilibriumCurve<'a>,
-    points: Vec<SteadyPoint>,
+    pub points: Vec<SteadyPoint>,
 }
 
 impl<'a> Course<'a> {
@@ -144,7 +144,7 @@ impl<'a> Course<'a> {
     }
 
     /// Neighbours between which a number changes its sign.
-    fn changes(&self, number: impl Fn(&SteadyPoint) -> f64) -> Vec<(f64, f64, f64)> {
+    fn changes(&self, number: impl Fn(&SteadyPoint) -> f64) -> Vec<Bracket> {
         let values: Vec<f64> = self.points.iter().map(&number).collect();
         let mut found = Vec::new();
         for (i, pair) in values.windows(2).enumerate() {
@@ -200,14 +200,41 @@ impl<'a> Course<'a> {
         None
     }
 
+    /// Points from one at which something holds towards one at which it does not, as close as it holds.
+    pub fn up_to(
+        &self,
+        inside: &SteadyPoint,
+        outside: &SteadyPoint,
+        holds: impl Fn(&SteadyPoint) -> bool,
+    ) -> Vec<SteadyPoint> {
+        const HALVINGS: usize = 40;
+        let (mut near, mut far) = (inside.rate(), outside.rate());
+        let mut found = Vec::new();
+        for _ in 0..HALVINGS {
+            let middle = 0.5 * near + 0.5 * far;
+            let point = self.curve.point(DoubleDouble::from(middle));
+            if holds(&point) {
+                near = middle;
+                found.push(point);
+            } else {
+                far = middle;
+            }
+        }
+        found
+    }
+
+    /// Where V_H of a share has an extremum.
+    pub fn fold_brackets(&self, share: &Share) -> Vec<Bracket> {
+        self.changes(|point| point.driving(share).gradient[0].to_f64())
+    }
+
     fn folds(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station>> {
-        let slope = |point: &SteadyPoint| point.driving(share).gradient[0].to_f64();
         let at = |bracket| {
             let (point, driving) = fold(&self.curve, share, bracket)?;
             let special = Special::new(Label::Lp, driving, exact_stiffness(request));
             Ok(Station::special(share, &point, special))
         };
-        self.changes(slope).into_iter().map(at).collect()
+        self.fold_brackets(share).into_iter().map(at).collect()
     }
 
     fn hopf(&self, share: &Share, request: &BranchRequest) -> Result<Vec<Station>> {

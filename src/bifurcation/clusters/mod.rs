@@ -11,11 +11,13 @@
 
 mod branch;
 mod course;
+mod locus;
 mod special;
 
-use super::{BranchRequest, EventObserver, Label, within};
+use super::equilibria::special::Teller;
+use super::{BranchRequest, EventObserver, Label, LocusKind, LocusRequest, within};
 use crate::equilibrium::{Symmetry, Verdict};
-use crate::error::Result;
+use crate::error::{Error, Result};
 
 /// A point of a branch of equilibria of N interfaces.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,5 +78,28 @@ pub fn branch(request: &BranchRequest, seen: EventObserver<'_>) -> Result<()> {
     request.checked_of_many()?;
     within(request.max_points, seen, |seen| {
         branch::branch(request, seen)
+    })
+}
+
+/// The curves of Hopf points, of folds or of branch points of equilibria of N equal interfaces within ranges of V_H and K, of every share.
+///
+/// Folds and branch points are lines along K. Labels of Hopf points: `TOP`, the largest K of a share; `UZ`, `EP`.
+///
+/// # Errors
+/// As of [`branch()`]; [`Error::Input`] for a kind of curve that is not of equilibria.
+pub fn locus(request: &LocusRequest, seen: EventObserver<'_>) -> Result<()> {
+    request.checked_of_many()?;
+    let request = &request.ordered();
+    let of_equilibria = [LocusKind::Hopf, LocusKind::Pitchfork, LocusKind::SaddleNode];
+    if !of_equilibria.contains(&request.kind) {
+        return Err(Error::Input(
+            "this is a curve of orbits, not of equilibria".into(),
+        ));
+    }
+    within(request.max_points, seen, |seen| {
+        let mut teller = Teller::new(seen, request.tolerance, &request.skip);
+        // an observer's end is no error
+        let _ = locus::locus(request, &mut teller)?;
+        Ok(())
     })
 }

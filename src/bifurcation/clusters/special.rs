@@ -4,7 +4,7 @@
 //! Hurwitz determinant vanishes. What the rounding of the law's parameters, and of K or V_H, does to them follows from the derivatives.
 
 use crate::bifurcation::equilibria::lyapunov::first_lyapunov;
-use crate::bifurcation::{Criticality, Label, Parameter, Special};
+use crate::bifurcation::{Criticality, Label, Parameter, Special, Symmetry};
 use crate::equilibrium::{Along, Bracket, EquilibriumCurve, MIDDLE, Share, SteadyPoint, constant};
 use crate::error::Result;
 use crate::friction::{AnyLaw, effects, rounding};
@@ -86,6 +86,20 @@ impl<'a> ShareHopf<'a> {
         };
         let oscillates = found.frequency_squared().value.to_f64() > 0.0;
         Ok(oscillates.then_some(found))
+    }
+
+    /// V_H and K.
+    pub fn place(&self) -> [f64; 2] {
+        let driving = self.point.driving(&self.share).value;
+        [driving, self.stiffness].map(DoubleDouble::to_f64)
+    }
+
+    /// Whether all interfaces slide alike.
+    pub fn symmetry(&self) -> Symmetry {
+        match self.share.iter().filter(|&&n| n > 0).count() {
+            1 => Symmetry::Symmetric,
+            _ => Symmetry::Asymmetric,
+        }
     }
 
     fn frequency_squared(&self) -> Along {

@@ -115,6 +115,7 @@ impl Trace<'_, '_> {
             .criticality
             .then(|| self.points.criticality(point));
         self.teller.locus(LocusRow {
+            share: None,
             curve: self.curves.saturating_sub(1),
             symmetry: self.points.curve.symmetry(),
             driving: point.driving,

@@ -105,6 +105,7 @@ fn along(
 ) -> ControlFlow<()> {
     for (stiffness, label) in values(request, line) {
         teller.locus(LocusRow {
+            share: None,
             curve,
             symmetry: match request.kind {
                 LocusKind::Pitchfork => Symmetry::Symmetric,

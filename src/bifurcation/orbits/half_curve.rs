@@ -274,6 +274,7 @@ impl<'r, 's> HalfCurve<'r, 's> {
         let torus = self.test_function == TestFunction::Torus;
         let angle = (0.5 * here.spectrum.trace).clamp(-1.0, 1.0).acos();
         let row = LocusRow {
+            share: None,
             curve: self.number,
             symmetry: self.chart.symmetry(),
             driving,
