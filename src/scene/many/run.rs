@@ -123,9 +123,18 @@ impl ManyObserver for Watch<'_> {
 impl Watch<'_> {
     /// How far the rows are.
     fn so_far(&self) -> Vec<f64> {
-        let slips = [self.slip].into_iter().chain(self.slips.iter().copied());
-        let mut numbers = vec![self.sampled as f64];
-        numbers.extend(slips.flat_map(|slip| [slip.hi(), slip.lo()]));
+        let share = self.plan.interfaces.share();
+        let watched = self.plan.watched.iter().zip(&self.slips);
+        let mut slips: Vec<f64> = watched
+            .flat_map(|(interface, slip)| match share.held().contains(interface) {
+                true => [slip.hi(), slip.lo()],
+                false => [0.0; 2],
+            })
+            .collect();
+        // Each process knows its own.
+        share.told(&mut slips);
+        let mut numbers = vec![self.sampled as f64, self.slip.hi(), self.slip.lo()];
+        numbers.extend(slips);
         numbers.extend(self.last.iter().flatten());
         numbers
     }
