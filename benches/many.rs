@@ -29,7 +29,7 @@ fn problem(count: usize) -> (ManyInterfaces, Vec<f64>) {
     let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
     let share = count as f64 / 10.0;
     let loading = Loading::new(10.0 * share, 0.14 / share).expect("positive");
-    let interfaces = ManyInterfaces::alike(&law, count, loading).expect("a law that ages");
+    let interfaces = ManyInterfaces::alike(law, count, loading).expect("a law that ages");
     let states = (0..count).map(|i| 0.002 * (1.0 + 1e-2 * (i % 97) as f64));
     (interfaces, states.collect())
 }

@@ -30,7 +30,7 @@ fn a_thousand_meet_their_reference() {
     let all: Value = serde_json::from_str(text).expect("JSON");
     let known = &all["trajectories"]["N1000_K0.14_VH10"];
     let loading = Loading::new(10.0, 0.14).expect("positive");
-    let interfaces = ManyInterfaces::alike(&spinodal(), 1000, loading).expect("a law that ages");
+    let interfaces = ManyInterfaces::alike(spinodal(), 1000, loading).expect("a law that ages");
     let states = (1..=1000).map(|i| 0.002 * (1.0 + 0.01 * f64::from(i)));
     let states: Vec<f64> = states.collect();
     let taylor = ManyTaylor::new(1e-15, 10_000).expect("a tolerance");

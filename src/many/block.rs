@@ -257,10 +257,11 @@ impl Series<'_> {
                 log[l] = (v[l] - sum[l] / k as f64) / first[l] + w[l];
             }
         }
-        for l in 0..LANES {
+        for (log, factor) in log.iter_mut().zip(of.factor) {
             // nothing slides where there is no interface
-            self.log[k][l] = if of.factor[l] == 0.0 { 0.0 } else { log[l] };
+            *log = if factor == 0.0 { 0.0 } else { *log };
         }
+        self.log[k] = log;
     }
 }
 

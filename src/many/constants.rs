@@ -44,13 +44,6 @@ impl From<AnyLaw> for OneOfMany {
     }
 }
 
-impl From<&AnyLaw> for OneOfMany {
-    /// A nominal one.
-    fn from(law: &AnyLaw) -> Self {
-        OneOfMany::from(*law)
-    }
-}
-
 /// What the interfaces of a block are: v = s(q (tau - eta v)) f x^(-beta), with the strength x = a_0 + a_1 psi, and
 /// dpsi/dt = g_0 + g_1 psi - |v| psi / l, or by the slip law dpsi/dt = -(v psi / l) ln(v psi / l) with x = psi.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -306,10 +306,12 @@ impl<'a> ManyField<'a> {
         let held = self.interfaces.share.held().len();
         let look = |chunk: usize| {
             let mut extent = Extent::NONE;
-            for i in chunk * HELD..held.min((chunk + 1) * HELD) {
+            let first = chunk * HELD;
+            let logs = &y[first..held.min(first + HELD)];
+            for (i, &w) in (first..).zip(logs) {
                 let of = of(&self.interfaces.constants, i / LANES);
-                let [v, _] = of.rates(kind, i % LANES, (tau, y[i]));
-                extent = extent.and(Extent::of_one(y[i].exp(), v, faster_than));
+                let [v, _] = of.rates(kind, i % LANES, (tau, w));
+                extent = extent.and(Extent::of_one(w.exp(), v, faster_than));
             }
             extent
         };

@@ -14,7 +14,7 @@ use crate::model::Loading;
 /// use twinslip::model::Loading;
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-/// let thousand = ManyInterfaces::alike(&law, 1000, Loading::new(10.0, 0.14)?)?;
+/// let thousand = ManyInterfaces::alike(law, 1000, Loading::new(10.0, 0.14)?)?;
 /// let states: Vec<f64> = (1..=1000).map(|i| 0.002 * (1.0 + 0.01 * f64::from(i))).collect();
 /// let end = ManyTaylor::new(1e-15, 10_000)?.flow(&thousand, (9.9, &states), 1.0, &mut |_| Ok(true))?;
 /// assert!((end.stress() / 6.742 - 1.0).abs() < 1e-3);

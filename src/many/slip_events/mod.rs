@@ -79,7 +79,7 @@ pub struct UnderWay {
 /// use twinslip::model::Loading;
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-/// let ten = ManyInterfaces::alike(&law, 10, Loading::new(10.0, 0.14)?)?;
+/// let ten = ManyInterfaces::alike(law, 10, Loading::new(10.0, 0.14)?)?;
 /// let states: Vec<f64> = (1..=10).map(|i| 0.002 * (1.0 + 0.01 * f64::from(i))).collect();
 /// let mut events = SlipEvents::new(&ten, 10.0)?;
 /// ManyTaylor::new(1e-12, 100_000)?.flow(&ten, (9.9, &states), 20.0, &mut |step| {
@@ -351,8 +351,7 @@ impl SlipEvents {
 impl Watched {
     /// Which slip where a flow begins.
     fn begin(&mut self, rates: &[Lanes], threshold: f64) {
-        for lane in 0..LANES {
-            let [rate, slope] = [0, 1].map(|k| rates[k][lane]);
+        for (lane, (&rate, &slope)) in rates[0].iter().zip(&rates[1]).enumerate() {
             if rate > threshold || rate == threshold && slope > 0.0 {
                 self.above |= bit(lane);
             }
