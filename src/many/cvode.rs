@@ -1,16 +1,14 @@
 //! CVODE's BDF for all interfaces at once, with the arrow matrix.
 
-use super::block::Extent;
 use super::constants::LANES;
 use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
-use super::state::{ManyState, Scales};
+use super::state::{Dense, DenseStep, ManyState, Scales};
 use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::Work;
 use crate::sundials::{LargeCvode, LinearTime};
-use std::cell::RefCell;
 
 /// CVODE's BDF with its tolerance, which holds for the largest error of all: the root of the mean square would let one that slips hide
 /// among a million that stick.
@@ -93,13 +91,7 @@ impl ManyCvode {
                 if end == time {
                     continue;
                 }
-                goes_on = observer.step(&CvodeStep {
-                    cvode: &cvode,
-                    begin: time,
-                    end,
-                    slipped: &slipped,
-                    at: RefCell::new((f64::NAN, Vec::new())),
-                })?;
+                goes_on = observer.step(&DenseStep::new(&cvode, (time, end), &slipped))?;
                 slipped.copy_from_slice(&cvode.state()[field.logs()..]);
                 time = end;
             }
@@ -174,68 +166,17 @@ impl LinearTime for Scaled<'_> {
     }
 }
 
-/// A step with its continuous solution.
-struct CvodeStep<'a, 'f> {
-    cvode: &'a LargeCvode<Scaled<'f>>,
-    begin: f64,
-    end: f64,
-    /// What is behind the ln psi at the beginning.
-    slipped: &'a [f64],
-    /// The state at the time last asked for.
-    at: RefCell<(f64, Vec<f64>)>,
-}
-
-impl CvodeStep<'_, '_> {
-    /// Looks at the state at a time of the step.
-    fn with<R>(&self, time: f64, look: impl FnOnce(&ManyField<'_>, &[f64]) -> R) -> R {
-        let field = &self.cvode.system().field;
-        if time == self.end {
-            return look(field, self.cvode.state());
-        }
-        let mut at = self.at.borrow_mut();
-        if at.0 != time {
-            at.0 = time;
-            at.1.resize(field.len(), 0.0);
-            let within = self.cvode.dense(time, &mut at.1);
-            within.expect("a time of the step");
-        }
-        look(field, &at.1)
+impl Dense for &LargeCvode<Scaled<'_>> {
+    fn field(&self) -> &ManyField<'_> {
+        &self.system().field
     }
 
-    /// By how much a number of the state changes from the beginning of the step.
-    fn change(&self, time: f64, place: usize) -> f64 {
-        let logs = self.cvode.system().field.logs();
-        self.with(time, |_, y| y[place]) - self.slipped[place - logs]
-    }
-}
-
-impl ManyStep for CvodeStep<'_, '_> {
-    fn begin(&self) -> f64 {
-        self.begin
+    fn stands(&self, time: f64) -> Option<&[f64]> {
+        (time == self.time()).then(|| self.state())
     }
 
-    fn end(&self) -> f64 {
-        self.end
-    }
-
-    fn stress(&self, time: f64) -> f64 {
-        self.with(time, |field, y| y[field.stress()])
-    }
-
-    fn extent(&self, time: f64, faster_than: f64) -> Extent {
-        self.with(time, |field, y| field.extent(y, faster_than))
-    }
-
-    fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
-        self.with(time, |field, y| field.interface(y, interface))
-    }
-
-    fn slip(&self, interface: usize, time: f64) -> f64 {
-        let place = self.cvode.system().field.slip(interface);
-        self.change(time, place.expect("a slip that is asked for"))
-    }
-
-    fn slip_of_all(&self, time: f64) -> f64 {
-        self.change(time, self.cvode.system().field.slip_of_all())
+    fn make(&self, time: f64, state: &mut [f64]) {
+        let within = self.dense(time, state);
+        within.expect("a time of the step");
     }
 }

@@ -3,12 +3,11 @@
 //! The controller of steps is that of the few dimensions. A step is accepted if no ln psi errs by more than the tolerance, tau by no more than
 //! the tolerance times 1 + |tau|, and no slip by more than the tolerance times itself and a slip that is told beforehand.
 
-use super::block::Extent;
 use super::constants::LANES;
 use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
 use super::share::CHUNK;
-use super::state::{ManyState, Scales};
+use super::state::{Dense, DenseStep, ManyState, Scales};
 use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
@@ -17,7 +16,6 @@ use crate::integrate::rosenbrock::stages::error_order;
 
 use crate::integrate::{Control, RosenbrockMethod, Tableau, Work};
 use rayon::prelude::*;
-use std::cell::RefCell;
 
 /// A Rosenbrock method with its tolerance.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -100,12 +98,13 @@ impl ManyRosenbrock {
                 allowed,
                 |carried, begin, end| {
                     (time, done) = (end, done + 1);
-                    goes_on = observer.step(&DenseStep {
+                    let slipped = &carried.y[carried.field.logs()..];
+                    let step = Continuous {
                         carried,
                         begin,
                         end,
-                        at: RefCell::new((f64::NAN, Vec::new())),
-                    })?;
+                    };
+                    goes_on = observer.step(&DenseStep::new(step, (begin, end), slipped))?;
                     Ok(if goes_on && done < left {
                         Control::Continue
                     } else {
@@ -276,35 +275,28 @@ impl Steppable for Carried<'_> {
 }
 
 /// A step with its continuous solution.
-struct DenseStep<'a, 'f> {
+struct Continuous<'a, 'f> {
     carried: &'a Carried<'f>,
     begin: f64,
     end: f64,
-    /// The state at the time last asked for.
-    at: RefCell<(f64, Vec<f64>)>,
 }
 
-impl DenseStep<'_, '_> {
-    /// Looks at the state at a time of the step.
-    fn with<R>(&self, time: f64, look: impl FnOnce(&ManyField<'_>, &[f64]) -> R) -> R {
-        let carried = self.carried;
-        if time == self.begin {
-            return look(&carried.field, &carried.y);
-        }
-        if time == self.end {
-            return look(&carried.field, &carried.next);
-        }
-        let mut at = self.at.borrow_mut();
-        if at.0 != time {
-            at.0 = time;
-            at.1.resize(carried.y.len(), 0.0);
-            let theta = (time - self.begin) / (self.end - self.begin);
-            self.interpolate(theta, &mut at.1);
-        }
-        look(&carried.field, &at.1)
+impl Dense for Continuous<'_, '_> {
+    fn field(&self) -> &ManyField<'_> {
+        &self.carried.field
     }
 
-    fn interpolate(&self, theta: f64, made: &mut [f64]) {
+    fn stands(&self, time: f64) -> Option<&[f64]> {
+        if time == self.begin {
+            Some(&self.carried.y)
+        } else if time == self.end {
+            Some(&self.carried.next)
+        } else {
+            None
+        }
+    }
+
+    fn make(&self, time: f64, state: &mut [f64]) {
         let Carried {
             tableau,
             y,
@@ -312,6 +304,7 @@ impl DenseStep<'_, '_> {
             stages,
             ..
         } = self.carried;
+        let theta = (time - self.begin) / (self.end - self.begin);
         let rest = 1.0 - theta;
         // y (1 - theta) + theta (next + (1 - theta) (k_1 + theta (k_2 + theta k_3)))
         let weights: Vec<f64> = (0..tableau.stages)
@@ -320,45 +313,9 @@ impl DenseStep<'_, '_> {
                 theta * rest * (a + (b + c * theta) * theta)
             })
             .collect();
-        combine(made, None, &weights, stages);
-        for (made, (y, next)) in made.iter_mut().zip(y.iter().zip(next)) {
+        combine(state, None, &weights, stages);
+        for (made, (y, next)) in state.iter_mut().zip(y.iter().zip(next)) {
             *made += rest * y + theta * next;
         }
-    }
-
-    /// By how much a number of the state changes from the beginning of the step.
-    fn change(&self, time: f64, place: usize) -> f64 {
-        self.with(time, |_, y| y[place]) - self.carried.y[place]
-    }
-}
-
-impl ManyStep for DenseStep<'_, '_> {
-    fn begin(&self) -> f64 {
-        self.begin
-    }
-
-    fn end(&self) -> f64 {
-        self.end
-    }
-
-    fn stress(&self, time: f64) -> f64 {
-        self.with(time, |field, y| y[field.stress()])
-    }
-
-    fn extent(&self, time: f64, faster_than: f64) -> Extent {
-        self.with(time, |field, y| field.extent(y, faster_than))
-    }
-
-    fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
-        self.with(time, |field, y| field.interface(y, interface))
-    }
-
-    fn slip(&self, interface: usize, time: f64) -> f64 {
-        let place = self.carried.field.slip(interface);
-        self.change(time, place.expect("a slip that is asked for"))
-    }
-
-    fn slip_of_all(&self, time: f64) -> f64 {
-        self.change(time, self.carried.field.slip_of_all())
     }
 }

@@ -1,8 +1,10 @@
 //! The state of all interfaces as the methods of rates and matrices carry it, and what an error of it counts.
 
-use super::block::larger;
+use super::block::{Extent, larger};
 use super::field::ManyField;
+use super::step::ManyStep;
 use crate::integrate::Work;
+use std::cell::RefCell;
 
 /// Where a run by rates and matrices ended.
 #[derive(Debug)]
@@ -105,5 +107,92 @@ impl Scales {
         let own = y.iter().fold(0.0, |sum, x| larger(sum, 0.0 * x));
         let [all] = field.interfaces.share.largest([own]);
         all == 0.0
+    }
+}
+
+/// A step of which the state is known at its end, and can be made at any time of it.
+pub(super) trait Dense {
+    /// Whose state it is.
+    fn field(&self) -> &ManyField<'_>;
+
+    /// The state at a time, where it stands somewhere.
+    fn stands(&self, time: f64) -> Option<&[f64]>;
+
+    /// Makes the state at any other time of the step.
+    fn make(&self, time: f64, state: &mut [f64]);
+}
+
+/// A step by its states.
+pub(super) struct DenseStep<'a, D> {
+    pub dense: D,
+    pub begin: f64,
+    pub end: f64,
+    /// What is behind the ln psi at the beginning.
+    pub slipped: &'a [f64],
+    /// The state at the time last asked for.
+    pub at: RefCell<(f64, Vec<f64>)>,
+}
+
+impl<'a, D: Dense> DenseStep<'a, D> {
+    pub fn new(dense: D, (begin, end): (f64, f64), slipped: &'a [f64]) -> Self {
+        DenseStep {
+            dense,
+            begin,
+            end,
+            slipped,
+            at: RefCell::new((f64::NAN, Vec::new())),
+        }
+    }
+
+    /// Looks at the state at a time of the step.
+    fn with<R>(&self, time: f64, look: impl FnOnce(&ManyField<'_>, &[f64]) -> R) -> R {
+        let field = self.dense.field();
+        if let Some(state) = self.dense.stands(time) {
+            return look(field, state);
+        }
+        let mut at = self.at.borrow_mut();
+        if at.0 != time {
+            at.0 = time;
+            at.1.resize(field.len(), 0.0);
+            self.dense.make(time, &mut at.1);
+        }
+        look(field, &at.1)
+    }
+
+    /// By how much a number of the state changes from the beginning of the step.
+    fn change(&self, time: f64, place: usize) -> f64 {
+        let logs = self.dense.field().logs();
+        self.with(time, |_, y| y[place]) - self.slipped[place - logs]
+    }
+}
+
+impl<D: Dense> ManyStep for DenseStep<'_, D> {
+    fn begin(&self) -> f64 {
+        self.begin
+    }
+
+    fn end(&self) -> f64 {
+        self.end
+    }
+
+    fn stress(&self, time: f64) -> f64 {
+        self.with(time, |field, y| y[field.stress()])
+    }
+
+    fn extent(&self, time: f64, faster_than: f64) -> Extent {
+        self.with(time, |field, y| field.extent(y, faster_than))
+    }
+
+    fn interface(&self, interface: usize, time: f64) -> [f64; 2] {
+        self.with(time, |field, y| field.interface(y, interface))
+    }
+
+    fn slip(&self, interface: usize, time: f64) -> f64 {
+        let place = self.dense.field().slip(interface);
+        self.change(time, place.expect("a slip that is asked for"))
+    }
+
+    fn slip_of_all(&self, time: f64) -> f64 {
+        self.change(time, self.dense.field().slip_of_all())
     }
 }

@@ -1,8 +1,8 @@
 //! What CVODES tells of an integration: states, the continuous solution, step sizes and counts.
 #![allow(unsafe_code)]
 
-use super::check;
-use super::cvode::Cvode;
+use super::cvode::{Cvode, CvodeMemory};
+use super::{Messages, check};
 use crate::contract::Work;
 use crate::error::Result;
 use crate::field::State;
@@ -98,8 +98,29 @@ impl<const N: usize> Cvode<N> {
     /// # Errors
     /// [`crate::Error::Sundials`]; not after a successful [`Cvode::start`].
     pub fn work(&self) -> Result<Work> {
-        let m = self.memory.as_ptr();
-        let messages = &self.messages;
+        let mut work = self.memory.work(&self.messages)?;
+        work.jacobians += self.tangents;
+        Ok(work)
+    }
+
+    pub(super) fn steps(&self) -> Result<usize> {
+        let mut steps = 0;
+        // SAFETY: a live memory and a valid place.
+        unsafe {
+            check!(
+                CV,
+                &self.messages,
+                CVodeGetNumSteps(self.memory.as_ptr(), &mut steps)
+            )?
+        };
+        Ok(steps as usize)
+    }
+}
+
+impl CvodeMemory {
+    /// The work since the integration began.
+    pub(super) fn work(&self, messages: &Messages) -> Result<Work> {
+        let m = self.as_ptr();
         let mut counts: [c_long; 7] = [0; 7];
         let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] = &mut counts;
         // SAFETY: a live memory, and valid places for the results.
@@ -118,22 +139,9 @@ impl<const N: usize> Cvode<N> {
             steps,
             rejected: rejected + unsolved,
             rhs,
-            jacobians: jacobians + self.tangents,
+            jacobians,
             factorisations: setups,
             nonlinear,
         })
-    }
-
-    pub(super) fn steps(&self) -> Result<usize> {
-        let mut steps = 0;
-        // SAFETY: a live memory and a valid place.
-        unsafe {
-            check!(
-                CV,
-                &self.messages,
-                CVodeGetNumSteps(self.memory.as_ptr(), &mut steps)
-            )?
-        };
-        Ok(steps as usize)
     }
 }

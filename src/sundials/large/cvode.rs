@@ -11,7 +11,7 @@ use crate::sundials::cvode::{CvodeMemory, MultistepMethod};
 use crate::sundials::linear_solver::{LinearSolver, Matrix};
 use crate::sundials::vector::NVector;
 use crate::sundials::{Context, Messages, Stable, check, failure, flags, native};
-use std::ffi::{c_int, c_long, c_void};
+use std::ffi::{c_int, c_void};
 use sundials_sys::{N_Vector, SUNMatrix};
 
 /// Steps in a row that may leave t where it is.
@@ -140,6 +140,11 @@ impl<S: LinearTime> LargeCvode<S> {
         Ok(t)
     }
 
+    /// The time where the last step ended.
+    pub fn time(&self) -> f64 {
+        self.time
+    }
+
     /// The state where the last step ended.
     pub fn state(&self) -> &[f64] {
         // SAFETY: a live vector of this system, which only `step` writes to, exclusively.
@@ -170,30 +175,7 @@ impl<S: LinearTime> LargeCvode<S> {
     /// # Errors
     /// [`Error::Sundials`] before the first step.
     pub fn work(&self) -> Result<Work> {
-        let m = self.memory.as_ptr();
-        let messages = &self.messages;
-        let mut counts: [c_long; 7] = [0; 7];
-        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] = &mut counts;
-        // SAFETY: a live memory, and valid places for the results.
-        unsafe {
-            check!(CV, messages, CVodeGetNumSteps(m, steps))?;
-            check!(CV, messages, CVodeGetNumErrTestFails(m, rejected))?;
-            check!(CV, messages, CVodeGetNumStepSolveFails(m, unsolved))?;
-            check!(CV, messages, CVodeGetNumRhsEvals(m, rhs))?;
-            check!(CVLS, messages, CVodeGetNumJacEvals(m, jacobians))?;
-            check!(CV, messages, CVodeGetNumLinSolvSetups(m, setups))?;
-            check!(CV, messages, CVodeGetNumNonlinSolvIters(m, nonlinear))?;
-        }
-        let [steps, rejected, unsolved, rhs, jacobians, setups, nonlinear] =
-            counts.map(|n| n as usize);
-        Ok(Work {
-            steps,
-            rejected: rejected + unsolved,
-            rhs,
-            jacobians,
-            factorisations: setups,
-            nonlinear,
-        })
+        self.memory.work(&self.messages)
     }
 }
 
