@@ -48,34 +48,51 @@ fn a_thousand_meet_their_reference() {
     }
 }
 
+/// Three by the engine of few, ten and a hundred by that of many.
 #[test]
-fn ten_are_those_in_clusters() {
-    let loading =
-        "--driving 10 --stiffness 0.14 --until 4 --final-only --rtol 1e-15 --method taylor";
-    let clusters = object(&format!(
-        "integrate --clusters 3,7 --start 9.9,0.0021,0.0018 {loading}"
-    ));
-    let three = ["0.0021"; 3].join(",");
-    let seven = ["0.0018"; 7].join(",");
-    let ten = object(&format!(
-        "integrate --interfaces 10 --start 9.9,{three},{seven} {loading} --columns stress,state_1,state_10,slip_rate_2,slip_rate_9,slip_3,slip_4,slip"
-    ));
-    let (known, made) = (&clusters["result"]["final"], &ten["result"]["final"]);
-    for (mine, its) in [
-        ("stress", "stress"),
-        ("state_1", "state_1"),
-        ("state_10", "state_2"),
-        ("slip_rate_2", "slip_rate_1"),
-        ("slip_rate_9", "slip_rate_2"),
-        ("slip_3", "slip_1"),
-        ("slip_4", "slip_2"),
-    ] {
-        let [made, known] =
-            [(made, mine), (known, its)].map(|(of, name)| number(of, &format!("/{name}")));
-        close(made, known, 1e-11);
+fn all_are_those_in_clusters() {
+    for (few, all) in [(1, 3), (3, 10), (30, 100)] {
+        let rest = all - few;
+        let loading = format!(
+            "--driving {} --stiffness {} --until 4 --final-only --rtol 1e-15 --method taylor",
+            all,
+            1.4 / f64::from(all)
+        );
+        let clusters = object(&format!(
+            "integrate --clusters {few},{rest} --start 9.9,0.0021,0.0018 {loading}"
+        ));
+        let start = [vec!["0.0021"; few as usize], vec!["0.0018"; rest as usize]].concat();
+        let mut columns = format!(
+            "stress,state_1,state_{all},slip_rate_{few},slip_rate_{all},slip_{few},slip_{all}"
+        );
+        if all > 7 {
+            columns += ",slip";
+        }
+        let full = object(&format!(
+            "integrate --interfaces {all} --start 9.9,{} {loading} --columns {columns}",
+            start.join(",")
+        ));
+        let (known, made) = (&clusters["result"]["final"], &full["result"]["final"]);
+        let of = |base: &str, number: i32| format!("{base}_{number}");
+        for (mine, its) in [
+            ("stress".to_owned(), "stress"),
+            (of("state", 1), "state_1"),
+            (of("state", all), "state_2"),
+            (of("slip_rate", few), "slip_rate_1"),
+            (of("slip_rate", all), "slip_rate_2"),
+            (of("slip", few), "slip_1"),
+            (of("slip", all), "slip_2"),
+        ] {
+            let [made, known] =
+                [(made, &*mine), (known, its)].map(|(of, name)| number(of, &format!("/{name}")));
+            close(made, known, 1e-11);
+        }
+        if all > 7 {
+            let [one, other] = [few, all].map(|i| number(made, &format!("/slip_{i}")));
+            let together = f64::from(few) * one + f64::from(rest) * other;
+            close(number(made, "/slip"), together, 1e-12);
+        }
     }
-    let together = 3.0 * number(made, "/slip_3") + 7.0 * number(made, "/slip_4");
-    close(number(made, "/slip"), together, 1e-12);
 }
 
 #[test]

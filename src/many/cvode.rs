@@ -4,7 +4,7 @@ use super::constants::LANES;
 use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
 use super::state::{Dense, DenseStep, ManyState, Scales};
-use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
+use super::step::{Beginning, ManyObserver, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::Work;
@@ -40,27 +40,10 @@ impl ManyCvode {
         VECTORS * held + interfaces.constants_memory()
     }
 
-    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every
-    /// step, with the slips that are asked for.
+    /// From a beginning on until a time, or until the observer says `false`; it sees every step, with the slips that are asked for.
     ///
     /// # Errors
-    /// As [`super::ManyRosenbrock::flow`], and [`Error::Sundials`].
-    pub fn flow<'a>(
-        &self,
-        interfaces: &'a ManyInterfaces,
-        (stress, states): (f64, &[f64]),
-        until: f64,
-        slips: &Slips,
-        observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
-    ) -> Result<ManyState<'a>> {
-        let beginning = Beginning::Start(stress, states);
-        self.run(interfaces, beginning, until, slips, &mut Looking(observer))
-    }
-
-    /// The same from any beginning on, with all that an observer may see.
-    ///
-    /// # Errors
-    /// As [`ManyCvode::flow`].
+    /// As [`super::ManyRosenbrock::run`], and [`Error::Sundials`].
     pub fn run<'a>(
         &self,
         interfaces: &'a ManyInterfaces,

@@ -8,7 +8,7 @@ use super::field::{Arrow, ManyField, Slips};
 use super::interfaces::ManyInterfaces;
 use super::share::CHUNK;
 use super::state::{Dense, DenseStep, ManyState, Scales};
-use super::step::{Beginning, Looking, ManyObserver, ManyStep, until_save};
+use super::step::{Beginning, ManyObserver, until_save};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::rosenbrock::drive::{Steppable, drive};
@@ -53,27 +53,10 @@ impl ManyRosenbrock {
         vectors * held + interfaces.constants_memory()
     }
 
-    /// From (tau, psi of every interface that is held here) at time 0 on, until a time, or until the observer says `false`; it sees every
-    /// step, with the slips that are asked for.
+    /// From a beginning on until a time, or until the observer says `false`; it sees every step, with the slips that are asked for.
     ///
     /// # Errors
     /// As [`super::ManyTaylor::flow`], and [`Error::NonFinite`].
-    pub fn flow<'a>(
-        &self,
-        interfaces: &'a ManyInterfaces,
-        (stress, states): (f64, &[f64]),
-        until: f64,
-        slips: &Slips,
-        observer: &mut dyn FnMut(&dyn ManyStep) -> Result<bool>,
-    ) -> Result<ManyState<'a>> {
-        let beginning = Beginning::Start(stress, states);
-        self.run(interfaces, beginning, until, slips, &mut Looking(observer))
-    }
-
-    /// The same from any beginning on, with all that an observer may see.
-    ///
-    /// # Errors
-    /// As [`ManyRosenbrock::flow`].
     pub fn run<'a>(
         &self,
         interfaces: &'a ManyInterfaces,
