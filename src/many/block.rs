@@ -1,7 +1,7 @@
 //! Eight interfaces side by side: their power series, coefficient by coefficient.
 
 use super::constants::{Constants, Kind, LANES, Lanes, of};
-use super::local::{balanced, slip_rate};
+use super::local::{Stress, balanced};
 use super::vectors::Vectorised;
 use pulp::NullaryFnOnce;
 
@@ -454,17 +454,13 @@ impl NullaryFnOnce for Look<'_> {
     fn call(self) -> Extent {
         let mut extent = Extent::NONE;
         let Layout { kind, .. } = self.layout;
+        let stress = Stress::new(kind, self.stress);
         for (i, rows) in self.blocks.chunks_exact(self.layout.rows()).enumerate() {
             let of = of(self.constants, i);
             let strength = strengths(self.layout.strength(rows), self.later);
             for l in (0..LANES).filter(|&l| of.factor[l] > 0.0) {
                 let psi = of.state(kind, strength[l], l);
-                let v = slip_rate(
-                    kind,
-                    of,
-                    l,
-                    (self.stress, of.weakness(kind, strength[l], l)),
-                );
+                let v = of.slip_rate(kind, l, (stress, strength[l]));
                 extent = extent.and(Extent::of_one(psi, v, self.faster_than));
             }
         }
@@ -480,9 +476,7 @@ pub(super) fn look_at(
 ) -> [f64; 2] {
     let terms = layout.strength(rows).iter().rev();
     let strength = terms.fold(0.0, |sum, term| sum * later + term[lane]);
-    let weakness = of.weakness(layout.kind, strength, lane);
-    [
-        of.state(layout.kind, strength, lane),
-        slip_rate(layout.kind, of, lane, (stress, weakness)),
-    ]
+    let kind = layout.kind;
+    let v = of.slip_rate(kind, lane, (Stress::new(kind, stress), strength));
+    [of.state(kind, strength, lane), v]
 }

@@ -6,7 +6,7 @@
 use super::block::Extent;
 use super::constants::{LANES, of};
 use super::interfaces::ManyInterfaces;
-use super::local::Local;
+use super::local::{Local, Stress};
 use super::share::CHUNK;
 use super::step::{Beginning, Saved};
 use crate::error::{Error, Result};
@@ -133,8 +133,8 @@ impl<'a> ManyField<'a> {
 
     /// dy/dt.
     pub fn rates(&self, y: &[f64], rates: &mut [f64]) {
-        let tau = y[self.stress()];
         let kind = self.interfaces.kind;
+        let stress = Stress::new(kind, y[self.stress()]);
         let (logs, rest) = rates.split_at_mut(self.logs());
         let work = |(chunk, (w, rates)): (usize, (&[f64], &mut [f64]))| {
             let mut sum = [0.0; LANES];
@@ -143,7 +143,7 @@ impl<'a> ManyField<'a> {
             for (i, (w, made)) in blocks.zip(made).enumerate() {
                 let of = of(&self.interfaces.constants, chunk * CHUNK + i);
                 for l in 0..LANES {
-                    let [v, evolution] = of.rates(kind, l, (tau, w[l]));
+                    let [v, evolution] = of.rates(kind, l, (stress, w[l]));
                     made[l] = evolution;
                     sum[l] += v;
                 }
@@ -168,17 +168,17 @@ impl<'a> ManyField<'a> {
         let slips = &mut rest[1 + usize::from(self.of_all)..];
         for (slip, &here) in slips.iter_mut().zip(&self.slips) {
             let of = of(&self.interfaces.constants, here / LANES);
-            [*slip, _] = of.rates(kind, here % LANES, (tau, y[here]));
+            [*slip, _] = of.rates(kind, here % LANES, (stress, y[here]));
         }
     }
 
     /// J at y.
     pub fn linearise(&self, y: &[f64], arrow: &mut Arrow) {
-        let tau = y[self.stress()];
         let kind = self.interfaces.kind;
+        let stress = Stress::new(kind, y[self.stress()]);
         let here = |i: usize, w: f64| {
             let of = of(&self.interfaces.constants, i / LANES);
-            of.linearised(kind, i % LANES, (tau, w))
+            of.linearised(kind, i % LANES, (stress, w))
         };
         let work = |(chunk, (w, each)): (usize, (&[f64], &mut [Shaft]))| {
             let mut sum = 0.0;
@@ -302,7 +302,7 @@ impl<'a> ManyField<'a> {
     /// What all interfaces do in a state.
     pub fn extent(&self, y: &[f64], faster_than: f64) -> Extent {
         let kind = self.interfaces.kind;
-        let tau = y[self.stress()];
+        let stress = Stress::new(kind, y[self.stress()]);
         let held = self.interfaces.share.held().len();
         let look = |chunk: usize| {
             let mut extent = Extent::NONE;
@@ -310,7 +310,7 @@ impl<'a> ManyField<'a> {
             let logs = &y[first..held.min(first + HELD)];
             for (i, &w) in (first..).zip(logs) {
                 let of = of(&self.interfaces.constants, i / LANES);
-                let [v, _] = of.rates(kind, i % LANES, (tau, w));
+                let [v, _] = of.rates(kind, i % LANES, (stress, w));
                 extent = extent.and(Extent::of_one(w.exp(), v, faster_than));
             }
             extent
@@ -323,8 +323,9 @@ impl<'a> ManyField<'a> {
     pub fn interface(&self, y: &[f64], interface: usize) -> [f64; 2] {
         let here = interface - self.interfaces.share.held().start;
         let of = of(&self.interfaces.constants, here / LANES);
-        let at = (y[self.stress()], y[here]);
-        let [v, _] = of.rates(self.interfaces.kind, here % LANES, at);
+        let kind = self.interfaces.kind;
+        let stress = Stress::new(kind, y[self.stress()]);
+        let [v, _] = of.rates(kind, here % LANES, (stress, y[here]));
         [y[here].exp(), v]
     }
 }

@@ -41,21 +41,20 @@ fn activation(exponential: bool, z: f64) -> (f64, f64) {
     }
 }
 
-/// v of a lane under a stress, with its weakness f x^(-beta).
-#[inline(always)]
-pub(super) fn slip_rate(
-    kind: Kind,
-    of: &Constants,
-    lane: usize,
-    (stress, weakness): (f64, f64),
-) -> f64 {
-    let z = if kind.own_stress {
-        let stress = of.stress_factor[lane] * stress;
-        balanced(kind.exponential, of.damping[lane] * weakness, stress)
-    } else {
-        stress
-    };
-    weakness * activation(kind.exponential, z).0
+/// tau, with s(tau) and its derivative, which all interfaces share that have no stress of their own.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Stress {
+    tau: f64,
+    activation: (f64, f64),
+}
+
+impl Stress {
+    pub fn new(kind: Kind, tau: f64) -> Self {
+        Stress {
+            tau,
+            activation: activation(kind.exponential, tau),
+        }
+    }
 }
 
 impl Constants {
@@ -78,9 +77,27 @@ impl Constants {
         }
     }
 
+    /// s(z) and its derivative of a lane with this weakness f x^(-beta).
+    #[inline(always)]
+    fn activation(&self, kind: Kind, lane: usize, (stress, weakness): (Stress, f64)) -> (f64, f64) {
+        if !kind.own_stress {
+            return stress.activation;
+        }
+        let own = self.stress_factor[lane] * stress.tau;
+        let z = balanced(kind.exponential, self.damping[lane] * weakness, own);
+        activation(kind.exponential, z)
+    }
+
+    /// v of a lane with this strength.
+    #[inline(always)]
+    pub fn slip_rate(&self, kind: Kind, lane: usize, (stress, strength): (Stress, f64)) -> f64 {
+        let weakness = self.weakness(kind, strength, lane);
+        weakness * self.activation(kind, lane, (stress, weakness)).0
+    }
+
     /// f x^(-beta)
     #[inline(always)]
-    pub fn weakness(&self, kind: Kind, strength: f64, lane: usize) -> f64 {
+    fn weakness(&self, kind: Kind, strength: f64, lane: usize) -> f64 {
         let power = if kind.slip {
             (-self.beta[lane] * strength).exp()
         } else {
@@ -91,7 +108,7 @@ impl Constants {
 
     /// What a lane does, with all derivatives.
     #[inline(always)]
-    pub fn linearised(&self, kind: Kind, lane: usize, (stress, w): (f64, f64)) -> Local {
+    pub fn linearised(&self, kind: Kind, lane: usize, (stress, w): (Stress, f64)) -> Local {
         let factor = self.factor[lane];
         if factor == 0.0 {
             return Local::default();
@@ -110,12 +127,7 @@ impl Constants {
             -self.beta[lane] * self.slope[lane] * psi / strength
         };
         let (q, damping) = (self.stress_factor[lane], self.damping[lane]);
-        let z = if kind.own_stress {
-            balanced(kind.exponential, damping * weakness, q * stress)
-        } else {
-            stress
-        };
-        let (s, slope) = activation(kind.exponential, z);
+        let (s, slope) = self.activation(kind, lane, (stress, weakness));
         let v = weakness * s;
         let stiff = weakness * slope;
         // dv = s d(weakness) + weakness s' dz with dz = q (dtau - eta dv)
@@ -145,7 +157,7 @@ impl Constants {
 
     /// v and dw/dt of a lane.
     #[inline(always)]
-    pub fn rates(&self, kind: Kind, lane: usize, (stress, w): (f64, f64)) -> [f64; 2] {
+    pub fn rates(&self, kind: Kind, lane: usize, (stress, w): (Stress, f64)) -> [f64; 2] {
         if self.factor[lane] == 0.0 {
             return [0.0; 2];
         }
@@ -155,8 +167,7 @@ impl Constants {
         } else {
             self.rest[lane] + self.slope[lane] * psi
         };
-        let weakness = self.weakness(kind, strength, lane);
-        let v = slip_rate(kind, self, lane, (stress, weakness));
+        let v = self.slip_rate(kind, lane, (stress, strength));
         let u = v * self.per_length[lane];
         let evolution = if kind.slip {
             -u * (u.ln() + w)
