@@ -69,6 +69,8 @@ impl LinearTime for Zero<'_> {
 /// # Errors
 /// [`Error::NotConverged`], [`Error::NonFinite`], [`Error::Sundials`].
 pub(super) fn zero(field: ManyField<'_>, y: Vec<f64>) -> Result<(Vec<f64>, usize)> {
+    // One that is close to a fold must not send exponentials out of the range of doubles: a line search does not come back from there.
+    let longest_step = (4.0 * (y.len() as f64).sqrt()).clamp(100.0, 300.0);
     let mut kinsol = LargeKinsol::new(Zero(field), y)?;
     let mut iterations = 0;
     let mut is_near = false;
@@ -76,6 +78,7 @@ pub(super) fn zero(field: ManyField<'_>, y: Vec<f64>) -> Result<(Vec<f64>, usize
         let until = Until {
             residual: NEAR,
             step: 1e-14,
+            longest_step,
             iterations: 200,
         };
         let outcome = kinsol.iterate(Strategy::LineSearch, until);
@@ -93,6 +96,7 @@ pub(super) fn zero(field: ManyField<'_>, y: Vec<f64>) -> Result<(Vec<f64>, usize
         let until = Until {
             residual: f64::MIN_POSITIVE,
             step: f64::MIN_POSITIVE,
+            longest_step,
             iterations: 1,
         };
         let stepped = kinsol.iterate(Strategy::Newton, until);

@@ -20,6 +20,8 @@ pub(crate) struct Until {
     pub residual: f64,
     /// A step is at most this, relative to y.
     pub step: f64,
+    /// No step is longer than this, as a root of a sum of squares.
+    pub longest_step: f64,
     /// So many iterations are done.
     pub iterations: usize,
 }
@@ -112,6 +114,7 @@ impl<S: LinearTime> LargeKinsol<S> {
             check!(KIN, messages, KINSetFuncNormTol(m, until.residual))?;
             check!(KIN, messages, KINSetScaledStepTol(m, until.step))?;
             check!(KIN, messages, KINSetNumMaxIters(m, iterations))?;
+            check!(KIN, messages, KINSetMaxNewtonStep(m, until.longest_step))?;
         }
         // SAFETY: a live memory that `new` has set up, and live vectors like the one it was given.
         let code = unsafe {
