@@ -61,6 +61,7 @@ mod lyapunov;
 mod many;
 #[cfg(not(feature = "parquet"))]
 mod many_dimensions;
+mod many_equilibria;
 mod many_methods;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;

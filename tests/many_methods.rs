@@ -103,7 +103,7 @@ fn few_are_those_of_the_other_engines() {
     }
 }
 
-fn law(name: &str, a: f64, b: f64) -> AnyLaw {
+pub fn law(name: &str, a: f64, b: f64) -> AnyLaw {
     let parameters = Parameters::new(a, b, 0.369, 100.0, 1e-3);
     AnyLaw::named(name, parameters.expect("parameters")).expect("a law")
 }
@@ -144,7 +144,7 @@ fn two_that_differ_in_stress_are_those_of_the_other_engine() {
 }
 
 /// J of (ln psi of each, tau), by jets of the laws.
-fn jacobian(all: &[OneOfMany], loading: Loading, stress: f64, states: &[f64]) -> DMatrix<f64> {
+pub fn jacobian(all: &[OneOfMany], loading: Loading, stress: f64, states: &[f64]) -> DMatrix<f64> {
     let n = all.len();
     let mut matrix = DMatrix::zeros(n + 1, n + 1);
     for (i, (one, psi)) in all.iter().zip(states).enumerate() {

@@ -73,6 +73,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "many",
         &[
             "integrate",
+            "equilibrium",
             "model",
             "friction",
             "series",

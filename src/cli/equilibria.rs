@@ -1,20 +1,22 @@
 //! `twinslip equilibria`.
 
 use super::report::{self, Report};
-use super::text;
-use super::{Ending, say, written};
+use super::{Ending, many_equilibria, say, text, written};
 use crate::equilibrium::{ClusterEigenvalue, EigenvalueKind};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{
-    ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaOptions, EquilibriaPlan, Quantity,
-    System, TextModel,
+    ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaOptions, EquilibriaPlan,
+    ManyEquilibriumPlan, Quantity, System, TextModel,
 };
 use crate::views;
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
 pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
+    if ManyEquilibriumPlan::is_of(options) {
+        return many_equilibria::run(options, words);
+    }
     let slab = &options.model.slab;
     let several = slab.has_clusters() && slab.text.system.is_none();
     if !several && let Some(model) = TextModel::of(&options.model, &[])? {

@@ -11,6 +11,7 @@ mod interrupt;
 mod law;
 mod locus;
 mod many;
+mod many_equilibria;
 mod merge;
 mod orbit;
 mod progress;

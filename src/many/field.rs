@@ -211,6 +211,9 @@ impl<'a> ManyField<'a> {
         const LEAST: f64 = 1e-8;
         let Arrow { shafts, pivots, .. } = arrow;
         pivots.resize(shafts.len(), 0.0);
+        // What stands beside the last interface is none, and rests.
+        let held = self.interfaces.share.held().len();
+        let (shafts, pivots) = (&shafts[..held], &mut pivots[..held]);
         let work = |(shafts, pivots): (&[Shaft], &mut [f64])| {
             let (mut sum, mut least) = (0.0, f64::INFINITY);
             for (shaft, pivot) in shafts.iter().zip(pivots) {

@@ -176,4 +176,15 @@ impl Constants {
         };
         [v, evolution]
     }
+
+    /// The sizes of what dw/dt of a lane is made of, added up.
+    pub fn turnover(&self, kind: Kind, lane: usize, (stress, w): (Stress, f64)) -> f64 {
+        let [v, _] = self.rates(kind, lane, (stress, w));
+        let u = (v * self.per_length[lane]).abs();
+        if kind.slip {
+            u * (1.0 + u.ln().abs() + w.abs())
+        } else {
+            self.source[lane] / w.exp() + self.relaxation[lane].abs() + u
+        }
+    }
 }

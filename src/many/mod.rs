@@ -9,15 +9,20 @@ mod block;
 mod constants;
 #[cfg(feature = "sundials")]
 mod cvode;
+mod equilibrium;
 mod field;
 mod interfaces;
+#[cfg(feature = "sundials")]
+mod kinsol;
 mod local;
 mod method;
+mod newton;
 #[cfg(feature = "mpi")]
 mod ranks;
 mod rosenbrock;
 mod share;
 mod slip_events;
+mod stability;
 mod state;
 mod step;
 mod taylor;
@@ -27,12 +32,14 @@ pub use block::Extent;
 pub use constants::OneOfMany;
 #[cfg(feature = "sundials")]
 pub use cvode::ManyCvode;
+pub use equilibrium::{ManyEquilibrium, equilibrium_of_many};
 pub use field::{Slips, arrow_solution};
 pub use interfaces::ManyInterfaces;
 pub use method::ManyMethod;
 pub use rosenbrock::ManyRosenbrock;
 pub use share::{Processes, Share};
 pub use slip_events::{ManyEvent, Participation, SlipEvents, UnderWay};
+pub use stability::{ManyStability, stability_of_many};
 pub use state::ManyState;
 pub use step::{Beginning, ManyObserver, ManyStep, Saved};
 pub use taylor::{ManySolution, ManyTaylor, StepSeries};

@@ -212,7 +212,7 @@ fn newton_alone(system: &System) -> Option<&'static str> {
 }
 
 /// What finds the states; `alone` says why Newton's method alone does.
-fn solver(name: Option<&str>, alone: Option<&str>) -> Result<(&'static str, Solver)> {
+pub(super) fn solver(name: Option<&str>, alone: Option<&str>) -> Result<(&'static str, Solver)> {
     #[cfg(feature = "sundials")]
     const DEFAULT: &str = "kinsol";
     #[cfg(not(feature = "sundials"))]

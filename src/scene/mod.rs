@@ -73,8 +73,8 @@ pub use instant::{Instant, run_columns};
 pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
 pub use many::{
-    Catalogue, CataloguePlan, Drawn, ManyCheckpoint, ManyInstant, ManyPlan, Participant, Saving,
-    run_many,
+    Catalogue, CataloguePlan, Drawn, FoundManyEquilibrium, ManyCheckpoint, ManyEquilibriumPlan,
+    ManyInstant, ManyPlan, Participant, Saving, SteadyInterface, run_many,
 };
 pub use options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, ModelOptions, NumericsOptions, OrbitOptions,

@@ -345,7 +345,7 @@ pub struct EquilibriaOptions {
     )]
     pub within: Option<String>,
     /// With --system: near which values of all states, in their order [default: its table start]. With a --law from a file TAU,PSI1,PSI2
-    /// or near-symmetric:EPS
+    /// or near-symmetric:EPS. With --draw as in integrate [default: near-symmetric:0]
     #[arg(
         long,
         value_name = "START",
@@ -354,6 +354,26 @@ pub struct EquilibriaOptions {
         help_heading = "Model"
     )]
     pub start: Option<String>,
+    /// A constant that each of many interfaces has of its own, drawn as in integrate: NAME=A:B, or by its logarithm NAME=A:Blog; may be
+    /// given again. One steady state of possibly many is found, that which Newton's method comes to from --start, with the number of
+    /// eigenvalues that grow; all are found for equal interfaces
+    #[arg(
+        long,
+        value_name = "NAME=A:B",
+        value_delimiter = ',',
+        allow_hyphen_values = true,
+        help_heading = "Model"
+    )]
+    pub draw: Vec<String>,
+    /// With --draw: another seed, other constants
+    #[arg(
+        long,
+        value_name = "SEED",
+        default_value_t = 1,
+        requires = "draw",
+        help_heading = "Model"
+    )]
+    pub seed: u64,
     /// kinsol or newton, both to the same digits [default: kinsol; newton in a build without SUNDIALS]
     #[arg(long, value_name = "NAME", conflicts_with = "system", value_parser = Names::of(["kinsol", "newton"]), hide_possible_values = true, help_heading = "Numerics")]
     pub solver: Option<String>,

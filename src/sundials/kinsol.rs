@@ -46,7 +46,7 @@ pub enum Strategy {
 }
 
 impl Strategy {
-    fn flag(self) -> c_int {
+    pub(super) fn flag(self) -> c_int {
         match self {
             Strategy::LineSearch => sundials_sys::KIN_LINESEARCH as c_int,
             Strategy::Newton => sundials_sys::KIN_NONE as c_int,
@@ -145,16 +145,75 @@ pub struct KinsolWork {
     pub residual_norm: f64,
 }
 
+impl Outcome {
+    /// What a return code of KINSol says; `None` if it failed.
+    pub(super) fn of(code: c_int) -> Option<Self> {
+        match code {
+            sundials_sys::KIN_SUCCESS => Some(Outcome::Converged),
+            sundials_sys::KIN_INITIAL_GUESS_OK => Some(Outcome::GuessWasSolution),
+            sundials_sys::KIN_MAXITER_REACHED => Some(Outcome::IterationLimit),
+            code if code < 0 => None,
+            _ => Some(Outcome::SmallStep),
+        }
+    }
+}
+
 /// The owner of a KINSOL memory.
-struct KinsolMemory(NonNull<c_void>);
+pub(super) struct KinsolMemory(NonNull<c_void>);
 
 impl KinsolMemory {
-    fn new(context: &Context) -> Result<Self> {
+    pub fn new(context: &Context) -> Result<Self> {
         // SAFETY: a live context, which the solver keeps longer.
         let memory = unsafe { sundials_sys::KINCreate(context.as_ptr()) };
         Ok(KinsolMemory(
             NonNull::new(memory).ok_or_else(|| null("KINCreate"))?,
         ))
+    }
+
+    pub fn as_ptr(&self) -> *mut c_void {
+        self.0.as_ptr()
+    }
+
+    /// Iterations of the last solution, and the Euclidean norm of its scaled residual.
+    pub fn reached(&self, messages: &Messages) -> Result<(usize, f64)> {
+        let m = self.as_ptr();
+        let (mut iterations, mut residual_norm): (c_long, f64) = (0, 0.0);
+        // SAFETY: a live memory, and valid places for the results.
+        unsafe {
+            check!(KIN, messages, KINGetNumNonlinSolvIters(m, &mut iterations))?;
+            check!(KIN, messages, KINGetFuncNorm(m, &mut residual_norm))?;
+        }
+        Ok((iterations as usize, residual_norm))
+    }
+
+    /// Why KINSol failed.
+    pub fn explain(
+        &self,
+        code: c_int,
+        not_finite: Option<&'static str>,
+        tolerance: f64,
+        messages: &Messages,
+    ) -> Error {
+        use sundials_sys::{
+            KIN_FIRST_SYSFUNC_ERR, KIN_LINESEARCH_BCFAIL, KIN_LINESEARCH_NONCONV,
+            KIN_MXNEWT_5X_EXCEEDED, KIN_REPTD_SYSFUNC_ERR, KIN_SYSFUNC_FAIL,
+        };
+        match (code, not_finite) {
+            // Within a line search KINSOL calls any failure unrecoverable.
+            (KIN_FIRST_SYSFUNC_ERR | KIN_REPTD_SYSFUNC_ERR | KIN_SYSFUNC_FAIL, Some(what)) => {
+                Error::NonFinite { what, t: 0.0 }
+            }
+            (KIN_LINESEARCH_NONCONV | KIN_MXNEWT_5X_EXCEEDED | KIN_LINESEARCH_BCFAIL, _) => {
+                let (iterations, residual) = self.reached(messages).unwrap_or_default();
+                Error::NotConverged {
+                    what: "the Newton iteration of KINSOL",
+                    iterations,
+                    residual,
+                    tolerance,
+                }
+            }
+            _ => failure(flags::KIN, "KINSol", code, None, messages),
+        }
     }
 }
 
@@ -205,7 +264,7 @@ impl<const N: usize> Kinsol<N> {
         let matrix = Matrix::fixed::<N>(&context)?;
         let solver = LinearSolver::fixed::<N>(&context)?;
         let memory = KinsolMemory::new(&context)?;
-        let m = memory.0.as_ptr();
+        let m = memory.as_ptr();
         // SAFETY: live objects of one context, kept by the solver longer than the memory; the callbacks are of this N for
         // our vectors and matrix, and the user data are the slot, whose address never changes.
         unsafe {
@@ -313,7 +372,7 @@ impl<const N: usize> Kinsol<N> {
         // SAFETY: a live memory that `new` has set up, and live vectors like the one it was given.
         let code = unsafe {
             sundials_sys::KINSol(
-                self.memory.0.as_ptr(),
+                self.memory.as_ptr(),
                 self.unknown.as_ptr(),
                 self.settings.strategy.flag(),
                 self.unknown_scale.as_ptr(),
@@ -323,14 +382,12 @@ impl<const N: usize> Kinsol<N> {
         drop(entered);
         frame.guard.resume();
 
-        if code < 0 && code != sundials_sys::KIN_MAXITER_REACHED {
-            return Err(self.explain(code, frame.guard.not_finite()));
-        }
-        let outcome = match code {
-            sundials_sys::KIN_SUCCESS => Outcome::Converged,
-            sundials_sys::KIN_INITIAL_GUESS_OK => Outcome::GuessWasSolution,
-            sundials_sys::KIN_MAXITER_REACHED => Outcome::IterationLimit,
-            _ => Outcome::SmallStep,
+        let Some(outcome) = Outcome::of(code) else {
+            let tolerance = self.settings.residual_tolerance;
+            let not_finite = frame.guard.not_finite();
+            return Err(self
+                .memory
+                .explain(code, not_finite, tolerance, &self.messages));
         };
         let root = self.unknown.get::<N>();
         if !callback::all_finite(root.as_slice()) {
@@ -347,20 +404,18 @@ impl<const N: usize> Kinsol<N> {
     /// # Errors
     /// [`Error::Sundials`] before the first solution.
     pub fn work(&self) -> Result<KinsolWork> {
-        let m = self.memory.0.as_ptr();
+        let m = self.memory.as_ptr();
         let messages = &self.messages;
-        let mut counts: [c_long; 4] = [0; 4];
-        let mut residual_norm = 0.0;
-        let [iterations, residuals, jacobians, backtracks] = &mut counts;
+        let (iterations, residual_norm) = self.memory.reached(messages)?;
+        let mut counts: [c_long; 3] = [0; 3];
+        let [residuals, jacobians, backtracks] = &mut counts;
         // SAFETY: a live memory, and valid places for the results.
         unsafe {
-            check!(KIN, messages, KINGetNumNonlinSolvIters(m, iterations))?;
             check!(KIN, messages, KINGetNumFuncEvals(m, residuals))?;
             check!(KINLS, messages, KINGetNumJacEvals(m, jacobians))?;
             check!(KIN, messages, KINGetNumBacktrackOps(m, backtracks))?;
-            check!(KIN, messages, KINGetFuncNorm(m, &mut residual_norm))?;
         }
-        let [iterations, residuals, jacobians, backtracks] = counts.map(|n| n as usize);
+        let [residuals, jacobians, backtracks] = counts.map(|n| n as usize);
         Ok(KinsolWork {
             iterations,
             residuals,
@@ -381,7 +436,7 @@ impl<const N: usize> Kinsol<N> {
         self.constrained |= settings.constraints.iter().any(|c| *c != Constraint::Free);
         self.constraints
             .set(&State::from(settings.constraints.map(Constraint::code)));
-        let m = self.memory.0.as_ptr();
+        let m = self.memory.as_ptr();
         let messages = &self.messages;
         // SAFETY: a live memory; KINSOL copies the constraints.
         unsafe {
@@ -421,27 +476,5 @@ impl<const N: usize> Kinsol<N> {
         }
         self.applied = Some(settings);
         Ok(())
-    }
-
-    fn explain(&self, code: c_int, not_finite: Option<&'static str>) -> Error {
-        use sundials_sys::{
-            KIN_FIRST_SYSFUNC_ERR, KIN_LINESEARCH_BCFAIL, KIN_LINESEARCH_NONCONV,
-            KIN_MXNEWT_5X_EXCEEDED, KIN_REPTD_SYSFUNC_ERR,
-        };
-        match (code, not_finite) {
-            (KIN_FIRST_SYSFUNC_ERR | KIN_REPTD_SYSFUNC_ERR, Some(what)) => {
-                Error::NonFinite { what, t: 0.0 }
-            }
-            (KIN_LINESEARCH_NONCONV | KIN_MXNEWT_5X_EXCEEDED | KIN_LINESEARCH_BCFAIL, _) => {
-                let work = self.work().unwrap_or_default();
-                Error::NotConverged {
-                    what: "the Newton iteration of KINSOL",
-                    iterations: work.iterations,
-                    residual: work.residual_norm,
-                    tolerance: self.settings.residual_tolerance,
-                }
-            }
-            _ => failure(flags::KIN, "KINSol", code, None, &self.messages),
-        }
     }
 }

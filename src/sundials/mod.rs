@@ -27,7 +27,7 @@ mod vector;
 pub use callback::{Events, Forcing, Problem};
 pub use cvode::{Arrival, Cvode, Mode, MultistepMethod, Operations, Reason};
 pub use kinsol::{Constraint, Kinsol, KinsolSettings, KinsolWork, Outcome, Residual, Strategy};
-pub(crate) use large::{LargeCvode, LinearTime};
+pub(crate) use large::{LargeCvode, LargeKinsol, LinearTime, Until};
 
 pub use sensitivity::{ErrorControl, Sensitivity, SensitivityMethod};
 

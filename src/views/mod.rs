@@ -13,6 +13,7 @@ mod general;
 mod law;
 mod listing;
 mod many;
+mod many_equilibria;
 mod map;
 mod orbit;
 mod points;
@@ -29,6 +30,7 @@ pub use general::{general_branches, general_curves, general_lines, quantity_labe
 pub use law::law_columns;
 pub use listing::{Listed, Listing};
 pub use many::many_run;
+pub use many_equilibria::steady_interface_columns;
 pub use map::{return_map, states_at_returns};
 pub use orbit::orbit_columns;
 pub use points::{REGIMES, outcome, sweep_columns, sweep_row};

@@ -2,12 +2,15 @@
 
 mod catalogue;
 mod draw;
+mod equilibrium;
 mod plan;
 mod run;
 mod saved;
+mod setup;
 
 pub use catalogue::{Catalogue, CataloguePlan, Participant};
 pub use draw::Drawn;
+pub use equilibrium::{FoundManyEquilibrium, ManyEquilibriumPlan, SteadyInterface};
 pub use plan::{ManyInstant, ManyPlan};
 pub use run::run_many;
 pub use saved::{ManyCheckpoint, Saving};

@@ -1,30 +1,26 @@
 //! A run of many interfaces from options: what they are, where they start, and what rows hold.
 
 use super::catalogue::CataloguePlan;
-use super::draw::{Draw, Drawn, InUnits};
+use super::draw::Drawn;
 use super::saved::Saving;
+use super::setup::{Asked, Setup, needed};
 use crate::error::{Error, Result};
-use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
 use crate::integrate::Choice;
 #[cfg(feature = "sundials")]
 use crate::many::ManyCvode;
 use crate::many::{
-    Extent, ManyInterfaces, ManyMethod, ManyRosenbrock, ManyTaylor, OneOfMany, Processes, Share,
-    Slips,
+    Extent, ManyInterfaces, ManyMethod, ManyRosenbrock, ManyTaylor, Processes, Slips,
 };
 use crate::model::Loading;
 use crate::scene::column::Column;
-use crate::scene::options::{IntegrateOptions, ModelOptions, NumericsOptions, SlabOptions};
-use crate::scene::plan::{NEAR_SYMMETRIC, Sampling, USUAL_START, sampling, until};
-use crate::scene::system::{Described, HEALING_TIME};
-use crate::scene::text::SPREAD;
+use crate::scene::options::{IntegrateOptions, NumericsOptions};
+use crate::scene::plan::{Sampling, sampling, until};
+use crate::scene::system::Described;
 use crate::scene::units::{Quantity, Units};
 #[cfg(feature = "sundials")]
 use crate::sundials::MultistepMethod;
-use crate::sweep::RandomStart;
-use serde_json::{Map, Value, json};
+use serde_json::{Map, Value};
 use std::cell::Cell;
-use std::ops::Range;
 
 /// A run of many interfaces, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -99,41 +95,28 @@ impl ManyPlan {
     /// # Errors
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &IntegrateOptions, processes: Processes) -> Result<Self> {
+        refused(options)?;
         let model = options.model.resolved()?;
-        refused(options, &model)?;
-        let count = model.slab.count() as usize;
-        if count == 0 {
-            return Err(Error::parameter("interfaces", count, "at least 1"));
-        }
-        let needed = |name: &str, value: Option<f64>| match value {
-            Some(value) => positive(name, value),
-            None => Err(Error::Input(format!(
-                "`{name}` is missing, and has no default"
-            ))),
-        };
         let driving = needed("driving", model.driving)?;
         let loading = Loading::new(driving, needed("stiffness", model.stiffness)?)?;
-        let draws = options.draw.iter().map(|text| Draw::read(text));
-        let draws = draws.collect::<Result<Vec<Draw>>>()?;
-        let share = Share::new(count, processes);
-        let mut drawn: Vec<Drawn> = draws.iter().map(Draw::none_drawn).collect();
-        let by = (&draws[..], options.seed);
-        let first = interfaces(&model.slab, by, 0..1, &mut drawn.clone())?[0];
-        let all = interfaces(&model.slab, by, share.held(), &mut drawn)?;
+        let Setup {
+            interfaces,
+            start,
+            mut drawn,
+            echo,
+        } = Setup::new(&Asked {
+            model: &model,
+            loading,
+            draw: &options.draw,
+            seed: options.seed,
+            start: options.start.as_deref(),
+            processes,
+        })?;
+        let count = interfaces.count();
         let catalogue = CataloguePlan::new(options, driving / count as f64)?;
         if !catalogue.is_some_and(|catalogue| catalogue.participation) {
             drawn.clear();
         }
-        let interfaces = if draws.is_empty() {
-            ManyInterfaces::alike_in(share, &first, loading)?
-        } else {
-            ManyInterfaces::new_in(share, all.iter().copied().map(Ok), loading)?
-        };
-        let start = start(
-            options.start.as_deref(),
-            (&first, &all),
-            (interfaces.share(), driving),
-        )?;
         let units = Units::none();
         let until = until(options)?;
         let (columns, watched) = columns(options.columns.as_deref(), count)?;
@@ -163,7 +146,7 @@ impl ManyPlan {
                 .collect(),
         };
         Ok(ManyPlan {
-            echo: echo(&model.slab, (count, loading), (&draws, options.seed)),
+            echo,
             interfaces,
             start,
             until,
@@ -270,21 +253,9 @@ impl Described for ManyPlan {
     }
 }
 
-/// What many interfaces do not have.
-fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
-    let slab = &model.slab;
-    let numbered = |set: &String| {
-        let name = set.split('=').next().unwrap_or_default();
-        let index = name.rsplit('_').next().unwrap_or_default();
-        !index.is_empty() && index.bytes().all(|c| c.is_ascii_digit())
-    };
-    let asked: [(&str, bool, &str); 5] = [
-        (
-            "law",
-            slab.law_file().is_some(),
-            "from a file can have at most 7 interfaces that move on their own",
-        ),
-        ("si", slab.si, "many interfaces are computed without units"),
+/// What runs of many interfaces do not have.
+fn refused(options: &IntegrateOptions) -> Result<()> {
+    let asked: [(&str, bool, &str); 2] = [
         (
             "program",
             options.program.is_some(),
@@ -294,11 +265,6 @@ fn refused(options: &IntegrateOptions, model: &ModelOptions) -> Result<()> {
             "estimate_error",
             options.estimate_error,
             "runs of many interfaces have no estimate; compare with a smaller `rtol`",
-        ),
-        (
-            "set",
-            slab.text.set.iter().any(numbered),
-            "numbers of one interface are drawn, by `draw`, where there are many",
         ),
     ];
     match asked.into_iter().find(|(_, asked, _)| *asked) {
@@ -325,102 +291,6 @@ fn method(numerics: &NumericsOptions) -> Result<ManyMethod> {
             )));
         }
     })
-}
-
-/// Each interface of a range; one alone where all are equal. What is drawn is told too.
-fn interfaces(
-    slab: &SlabOptions,
-    (draws, seed): (&[Draw], u64),
-    range: Range<usize>,
-    drawn: &mut [Drawn],
-) -> Result<Vec<OneOfMany>> {
-    let damping = slab.damping.unwrap_or(0.0);
-    let one = |own: &SlabOptions, units: InUnits| {
-        let healing_time = own.healing_time.unwrap_or(HEALING_TIME);
-        let parameters = Parameters::new(own.a(), own.b(), own.a_v(), healing_time, own.c())?;
-        Ok(OneOfMany {
-            law: AnyLaw::named(&own.law, parameters)?,
-            damping,
-            slip_length: units.slip_length,
-            // both in units of the nominal a sigma
-            stress_factor: slab.a() / (own.a() * units.normal_stress),
-        })
-    };
-    if draws.is_empty() {
-        return Ok(vec![one(slab, InUnits::default())?]);
-    }
-    // A stream for each constant: what one draws does not depend on the others.
-    let mut streams: Vec<RandomStart> = (1..=draws.len())
-        .map(|stream| RandomStart::new(seed, stream).after(range.start))
-        .collect();
-    let mut next = |_| {
-        let (mut own, mut units) = (slab.clone(), InUnits::default());
-        for ((draw, random), drawn) in draws.iter().zip(&mut streams).zip(&mut *drawn) {
-            let value = draw.put(random, &mut own, &mut units);
-            drawn.values.push(value);
-        }
-        one(&own, units)
-    };
-    range.map(&mut next).collect()
-}
-
-/// tau and psi of each, as `--start` gives them.
-fn start(
-    text: Option<&str>,
-    (first, all): (&OneOfMany, &[OneOfMany]),
-    (share, driving): (&Share, f64),
-) -> Result<(f64, Vec<f64>)> {
-    let (count, held) = (share.count(), share.held());
-    let text = text.unwrap_or(SPREAD);
-    let unreadable = || {
-        Error::Input(format!(
-            "`start` {text:?} must be TAU,PSI1,...,PSI{count}, {USUAL_START}[:EPS] or {SPREAD}[:EPS[:SEED]]"
-        ))
-    };
-    let number = |part: &str| {
-        let number = part.trim().parse::<f64>().ok().filter(|x| x.is_finite());
-        number.ok_or_else(unreadable)
-    };
-    let rate = driving / count as f64;
-    let near = |moved: &mut dyn FnMut(usize) -> f64| {
-        let state = |i: usize| {
-            let one = &all[(i - held.start).min(all.len() - 1)];
-            let steady = one.law.steady_state(rate / one.slip_length).ln();
-            beside(&one.law, steady, moved(i)).exp()
-        };
-        let states = held.clone().map(state).collect();
-        let friction = steady_stress(&first.law, rate) / first.stress_factor;
-        (friction + first.damping * rate, states)
-    };
-    if let Some(rest) = text.strip_prefix(USUAL_START) {
-        let by = match rest.strip_prefix(':') {
-            Some(part) => number(part)?,
-            None if rest.is_empty() => NEAR_SYMMETRIC,
-            None => return Err(unreadable()),
-        };
-        return Ok(near(&mut |i| if i + 1 == count { by } else { 0.0 }));
-    }
-    if let Some(rest) = text.strip_prefix(SPREAD) {
-        let parts: Vec<&str> = rest.split(':').collect();
-        let (by, seed) = match parts[..] {
-            [""] => (NEAR_SYMMETRIC, 1),
-            ["", by] => (number(by)?, 1),
-            ["", by, seed] => (number(by)?, seed.parse().map_err(|_| unreadable())?),
-            _ => return Err(unreadable()),
-        };
-        let mut random = RandomStart::new(seed, 0).after(held.start);
-        return Ok(near(&mut |_| by * random.between((-1.0, 1.0))));
-    }
-    let numbers = text.split(',').map(number).collect::<Result<Vec<f64>>>()?;
-    match numbers.split_first() {
-        Some((&tau, states)) if states.len() == count => {
-            for &psi in states {
-                positive("psi in `start`", psi)?;
-            }
-            Ok((positive("tau in `start`", tau)?, states[held].to_vec()))
-        }
-        _ => Err(unreadable()),
-    }
 }
 
 /// Columns before those of what all interfaces do.
@@ -493,35 +363,4 @@ fn of_one(base: &str) -> Option<(Quantity, OfOne)> {
         "slip" => (Quantity::Length, |[.., slip]| slip),
         _ => return None,
     })
-}
-
-fn echo(
-    slab: &SlabOptions,
-    (count, loading): (usize, Loading),
-    (draws, seed): (&[Draw], u64),
-) -> Map<String, Value> {
-    let mut pairs = vec![
-        ("law", json!(slab.law)),
-        ("interfaces", json!(count)),
-        ("driving", json!(loading.driving)),
-        ("stiffness", json!(loading.stiffness)),
-        (
-            "healing_time",
-            json!(slab.healing_time.unwrap_or(HEALING_TIME)),
-        ),
-        ("residual_strength", json!(slab.c())),
-        ("direct_effect", json!(slab.a())),
-        ("evolution_effect", json!(slab.b())),
-        ("reference_friction", json!(slab.a_v())),
-        ("damping", json!(slab.damping.unwrap_or(0.0))),
-        ("si", json!(false)),
-    ];
-    if !draws.is_empty() {
-        let told: Vec<String> = draws.iter().map(Draw::told).collect();
-        pairs.extend([("draw", json!(told)), ("seed", json!(seed))]);
-    }
-    let pairs = pairs.into_iter();
-    pairs
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect()
 }

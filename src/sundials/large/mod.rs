@@ -5,10 +5,12 @@
 //! rest. Nothing in it depends on the order in which processes or cores finish.
 
 mod cvode;
+mod kinsol;
 mod solver;
 mod vector;
 
 pub(crate) use cvode::LargeCvode;
+pub(crate) use kinsol::{LargeKinsol, Until};
 
 use super::callback::Guard;
 use std::ffi::c_void;
@@ -30,7 +32,7 @@ pub(crate) trait LinearTime: Sync {
     /// x with (d I - J) x = b, in place of b.
     fn solve(&self, matrix: &Self::Matrix, b: &mut [f64]);
 
-    /// One over what an error of 1 is, of every number of y.
+    /// One over what an error of 1 is, of every number of y; for KINSOL, of f(y).
     fn weights(&self, y: &[f64], weights: &mut [f64]);
 
     /// The largest that any process has, or what is not a number.
