@@ -2,6 +2,7 @@
 
 use super::constants::{LANES, of};
 use super::field::{Arrow, ManyField};
+use super::local::Stress;
 use crate::error::{Error, Result};
 use crate::sundials::{LargeKinsol, LinearTime, Outcome, Strategy, Until};
 use rayon::prelude::*;
@@ -39,11 +40,12 @@ impl LinearTime for Zero<'_> {
     fn weights(&self, y: &[f64], weights: &mut [f64]) {
         let Zero(field) = self;
         let interfaces = field.interfaces;
-        let (tau, held) = (y[field.stress()], interfaces.share.held().len());
+        let stress = Stress::new(interfaces.kind, y[field.stress()]);
+        let held = interfaces.share.held().len();
         weights.par_iter_mut().enumerate().for_each(|(i, weight)| {
             *weight = if i < held {
                 let of = of(&interfaces.constants, i / LANES);
-                let turnover = of.turnover(interfaces.kind, i % LANES, (tau, y[i]));
+                let turnover = of.turnover(interfaces.kind, i % LANES, (stress, y[i]));
                 let weight = 1.0 / turnover;
                 if weight.is_finite() && weight > 0.0 {
                     weight
