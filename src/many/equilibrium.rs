@@ -42,7 +42,7 @@ pub struct ManyEquilibrium {
 /// use twinslip::model::Loading;
 /// # fn main() -> twinslip::Result<()> {
 /// let law = AnyLaw::Spinodal(Parameters::heslot_1994().spinodal());
-/// let thousand = ManyInterfaces::alike(&law, 1000, Loading::new(10.0, 0.14)?)?;
+/// let thousand = ManyInterfaces::alike(law, 1000, Loading::new(10.0, 0.14)?)?;
 /// let found = equilibrium_of_many(&thousand, (9.9, &[90.0; 1000]), Solver::Newton)?;
 /// assert!((found.slip_rate[0] / 0.01 - 1.0).abs() < 1e-12);
 /// # Ok(())
