@@ -288,6 +288,31 @@ fn unlike() -> impl Strategy<Value = UnequalLaws> {
         })
 }
 
+/// At the end of a bracket rounding hid the sign that is certain there.
+#[test]
+fn a_state_at_the_end_of_its_bracket_is_found() {
+    let first = InterfaceConstants {
+        healing_time: 31.67181409757817,
+        residual_strength: 0.1,
+        evolution_effect: 0.09880792288857881,
+        ..InterfaceConstants::heslot_1994()
+    };
+    let second = InterfaceConstants {
+        direct_effect: 0.0349000000008076,
+        reference_friction: 0.3689999999878115,
+        slip_length: 0.999999999980105,
+        ..first
+    };
+    let laws = UnequalLaws::new("bounded", [first, second], 0.057990186177887565);
+    let laws = laws.expect("valid");
+    let driving = 10f64.powf(4.485635219161688);
+    let found = unequal_steady_states(&laws, driving).expect("solved");
+    assert!(!found.equilibria.is_empty());
+    for state in &found.equilibria {
+        assert!(state.residual(&laws, driving) < 1e-9);
+    }
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(300))]
 

@@ -45,6 +45,8 @@ pub trait PlannedRun {
     fn kept_bytes(&self) -> Option<u64> {
         None
     }
+    /// All is written.
+    fn ended(&self) {}
     /// Goes along it.
     fn run(&self, out: &mut StreamOut) -> Result<RunOutcome>;
     /// The picture of these points.
@@ -210,11 +212,16 @@ pub fn integrate(
         plot::write(path, &picture)?;
     }
     report.say(summary(&outcome, events, seconds));
-    report.ended(match outcome.failure {
+    let complete = outcome.failure.is_none() && !outcome.stopped;
+    let ended = report.ended(match outcome.failure {
         Some(error) => Err(error),
         None if interrupt::asked() => Ok(Ending::Interrupted),
         None => Ok(ending),
-    })
+    });
+    if complete && ended.is_ok() {
+        plan.ended();
+    }
+    ended
 }
 
 /// Where a table goes that has a file of its own.

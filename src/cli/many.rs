@@ -207,11 +207,14 @@ impl PlannedRun for ManyRun {
         if self.plan.saving.from.is_none() {
             file.begin()?;
         }
-        let outcome = run_many(&self.plan, &mut SavingOut { out, file })?;
-        if outcome.failure.is_none() && !outcome.stopped {
+        run_many(&self.plan, &mut SavingOut { out, file })
+    }
+
+    /// Not before all files say that they are complete: a run that is killed in between goes on from its last checkpoint.
+    fn ended(&self) {
+        if let Some(file) = &self.checkpoints {
             file.remove();
         }
-        Ok(outcome)
     }
 
     fn picture(&self, drawn: &RowList) -> plot::Drawing {

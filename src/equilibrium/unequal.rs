@@ -194,8 +194,20 @@ impl<'a> Part<'a> {
 
     /// The state in a bracket: without bounds where it can't be enclosed, as at a fold.
     fn state(&self, [low, high]: [f64; 2]) -> Result<Equilibrium> {
+        let [left, right] = [low, high].map(|end| self.sign(end));
         let slow = bracketed_root("the steady state", low, high, |s| {
-            (self.difference(s), self.slope(s))
+            // of the ends the signs are known, which rounding may hide
+            let known = if s == low {
+                left
+            } else if s == high {
+                right
+            } else {
+                None
+            };
+            match known {
+                Some(sign) => (sign, f64::NAN),
+                None => (self.difference(s), self.slope(s)),
+            }
         })?;
         let near = DoubleDouble::from(slow);
         let precise = newton(near, self.driving, |s: Jet<DoubleDouble, 1>| {
