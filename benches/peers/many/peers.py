@@ -30,7 +30,7 @@ def scipy(n):
 
     def f(_, y):
         psi = np.exp(y[1:])
-        v = GAMMA0 * np.sinh(y[0]) * (C + (1 + 1 / R) * psi) ** -BETA
+        v = GAMMA0 * np.sinh(y[0]) * (C + (1 + R) * psi) ** -BETA
         return np.concatenate([[stiffness * (driving - v.sum())], (1 / psi - 1) / R - v])
 
     # LSODA and the implicit methods make matrices of all elements.
@@ -49,7 +49,7 @@ def heyoka(n):
     tau, *logs = hy.make_vars("tau", *[f"w{i}" for i in range(n)])
     s = GAMMA0 * hy.sinh(tau)
     psis = [hy.exp(w) for w in logs]
-    rates = [s * (C + (1 + 1 / R) * psi) ** -BETA for psi in psis]
+    rates = [s * (C + (1 + R) * psi) ** -BETA for psi in psis]
     system = [(tau, stiffness * (driving - hy.sum(rates)))]
     system += [(w, (1 / psi - 1) / R - v) for w, psi, v in zip(logs, psis, rates)]
     for tolerance in [1e-6, 1e-10]:

@@ -28,7 +28,7 @@ static int f(double t, N_Vector y, N_Vector dy, void *data) {
     double s = gamma0 * sinh(x[0]), sum = 0.0;
     for (long i = 1; i <= n; i++) {
         double psi = exp(x[i]);
-        double v = s * pow(c + (1.0 + 1.0 / R) * psi, -beta);
+        double v = s * pow(c + (1.0 + R) * psi, -beta);
         rate[i] = (1.0 / psi - 1.0) / R - v;
         sum += v;
     }
