@@ -108,24 +108,22 @@ impl RowFile {
         if super::place::special(path) {
             return super::Place::File(path.to_owned()).check().map(|()| None);
         }
-        let new = !path.exists();
-        let opened = OpenOptions::new()
-            .read(true)
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path);
-        let file = opened.map_err(|error| wrong(&error.to_string()))?;
-        let claimed = RowFile {
-            path: path.to_owned(),
-            file,
-            new,
-            written: AtomicBool::new(false),
+        let claimed = loop {
+            let new = !path.exists();
+            let opened = OpenOptions::new()
+                .read(true)
+                .write(true)
+                .create(true)
+                .truncate(false)
+                .open(path);
+            let file = opened.map_err(|error| wrong(&error.to_string()))?;
+            match RowFile::lock(path, file, new) {
+                None => return Err(wrong("another run is writing to it")),
+                // Its writer of before has just taken it away.
+                Some(locked) if locked.gone() => (),
+                Some(locked) => break locked,
+            }
         };
-        // Where the file system knows no locks, there is none.
-        if let Err(TryLockError::WouldBlock) = claimed.file.try_lock() {
-            return Err(wrong("another run is writing to it"));
-        }
         let head = claimed.head().map_err(|error| wrong(&error.to_string()))?;
         let text = String::from_utf8_lossy(&head);
         let remarks = text.lines().map_while(|line| line.strip_prefix("# "));
@@ -147,6 +145,20 @@ impl RowFile {
                 "it is there already and no run of this program has ended in it; replace it with `force`",
             )),
         }
+    }
+
+    /// The file, if nobody else has it. Who doesn't get it must not take it away from who did, also where both found none before.
+    fn lock(path: &Path, file: File, new: bool) -> Option<Self> {
+        // Where the file system knows no locks, there is none.
+        if let Err(TryLockError::WouldBlock) = file.try_lock() {
+            return None;
+        }
+        Some(RowFile {
+            path: path.to_owned(),
+            file,
+            new,
+            written: AtomicBool::new(false),
+        })
     }
 
     /// A writer after the first so many bytes; what follows them is gone.
@@ -267,5 +279,51 @@ mod test {
             let place = Status::place(head.as_bytes()).expect("it is there");
             assert_eq!(head[place], remark);
         }
+    }
+
+    fn place(name: &str) -> PathBuf {
+        std::env::temp_dir().join(format!("twinslip-{name}-{}.csv", std::process::id()))
+    }
+
+    #[test]
+    fn who_is_refused_leaves_the_file_to_its_writer() {
+        let path = place("refused");
+        let first = RowFile::claim(&path, Over::Ended)
+            .expect("free")
+            .expect("a file");
+        // Begun at the same time: it found no file either.
+        let file = File::options()
+            .write(true)
+            .open(&path)
+            .expect("it is there");
+        assert!(RowFile::lock(&path, file, true).is_none());
+        assert!(!first.gone());
+        drop(first);
+        assert!(!path.exists());
+    }
+
+    #[test]
+    fn of_many_that_begin_at_once_one_has_the_file_and_keeps_it() {
+        let path = place("at-once");
+        let claims: usize = std::thread::scope(|scope| {
+            let work = || {
+                let mut claims = 0;
+                for _ in 0..2000 {
+                    if let Ok(Some(file)) = RowFile::claim(&path, Over::Ended) {
+                        std::thread::yield_now();
+                        assert!(!file.gone());
+                        claims += 1;
+                    }
+                }
+                claims
+            };
+            let all = [0; 4].map(|_| scope.spawn(work));
+            all.into_iter()
+                .map(|one| one.join().expect("no panic"))
+                .sum()
+        });
+        assert!(claims > 0);
+        // Empty, or not there: whose file it was is not always told.
+        let _ = fs::remove_file(&path);
     }
 }
