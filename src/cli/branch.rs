@@ -1,8 +1,9 @@
 //! `twinslip branch`.
 
+use super::call::Call;
 use super::continuation::Task;
 use super::rows::{SlabRow, special_row};
-use super::{Ending, general, say, special};
+use super::{Ending, general, special};
 use crate::bifurcation::clusters::ClusterRow;
 use crate::bifurcation::{BranchRow, Special, orbits};
 use crate::error::Result;
@@ -13,7 +14,7 @@ use crate::scene::{
 use crate::views;
 use std::ops::ControlFlow;
 
-pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
             &options.model,
@@ -27,22 +28,22 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
                 search.period_guess,
                 options.of.as_deref() == Some("orbits"),
             )?;
-            return general::branch(options, &subject, words);
+            return general::branch(options, &subject, call);
         }
         if let Some(subject) = options.any_parameter()? {
-            return general::branch(options, &subject, words);
+            return general::branch(options, &subject, call);
         }
     }
     options.search.unused()?;
     let plan = BranchPlan::new(options)?;
     if plan.system.interfaces > 2 {
         let columns = views::cluster_columns();
-        return follow(options, words, &plan, columns, &|rows: &[ClusterRow]| {
+        return follow(options, call, &plan, columns, &|rows: &[ClusterRow]| {
             views::staircase(rows, &plan.along, &plan.request.slab, &plan.system)
         });
     }
     let columns = views::branch_columns(plan.of == BranchKind::Orbits, plan.system.interfaces);
-    follow(options, words, &plan, columns, &|rows: &[BranchRow]| {
+    follow(options, call, &plan, columns, &|rows: &[BranchRow]| {
         views::branches(rows, &plan.along, &plan.request.slab, &plan.system)
     })
 }
@@ -50,7 +51,7 @@ pub fn run(options: &BranchOptions, words: &[String]) -> Result<Ending> {
 /// Follows the branches, whose rows are of one kind.
 fn follow<R: SlabRow>(
     options: &BranchOptions,
-    words: &[String],
+    call: &Call,
     plan: &BranchPlan,
     columns: Vec<Column<R>>,
     picture: &dyn Fn(&[R]) -> plot::Drawing,
@@ -75,11 +76,11 @@ fn follow<R: SlabRow>(
         resume: options.resume.as_ref(),
         plot: options.plot.as_ref(),
         output: &options.output,
-        words,
+        call,
     };
     let report = task.report()?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     task.run(
         &report,

@@ -1,7 +1,6 @@
 //! Checkpoints of a run of many interfaces in a file that is replaced as a whole: a line of JSON that says of which run, numbers, and a check
 //! sum. A run that was killed goes on from there to the same bytes.
 
-use super::stream::StreamOut;
 use crate::error::{Error, Result};
 use crate::integrate::Control;
 use crate::many::{Saved, Share};
@@ -197,7 +196,7 @@ impl CheckpointFile {
 
 /// The rows of a run on their way out, with checkpoints.
 pub struct SavingOut<'a> {
-    pub out: &'a mut StreamOut,
+    pub out: &'a mut dyn Sink,
     pub file: &'a CheckpointFile,
 }
 

@@ -1,11 +1,12 @@
 //! What `branch` and `locus` share: rows on their way out, special points, how a run ends.
 
+use super::call::Call;
 use super::progress::{Progress, during};
 use super::report::{Report, unit_names};
 use super::resume::{EarlierRun, Expected, ReadRow, beside, row_key, special_key};
 use super::rows::{CurveRow, Found, SpecialPoint};
-use super::words::{flagged, several, time};
-use super::{Ending, interrupt, say, special, written};
+use super::words::{several, time};
+use super::{Ending, interrupt, special, written};
 use crate::bifurcation::{Criticality, Label};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
@@ -55,7 +56,7 @@ pub struct Task<'a, R: CurveRow> {
     /// Where results go.
     pub output: &'a OutputOptions,
     /// The command line.
-    pub words: &'a [String],
+    pub call: &'a Call,
 }
 
 impl<'a, R: CurveRow> Task<'a, R> {
@@ -64,7 +65,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
         let (resume, plot) = (self.resume, self.plot);
         Report::resuming(
             self.output,
-            self.words,
+            self.call,
             (resume.map(PathBuf::as_path), plot.map(PathBuf::as_path)),
         )
     }
@@ -76,8 +77,8 @@ impl<'a, R: CurveRow> Task<'a, R> {
         compute: impl FnOnce(&[usize], FoundObserver<'_, R>) -> Result<()>,
         picture: impl Fn(&[R], &[R::Special]) -> plot::Drawing,
     ) -> Result<Ending> {
-        let mut out = ContinuationOut::new(self, report)?;
-        interrupt::watch();
+        let (call, mut out) = (self.call, ContinuationOut::new(self, report)?);
+        call.watch();
         let skipped = std::mem::take(&mut out.skipped);
         out.progress.begin("looking for the first point");
         let computed = match out.complete {
@@ -99,12 +100,12 @@ impl<'a, R: CurveRow> Task<'a, R> {
         let seconds = out.progress.finish();
         let begun = Instant::now();
         let checks = self.recheck(report, &out.special, failure.is_some());
-        interrupt::unwatch();
+        call.unwatch();
         let seconds = (seconds + begun.elapsed()).as_secs_f64();
         let ending = self.write(report, &out, &checks, failure.as_ref())?;
         match self.plot {
             Some(path) if !out.rows.is_empty() => {
-                plot::write(path, &picture(&out.rows, &out.special))?;
+                report.draw(path, &picture(&out.rows, &out.special))?;
             }
             Some(_) => report.say("there is no point to draw"),
             None => {}
@@ -112,7 +113,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
         report.say(out.summary(seconds));
         match failure {
             Some(error) => Err(error),
-            None if interrupt::asked() => Ok(Ending::Interrupted),
+            None if call.stops() => Ok(Ending::Interrupted),
             None if ending == Ending::Done => Ok(out.ending()),
             None => Ok(ending),
         }
@@ -138,8 +139,8 @@ impl<'a, R: CurveRow> Task<'a, R> {
         checks.method = Some(method.name());
         let words = format!("computing the special points by {}", method.name());
         let mut unchecked = Vec::new();
-        during(report.quiet, &words, || {
-            for one in special.iter().take_while(|_| !interrupt::asked()) {
+        during(report, &words, || {
+            for one in special.iter().take_while(|_| !self.call.stops()) {
                 let difference = again(one).unwrap_or_else(|error| {
                     unchecked.push((one, error));
                     None
@@ -173,7 +174,8 @@ impl<'a, R: CurveRow> Task<'a, R> {
             return Ok(Ending::Done);
         }
         let units = self.system.units();
-        let rows = out.rows.iter();
+        // Those that were handed on need not be there twice.
+        let rows = out.rows.iter().filter(|_| !report.streams());
         let rows: Vec<Value> = rows
             .map(|row| Value::Object(views::object(&self.columns, row, units)))
             .collect();
@@ -188,7 +190,7 @@ impl<'a, R: CurveRow> Task<'a, R> {
             json!({"points": out.new}),
             failure,
         );
-        written(report.place.write(&bytes), &report.place)
+        report.write(&bytes)
     }
 }
 
@@ -271,20 +273,18 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
             skipped: kept.numbers,
             rows: kept.rows,
             new: 0,
-            progress: Progress::new(report.quiet),
+            progress: report.progress(),
             scrolling,
         })
     }
 
     /// Opens the table or CSV, once.
     fn open(&mut self) -> io::Result<()> {
-        if !matches!(self.to, ContinuationSink::Nothing)
-            || self.report.format == Format::Json
-            || self.complete
+        if !matches!(self.to, ContinuationSink::Nothing) || !self.report.streams() || self.complete
         {
             return Ok(());
         }
-        if self.report.format == Format::Table {
+        if self.report.format != Format::Csv {
             let (names, quantities): (Vec<_>, Vec<_>) = self.names.iter().cloned().unzip();
             let units = unit_names(self.task.system.units(), quantities.into_iter());
             self.to =
@@ -351,7 +351,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
 
     /// Says in the files how far they are.
     fn end(&self, failed: bool) -> Result<()> {
-        let status = |rows: usize| match (failed, interrupt::asked()) {
+        let status = |rows: usize| match (failed, self.task.call.stops()) {
             (true, _) => Status::Failed,
             (false, true) => Status::Unfinished,
             (false, false) => Status::Complete(Some(rows)),
@@ -369,7 +369,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         };
         let written = written.and_then(|()| match found {
             Found::Special(mut special) => {
-                let note = special.note().map(flagged);
+                let note = special.note().map(|note| self.task.call.told(note));
                 special.noted(note);
                 self.special(&special)?;
                 self.special.push(special);
@@ -393,7 +393,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
             self.broken = Some(error);
             return ControlFlow::Break(());
         }
-        if interrupt::asked() {
+        if self.task.call.stops() {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -425,7 +425,7 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         for one in self.special.iter().filter(is_stuck) {
             let note = one.note();
             let note = note.unwrap_or("the method goes no further");
-            say(format_args!(
+            self.task.call.say(format_args!(
                 "error: a {} ends at {}: {note}",
                 R::WHOLE,
                 one.place(&self.task.names, self.task.system.units())

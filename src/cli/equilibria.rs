@@ -1,7 +1,8 @@
 //! `twinslip equilibria`.
 
+use super::call::Call;
 use super::report::{self, Report};
-use super::{Ending, many_equilibria, say, text, written};
+use super::{Ending, many_equilibria, text};
 use crate::equilibrium::{ClusterEigenvalue, EigenvalueKind};
 use crate::error::Result;
 use crate::output::Format;
@@ -13,24 +14,24 @@ use crate::views;
 use nalgebra::Complex;
 use serde_json::{Value, json};
 
-pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     if ManyEquilibriumPlan::is_of(options) {
-        return many_equilibria::run(options, words);
+        return many_equilibria::run(options, call);
     }
     let slab = &options.model.slab;
     let several = slab.has_clusters() && slab.text.system.is_none();
     if !several && let Some(model) = TextModel::of(&options.model, &[])? {
-        return text::equilibria::run(options, model, words);
+        return text::equilibria::run(options, model, call);
     }
-    plan(options, words)
+    plan(options, call)
 }
 
 /// Of built-in laws.
-fn plan(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
+fn plan(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let plan = EquilibriaPlan::new(options)?;
-    let report = Report::new(&options.output, words, &[])?;
+    let report = Report::new(&options.output, call, &[])?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
@@ -58,7 +59,7 @@ fn write(
         let work = json!({"equilibria": list.len()});
         let result = json!({"equilibria": list, "complete": found.complete});
         let bytes = report.envelope(system, numerics, result, work, None);
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     report.write_all(
         &system.units,

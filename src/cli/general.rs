@@ -1,8 +1,9 @@
 //! `branch` and `locus` in any parameters.
 
+use super::call::Call;
 use super::continuation::{Recheck, Task};
 use super::rows::Found;
-use super::{Ending, say, special};
+use super::{Ending, special};
 use crate::error::Result;
 use crate::scene::{
     BranchOptions, Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow,
@@ -13,7 +14,7 @@ use serde_json::Value;
 use std::path::PathBuf;
 
 /// Branches along a parameter of any system.
-pub fn branch(options: &BranchOptions, subject: &dyn Subject, words: &[String]) -> Result<Ending> {
+pub fn branch(options: &BranchOptions, subject: &dyn Subject, call: &Call) -> Result<Ending> {
     let plan = GeneralBranchPlan::new(options, subject)?;
     let files = (options.resume.as_ref(), options.plot.as_ref());
     let free = [&plan.free];
@@ -21,10 +22,10 @@ pub fn branch(options: &BranchOptions, subject: &dyn Subject, words: &[String]) 
     let second = plan.following.second;
     let again = |one: &GeneralRow| second.map_or(Ok(None), |method| plan.crosscheck(one, method));
     let second = second.map(|method| (method, &again as _));
-    let task = frame.task(&plan.numerics, second, files, &options.output, words);
+    let task = frame.task(&plan.numerics, second, files, &options.output, call);
     let report = task.report()?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     task.run(
         &report,
@@ -34,7 +35,7 @@ pub fn branch(options: &BranchOptions, subject: &dyn Subject, words: &[String]) 
 }
 
 /// Curves in the plane of two parameters of any system.
-pub fn locus(options: &LocusOptions, subject: &dyn Subject, words: &[String]) -> Result<Ending> {
+pub fn locus(options: &LocusOptions, subject: &dyn Subject, call: &Call) -> Result<Ending> {
     let plan = GeneralLocusPlan::new(options, subject)?;
     let files = (options.resume.as_ref(), options.plot.as_ref());
     let free = plan.free.each_ref();
@@ -42,10 +43,10 @@ pub fn locus(options: &LocusOptions, subject: &dyn Subject, words: &[String]) ->
     let second = plan.following.second;
     let again = |one: &GeneralRow| second.map_or(Ok(None), |method| plan.crosscheck(one, method));
     let second = second.map(|method| (method, &again as _));
-    let task = frame.task(&plan.numerics, second, files, &options.output, words);
+    let task = frame.task(&plan.numerics, second, files, &options.output, call);
     let report = task.report()?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     task.run(
         &report,
@@ -101,7 +102,7 @@ impl<'s> Frame<'s> {
         second: Option<Recheck<'t, GeneralRow>>,
         (resume, plot): (Option<&'t PathBuf>, Option<&'t PathBuf>),
         output: &'t OutputOptions,
-        words: &'t [String],
+        call: &'t Call,
     ) -> Task<'t, GeneralRow> {
         Task {
             system: self.subject,
@@ -115,7 +116,7 @@ impl<'s> Frame<'s> {
             resume,
             plot,
             output,
-            words,
+            call,
         }
     }
 }

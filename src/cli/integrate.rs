@@ -1,10 +1,10 @@
 //! `twinslip integrate`.
 
-use super::interrupt;
+use super::call::Call;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
 use super::words::{count, several, time};
-use super::{Ending, say, written};
+use super::{Ending, written};
 use crate::error::{Error, Result};
 use crate::output::{Format, Over, Place, RowList, object, plot, seven_digits};
 use crate::scene::{
@@ -48,7 +48,7 @@ pub trait PlannedRun {
     /// All is written.
     fn ended(&self) {}
     /// Goes along it.
-    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome>;
+    fn run(&self, out: &mut StreamOut<'_>) -> Result<RunOutcome>;
     /// The picture of these points.
     fn picture(&self, drawn: &RowList) -> plot::Drawing;
     /// The picture of the events, of runs that have one.
@@ -66,9 +66,9 @@ pub struct Beside<'a> {
     pub participation: Option<Box<dyn Listing + 'a>>,
 }
 
-pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     if ManyPlan::is_of(options) {
-        return super::many::run(options, words);
+        return super::many::run(options, call);
     }
     if options.checkpoint.is_some() {
         return Err(Error::Input(
@@ -82,8 +82,8 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
         &[]
     };
     match TextModel::of(&options.model, free)? {
-        Some(model) => integrate(&TextPlan::new(options, model)?, options, words),
-        None => integrate(&Plan::new(options)?, options, words),
+        Some(model) => integrate(&TextPlan::new(options, model)?, options, call),
+        None => integrate(&Plan::new(options)?, options, call),
     }
 }
 
@@ -135,7 +135,7 @@ impl PlannedRun for Plan {
         self.observed()
     }
 
-    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome> {
+    fn run(&self, out: &mut StreamOut<'_>) -> Result<RunOutcome> {
         crate::scene::run(self, out)
     }
 
@@ -147,7 +147,7 @@ impl PlannedRun for Plan {
 pub fn integrate(
     plan: &impl PlannedRun,
     options: &IntegrateOptions,
-    words: &[String],
+    call: &Call,
 ) -> Result<Ending> {
     let pictures = [&options.plot, &options.plot_events];
     for path in pictures.into_iter().flatten() {
@@ -162,17 +162,17 @@ pub fn integrate(
     let others: Vec<&Path> = pictures.chain(tables).collect();
     let kept_bytes = plan.kept_bytes();
     let report = match kept_bytes {
-        None => Report::new(&options.output, words, &others)?,
-        Some(_) => Report::over(&options.output, words, &others, Over::All)?,
+        None => Report::new(&options.output, call, &others)?,
+        Some(_) => Report::over(&options.output, call, &others, Over::All)?,
     };
-    let kept = report.format == Format::Json;
+    let kept = !report.streams();
     if options.output.explain {
         let keeping = if kept {
             Keeping::Stored
         } else {
             Keeping::Streamed
         };
-        say(plan.explain(keeping).trim_end());
+        call.say(plan.explain(keeping).trim_end());
     }
     let remarks = report.remarks(plan.system(), &plan.numerics());
     let columns = (plan.columns(), plan.system().units());
@@ -185,10 +185,10 @@ pub fn integrate(
         Err(error) => return written(Err(error), &report.place),
     };
     if plan.observed() {
-        interrupt::watch();
+        call.watch();
     }
     let outcome = plan.run(&mut out)?;
-    interrupt::unwatch();
+    call.unwatch();
     let seconds = out.progress.finish().as_secs_f64();
     let StreamOut {
         rows,
@@ -204,18 +204,18 @@ pub fn integrate(
     let ending = write(plan, &report, (&rows, &beside), &outcome, &places)?;
     drop(beside);
     if let Some(path) = &options.plot {
-        plot::write(path, &plan.picture(&drawn))?;
+        report.draw(path, &plan.picture(&drawn))?;
     }
     if let Some(path) = &options.plot_events
         && let Some(picture) = plan.picture_of_events(&outcome)
     {
-        plot::write(path, &picture)?;
+        report.draw(path, &picture)?;
     }
     report.say(summary(&outcome, events, seconds));
     let complete = outcome.failure.is_none() && !outcome.stopped;
     let ended = report.ended(match outcome.failure {
         Some(error) => Err(error),
-        None if interrupt::asked() => Ok(Ending::Interrupted),
+        None if call.stops() => Ok(Ending::Interrupted),
         None => Ok(ending),
     });
     if complete && ended.is_ok() {
@@ -278,7 +278,7 @@ fn write(
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     for (table, place) in [&beside.events, &beside.participation]
         .into_iter()

@@ -1,8 +1,9 @@
 //! `twinslip law`.
 
+use super::Ending;
+use super::call::Call;
 use super::report::{self, Report};
 use super::text;
-use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::friction::ExtremumKind;
 use crate::number::Uncertain;
@@ -13,16 +14,16 @@ use crate::scene::{
 use crate::views;
 use serde_json::{Value, json};
 
-pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
     match TextModel::of(&options.model, &["driving", "stiffness"])? {
-        Some(model) if model.slab.is_some() => return text::law::run(options, model, words),
+        Some(model) if model.slab.is_some() => return text::law::run(options, model, call),
         _ => {}
     }
     let plan = LawPlan::new(options)?;
-    let report = begun(options, words, || plan.explain())?;
+    let report = begun(options, call, || plan.explain())?;
     let curves = plan.curves()?;
     if let Some(path) = &options.plot {
-        plot::write(path, &picture(&plan.system.units, &curves))?;
+        report.draw(path, &picture(&plan.system.units, &curves))?;
     }
     let columns = views::law_columns(curves.len() > 1);
     write(&report, &plan.system, &columns, &curves, None)
@@ -31,16 +32,16 @@ pub fn run(options: &LawOptions, words: &[String]) -> Result<Ending> {
 /// Checks where results and pictures go, and says what will be computed.
 pub fn begun<'a>(
     options: &LawOptions,
-    words: &'a [String],
+    call: &'a Call,
     explain: impl FnOnce() -> String,
 ) -> Result<Report<'a>> {
     if let Some(path) = &options.plot {
         plot::PictureFormat::of(path)?;
     }
     let plots: Vec<&std::path::Path> = options.plot.as_deref().into_iter().collect();
-    let report = Report::new(&options.output, words, &plots)?;
+    let report = Report::new(&options.output, call, &plots)?;
     if options.output.explain {
-        say(explain());
+        call.say(explain());
     }
     Ok(report)
 }
@@ -173,7 +174,7 @@ pub fn write<R>(
         let work = json!({"evaluations": rows.len()});
         let result = landmarks.result(curves.len(), rows);
         let bytes = report.envelope(system, json!({}), result, work, failure);
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     let found = landmarks.lines();
     let mut remarks = report.remarks(system, &Value::Null);

@@ -1,8 +1,9 @@
 //! `twinslip locus`.
 
+use super::call::Call;
 use super::continuation::Task;
 use super::rows::{SlabRow, special_row};
-use super::{Ending, general, say, special};
+use super::{Ending, general, special};
 use crate::bifurcation::{LocusRow, Special, orbits};
 use crate::error::Result;
 use crate::scene::{
@@ -11,7 +12,7 @@ use crate::scene::{
 use crate::views;
 use std::ops::ControlFlow;
 
-pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
             &options.model,
@@ -25,10 +26,10 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
                 search.period_guess,
                 CurveChoice::named(options.of.as_deref())?.of_orbits(),
             )?;
-            return general::locus(options, &subject, words);
+            return general::locus(options, &subject, call);
         }
         if let Some(subject) = options.any_parameter()? {
-            return general::locus(options, &subject, words);
+            return general::locus(options, &subject, call);
         }
     }
     options.search.unused()?;
@@ -53,11 +54,11 @@ pub fn run(options: &LocusOptions, words: &[String]) -> Result<Ending> {
         resume: options.resume.as_ref(),
         plot: options.plot.as_ref(),
         output: &options.output,
-        words,
+        call,
     };
     let report = task.report()?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     task.run(
         &report,

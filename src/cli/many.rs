@@ -1,6 +1,7 @@
 //! `twinslip integrate` of many interfaces.
 
 use super::Ending;
+use super::call::Call;
 use super::checkpoint::{CheckpointFile, SavingOut};
 use super::integrate::{Beside, PlannedRun, integrate};
 use super::ranks::Joined;
@@ -97,11 +98,11 @@ fn checkpoint_file(
     Ok(CheckpointFile::new(path, rows, all))
 }
 
-pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     match Joined::join()? {
-        None => integrate(&ManyRun::new(options, Processes::One)?, options, words),
+        None => integrate(&ManyRun::new(options, Processes::One)?, options, call),
         #[cfg(feature = "mpi")]
-        Some(_joined) => by_ranks(options, words),
+        Some(_joined) => by_ranks(options, call),
         #[cfg(not(feature = "mpi"))]
         Some(joined) => match joined {},
     }
@@ -109,12 +110,12 @@ pub fn run(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
 
 /// The ranks integrate together, and the first one writes. What is wrong with the input, all of them see, and one says.
 #[cfg(feature = "mpi")]
-fn by_ranks(options: &IntegrateOptions, words: &[String]) -> Result<Ending> {
+fn by_ranks(options: &IntegrateOptions, call: &Call) -> Result<Ending> {
     let run = ManyRun::new(options, Processes::Ranks);
     let leads = Share::new(1, Processes::Ranks).rank() == 0;
     if leads {
         let run = run?;
-        let ended = integrate(&run, options, words);
+        let ended = integrate(&run, options, call);
         run.plan.dismiss();
         return ended;
     }
@@ -200,7 +201,7 @@ impl PlannedRun for ManyRun {
         self.kept
     }
 
-    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome> {
+    fn run(&self, out: &mut StreamOut<'_>) -> Result<RunOutcome> {
         let Some(file) = &self.checkpoints else {
             return run_many(&self.plan, out);
         };

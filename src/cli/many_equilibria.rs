@@ -1,7 +1,8 @@
 //! `twinslip equilibria --draw`: the steady state of many interfaces that differ.
 
+use super::Ending;
+use super::call::Call;
 use super::report::{self, Report};
-use super::{Ending, say, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{
@@ -10,11 +11,11 @@ use crate::scene::{
 use crate::views;
 use serde_json::{Map, Value, json};
 
-pub fn run(options: &EquilibriaOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     let plan = ManyEquilibriumPlan::new(options)?;
-    let report = Report::new(&options.output, words, &[])?;
+    let report = Report::new(&options.output, call, &[])?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
@@ -42,7 +43,7 @@ fn write(
         let work = json!({"iterations": found.equilibrium.iterations});
         let result = json!({"equilibrium": told});
         let bytes = report.envelope(plan, numerics, result, work, None);
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     let stability = found.stability.map(|stability| {
         let unstable = stability.unstable.map_or(String::new(), |unstable| {

@@ -1,6 +1,8 @@
 //! The command line: arguments, messages and exit codes. Data goes to standard output or a file, all talk to standard error.
 
 mod branch;
+mod call;
+mod catalogue;
 mod checkpoint;
 mod continuation;
 mod equilibria;
@@ -30,14 +32,18 @@ pub(crate) mod sweep;
 mod text;
 pub(crate) mod words;
 
+pub use call::Outlet;
+pub use catalogue::{OptionInfo, OptionKind, commands, options};
+
 use crate::error::Error;
 use crate::integrate::{VECTORS, allowed_vectors, used_vectors};
 use crate::scene;
+use call::Call;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
 use std::process::ExitCode;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 /// Sliding modes of interacting frictional interfaces: friction laws, runs in time, equilibria, periodic orbits, return
 /// maps, branches and their bifurcations, maps of regimes.
@@ -106,7 +112,7 @@ pub fn program() -> clap::Command {
 
 /// How a command ended, if it ended well.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ending {
+pub enum Ending {
     /// All is done, or the reader of our output has gone: there is nobody to tell.
     Done,
     /// All is done, but a verdict could not be reached.
@@ -150,17 +156,15 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
             return ExitCode::from(u8::try_from(error.exit_code()).unwrap_or(WRONG_INPUT));
         }
     };
-    let words: Vec<String> = std::iter::once("twinslip".into())
-        .chain(
-            arguments
-                .iter()
-                .skip(1)
-                .map(|word| word.to_string_lossy().into_owned()),
-        )
-        .collect();
+    let words = arguments.iter().skip(1);
+    let words = words.map(|word| word.to_string_lossy().into_owned());
+    let call = Call {
+        words: std::iter::once("twinslip".into()).chain(words).collect(),
+        outlet: None,
+    };
     let ended = allowed_vectors().and_then(|_| match &line.command {
-        CliCommand::Compute(command) => compute(command, &words),
-        CliCommand::Run(options) => run::run(options, &words),
+        CliCommand::Compute(command) => compute(command, &call),
+        CliCommand::Run(options) => run::run(options, &call),
         CliCommand::Merge(options) => merge::run(options),
         CliCommand::Reproduce(options) => reproduce::run(options),
         CliCommand::Figure(options) => reproduce::run_figure(options),
@@ -186,6 +190,24 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
+/// Runs a command of another program: the words that follow the name of this one, without any output of its own. All that `outlet` does not
+/// take is given back: how it ended, or why it did not.
+///
+/// # Errors
+/// [`Error::Input`] for words that are no command, and those of the command.
+pub fn run_into(words: &[String], outlet: Arc<dyn Outlet>) -> Result<Ending, Error> {
+    let words: Vec<String> = std::iter::once("twinslip".to_owned())
+        .chain(words.iter().cloned())
+        .collect();
+    let command = scene::Command::of_words(&words).map_err(Error::Input)?;
+    allowed_vectors()?;
+    let call = Call {
+        words,
+        outlet: Some(outlet),
+    };
+    compute(&command, &call)
+}
+
 /// A message on standard error, with flags for the options that it names. That nobody reads it, or that it can't be written, is
 /// no error.
 fn say(text: impl std::fmt::Display) {
@@ -207,16 +229,16 @@ fn shortened(text: String) -> String {
 }
 
 /// What a scene file or the command line asks for.
-fn compute(command: &scene::Command, words: &[String]) -> Result<Ending, Error> {
+fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
     let ended = match command {
-        scene::Command::Law(options) => law::run(options, words),
-        scene::Command::Integrate(options) => integrate::run(options, words),
-        scene::Command::Equilibria(options) => equilibria::run(options, words),
-        scene::Command::Orbit(options) => orbit::run(options, words),
-        scene::Command::Section(options) => section::run(options, words),
-        scene::Command::Branch(options) => branch::run(options, words),
-        scene::Command::Locus(options) => locus::run(options, words),
-        scene::Command::Sweep(options) => sweep::run(options, words),
+        scene::Command::Law(options) => law::run(options, call),
+        scene::Command::Integrate(options) => integrate::run(options, call),
+        scene::Command::Equilibria(options) => equilibria::run(options, call),
+        scene::Command::Orbit(options) => orbit::run(options, call),
+        scene::Command::Section(options) => section::run(options, call),
+        scene::Command::Branch(options) => branch::run(options, call),
+        scene::Command::Locus(options) => locus::run(options, call),
+        scene::Command::Sweep(options) => sweep::run(options, call),
     };
     ended.map_err(|error| {
         command

@@ -1,10 +1,11 @@
 //! `twinslip orbit`.
 
+use super::call::Call;
 use super::integrate::PlannedRun;
 use super::report::{self, Report};
 use super::stream::StreamOut;
 use super::words::several;
-use super::{Ending, progress, say, written};
+use super::{Ending, progress, written};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -40,10 +41,10 @@ pub trait OrbitSearch {
     fn object(&self, orbit: &Orbit) -> Value;
 }
 
-pub fn run(options: &OrbitOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &OrbitOptions, call: &Call) -> Result<Ending> {
     match TextModel::of(&options.model, &[])? {
-        Some(model) => search(&TextOrbitPlan::new(options, model)?, options, words),
-        None => search(&OrbitPlan::new(options)?, options, words),
+        Some(model) => search(&TextOrbitPlan::new(options, model)?, options, call),
+        None => search(&OrbitPlan::new(options)?, options, call),
     }
 }
 
@@ -87,16 +88,16 @@ impl OrbitSearch for OrbitPlan {
     }
 }
 
-fn search(plan: &impl OrbitSearch, options: &OrbitOptions, words: &[String]) -> Result<Ending> {
+fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Result<Ending> {
     let picture = options.plot.as_deref();
     picture.map(plot::PictureFormat::of).transpose()?;
     let others: Vec<&Path> = picture.into_iter().collect();
-    let report = Report::new(&options.output, words, &others)?;
+    let report = Report::new(&options.output, call, &others)?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     let FoundOrbit { orbit, others } =
-        progress::during(report.quiet, "looking for the orbit", || plan.find())?;
+        progress::during(&report, "looking for the orbit", || plan.find())?;
     // Only the object tells of the second opinion: rows need not wait for it.
     let in_rows = report.format != Format::Json;
     let mut ending = Ending::Done;
@@ -106,7 +107,7 @@ fn search(plan: &impl OrbitSearch, options: &OrbitOptions, words: &[String]) -> 
     let rows = along(plan, &report, &orbit, picture)?;
     let second = plan.accuracy().1.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
-    let checked = progress::during(report.quiet, &words, || plan.crosscheck(&orbit));
+    let checked = progress::during(&report, &words, || plan.crosscheck(&orbit));
     let checked = checked.unwrap_or_else(|error| {
         report.say(format!("the crosscheck by {second} failed: {error}"));
         None
@@ -182,7 +183,7 @@ fn along(
         return written(Err(error), &report.place).map(|_| None);
     }
     if let Some(path) = picture {
-        plot::write(path, &run.picture(&out.drawn))?;
+        report.draw(path, &run.picture(&out.drawn))?;
     }
     if !plan.has_rows() {
         return failure.map_or(Ok(None), Err);
@@ -230,7 +231,7 @@ fn write_object(
     work["nodes"] = json!(orbit.nodes.len());
     work["iterations"] = json!(orbit.iterations);
     let bytes = report.envelope(plan.system(), numerics(plan, orbit), result, work, None);
-    written(report.place.write(&bytes), &report.place)
+    report.write(&bytes)
 }
 
 /// A row for each orbit.

@@ -1,5 +1,7 @@
 //! A bar on standard error for runs that take long, if somebody looks at it.
 
+use super::call::Outlet;
+use super::report::Report;
 use indicatif::{ProgressBar, ProgressStyle};
 use std::io::IsTerminal;
 use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
@@ -21,6 +23,7 @@ pub struct Progress {
     calls: u32,
     bar: Option<ProgressBar>,
     spinner: Option<Spinner>,
+    outlet: Option<Arc<dyn Outlet>>,
 }
 
 impl Progress {
@@ -32,6 +35,16 @@ impl Progress {
             calls: 0,
             bar: None,
             spinner: None,
+            outlet: None,
+        }
+    }
+
+    /// Shows nothing, and tells somebody else.
+    pub fn handed_on(outlet: Arc<dyn Outlet>) -> Self {
+        Progress {
+            wanted: false,
+            outlet: Some(outlet),
+            ..Progress::new(true)
         }
     }
 
@@ -45,6 +58,9 @@ impl Progress {
 
     /// The same for calls that stand for much work each.
     pub fn come(&mut self, fraction: f64) {
+        if let Some(outlet) = &self.outlet {
+            outlet.reached(fraction);
+        }
         if !self.wanted || self.begun.elapsed() < PATIENCE {
             return;
         }
@@ -80,8 +96,8 @@ impl Progress {
 }
 
 /// Shows these words while something runs of which nothing is known but that it has not ended.
-pub fn during<T>(quiet: bool, words: &str, run: impl FnOnce() -> T) -> T {
-    let mut progress = Progress::new(quiet);
+pub fn during<T>(report: &Report<'_>, words: &str, run: impl FnOnce() -> T) -> T {
+    let mut progress = report.progress();
     progress.begin(words);
     run()
 }

@@ -1,7 +1,8 @@
 //! What all commands share: format and place of the output, the object around a result, remarks, messages.
 
-use super::words::flagged;
-use super::{Ending, interrupt, say, written};
+use super::call::Call;
+use super::progress::Progress;
+use super::{Ending, interrupt, written};
 use crate::error::{Error, Result};
 use crate::integrate::Work;
 use crate::number::Uncertain;
@@ -25,27 +26,37 @@ pub struct Report<'a> {
     pub quiet: bool,
     /// The file of rows, which is written row by row; none for a whole object, for a device and for a pipe.
     pub file: Option<RowFile>,
-    words: &'a [String],
+    /// What the command was called by.
+    pub call: &'a Call,
 }
 
 impl<'a> Report<'a> {
     /// Chooses the format and makes sure that all files can be written, before anything is computed.
-    pub fn new(options: &OutputOptions, words: &'a [String], others: &[&Path]) -> Result<Self> {
+    pub fn new(options: &OutputOptions, call: &'a Call, others: &[&Path]) -> Result<Self> {
         let over = if options.force {
             Over::All
         } else {
             Over::Ended
         };
-        Self::over(options, words, others, over)
+        Self::over(options, call, others, over)
     }
 
     /// The same where a file of rows may be replaced that others would be refused.
     pub fn over(
         options: &OutputOptions,
-        words: &'a [String],
+        call: &'a Call,
         others: &[&Path],
         over: Over,
     ) -> Result<Self> {
+        if call.outlet.is_some() {
+            return Ok(Report {
+                format: Format::Json,
+                place: Place::Standard,
+                quiet: options.quiet,
+                file: None,
+                call,
+            });
+        }
         let place = Place::new(options.output.as_deref());
         let terminal = std::io::stdout().is_terminal();
         if let Some(path) = others.iter().find(|path| place.path() == Some(path)) {
@@ -71,14 +82,14 @@ impl<'a> Report<'a> {
             place,
             quiet: options.quiet,
             file,
-            words,
+            call,
         })
     }
 
     /// The same where the CSV of an earlier run may be gone on with, which is then the place of the output.
     pub fn resuming(
         options: &OutputOptions,
-        words: &'a [String],
+        call: &'a Call,
         (resume, plot): (Option<&Path>, Option<&Path>),
     ) -> Result<Self> {
         if let Some(path) = plot {
@@ -93,7 +104,7 @@ impl<'a> Report<'a> {
             }
         };
         let Some(resumed) = resume else {
-            let report = Report::new(options, words, &others)?;
+            let report = Report::new(options, call, &others)?;
             goes_on(&report);
             return Ok(report);
         };
@@ -109,7 +120,7 @@ impl<'a> Report<'a> {
             format: options.format.clone().or_else(csv),
             ..options.clone()
         };
-        let report = Report::over(&output, words, &others, Over::All)?;
+        let report = Report::over(&output, call, &others, Over::All)?;
         match (report.format, &report.file) {
             (Format::Csv, Some(_)) => {
                 goes_on(&report);
@@ -126,7 +137,39 @@ impl<'a> Report<'a> {
     /// A message on standard error.
     pub fn say(&self, text: impl std::fmt::Display) {
         if !self.quiet {
-            say(text);
+            self.call.say(text);
+        }
+    }
+
+    /// Shows how far the command has come.
+    pub fn progress(&self) -> Progress {
+        self.call.progress(self.quiet)
+    }
+
+    /// Whether rows are written as they come, not only at the end in an object.
+    pub fn streams(&self) -> bool {
+        self.format != Format::Json || self.call.outlet.is_some()
+    }
+
+    /// Writes an object.
+    pub fn write(&self, bytes: &[u8]) -> Result<Ending> {
+        match &self.call.outlet {
+            Some(outlet) => {
+                outlet.object(bytes);
+                Ok(Ending::Done)
+            }
+            None => written(self.place.write(bytes), &self.place),
+        }
+    }
+
+    /// Draws into a file, or hands the picture on.
+    pub fn draw(&self, path: &Path, drawing: &plot::Drawing) -> Result<()> {
+        match &self.call.outlet {
+            Some(outlet) => {
+                outlet.picture(drawing);
+                Ok(())
+            }
+            None => plot::write(path, drawing),
         }
     }
 
@@ -137,6 +180,9 @@ impl<'a> Report<'a> {
         columns: &[String],
         units: &[String],
     ) -> io::Result<Box<dyn RowWriter>> {
+        if let Some(rows) = self.call.rows(columns) {
+            return Ok(rows);
+        }
         let mut to = self.stream(0)?;
         if self.file.is_some() {
             remarks.push(Status::Unfinished.remark());
@@ -176,7 +222,7 @@ impl<'a> Report<'a> {
 
     /// The `# ` lines of CSV: program, command, parameters, units.
     pub fn remarks(&self, system: &dyn Described, numerics: &Value) -> Vec<String> {
-        remarks(self.words, system, numerics)
+        remarks(&self.call.words, system, numerics)
     }
 
     /// Begins a table or CSV at any place.
@@ -259,14 +305,17 @@ impl<'a> Report<'a> {
     ) -> Vec<u8> {
         let envelope = Envelope {
             twinslip: env!("CARGO_PKG_VERSION"),
-            command: self.words,
+            command: &self.call.words,
             sundials: sundials(),
             model: system.echo(),
             units: units(system.units()),
             numerics,
             result,
             work,
-            error: error.map(|error| flagged(&system.units().told(error.clone()).to_string())),
+            error: error.map(|error| {
+                self.call
+                    .told(&system.units().told(error.clone()).to_string())
+            }),
         };
         let mut bytes = serde_json::to_vec(&envelope).expect("numbers and names can be written");
         bytes.push(b'\n');

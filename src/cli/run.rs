@@ -1,5 +1,6 @@
 //! `twinslip run SCENE`.
 
+use super::call::Call;
 use super::{Ending, compute, written};
 use crate::error::{Error, Result, did_you_mean};
 use crate::output::Place;
@@ -33,7 +34,7 @@ pub struct RunOptions {
     output: crate::scene::OutputOptions,
 }
 
-pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &RunOptions, call: &Call) -> Result<Ending> {
     let path = match &options.scene {
         Some(path) if !options.list => path,
         _ => return said(&list()),
@@ -80,7 +81,7 @@ pub fn run(options: &RunOptions, words: &[String]) -> Result<Ending> {
         }
     }
     let command = Command::of_scene(&scene, &replaced, &added)?;
-    compute(&command, words).map_err(|error| match error {
+    compute(&command, call).map_err(|error| match error {
         error @ (Error::Parameter { .. } | Error::Input(_)) => scene.locate(&error),
         error => error,
     })

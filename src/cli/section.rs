@@ -1,11 +1,11 @@
 //! `twinslip section`.
 
-use super::interrupt;
+use super::call::Call;
 use super::report::{self, Report, unit_names};
 use super::stream::StreamOut;
 use super::text;
 use super::words::{count, flagged, several, time};
-use super::{Ending, say, written};
+use super::{Ending, written};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::output::{Cell, Format, RowList, plot};
@@ -19,9 +19,9 @@ use serde_json::{Map, Value, json};
 use std::io::Write;
 use std::path::Path;
 
-pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &SectionOptions, call: &Call) -> Result<Ending> {
     if let Some(model) = TextModel::of(&options.model, &[])? {
-        return text::section::run(options, model, words);
+        return text::section::run(options, model, call);
     }
     let plan = SectionPlan::new(options)?;
     let columns = section_columns(plan.system.interfaces);
@@ -32,7 +32,7 @@ pub fn run(options: &SectionOptions, words: &[String]) -> Result<Ending> {
         numerics: numerics(&plan),
     };
     let picture = |rows: &RowList| (rows.iter().len() > 0).then(|| picture(&plan, rows));
-    map.run(options, words, |out| run_section(&plan, out), picture)
+    map.run(options, call, |out| run_section(&plan, out), picture)
 }
 
 /// A return map that is asked for, of whatever slides or turns.
@@ -48,17 +48,17 @@ impl ReturnMap<'_> {
     pub fn run(
         self,
         options: &SectionOptions,
-        words: &[String],
-        run: impl FnOnce(&mut StreamOut) -> Result<SectionOutcome>,
+        call: &Call,
+        run: impl FnOnce(&mut StreamOut<'_>) -> Result<SectionOutcome>,
         picture: impl FnOnce(&RowList) -> Option<plot::Drawing>,
     ) -> Result<Ending> {
         if let Some(path) = &options.plot {
             plot::PictureFormat::of(path)?;
         }
         let others: Vec<&Path> = options.plot.as_deref().into_iter().collect();
-        let report = Report::new(&options.output, words, &others)?;
+        let report = Report::new(&options.output, call, &others)?;
         if options.output.explain {
-            say(self.explanation.trim_end());
+            call.say(self.explanation.trim_end());
         }
         let units = self.system.units();
         let remarks = report.remarks(self.system, &self.numerics);
@@ -67,9 +67,9 @@ impl ReturnMap<'_> {
             Ok(out) => out.counting(),
             Err(error) => return written(Err(error), &report.place),
         };
-        interrupt::watch();
+        call.watch();
         let outcome = run(&mut out)?;
-        interrupt::unwatch();
+        call.unwatch();
         let seconds = out.progress.finish().as_secs_f64();
         let StreamOut { rows, broken, .. } = out;
         if let Some(error) = broken {
@@ -79,14 +79,14 @@ impl ReturnMap<'_> {
         let ending = write(self.system, asked, &report, &rows, &outcome)?;
         if let Some(path) = &options.plot {
             match picture(&rows) {
-                Some(picture) => plot::write(path, &picture)?,
+                Some(picture) => report.draw(path, &picture)?,
                 None => report.say("there are too few returns to draw"),
             }
         }
         report.say(summary(units, &outcome, seconds));
         report.ended(match outcome.failure {
             Some(error) => Err(error),
-            None if interrupt::asked() => Ok(Ending::Interrupted),
+            None if call.stops() => Ok(Ending::Interrupted),
             None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
                 Ok(Ending::Undecided)
             }
@@ -129,7 +129,7 @@ fn write(
             report::work(&outcome.work),
             outcome.failure.as_ref(),
         );
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     if report.format == Format::Csv || report.place.path().is_some() {
         return Ok(Ending::Done);

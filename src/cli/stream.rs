@@ -1,15 +1,15 @@
 //! The rows of a run on their way out: written as they come, kept, or both.
 
-use super::interrupt;
+use super::call::Call;
 use super::progress::Progress;
 use super::report::{Report, unit_names};
 use crate::integrate::Control;
-use crate::output::{Cell, CsvRows, Format, RowList, RowWriter};
+use crate::output::{Cell, CsvRows, RowList, RowWriter};
 use crate::scene::{Quantity, Sink, Units};
 use std::io;
 
 /// Takes the rows of a run.
-pub struct StreamOut {
+pub struct StreamOut<'a> {
     writer: Option<Box<dyn RowWriter>>,
     /// What went wrong with writing.
     pub broken: Option<io::Error>,
@@ -21,17 +21,18 @@ pub struct StreamOut {
     pub drawn: RowList,
     cells: Vec<Cell>,
     pub progress: Progress,
+    call: &'a Call,
 }
 
-impl StreamOut {
+impl<'a> StreamOut<'a> {
     /// Begins the table or CSV, below remarks. Rows are kept for an object anyway.
     pub fn new(
-        report: &Report<'_>,
+        report: &Report<'a>,
         remarks: Vec<String>,
         (columns, units): (Vec<(String, Quantity)>, &Units),
         keep: bool,
     ) -> io::Result<Self> {
-        if report.format == Format::Json {
+        if !report.streams() {
             return Ok(Self::kept(report, columns));
         }
         let (names, quantities): (Vec<_>, Vec<_>) = columns.iter().cloned().unzip();
@@ -45,7 +46,7 @@ impl StreamOut {
 
     /// Goes on with the CSV of an earlier run, after so many bytes of it.
     pub fn after(
-        report: &Report<'_>,
+        report: &Report<'a>,
         columns: Vec<(String, Quantity)>,
         bytes: u64,
     ) -> io::Result<Self> {
@@ -57,7 +58,7 @@ impl StreamOut {
     }
 
     /// Writes nothing, and keeps the rows.
-    pub fn kept(report: &Report<'_>, columns: Vec<(String, Quantity)>) -> Self {
+    pub fn kept(report: &Report<'a>, columns: Vec<(String, Quantity)>) -> Self {
         StreamOut {
             keep: true,
             writer: None,
@@ -66,7 +67,8 @@ impl StreamOut {
             rows: RowList::new(columns.into_iter().map(|(name, _)| name).collect()),
             drawn: RowList::default(),
             cells: Vec::new(),
-            progress: Progress::new(report.quiet),
+            progress: report.progress(),
+            call: report.call,
         }
     }
 
@@ -87,7 +89,7 @@ impl StreamOut {
     }
 }
 
-impl Sink for StreamOut {
+impl Sink for StreamOut<'_> {
     fn row(&mut self, row: &[f64]) -> Control {
         if self.keep {
             self.rows.numbers.extend_from_slice(row);
@@ -112,7 +114,7 @@ impl Sink for StreamOut {
 
     fn reached(&mut self, fraction: f64) -> Control {
         self.progress.reached(fraction);
-        if interrupt::asked() {
+        if self.call.stops() {
             Control::Stop
         } else {
             Control::Continue

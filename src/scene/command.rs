@@ -68,13 +68,17 @@ impl Command {
         let mut arguments = vec!["twinslip".to_owned()];
         arguments.extend(scene.arguments(replaced));
         arguments.extend(added.iter().cloned());
-        let line = SceneLine::try_parse_from(arguments).map_err(|error| {
-            // What stands before the first empty line is the sentence; advice on flags follows, which a scene does not have.
+        Command::of_words(&arguments).map_err(|sentence| scene.locate(&Error::Input(sentence)))
+    }
+
+    /// A command line, the name of the program first; what is wrong with it as one sentence.
+    pub(crate) fn of_words(words: &[String]) -> Result<Self, String> {
+        let line = SceneLine::try_parse_from(words).map_err(|error| {
+            // What stands before the first empty line is the sentence; advice on flags follows, which not everybody has.
             let text = error.to_string();
             let lines = text.lines().take_while(|line| !line.is_empty());
             let sentence = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-            let sentence = sentence.trim_start_matches("error: ").to_owned();
-            scene.locate(&Error::Input(sentence))
+            sentence.trim_start_matches("error: ").to_owned()
         })?;
         Ok(line.command)
     }

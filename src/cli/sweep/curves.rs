@@ -4,8 +4,6 @@
 //! A file is trusted only if it tells the hash of what it holds, and the key of the curve that is asked for: the version and the
 //! file of the program, and all of the plan. A damaged one is computed again.
 
-use super::super::interrupt;
-use super::super::progress::Progress;
 use super::super::report::Report;
 use super::super::words::time;
 use crate::bifurcation::{Event, LocusRow};
@@ -28,7 +26,7 @@ const LARGEST: u64 = 1 << 26;
 
 /// The curves of these plans, with their titles.
 pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, Vec<LocusRow>)> {
-    let mut progress = Progress::new(report.quiet);
+    let mut progress = report.progress();
     progress.begin("over the map");
     let (mut computed, all) = (0, plans.len());
     let curves: Vec<(&str, Vec<LocusRow>)> = plans
@@ -51,7 +49,7 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
                     });
                     points.push(row);
                 }
-                match interrupt::asked() {
+                match report.call.stops() {
                     true => ControlFlow::Break(()),
                     false => ControlFlow::Continue(()),
                 }
@@ -64,7 +62,7 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
                     report.say(format!("of the {title} over the map: {error}"));
                     progress.begin("over the map");
                 }
-                (Ok(()), Some(kept)) if !interrupt::asked() => kept.write(&points),
+                (Ok(()), Some(kept)) if !report.call.stops() => kept.write(&points),
                 (Ok(()), _) => {}
             }
             (title, points)

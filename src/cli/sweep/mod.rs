@@ -10,8 +10,9 @@ mod ranks;
 #[cfg(feature = "mpi")]
 pub(crate) mod wire;
 
+use super::call::Call;
 use super::report::Report;
-use super::{Ending, interrupt, say, written};
+use super::{Ending, written};
 use crate::error::Result;
 use crate::output::Format;
 use crate::scene::{Described, SweepOptions, SweepPlan};
@@ -21,36 +22,36 @@ use out::SweepOut;
 use ranks::Ranks;
 use serde_json::{Value, json};
 
-pub fn run(options: &SweepOptions, words: &[String]) -> Result<Ending> {
+pub fn run(options: &SweepOptions, call: &Call) -> Result<Ending> {
     let Some(mut ranks) = Ranks::join()? else {
-        return lead(options, words, None);
+        return lead(options, call, None);
     };
     if !ranks.leads() {
         ranks.serve(SweepPlan::new(options).ok().as_ref());
         return Ok(Ending::Done);
     }
-    let ended = lead(options, words, Some(&mut ranks));
+    let ended = lead(options, call, Some(&mut ranks));
     ranks.dismiss();
     ended
 }
 
 /// Computes and writes, into CSV first where Parquet is asked for.
-fn lead(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> Result<Ending> {
+fn lead(options: &SweepOptions, call: &Call, ranks: Option<&mut Ranks>) -> Result<Ending> {
     match parquet::asked(options)? {
-        None => rows(options, words, ranks),
-        Some((target, by_csv)) => parquet::finish(&target, rows(&by_csv, words, ranks)?),
+        None => rows(options, call, ranks),
+        Some((target, by_csv)) => parquet::finish(&target, rows(&by_csv, call, ranks)?),
     }
 }
 
 /// Computes, by the other ranks if there are any, and writes.
-fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> Result<Ending> {
+fn rows(options: &SweepOptions, call: &Call, ranks: Option<&mut Ranks>) -> Result<Ending> {
     let plan = SweepPlan::new(options)?;
     let (resume, plot) = (options.resume.as_deref(), options.plot.as_deref());
-    let report = Report::resuming(&options.output, words, (resume, plot))?;
+    let report = Report::resuming(&options.output, call, (resume, plot))?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
         if let Some(text) = curves::explain(&plan.curves) {
-            say(text);
+            call.say(text);
         }
     }
     let columns = views::sweep_columns(&plan.layout);
@@ -61,32 +62,26 @@ fn rows(options: &SweepOptions, words: &[String], ranks: Option<&mut Ranks>) -> 
     }
     let shard = plan.part();
     let units = UnitShare::shard(shard.index, shard.of, done);
-    interrupt::watch();
+    call.watch();
     let mut seen = |rows: &[sweep::SweepRow]| out.take(rows);
     let failure = match ranks {
-        Some(ranks) => ranks.run(&plan.settings, units, interrupt::flag(), &mut seen),
-        None => sweep::run(
-            &plan.settings,
-            units,
-            plan.threads,
-            interrupt::flag(),
-            &mut seen,
-        ),
+        Some(ranks) => ranks.run(&plan.settings, units, call.flag(), &mut seen),
+        None => sweep::run(&plan.settings, units, plan.threads, call.flag(), &mut seen),
     };
-    interrupt::unwatch();
+    call.unwatch();
     let seconds = out.progress.finish().as_secs_f64();
     if let Some(error) = out.broken.take() {
         return written(Err(error), &report.place);
     }
     failure?;
-    out.end(interrupt::asked())?;
+    out.end(call.stops())?;
     let ending = write(&plan, &report, &out)?;
     if let Some(path) = plot {
         picture::draw(&plan, &report, &out.rows, path)?;
     }
     report.say(out.summary(seconds));
     Ok(match ending {
-        _ if interrupt::asked() => Ending::Interrupted,
+        _ if call.stops() => Ending::Interrupted,
         Ending::Done if out.undecided() > 0 => Ending::Undecided,
         ending => ending,
     })
@@ -98,7 +93,8 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<En
         return Ok(Ending::Done);
     }
     let units = plan.system.units();
-    let rows = out.rows.iter();
+    // Those that were handed on need not be there twice.
+    let rows = out.rows.iter().filter(|_| !report.streams());
     let rows: Vec<Value> = rows
         .map(|row| Value::Object(views::object(out.columns, row, units)))
         .collect();
@@ -109,5 +105,5 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<En
     let result = json!({"rows": rows, "regimes": regimes});
     let work = json!({"points": out.new});
     let bytes = report.envelope(&plan.system, plan.numerics.clone(), result, work, None);
-    written(report.place.write(&bytes), &report.place)
+    report.write(&bytes)
 }

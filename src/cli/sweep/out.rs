@@ -3,7 +3,7 @@
 use super::super::interrupt;
 use super::super::progress::Progress;
 use super::super::report::{Report, unit_names};
-use super::super::words::{count, flagged, several, time};
+use super::super::words::{count, several, time};
 use super::file;
 use crate::error::Result;
 use crate::output::{Format, RowWriter, Status};
@@ -57,7 +57,7 @@ impl<'a> SweepOut<'a> {
             columns,
             to: SweepSink::Nothing,
             torn: 0,
-            keeps: drawn || report.format == Format::Json,
+            keeps: drawn || !report.streams(),
             rows: Vec::new(),
             counts: [0; REGIMES.len()],
             new: 0,
@@ -97,9 +97,9 @@ impl<'a> SweepOut<'a> {
     pub fn open(&mut self, resumed: bool) -> io::Result<()> {
         let report = self.report;
         self.to = match report.format {
-            Format::Json => SweepSink::Nothing,
-            Format::Table => {
-                let names = views::names(self.columns, true);
+            Format::Json if !report.streams() => SweepSink::Nothing,
+            Format::Table | Format::Json => {
+                let names = views::names(self.columns, report.format == Format::Table);
                 let (names, quantities): (Vec<_>, Vec<_>) = names.into_iter().unzip();
                 let units = unit_names(self.plan.system.units(), quantities.into_iter());
                 let remarks = file::remarks(self.plan, self.plan.shard);
@@ -129,7 +129,7 @@ impl<'a> SweepOut<'a> {
     /// The next rows.
     pub fn take(&mut self, rows: &[SweepRow]) -> ControlFlow<()> {
         let told = rows.iter().map(|row| SweepRow {
-            note: row.note.as_deref().map(flagged),
+            note: row.note.as_deref().map(|note| self.report.call.told(note)),
             ..row.clone()
         });
         let rows: &[SweepRow] = &told.collect::<Vec<_>>();
@@ -154,6 +154,7 @@ impl<'a> SweepOut<'a> {
     }
 
     fn write(&mut self, rows: &[SweepRow]) -> io::Result<()> {
+        let table = self.report.format == Format::Table;
         match &mut self.to {
             SweepSink::Nothing => Ok(()),
             SweepSink::Lines(to) => {
@@ -162,7 +163,7 @@ impl<'a> SweepOut<'a> {
             }
             SweepSink::Table(writer) => rows.iter().try_for_each(|row| {
                 let units = self.plan.system.units();
-                writer.row(&views::cells(self.columns, row, units, true))
+                writer.row(&views::cells(self.columns, row, units, table))
             }),
         }
     }

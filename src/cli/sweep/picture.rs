@@ -1,11 +1,10 @@
 //! The picture of a sweep: the map of regimes with bifurcations over it, what there is along one parameter, or the basins of starts.
 
-use super::super::interrupt;
 use super::super::report::Report;
 use super::curves::curves;
 use crate::bifurcation::LocusRow;
 use crate::error::Result;
-use crate::output::plot::{self, Drawing};
+use crate::output::plot::Drawing;
 use crate::scene::{Described, Moving, Quantity, SweepPlan, Swept};
 use crate::sweep::{Grid, Range, SweepRow};
 use crate::views::{self, Basins, GridSide, PointOutcome};
@@ -24,7 +23,7 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
         log: range.log,
     };
     // Who has ended the sweep does not wait for them.
-    let curves = match interrupt::asked() {
+    let curves = match report.call.stops() {
         true => Vec::new(),
         false => curves(&plan.curves, report),
     };
@@ -78,7 +77,7 @@ pub fn draw(plan: &SweepPlan, report: &Report<'_>, rows: &[SweepRow], path: &Pat
             }
         }
     };
-    plot::write(path, &drawing)
+    report.draw(path, &drawing)
 }
 
 /// What runs go through along one parameter.

@@ -1,8 +1,9 @@
 //! `twinslip equilibria --system`.
 
+use crate::cli::Ending;
+use crate::cli::call::Call;
 use crate::cli::report::Report;
 use crate::cli::words::several;
-use crate::cli::{Ending, say, written};
 use crate::equilibrium::Verdict;
 use crate::error::Result;
 use crate::number::Interval;
@@ -14,11 +15,11 @@ use crate::scene::{
 use crate::views;
 use serde_json::{Map, Value, json};
 
-pub fn run(options: &EquilibriaOptions, model: TextModel, words: &[String]) -> Result<Ending> {
+pub fn run(options: &EquilibriaOptions, model: TextModel, call: &Call) -> Result<Ending> {
     let plan = TextEquilibriaPlan::new(options, model)?;
-    let report = Report::new(&options.output, words, &[])?;
+    let report = Report::new(&options.output, call, &[])?;
     if options.output.explain {
-        say(plan.explain());
+        call.say(plan.explain());
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
@@ -70,7 +71,7 @@ fn write(report: &Report<'_>, plan: &TextEquilibriaPlan, found: &TextEquilibria)
             "undecided": undecided,
         });
         let bytes = report.envelope(model, numerics, result, work, None);
-        return written(report.place.write(&bytes), &report.place);
+        return report.write(&bytes);
     }
     report.write_all(
         model.units(),

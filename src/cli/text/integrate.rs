@@ -48,7 +48,7 @@ impl PlannedRun for TextPlan {
         self.observed()
     }
 
-    fn run(&self, out: &mut StreamOut) -> Result<RunOutcome> {
+    fn run(&self, out: &mut StreamOut<'_>) -> Result<RunOutcome> {
         run_text(self, out)
     }
 

@@ -1,19 +1,19 @@
 //! `twinslip law --law FILE`.
 
 use crate::cli::Ending;
+use crate::cli::call::Call;
 use crate::cli::law::{begun, picture, write};
 use crate::error::Result;
-use crate::output::plot;
 use crate::scene::{Described, LawCurve, LawOptions, TextLawPlan, TextLawPoint, TextModel};
 use crate::views;
 
-pub fn run(options: &LawOptions, model: TextModel, words: &[String]) -> Result<Ending> {
+pub fn run(options: &LawOptions, model: TextModel, call: &Call) -> Result<Ending> {
     let plan = TextLawPlan::new(options, model)?;
-    let report = begun(options, words, || plan.explain())?;
+    let report = begun(options, call, || plan.explain())?;
     let (curves, failure) = plan.curves()?;
     if let Some(path) = &options.plot {
         let curves: Vec<LawCurve> = curves.iter().map(plain).collect();
-        plot::write(path, &picture(plan.model.units(), &curves))?;
+        report.draw(path, &picture(plan.model.units(), &curves))?;
     }
     let columns = views::text_law_columns(curves.len() > 1);
     let ending = write(&report, &plan.model, &columns, &curves, failure.as_ref())?;

@@ -1,6 +1,7 @@
 //! `twinslip section` of a system, or with a law, of one's own.
 
 use crate::cli::Ending;
+use crate::cli::call::Call;
 use crate::cli::section::ReturnMap;
 use crate::error::Result;
 use crate::number::polynomial::Crossing;
@@ -11,7 +12,7 @@ use crate::scene::{
 use crate::views;
 use serde_json::{Value, json};
 
-pub fn run(options: &SectionOptions, model: TextModel, words: &[String]) -> Result<Ending> {
+pub fn run(options: &SectionOptions, model: TextModel, call: &Call) -> Result<Ending> {
     let plan = TextSectionPlan::new(options, model)?;
     let map = ReturnMap {
         system: &plan.model,
@@ -21,7 +22,7 @@ pub fn run(options: &SectionOptions, model: TextModel, words: &[String]) -> Resu
     };
     let picture =
         |rows: &RowList| (rows.iter().len() > 1).then(|| views::text_return_map(&plan, rows));
-    map.run(options, words, |out| run_text_section(&plan, out), picture)
+    map.run(options, call, |out| run_text_section(&plan, out), picture)
 }
 
 fn numerics(plan: &TextSectionPlan) -> Value {
