@@ -34,6 +34,7 @@ pub(crate) mod words;
 
 pub use call::Outlet;
 pub use catalogue::{OptionInfo, OptionKind, commands, options};
+pub use report::sundials;
 
 use crate::error::Error;
 use crate::integrate::{VECTORS, allowed_vectors, used_vectors};
