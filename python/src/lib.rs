@@ -1,11 +1,46 @@
-//! The compiled part of the Python package `twinslip`: the module `twinslip._core`.
+//! The bridge to Python: commands that run, their rows as arrays, their options told.
+//!
+//! The Python side, in `python/twinslip`, has the words that users see.
+
+mod run;
+mod table;
 
 use pyo3::prelude::*;
+use run::{Picture, Run};
+use twinslip::cli::{OptionInfo, commands, options};
 
-/// The compiled part of twinslip; what it has is for the package alone.
+/// An option: name, whether it is positional, kind, form, whether it may be given again, default, heading, help.
+type Told = (
+    String,
+    bool,
+    &'static str,
+    String,
+    bool,
+    Option<String>,
+    String,
+    String,
+);
+
+fn told(option: OptionInfo) -> Told {
+    (
+        option.name,
+        option.positional,
+        option.kind.name(),
+        option.form,
+        option.repeated,
+        option.default,
+        option.heading,
+        option.help,
+    )
+}
+
+/// The compiled part of twinslip.
 #[pymodule]
 mod _core {
-    use pyo3::prelude::*;
+    use super::*;
+
+    #[pymodule_export]
+    use super::{Picture, Run};
 
     /// The version of twinslip.
     #[pyfunction]
@@ -13,12 +48,23 @@ mod _core {
         env!("CARGO_PKG_VERSION")
     }
 
-    /// The version of SUNDIALS, or None in the build without C.
+    /// The version of SUNDIALS, or None in a build without it.
     #[pyfunction]
-    fn sundials() -> Option<&'static str> {
-        #[cfg(feature = "sundials")]
-        return Some(twinslip::sundials::version());
-        #[cfg(not(feature = "sundials"))]
-        None
+    fn sundials() -> Option<String> {
+        twinslip::cli::sundials()
+    }
+
+    /// The commands, each with what it does.
+    #[pyfunction]
+    #[pyo3(name = "commands")]
+    fn commands_told() -> Vec<(String, String)> {
+        commands()
+    }
+
+    /// The options of a command.
+    #[pyfunction]
+    #[pyo3(name = "options")]
+    fn options_told(command: &str) -> Vec<Told> {
+        options(command).into_iter().map(told).collect()
     }
 }

@@ -1,8 +1,50 @@
-"""Sliding modes of interacting frictional interfaces, and small systems of one's own."""
+"""Sliding modes of interacting frictional interfaces, and small systems of one's own.
+
+>>> import twinslip
+>>> slab = twinslip.System(driving=10, stiffness=0.14)
+>>> [one.verdict for one in slab.equilibria()]
+['unstable', 'unstable', 'unstable']
+
+Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless ``si=True`` is given.
+"""
 
 from __future__ import annotations
 
 from ._core import sundials, version
+from ._errors import IncompleteWarning, InputError, Interrupted, NumericalError, UndecidedWarning
+from ._values import Record, Uncertain
+from .results import (
+    Branch,
+    Equilibria,
+    LawCurve,
+    Locus,
+    Orbit,
+    Result,
+    Section,
+    Sweep,
+    Trajectory,
+)
+from .system import System
 
 __version__ = version()
-__all__ = ["__version__", "sundials"]
+__all__ = [
+    "Branch",
+    "Equilibria",
+    "IncompleteWarning",
+    "InputError",
+    "Interrupted",
+    "LawCurve",
+    "Locus",
+    "NumericalError",
+    "Orbit",
+    "Record",
+    "Result",
+    "Section",
+    "Sweep",
+    "System",
+    "Trajectory",
+    "UndecidedWarning",
+    "Uncertain",
+    "__version__",
+    "sundials",
+]

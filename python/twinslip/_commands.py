@@ -1,0 +1,722 @@
+"""The commands as methods, with the options of the command line as their arguments.
+
+Written by the script ``generate``: a change here does not last.
+"""
+
+from __future__ import annotations
+
+import os
+from abc import abstractmethod
+from collections.abc import Mapping, Sequence
+from typing import Any, Optional, SupportsFloat, SupportsIndex, Union
+
+import numpy as np
+import numpy.typing as npt
+
+from .results import Branch, Equilibria, LawCurve, Locus, Orbit, Section, Sweep, Trajectory
+
+#: A number.
+Number = Optional[SupportsFloat]
+#: A whole number; 1e6 is one.
+Count = Union[SupportsIndex, float, None]
+#: The name of a file.
+Path = Union[str, "os.PathLike[str]", None]
+#: A name, a number, numbers, or numbers by name.
+Text = Union[
+    str,
+    "os.PathLike[str]",
+    SupportsFloat,
+    Sequence[Any],
+    npt.NDArray[np.float64],
+    Mapping[str, Any],
+    None,
+]
+
+
+def _own(given: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of a method, by name."""
+    own = dict(given)
+    del own["self"]
+    return own
+
+
+class Model:
+    """What slides and how it is driven, or a system of one's own."""
+
+    def __init__(
+        self,
+        law: Path = None,
+        *,
+        driving: Number = None,
+        stiffness: Number = None,
+        system: Path = None,
+        interfaces: Count = None,
+        clusters: Text = None,
+        healing_time: Number = None,
+        residual_strength: Number = None,
+        direct_effect: Number = None,
+        evolution_effect: Number = None,
+        reference_friction: Number = None,
+        damping: Number = None,
+        si: bool = False,
+        shear_modulus: Number = None,
+        shear_wave_speed: Number = None,
+        slip_length: Number = None,
+        reference_rate: Number = None,
+        time_unit: Text = None,
+        normal_stress: Number = None,
+        **parameters: SupportsFloat,
+    ) -> None:
+        """Keeps what is given; the defaults are those of the command line, which are the paper's.
+
+        Parameters
+        ----------
+        law : path or text, optional
+            Friction law, by the paper's equations or others: spinodal (35), bounded (6),
+            regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983). Or a law of one's
+            own: FILE.toml with its slip_rate, in tau and psi, its evolution, in v and psi, and its
+            parameters [default: spinodal]
+        driving : float, optional
+            Driving velocity V_H [V*; m/s with ``si``]
+        stiffness : float, optional
+            Stiffness K = k L/(a sigma) [a sigma/L; k in Pa/m with ``si``]
+        system : path or text, optional
+            A system of one's own in place of interfaces: a TOML file with its states, parameters
+            and rates, or one that is built in, such as lorenz
+        interfaces : int, optional
+            Number N of frictional interfaces, which all share the stress: up to 7 that move on
+            their own, up to 600 in equilibria, up to millions in integrate [default: as many as in
+            all clusters, or 2]
+        clusters : str, number or sequence, optional
+            Equal interfaces in clusters that move alike: how many there are in each, which
+            together are N. States, slip rates and starts then have one number a cluster
+        healing_time : float, optional
+            Healing time R = t** V*/L [default: 100 L/V*; t** in s with ``si``]
+        residual_strength : float, optional
+            Residual strength c of the spinodal law [default: 1e-3]
+        direct_effect : float, optional
+            Direct effect a [default: 0.0349]
+        evolution_effect : float, optional
+            Evolution effect b [default: 0.0489]
+        reference_friction : float, optional
+            Friction coefficient a_v at V* [default: 0.369]
+        damping : float, optional
+            Radiation damping eta V*/(a sigma): tau - eta v stands in place of tau in the law
+            [default: 0; eta in Pa s/m with ``si``]
+        si : bool, optional
+            All input and output in SI units
+        shear_modulus : float, optional
+            With ``si``: G in Pa, for the damping G/(2 c_s)
+        shear_wave_speed : float, optional
+            With ``si``: c_s in m/s, for the damping G/(2 c_s)
+        slip_length : float, optional
+            With ``si``: L in m [default: 0.9e-6]
+        reference_rate : float, optional
+            With ``si``: V* in m/s [default: 1e-6]
+        time_unit : str, number or sequence, optional
+            With ``si``: unit of times in and out (run, period, state of laws in which it is a
+            time); parameters stay in SI [default: s]
+        normal_stress : float, optional
+            With ``si``: sigma in Pa; the paper states none, and it only scales stress and
+            stiffness [default: 1e6]
+        **parameters : float
+            Any other parameter by the name that JSON has; with _1 or _2 after it that of one
+            interface: ``residual_strength_2=0.002``. Those of a system of one's own by their own
+            names.
+
+        Raises
+        ------
+        ValueError
+            Here, if a value is of the wrong kind; by the first command, if it is out of its domain. Its
+            ``field`` is the argument.
+        """
+        self._assign(_own(locals()))
+
+    @abstractmethod
+    def _assign(self, given: dict[str, Any]) -> None:
+        """Keeps the arguments that are given."""
+
+
+class Commands:
+    """The commands."""
+
+    @abstractmethod
+    def _call(self, command: str, own: dict[str, Any]) -> tuple[list[str], Optional[bool]]:
+        """The command line of a command, and whether it shows its progress."""
+
+    def law(
+        self,
+        *,
+        points: Count = None,
+        range: Optional[tuple[float, float]] = None,
+        progress: Optional[bool] = None,
+    ) -> LawCurve:
+        """The steady-state friction law of one interface: tau_ss(V), its extrema, the critical stiffness k_c(V).
+
+        Parameters
+        ----------
+        points : int, optional
+            Number of slip rates, equally spaced in ln V [default: 200]
+        range : (float, float), optional
+            Lowest and highest slip rate [default: 1e-3 to 1e6 V*]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        LawCurve
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return LawCurve(*self._call("law", _own(locals())))
+
+    def integrate(
+        self,
+        *,
+        start: Text = None,
+        draw: Text = None,
+        seed: Count = None,
+        program: Text = None,
+        until: Number = None,
+        points: Count = None,
+        every: Number = None,
+        final_only: bool = False,
+        columns: Text = None,
+        events: bool = False,
+        event_threshold: Number = None,
+        participation: bool = False,
+        estimate_error: bool = False,
+        reference: bool = False,
+        method: Text = None,
+        rtol: Number = None,
+        atol: Number = None,
+        max_steps: Count = None,
+        progress: Optional[bool] = None,
+    ) -> Trajectory:
+        """A run in time: stress, states, slip rates, slips, stick-slip events.
+
+        Parameters
+        ----------
+        start : str, number or sequence, optional
+            TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
+            symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
+            where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
+            state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
+            interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
+            steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the
+            values of all states in their order [default: its table start]
+        draw : str, number or sequence, optional
+            A constant that each of many interfaces has of its own, drawn between A and B,
+            NAME=A:B, or by its logarithm, NAME=A:Blog. NAME is healing_time, residual_strength,
+            evolution_effect, reference_friction or slip_length
+        seed : int, optional
+            With ``draw``: another seed, other constants [default: 1]
+        program : str, number or sequence, optional
+            How V_H changes on the way, from ``driving`` on: "T:V,T:V,..." for steps to V at T,
+            where V = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time,
+            driving and, for ramps, until. Rows then have a column driving, and stand at both sides
+            of a change
+        until : float, optional
+            End of the run; it begins at 0
+        points : int, optional
+            N rows equally spaced in time, both ends included, instead of one at every step
+        every : float, optional
+            A row at every multiple of DT
+        final_only : bool, optional
+            Only the last row: nothing else is stored, and without slip columns nothing but steps
+            is computed
+        columns : str, number or sequence, optional
+            Only these columns, comma-separated; what is not asked for is not computed
+        events : bool, optional
+            Find stick-slip events: times between a maximum and a minimum of stress, when the
+            interfaces together slip faster than V_H. Of three interfaces and more: times in which
+            at least one slips faster than a threshold. In JSON they are result.events; a table on
+            standard output is followed by theirs; in CSV they go to FILE, or beside -o RUN.csv to
+            RUN.events.csv
+        event_threshold : float, optional
+            Count events whose total slip rate exceeds X times V_H [default: 2]; with ``program``
+            times the V_H of that moment, so that a hold, in which all slip is faster than V_H = 0,
+            counts as one. Of three interfaces and more each slips while it is faster than X times
+            V_H/N [default: 10]
+        participation : bool, optional
+            With ``events`` of three interfaces and more: in how many events each interface slips,
+            how far, and its constants that are drawn. In JSON these are result.participation; else
+            they go to FILE, or beside -o RUN.csv to RUN.participation.csv
+        estimate_error : bool, optional
+            Estimate the error of the last row by a second run with 100 times tighter tolerances,
+            below ``rtol`` 1e-12 by the reference
+        reference : bool, optional
+            With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
+            hundred times slower than taylor
+        method : str, number or sequence, optional
+            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
+            [default: auto]
+        rtol : float, optional
+            Relative local error tolerance [default: 1e-8]
+        atol : float, optional
+            Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_steps : int, optional
+            Give up after so many steps [default: 10000000]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Trajectory
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Trajectory(*self._call("integrate", _own(locals())))
+
+    def equilibria(
+        self,
+        *,
+        box: Text = None,
+        start: Text = None,
+        draw: Text = None,
+        seed: Count = None,
+        solver: Text = None,
+        progress: Optional[bool] = None,
+    ) -> Equilibria:
+        """All steady states at a driving velocity, with eigenvalues and stability.
+
+        Parameters
+        ----------
+        box : str, number or sequence, optional
+            With ``system``, or a ``law`` from a file: all steady states in a box, a range for
+            every state: x=-10:10,y=0:5 [default of a law: what its steady states have at rates
+            from V_H/1e6 to V_H]
+        start : str, number or sequence, optional
+            With ``system``: near which values of all states, in their order [default: its table
+            start]. With a ``law`` from a file TAU,PSI1,PSI2 or near-symmetric:EPS. With ``draw``
+            as in integrate [default: near-symmetric:0]
+        draw : str, number or sequence, optional
+            A constant that each of many interfaces has of its own, drawn as in integrate:
+            NAME=A:B, or by its logarithm NAME=A:Blog. One steady state of possibly many is found,
+            that which Newton's method comes to from ``start``, with the number of eigenvalues that
+            grow; all are found for equal interfaces
+        seed : int, optional
+            With ``draw``: another seed, other constants [default: 1]
+        solver : str, number or sequence, optional
+            kinsol or newton, both to the same digits [default: kinsol; newton in a build without
+            SUNDIALS]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Equilibria
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Equilibria(*self._call("equilibria", _own(locals())))
+
+    def orbit(
+        self,
+        *,
+        symmetry: Text = None,
+        start: Text = None,
+        period_guess: Number = None,
+        points: Count = None,
+        crosscheck: Union[bool, str, None] = None,
+        method: Text = None,
+        rtol: Number = None,
+        atol: Number = None,
+        max_steps: Count = None,
+        progress: Optional[bool] = None,
+    ) -> Orbit:
+        """A periodic orbit: period, extremes, Floquet multipliers and stability, each with its error budget.
+
+        Parameters
+        ----------
+        symmetry : str, number or sequence, optional
+            symmetric (both interfaces move alike) or asymmetric; without meaning where they differ
+            [default: symmetric]
+        start : str, number or sequence, optional
+            TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS];
+            or hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is
+            looked for. Of a system from a file: the values of all states in their order [default:
+            its table start]
+        period_guess : float, optional
+            The period, roughly; with it no shorter cycle is taken instead
+        points : int, optional
+            Rows over one period, as those of integrate: N equally spaced in time, from
+            result.orbit.point back to it. A table or CSV then holds these, and in JSON they are
+            result.rows
+        crosscheck : bool or str, optional
+            A second method that computes the orbit again, or none [default: cvode-adams; rodas5p
+            in a build without SUNDIALS]
+        method : str, number or sequence, optional
+            The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-
+            adams, rodas5p, rodas4 or rosenbrock23 [default: auto]
+        rtol : float, optional
+            Relative local error tolerance [default: 1e-15 of taylor, 1e-11 of the others]
+        atol : float, optional
+            Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_steps : int, optional
+            Give up an arc after so many steps [default: 10000000]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Orbit
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Orbit(*self._call("orbit", _own(locals())))
+
+    def section(
+        self,
+        *,
+        start: Text = None,
+        surface: Text = None,
+        upwards: bool = False,
+        returns: Count = None,
+        skip: Count = None,
+        patience: Number = None,
+        lyapunov: bool = False,
+        method: Text = None,
+        rtol: Number = None,
+        atol: Number = None,
+        max_steps: Count = None,
+        progress: Optional[bool] = None,
+    ) -> Section:
+        """The return map of a run to a section of constant stress: periodic, a torus, or chaotic; Lyapunov exponents.
+
+        Parameters
+        ----------
+        start : str, number or sequence, optional
+            TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
+            symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
+            where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
+            state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
+            interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
+            steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the
+            values of all states in their order [default: its table start]
+        surface : str, number or sequence, optional
+            The section of the return map: stress=VALUE, or stress=auto for the steady stress at
+            the mean slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto]. With
+            ``system`` STATE=VALUE, which must be given, and with a ``law`` from a file either
+        upwards : bool, optional
+            Count returns where the stress (with ``system`` the state) rises through the section,
+            instead of where it falls
+        returns : int, optional
+            Returns that are recorded [default: 1000]
+        skip : int, optional
+            Returns that are skipped before, so that the run settles [default: 1000]
+        patience : float, optional
+            Longest time to wait for a return [default: 1e4 L/V* + 1000/(K V_H); 1e4 with
+            ``system``]
+        lyapunov : bool, optional
+            Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns
+            of a run of their own; without them chaos is not recognised
+        method : str, number or sequence, optional
+            Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
+            [default: auto]
+        rtol : float, optional
+            Relative local error tolerance [default: 1e-8]
+        atol : float, optional
+            Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_steps : int, optional
+            Give up after so many steps [default: 10000000]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Section
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Section(*self._call("section", _own(locals())))
+
+    def branch(
+        self,
+        of: Text = None,
+        *,
+        along: Text = None,
+        symmetry: Text = None,
+        at: Text = None,
+        doublings: Count = None,
+        box: Text = None,
+        start: Text = None,
+        period_guess: Number = None,
+        step_limit: Number = None,
+        max_points: Count = None,
+        tolerance: Number = None,
+        crosscheck: Union[bool, str, None] = None,
+        range: Optional[tuple[float, float]] = None,
+        progress: Optional[bool] = None,
+    ) -> Branch:
+        """Equilibria or periodic orbits as V_H or K varies, with their bifurcations.
+
+        Parameters
+        ----------
+        of : str, number or sequence, optional
+            What is followed: equilibria or orbits; in a scene file the key `of`
+        along : str, number or sequence, optional
+            What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a
+            system from a file any of its own [default: driving]
+        symmetry : str, number or sequence, optional
+            symmetric (both interfaces alike), asymmetric or both [default: both]
+        at : str, number or sequence, optional
+            Values of the parameter to land on exactly, comma-separated; their rows have the label
+            UZ
+        doublings : int, optional
+            How many period doublings to follow: the branches of orbits with doubled period are
+            computed too [default: 0]
+        box : str, number or sequence, optional
+            With ``system``: branches of equilibria begin at all in a box, a range for every state:
+            x=-10:10,y=0:5
+        start : str, number or sequence, optional
+            Branches of orbits begin at or near this point of an orbit, at ``from_``:
+            TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
+            equilibria of a ``system`` begin near it [default: the file's table start]
+        period_guess : float, optional
+            With ``start`` of an orbit: its period, roughly
+        step_limit : float, optional
+            Factor on the limits of continuation steps: below 1 there are more points, above 1
+            fewer [default: 1]
+        max_points : int, optional
+            How many points there may be, of all branches or curves together; beyond is a failure,
+            and the points are kept [default: 20000]
+        tolerance : float, optional
+            Relative accuracy of special points, and of all points of a curve [default: 1e-11]
+        crosscheck : bool or str, optional
+            Compute each special point of orbits once more with a second method and report the
+            difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
+        range : (float, float), optional
+            Where the branches begin and end [default: V_H from 1e-3 to 1e6 V*; K from 1e-3 to 1 a
+            sigma/L]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Branch
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Branch(*self._call("branch", _own(locals())))
+
+    def locus(
+        self,
+        of: Text = None,
+        *,
+        symmetry: Text = None,
+        at_driving: Text = None,
+        at_stiffness: Text = None,
+        criticality: bool = False,
+        within: Text = None,
+        range: Text = None,
+        at: Text = None,
+        box: Text = None,
+        start: Text = None,
+        period_guess: Number = None,
+        step_limit: Number = None,
+        max_points: Count = None,
+        tolerance: Number = None,
+        crosscheck: Union[bool, str, None] = None,
+        progress: Optional[bool] = None,
+        **ranges: tuple[float, float],
+    ) -> Locus:
+        """A curve of bifurcations in the plane of V_H and K, with its special points.
+
+        Parameters
+        ----------
+        of : str, number or sequence, optional
+            The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-
+            pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; in a scene
+            file the key `of`
+        symmetry : str, number or sequence, optional
+            symmetric (both interfaces alike), asymmetric or both, where there are both [default:
+            both]
+        at_driving : str, number or sequence, optional
+            Values of V_H to land on exactly, comma-separated, at every crossing
+        at_stiffness : str, number or sequence, optional
+            Values of K to land on exactly, comma-separated, at every crossing
+        criticality : bool, optional
+            Say at every point whether the bifurcation is supercritical or subcritical
+        within : str, number or sequence, optional
+            The two parameters that vary, by their names [default: driving,stiffness]
+        range : str, number or sequence, optional
+            NAME=A,B: the range of one of these
+        at : str, number or sequence, optional
+            NAME=V1,V2,...: values of one of these to land on exactly, at every crossing
+        box : str, number or sequence, optional
+            With ``system``: branches of equilibria begin at all in a box, a range for every state:
+            x=-10:10,y=0:5
+        start : str, number or sequence, optional
+            Branches of orbits begin at or near this point of an orbit, at ``from_``:
+            TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
+            equilibria of a ``system`` begin near it [default: the file's table start]
+        period_guess : float, optional
+            With ``start`` of an orbit: its period, roughly
+        step_limit : float, optional
+            Factor on the limits of continuation steps: below 1 there are more points, above 1
+            fewer [default: 1]
+        max_points : int, optional
+            How many points there may be, of all branches or curves together; beyond is a failure,
+            and the points are kept [default: 20000]
+        tolerance : float, optional
+            Relative accuracy of special points, and of all points of a curve [default: 1e-11]
+        crosscheck : bool or str, optional
+            Compute each special point of orbits once more with a second method and report the
+            difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+        **ranges : (float, float)
+            The window in each parameter of the plane: ``driving=(0.05, 300)``, ``stiffness=(0.02,
+            0.3)``, or any other by its name.
+
+        Returns
+        -------
+        Locus
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Locus(*self._call("locus", _own(locals())))
+
+    def sweep(
+        self,
+        *,
+        driving: Text = None,
+        stiffness: Text = None,
+        grid: Text = None,
+        surface: Text = None,
+        start: Text = None,
+        basin: bool = False,
+        state_1: Text = None,
+        state_2: Text = None,
+        starts: Count = None,
+        seed: Count = None,
+        follow: bool = False,
+        lyapunov: bool = False,
+        rtol: Number = None,
+        max_returns: Count = None,
+        max_steps: Count = None,
+        threads: Count = None,
+        curves: Text = None,
+        progress: Optional[bool] = None,
+    ) -> Sweep:
+        """The regime at every point of a grid of V_H and K or any other parameters, or of every start: resumable, on many threads and machines.
+
+        Parameters
+        ----------
+        driving : str, number or sequence, optional
+            N values of V_H from A to B, both included; with log equally spaced in ln V_H. One
+            value may stand alone
+        stiffness : str, number or sequence, optional
+            M values of K from A to B, both included; with log equally spaced in ln K. One value
+            may stand alone
+        grid : str, number or sequence, optional
+            Values of any other parameter, by the names that JSON has: healing_time=10:1000:30log,
+            and of one interface residual_strength_2=1e-4:1e-2:20log; of a ``system`` any of its
+            own, which may be negative. May be given again: two parameters vary at most, V_H, then
+            K, then these in their order, the first fastest
+        surface : str, number or sequence, optional
+            Of a ``system``: the section whose returns tell the regime, STATE=VALUE, crossed
+            falling; or STATE, in the middle of what that state swings through after the transient
+            [default: the first state]. That of interfaces is tau_ss at the mean slip rate
+        start : str, number or sequence, optional
+            Of a ``system``: the values of all states in their order, where the first run of every
+            point starts [default: its table start]
+        basin : bool, optional
+            A grid of starting states instead of one of parameters: which attractor each leads to,
+            at one V_H and K or of one ``system``
+        state_1 : str, number or sequence, optional
+            With ``basin``: the values of psi1 to start from; or those of any state by its name, as
+            x=-2:2:50 of a ``system``, and stress, state_1 or state_2 of interfaces
+        state_2 : str, number or sequence, optional
+            With ``basin``: the values of psi2 to start from, of a single interface those of
+            stress; or of any other state by its name
+        starts : int, optional
+            Starts at each point, a row for each: the first beside the symmetric steady state, the
+            second with equal interfaces, the third far from it, the others at random (``seed``).
+            Of a ``system`` the first is its start, the others lie at random around it, in each
+            state x within 1 + |x| [default: 1]
+        seed : int, optional
+            Seed of the random starts: the same seed gives the same rows [default: 1]
+        follow : bool, optional
+            Start each point on the attractor found at the one before along the first parameter:
+            shorter transients, and hysteresis shows
+        lyapunov : bool, optional
+            The largest Lyapunov exponent of every point, not only of those whose regime needs it
+        rtol : float, optional
+            Relative local error tolerance [default: 1e-8]
+        max_returns : int, optional
+            A point is undecided after so many returns to its section [default: 2000]
+        max_steps : int, optional
+            A point is undecided after so many steps [default: 10000000]
+        threads : int, optional
+            Threads [default: one per processor]; rows do not depend on them
+        curves : str, number or sequence, optional
+            Bifurcations to draw over the map, comma-separated, as locus has them, or none
+            [default: pitchfork,hopf,orbit-pitchfork,period-doubling,torus]
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Sweep
+            See there.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Sweep(*self._call("sweep", _own(locals())))

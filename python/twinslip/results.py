@@ -1,0 +1,547 @@
+"""What the commands give back.
+
+Every result has its rows as arrays, by the names that CSV has: ``result["time"]`` or ``result.time``. Columns that are numbered, such
+as ``state_1`` and ``state_2``, are also one array, ``result.state``, of shape (rows, interfaces). Where cells have no value, an
+array is masked. What is not in rows is an attribute by the name that JSON has. Numbers with a bound on their error are
+:class:`Uncertain`.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any, Optional
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _core
+from ._errors import IncompleteWarning, InputError, Interrupted, NumericalError, UndecidedWarning
+from ._picture import Picture
+from ._running import LOOK, PATIENCE, Bar, finish
+from ._values import Record, Uncertain, columns_of, value_of
+
+if TYPE_CHECKING:
+    import pandas
+
+__all__ = [
+    "Branch",
+    "Equilibria",
+    "LawCurve",
+    "Locus",
+    "Orbit",
+    "Record",
+    "Result",
+    "Section",
+    "Sweep",
+    "Trajectory",
+    "Uncertain",
+]
+
+Array = npt.NDArray[Any]
+
+
+class Result:
+    """What a command has computed.
+
+    Attributes
+    ----------
+    command : list of str
+        The command line that gives the same.
+    model : Record
+        The parameters.
+    units : Record
+        What quantities are measured in.
+    numerics : Record
+        Method and tolerances.
+    work : Record
+        What it cost: steps, evaluations.
+    messages : list of str
+        What is to be said of it.
+    """
+
+    #: Whether rows are yielded while it runs.
+    _lazy = False
+
+    def __init__(self, words: list[str], progress: Optional[bool] = None) -> None:
+        self._words = words
+        self._progress = progress
+        self._columns: dict[str, tuple[Any, Any]] = {}
+        self._told = Record()
+        self._messages: list[str] = []
+        self._pictures: list[Picture] = []
+        self._ending: Optional[str] = None
+        self._run: Optional[_core.Run] = _core.Run(words)
+        if not self._lazy:
+            self._finish()
+
+    def _finish(self) -> None:
+        """Waits for the end, once."""
+        run = self._run
+        if run is None:
+            return
+        try:
+            finish(run, self._progress, self._words[0])
+        except KeyboardInterrupt:
+            self._take(run)
+            raise Interrupted("interrupted; what was computed is in the result", self) from None
+        self._take(run)
+        failure = run.failure()
+        if failure is not None:
+            kind, field, message = failure
+            if kind == "input":
+                raise InputError(message, field)
+            if kind == "file":
+                raise OSError(message)
+            raise NumericalError(message, self)
+        if self._ending == "undecided":
+            told = "; ".join(self._messages) or "a verdict is undecided"
+            warnings.warn(told, UndecidedWarning, stacklevel=4)
+        elif self._ending == "stuck":
+            warnings.warn("; ".join(self._messages), IncompleteWarning, stacklevel=4)
+
+    def _take(self, run: _core.Run) -> None:
+        """Takes what the run has come to; it is not asked again."""
+        self._run = None
+        self._ending = run.ending()
+        text = run.object()
+        whole = json.loads(text) if text else {}
+        rows = whole.get("result", {}).pop("rows", None) or []
+        self._columns = run.columns() or columns_of(rows)
+        self._told = value_of(whole)
+        self._messages = run.messages()
+        self._pictures = [Picture(drawing) for drawing in run.pictures()]
+
+    @property
+    def complete(self) -> bool:
+        """Whether it came to its end: neither failed, nor interrupted, nor still running."""
+        return self._run is None and self._ending in ("done", "undecided")
+
+    def _whole(self) -> Record:
+        self._finish()
+        return self._told
+
+    @property
+    def command(self) -> list[str]:
+        """The command line that gives the same."""
+        return ["twinslip", *self._words]
+
+    @property
+    def model(self) -> Record:
+        """The parameters."""
+        found: Record = self._whole().get("model", Record())
+        return found
+
+    @property
+    def units(self) -> Record:
+        """What quantities are measured in; empty where there are no units."""
+        found: Record = self._whole().get("units", Record())
+        return found
+
+    @property
+    def numerics(self) -> Record:
+        """Method and tolerances."""
+        found: Record = self._whole().get("numerics", Record())
+        return found
+
+    @property
+    def work(self) -> Record:
+        """What it cost."""
+        found: Record = self._whole().get("work", Record())
+        return found
+
+    @property
+    def messages(self) -> list[str]:
+        """What is to be said of it."""
+        self._finish()
+        return self._messages
+
+    @property
+    def result(self) -> Record:
+        """All that JSON has under ``result``, but for the rows that are columns."""
+        found: Record = self._whole().get("result", Record())
+        return found
+
+    @property
+    def columns(self) -> list[str]:
+        """The names of the columns of rows."""
+        self._finish()
+        return list(self._columns)
+
+    def __len__(self) -> int:
+        """So many rows."""
+        self._finish()
+        first = next(iter(self._columns.values()), ([], None))
+        return len(first[0])
+
+    def __getitem__(self, name: str) -> Array:
+        """A column; of numbered ones all, as an array of shape (rows, number)."""
+        self._finish()
+        if name in self._columns:
+            values, mask = self._columns[name]
+            if isinstance(values, list):
+                values = np.array(values)
+                self._columns[name] = (values, mask)
+            return values if mask is None else np.ma.MaskedArray(values, mask=mask)
+        numbered = [f"{name}_{i}" for i in range(1, len(self._columns) + 1)]
+        found = [self[one] for one in numbered if one in self._columns]
+        if found:
+            masked = any(isinstance(one, np.ma.MaskedArray) for one in found)
+            stacked: Array = np.ma.stack(found, axis=1) if masked else np.column_stack(found)
+            return stacked
+        known = ", ".join(self._columns) or "none"
+        raise KeyError(f"there is no column {name}; there are {known}")
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        result = self.result
+        if name in result:
+            return result[name]
+        try:
+            return self[name]
+        except KeyError as error:
+            known = ", ".join([*result, *self._columns])
+            raise AttributeError(f"there is no {name}; there are {known}") from error
+
+    def __dir__(self) -> list[str]:
+        names = [*self._columns, *self._told.get("result", {})]
+        return [*super().__dir__(), *(name for name in names if name.isidentifier())]
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """The rows as a table of pandas; cells without a value are missing there.
+
+        Raises
+        ------
+        ImportError
+            If there is no pandas.
+        """
+        import pandas
+
+        self._finish()
+        frame = {}
+        for name in self._columns:
+            column = self[name]
+            if isinstance(column, np.ma.MaskedArray):
+                series = pandas.Series(column.data)
+                missing = None if column.dtype.kind in "US" else np.nan
+                frame[name] = series.where(~np.ma.getmaskarray(column), missing)
+            else:
+                frame[name] = pandas.Series(column)
+        return pandas.DataFrame(frame)
+
+    def _drawn(self) -> list[Picture]:
+        self._finish()
+        return self._pictures
+
+    def plot(self, axes: Any = None) -> Any:
+        """Draws it.
+
+        Parameters
+        ----------
+        axes : matplotlib axes or sequence of them, optional
+            Where to draw, as many as the picture has panels; without them a new figure.
+
+        Returns
+        -------
+        list of matplotlib.axes.Axes or Picture
+            The axes; without matplotlib the picture as SVG, which notebooks show.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to draw.
+        """
+        pictures = self._drawn()
+        if not pictures:
+            raise InputError("there is nothing to draw")
+        return pictures[0].plot(axes)
+
+    def svg(self) -> str:
+        """The picture as SVG.
+
+        Raises
+        ------
+        ValueError
+            If there is nothing to draw.
+        """
+        pictures = self._drawn()
+        if not pictures:
+            raise InputError("there is nothing to draw")
+        return pictures[0].svg()
+
+    def _repr_html_(self) -> Optional[str]:
+        pictures = self._drawn()
+        drawn = "".join(picture.svg() for picture in pictures)
+        from html import escape
+
+        return f"<div><code>{escape(repr(self))}</code>{drawn}</div>"
+
+    def _short(self) -> str:
+        """What it is, in a few words."""
+        return f"{len(self)} rows"
+
+    def __repr__(self) -> str:
+        name = type(self).__name__
+        if self._run is not None:
+            return f"<{name}: running>"
+        ended = "" if self.complete else ", not complete"
+        return f"<{name}: {self._short()}{ended}>"
+
+    def __getstate__(self) -> dict[str, Any]:
+        self._finish()
+        return dict(self.__dict__)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+
+
+class _Yielding(Result):
+    """A result whose rows can be had as they are found.
+
+    The computation runs on a thread of its own from the call on. ``for point in result`` yields each row as soon as it is there; all
+    else waits for the end. Ctrl-C while one waits ends the computation, and rows so far stay.
+    """
+
+    _lazy = True
+
+    def __iter__(self) -> Iterator[Record]:
+        known = 0
+        bar = Bar(self._progress, self._words[0])
+        try:
+            while self._run is not None:
+                count, ended = self._run.wait_for_rows(known, LOOK)
+                if count > known:
+                    names, rows = self._run.rows(known, count)
+                    known = count
+                    for row in rows:
+                        yield Record(zip(names, row))
+                elif ended:
+                    self._finish()
+                bar.show(0.0 if self._run is None else self._run.fraction(), known)
+        except KeyboardInterrupt:
+            self._end()
+            raise
+        finally:
+            bar.close()
+        columns = {name: self[name] for name in self._columns}
+        for i in range(known, len(self)):
+            cells = ((name, column[i]) for name, column in columns.items())
+            yield Record(
+                {name: None if cell is np.ma.masked else _plain(cell) for name, cell in cells}
+            )
+
+    def stop(self) -> None:
+        """Ends the computation; rows so far stay."""
+        self._end()
+
+    def _end(self) -> None:
+        if self._run is not None:
+            run = self._run
+            run.stop()
+            run.wait(PATIENCE)
+            self._take(run)
+
+
+def _plain(cell: Any) -> Any:
+    return cell.item() if hasattr(cell, "item") else cell
+
+
+class Trajectory(Result):
+    """A run in time.
+
+    Attributes
+    ----------
+    time : ndarray, shape (rows,)
+        Time [L/V*; s in SI].
+    stress : ndarray, shape (rows,)
+        Stress tau [a sigma; Pa in SI], of interfaces.
+    state, log_state : ndarray, shape (rows, interfaces)
+        psi and ln psi of each interface.
+    slip_rate : ndarray, shape (rows, interfaces)
+        Slip rate of each interface [V*; m/s in SI].
+    slip : ndarray, shape (rows, interfaces)
+        Slip of each interface since the start [L; m in SI].
+    final : Record
+        The last row, with ``error_estimate`` where it was asked for.
+    events : list of Record
+        The stick-slip events, where they were asked for.
+    """
+
+    time: Array
+
+    def _drawn(self) -> list[Picture]:
+        """Points of a picture are not kept unless asked for: the run is made again, which gives the same."""
+        self._finish()
+        if not self._pictures:
+            rows = ("--points", "--every", "--final-only")
+            words = [word for word in self._words if not word.startswith(rows)]
+            again = _core.Run([*words, "--final-only", "--plot=picture.svg"])
+            finish(again, self._progress, self._words[0])
+            self._pictures = [Picture(drawing) for drawing in again.pictures()]
+        return self._pictures
+
+    def _short(self) -> str:
+        last = self.result.get("final")
+        until = f" until {last['time']!r}" if last and "time" in last else ""
+        return f"{len(self)} rows{until}"
+
+
+class Equilibria(Result):
+    """All steady states.
+
+    Attributes
+    ----------
+    equilibria : list of Record
+        Each with its stress, states, slip rates, eigenvalues, verdict and error bounds.
+    """
+
+    def __iter__(self) -> Iterator[Record]:
+        return iter(self.result.get("equilibria", []))
+
+    def __len__(self) -> int:
+        found = self.result
+        return 1 if "equilibrium" in found else len(found.get("equilibria", []))
+
+    def __getitem__(self, name: Any) -> Any:
+        """An equilibrium by its place, or what all have under a name, in a list."""
+        if isinstance(name, (int, np.integer)):
+            return list(self)[int(name)]
+        if isinstance(name, slice):
+            return list(self)[name]
+        every = list(self)
+        if any(name in one for one in every):
+            return [one.get(name) for one in every]
+        return super().__getitem__(name)
+
+    def to_dataframe(self) -> pandas.DataFrame:
+        """One row for each equilibrium."""
+        import pandas
+
+        return pandas.DataFrame([_flat(one) for one in self])
+
+    def _short(self) -> str:
+        verdicts = [str(one.get("verdict")) for one in self]
+        return f"{len(self)}: {', '.join(verdicts)}" if verdicts else f"{len(self)}"
+
+
+def _flat(one: Record) -> dict[str, Any]:
+    """Numbers with bounds in two cells, lists in as many as they have."""
+    cells: dict[str, Any] = {}
+    for name, value in one.items():
+        if isinstance(value, Uncertain):
+            cells[name], cells[f"{name}_uncertainty"] = value
+        elif isinstance(value, np.ndarray) and value.ndim == 1:
+            cells.update({f"{name}_{i}": x for i, x in enumerate(value, 1)})
+        elif isinstance(value, list) and all(isinstance(x, Uncertain) for x in value):
+            for i, x in enumerate(value, 1):
+                cells[f"{name}_{i}"], cells[f"{name}_{i}_uncertainty"] = x
+        else:
+            cells[name] = value
+    return cells
+
+
+class Orbit(Result):
+    """A periodic orbit.
+
+    Attributes
+    ----------
+    period : Uncertain
+        The period [L/V*; s in SI].
+    point : ndarray
+        A point of it: tau and ln psi of each interface, or the states of a system of one's own.
+    multipliers : ndarray of complex
+        Its Floquet multipliers, the trivial one first.
+    log_multipliers : list of Record
+        ln |mu| with its bound, and the angle, of all others.
+    verdict : str
+        ``"stable"``, ``"unstable"`` or ``"undecided"``.
+    others : list of Record
+        Other orbits that were found on the way.
+    """
+
+    period: Uncertain
+
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_"):
+            orbit = self.result.get("orbit", {})
+            if name in orbit:
+                return orbit[name]
+        return super().__getattr__(name)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._told.get("result", {}).get("orbit", {})]
+
+    def _short(self) -> str:
+        orbit = self.result.get("orbit")
+        return "none" if orbit is None else f"period {orbit['period']}, {orbit['verdict']}"
+
+
+class Section(Result):
+    """The return map of a run to a section.
+
+    Attributes
+    ----------
+    regime : str
+        ``"periodic"``, ``"torus"``, ``"chaotic"``, ... or ``"undecided"``.
+    period_of_orbit : int or None
+        How many returns a periodic orbit has.
+    lyapunov : list of Uncertain or None
+        Lyapunov exponents, where they were asked for.
+    """
+
+    regime: str
+
+    def _short(self) -> str:
+        return f"{self.result.get('regime')}, {len(self)} returns"
+
+
+class LawCurve(Result):
+    """The steady-state friction law.
+
+    Attributes
+    ----------
+    slip_rate : ndarray, shape (rows,)
+        V [V*; m/s in SI].
+    stress : ndarray, shape (rows,)
+        tau_ss(V) [a sigma; Pa in SI].
+    critical_stiffness : ndarray, shape (rows,)
+        k_c(V): a stiffer single interface slides steadily.
+    """
+
+
+class Branch(_Yielding):
+    """Branches of equilibria or orbits, with their bifurcations.
+
+    Attributes
+    ----------
+    special : list of Record
+        The bifurcations and ends: ``label`` (LP, HB, BP, PD, TR, ...), where they are, with bounds.
+    """
+
+    special: list[Record]
+
+    def _short(self) -> str:
+        labels = [str(one.get("label")) for one in self.result.get("special", [])]
+        return f"{len(self)} points, special: {', '.join(labels) or 'none'}"
+
+
+class Locus(Branch):
+    """Curves of bifurcations in two parameters, with their special points."""
+
+
+class Sweep(_Yielding):
+    """The regime at every point of a grid, or of every start.
+
+    Attributes
+    ----------
+    regimes : Record
+        How many rows there are of each regime.
+    """
+
+    regimes: Record
+
+    def _short(self) -> str:
+        regimes = self.result.get("regimes", {}).items()
+        return f"{len(self)} points: {', '.join(f'{n} {name}' for name, n in regimes if n)}"

@@ -1,0 +1,177 @@
+"""Systems: what slides, or a small system of one's own."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Optional, Union
+
+from . import _words
+from ._commands import Commands, Model
+from ._errors import InputError
+
+__all__ = ["System"]
+
+
+class System(Commands, Model):
+    def _assign(self, given: dict[str, Any]) -> None:
+        """Keeps the arguments that are given, checked for their type; their domain is checked by each command."""
+        known = _words.model_options()
+        self._given: dict[str, Any] = {}
+        self._parameters: dict[str, Any] = {}
+        parameters = given.pop("parameters")
+        for name, value in given.items():
+            if value is None or value is False:
+                continue
+            _words.words(known[name], value)
+            self._given[name] = value
+        for name, value in parameters.items():
+            if value is None:
+                continue
+            _words.number(name, value)
+            self._parameters[name] = value
+
+    @classmethod
+    def from_file(cls, path: Union[str, os.PathLike[str]], **parameters: float) -> System:
+        """A system of one's own from a TOML file, or one that is built in.
+
+        Parameters
+        ----------
+        path : path or str
+            The file, or the name of a system that is built in, such as ``"lorenz"``.
+        **parameters : float
+            Other values of its parameters.
+
+        Raises
+        ------
+        ValueError
+            By the first command, if the file is not a system; the message names line and column.
+        """
+        return cls(system=path, **parameters)
+
+    @classmethod
+    def from_function(
+        cls,
+        function: Callable[..., Any],
+        states: Sequence[str],
+        parameters: Optional[Mapping[str, float]] = None,
+        *,
+        start: Optional[Mapping[str, float]] = None,
+        name: Optional[str] = None,
+    ) -> System:
+        """A system of one's own from a Python function, which is called once, with symbols.
+
+        Parameters
+        ----------
+        function : callable
+            ``function(x, p)`` returns the rates of all states in their order: x has the states, p the parameters, both by name, x by
+            number too. Arithmetic and functions of numpy make formulas of them; what the function does otherwise, such as ``if``, can't
+            depend on them.
+        states : sequence of str
+            The names of the states.
+        parameters : mapping of str to float, optional
+            The parameters with their values.
+        start : mapping of str to float, optional
+            Where runs start if nothing else is said.
+        name : str, optional
+            What it is called; else as the function.
+
+        Raises
+        ------
+        ValueError
+            For names that can't be used.
+        TypeError
+            For a function that can't be traced.
+        """
+        from . import _trace
+
+        return cls(system=_trace.system_text(function, states, parameters or {}, start=start, name=name))
+
+    def replace(self, **changes: Any) -> System:
+        """The same system with other arguments or parameters; None takes one away."""
+        known = _words.model_options()
+        given = {**self._given, **self._parameters, **changes}
+        named = {name: value for name, value in given.items() if name in known}
+        others = {name: value for name, value in given.items() if name not in known}
+        return type(self)(**named, **others)
+
+    def _call(self, command: str, own: dict[str, Any]) -> tuple[list[str], Optional[bool]]:
+        progress: Optional[bool] = own.pop("progress")
+        known = _words.options(command)
+        for name, value in (own.pop("ranges", None) or {}).items():
+            _windowed(own, name, value)
+        if command in ("branch", "law"):
+            ends = own.pop("range")
+            own["from_"], own["to"] = (None, None) if ends is None else _pair("range", ends)
+        varied = _varied(command, own)
+        words = [command]
+        for name, value in own.items():
+            if known[name].positional:
+                words += _words.words(known[name], value)
+        for name, value in self._given.items():
+            if name in known and name not in varied and own.get(name) is None:
+                words += _words.words(known[name], value)
+        for name, value in self._parameters.items():
+            if name not in varied:
+                words.append(f"--set={name}={_words.number(name, value)}")
+        for name, value in own.items():
+            if not known[name].positional:
+                words += _words.words(known[name], value)
+        return words + _pictured(command, own), progress
+
+    def __repr__(self) -> str:
+        given = {**self._given, **self._parameters}
+        system = given.get("system")
+        if isinstance(system, str) and "\n" in system:
+            given["system"] = "..."
+        return f"System({', '.join(f'{name}={value!r}' for name, value in given.items())})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, System):
+            return NotImplemented
+        return (self._given, self._parameters) == (other._given, other._parameters)
+
+    __hash__ = None  # type: ignore[assignment]
+
+
+def _pair(field: str, ends: Any) -> tuple[Any, Any]:
+    try:
+        first, last = ends
+    except (TypeError, ValueError):
+        raise InputError(f"{field} is {ends!r}, but must be two numbers", field) from None
+    return first, last
+
+
+def _windowed(own: dict[str, Any], name: str, ends: Any) -> None:
+    """The window of a curve in one parameter, as the option that it has."""
+    pair = _pair(name, ends)
+    plane = own.get("within")
+    if plane is None and name in ("driving", "stiffness"):
+        own[f"{name}_range"] = pair
+    else:
+        own["range"] = {**(own.get("range") or {}), name: pair}
+
+
+def _varied(command: str, own: dict[str, Any]) -> list[str]:
+    """The parameters that a command varies."""
+    if command == "branch":
+        return [str(own.get("along") or "driving")]
+    if command == "locus":
+        plane = own.get("within") or "driving,stiffness"
+        names = plane.split(",") if isinstance(plane, str) else list(plane)
+        return [str(name).strip() for name in names]
+    if command == "sweep":
+        grid = own.get("grid")
+        return list(grid) if isinstance(grid, Mapping) else []
+    return []
+
+
+def _pictured(command: str, own: dict[str, Any]) -> list[str]:
+    """What asks for a picture, where that costs nothing to speak of beside the computation."""
+    picture = "--plot=picture.svg"
+    if command in ("integrate", "equilibria"):
+        return []
+    if command != "sweep":
+        return [picture]
+    # Curves over a map take longer than a small map does.
+    return [picture] if own.get("curves") else [picture, "--curves=none"]
