@@ -2,12 +2,14 @@
 //!
 //! The Python side, in `python/twinslip`, has the words that users see.
 
+mod ivp;
 mod run;
 mod table;
 
+use ivp::{IvpRun, Solution, solve_ivp};
 use pyo3::prelude::*;
 use run::{Picture, Run};
-use twinslip::cli::{OptionInfo, commands, options};
+use twinslip::cli::{OptionInfo, commands, options, scene_words};
 
 /// An option: name, whether it is positional, kind, form, whether it may be given again, default, heading, help.
 type Told = (
@@ -40,7 +42,7 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::{Picture, Run};
+    use super::{IvpRun, Picture, Run, Solution, solve_ivp};
 
     /// The version of twinslip.
     #[pyfunction]
@@ -52,6 +54,20 @@ mod _core {
     #[pyfunction]
     fn sundials() -> Option<String> {
         twinslip::cli::sundials()
+    }
+
+    /// The words of a scene, without what says where results go.
+    #[pyfunction]
+    #[pyo3(name = "scene")]
+    fn scene_told(path: std::path::PathBuf) -> PyResult<Vec<String>> {
+        scene_words(&path)
+            .map_err(|error| pyo3::exceptions::PyValueError::new_err(error.to_string()))
+    }
+
+    /// The scenes that are built in.
+    #[pyfunction]
+    fn scenes() -> Vec<&'static str> {
+        twinslip::scene::shipped_names()
     }
 
     /// The commands, each with what it does.

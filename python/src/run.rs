@@ -4,9 +4,11 @@ use crate::table::{Column, Table, Values};
 use numpy::IntoPyArray;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
+use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyBytes, PyDict, PyList};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -68,7 +70,7 @@ impl Failure {
 }
 
 /// The field that an error of the input names.
-fn field(error: &Error) -> Option<String> {
+pub fn field(error: &Error) -> Option<String> {
     let plain = |name: &str| name.trim_start_matches('-').replace('-', "_");
     match error {
         Error::Parameter { name, .. } => Some(plain(name)),
@@ -95,6 +97,8 @@ struct Shared {
     fraction: AtomicU64,
     /// Whether somebody waits for rows, and not only for the end.
     watched: AtomicBool,
+    /// The file of this module.
+    program: PathBuf,
 }
 
 impl Shared {
@@ -134,6 +138,18 @@ impl Outlet for Shared {
     fn stop(&self) -> &AtomicBool {
         &self.stop
     }
+
+    fn program(&self) -> PathBuf {
+        self.program.clone()
+    }
+}
+
+/// The file of this module.
+fn file(py: Python<'_>) -> PyResult<&PathBuf> {
+    static FILE: PyOnceLock<PathBuf> = PyOnceLock::new();
+    FILE.get_or_try_init(py, || {
+        py.import("twinslip._core")?.getattr("__file__")?.extract()
+    })
 }
 
 /// A command that runs, or has run.
@@ -151,8 +167,11 @@ pub struct Run {
 impl Run {
     /// Begins at once, on a thread of its own.
     #[new]
-    fn new(words: Vec<String>) -> PyResult<Self> {
-        let shared = Arc::new(Shared::default());
+    fn new(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
+        let shared = Arc::new(Shared {
+            program: file(py)?.clone(),
+            ..Shared::default()
+        });
         let own = Arc::clone(&shared);
         let work = move || {
             let ended = catch_unwind(AssertUnwindSafe(|| run_into(&words, own.clone())));
@@ -301,7 +320,9 @@ impl Run {
     fn pictures(&self) -> Vec<Picture> {
         let kept = self.shared.kept();
         let pictures = kept.pictures.iter();
-        pictures.map(|drawing| Picture(Arc::clone(drawing))).collect()
+        pictures
+            .map(|drawing| Picture(Arc::clone(drawing)))
+            .collect()
     }
 }
 
@@ -333,4 +354,3 @@ impl Picture {
 fn told(error: Error) -> PyErr {
     pyo3::exceptions::PyValueError::new_err(error.to_string())
 }
-

@@ -13,6 +13,8 @@ from __future__ import annotations
 from ._core import sundials, version
 from ._errors import IncompleteWarning, InputError, Interrupted, NumericalError, UndecidedWarning
 from ._values import Record, Uncertain
+from .ivp import IvpResult, OdeSolution, solve_ivp
+from .paper import figure, reproduce, run, scenes
 from .results import (
     Branch,
     Equilibria,
@@ -33,9 +35,11 @@ __all__ = [
     "IncompleteWarning",
     "InputError",
     "Interrupted",
+    "IvpResult",
     "LawCurve",
     "Locus",
     "NumericalError",
+    "OdeSolution",
     "Orbit",
     "Record",
     "Result",
@@ -46,5 +50,10 @@ __all__ = [
     "UndecidedWarning",
     "Uncertain",
     "__version__",
+    "figure",
+    "reproduce",
+    "run",
+    "scenes",
+    "solve_ivp",
     "sundials",
 ]

@@ -11,7 +11,7 @@ from __future__ import annotations
 import json
 import warnings
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, NoReturn, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -89,12 +89,7 @@ class Result:
         self._take(run)
         failure = run.failure()
         if failure is not None:
-            kind, field, message = failure
-            if kind == "input":
-                raise InputError(message, field)
-            if kind == "file":
-                raise OSError(message)
-            raise NumericalError(message, self)
+            raised(failure, self)
         if self._ending == "undecided":
             told = "; ".join(self._messages) or "a verdict is undecided"
             warnings.warn(told, UndecidedWarning, stacklevel=4)
@@ -342,6 +337,22 @@ class _Yielding(Result):
             run.stop()
             run.wait(PATIENCE)
             self._take(run)
+
+
+def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) -> NoReturn:
+    """Raises what a computation failed with.
+
+    Raises
+    ------
+    ValueError, OSError, NumericalError
+        By its kind.
+    """
+    kind, field, message = failure
+    if kind == "input":
+        raise InputError(message, field)
+    if kind == "file":
+        raise OSError(message)
+    raise NumericalError(message, result)
 
 
 def _plain(cell: Any) -> Any:

@@ -119,6 +119,20 @@ class System(Commands, Model):
                 words += _words.words(known[name], value)
         return words + _pictured(command, own), progress
 
+    def _solver_words(
+        self, method: Any, rtol: Any, atol: Any, max_steps: Any
+    ) -> list[str]:
+        """What is integrated, and how, in the words of ``integrate``."""
+        known = _words.options("integrate")
+        own = {"method": method, "rtol": rtol, "atol": atol, "max_steps": max_steps}
+        words = ["integrate"]
+        for name, value in self._given.items():
+            words += _words.words(known[name], value)
+        words += [f"--set={name}={_words.number(name, x)}" for name, x in self._parameters.items()]
+        for name, value in own.items():
+            words += _words.words(known[name], value)
+        return words
+
     def __repr__(self) -> str:
         given = {**self._given, **self._parameters}
         system = given.get("system")

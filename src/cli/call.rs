@@ -6,6 +6,7 @@ use super::words::flagged;
 use crate::output::plot::Drawing;
 use crate::output::{Cell, RowWriter};
 use std::io;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -25,6 +26,8 @@ pub trait Outlet: Send + Sync {
     fn reached(&self, fraction: f64);
     /// Set when the computation is to end; rows so far stay.
     fn stop(&self) -> &AtomicBool;
+    /// The file of the program that computes: what another one has left is not trusted.
+    fn program(&self) -> PathBuf;
 }
 
 /// A call of a command.
@@ -87,6 +90,21 @@ impl Call {
         match &self.outlet {
             Some(outlet) => outlet.stop(),
             None => interrupt::flag(),
+        }
+    }
+
+    /// What stays of a run that is interrupted, in words.
+    pub fn keeps(&self, what: impl Into<String>) {
+        if self.outlet.is_none() {
+            interrupt::keeps(what);
+        }
+    }
+
+    /// The file of the program that computes.
+    pub fn program(&self) -> io::Result<PathBuf> {
+        match &self.outlet {
+            Some(outlet) => Ok(outlet.program()),
+            None => std::env::current_exe(),
         }
     }
 

@@ -43,6 +43,7 @@ use call::Call;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
@@ -163,15 +164,7 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
         words: std::iter::once("twinslip".into()).chain(words).collect(),
         outlet: None,
     };
-    let ended = allowed_vectors().and_then(|_| match &line.command {
-        CliCommand::Compute(command) => compute(command, &call),
-        CliCommand::Run(options) => run::run(options, &call),
-        CliCommand::Merge(options) => merge::run(options),
-        CliCommand::Reproduce(options) => reproduce::run(options),
-        CliCommand::Figure(options) => reproduce::run_figure(options),
-        CliCommand::Completions(options) => shell::completions(options),
-        CliCommand::Man(options) => shell::man(options),
-    });
+    let ended = run_line(&line.command, &call);
     match ended {
         Ok(Ending::Done) => ExitCode::SUCCESS,
         Ok(Ending::Stuck) => ExitCode::from(FAILED),
@@ -191,6 +184,48 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     }
 }
 
+fn run_line(command: &CliCommand, call: &Call) -> Result<Ending, Error> {
+    allowed_vectors()?;
+    match command {
+        CliCommand::Compute(command) => compute(command, call),
+        CliCommand::Run(options) => run::run(options, call),
+        CliCommand::Merge(options) => merge::run(options),
+        CliCommand::Reproduce(options) => reproduce::run(options, call),
+        CliCommand::Figure(options) => reproduce::run_figure(options, call),
+        CliCommand::Completions(options) => shell::completions(options),
+        CliCommand::Man(options) => shell::man(options),
+    }
+}
+
+/// A command that computes, from the words that follow the name of the program.
+///
+/// # Errors
+/// [`Error::Input`] for words that are no such command.
+pub fn parsed(words: &[String]) -> Result<scene::Command, Error> {
+    let words: Vec<String> = std::iter::once("twinslip".to_owned())
+        .chain(words.iter().cloned())
+        .collect();
+    scene::Command::of_words(&words).map_err(Error::Input)
+}
+
+/// The words of a scene, one that is built in or a file, without what says where results go.
+///
+/// # Errors
+/// [`Error::Input`] with file and line.
+pub fn scene_words(scene: &Path) -> Result<Vec<String>, Error> {
+    const PLACES: [&str; 8] = [
+        "output",
+        "format",
+        "plot",
+        "plot-events",
+        "quiet",
+        "force",
+        "explain",
+        "resume",
+    ];
+    Ok(run::read(scene)?.arguments(&PLACES))
+}
+
 /// Runs a command of another program: the words that follow the name of this one, without any output of its own. All that `outlet` does not
 /// take is given back: how it ended, or why it did not.
 ///
@@ -200,12 +235,18 @@ pub fn run_into(words: &[String], outlet: Arc<dyn Outlet>) -> Result<Ending, Err
     let words: Vec<String> = std::iter::once("twinslip".to_owned())
         .chain(words.iter().cloned())
         .collect();
-    let command = scene::Command::of_words(&words).map_err(Error::Input)?;
-    allowed_vectors()?;
     let call = Call {
         words,
         outlet: Some(outlet),
     };
+    // The paper is no scene.
+    if ["reproduce", "figure"].contains(&call.words.get(1).map_or("", String::as_str)) {
+        let line = CommandLine::try_parse_from(&call.words);
+        let line = line.map_err(|error| Error::Input(scene::sentence(&error)))?;
+        return run_line(&line.command, &call);
+    }
+    let command = parsed(&call.words[1..])?;
+    allowed_vectors()?;
     compute(&command, &call)
 }
 

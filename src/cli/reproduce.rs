@@ -1,9 +1,9 @@
 //! `twinslip reproduce` and `twinslip figure`: the whole paper again, or a part of it.
 
-use super::interrupt;
+use super::Ending;
+use super::call::Call;
 use super::report::sundials;
 use super::words::{count, time};
-use super::{Ending, say};
 use crate::error::{Error, Result};
 use crate::integrate::used_vectors;
 use crate::paper::{Done, Going, PRODUCTS, Product, Reached, RunEvent, Selection, hash, reproduce};
@@ -76,7 +76,7 @@ enum DirectoryKind {
     Files,
 }
 
-pub fn run(options: &ReproduceOptions) -> Result<Ending> {
+pub fn run(options: &ReproduceOptions, call: &Call) -> Result<Ending> {
     let products = match &options.only {
         Some(names) => Product::listed(names)?,
         None => PRODUCTS.to_vec(),
@@ -88,16 +88,18 @@ pub fn run(options: &ReproduceOptions) -> Result<Ending> {
         DirectoryKind::Whole {
             force: options.force,
         },
+        call,
     )
 }
 
-pub fn run_figure(options: &FigureOptions) -> Result<Ending> {
+pub fn run_figure(options: &FigureOptions, call: &Call) -> Result<Ending> {
     let product = Product::named(&options.number)?;
     make(
         &options.out,
         vec![product],
         &options.making,
         DirectoryKind::Files,
+        call,
     )
 }
 
@@ -106,6 +108,7 @@ fn make(
     products: Vec<&'static Product>,
     making: &Making,
     kept: DirectoryKind,
+    call: &Call,
 ) -> Result<Ending> {
     threads_checked(making.threads)?;
     let machine = machine();
@@ -117,27 +120,27 @@ fn make(
         report: kept != DirectoryKind::Files,
         command: |product| format!("twinslip reproduce --only {}", product.id),
         threads: making.threads,
-        program: program(&machine),
+        program: program(&machine, call),
         machine,
     };
     let begun = Instant::now();
-    let bar = Bar::new(making.quiet);
-    interrupt::keeps(match kept {
+    let bar = Bar::new(making.quiet, call);
+    call.keeps(match kept {
         DirectoryKind::Whole { .. } => format!(
             "what was finished is in {} and is not made again by the same command",
             out.display()
         ),
         DirectoryKind::Files => "the figure was not finished, and no file was written".into(),
     });
-    interrupt::watch();
-    let done = reproduce(&order, interrupt::flag(), &|told| bar.tell(told));
-    interrupt::unwatch();
+    call.watch();
+    let done = reproduce(&order, call.flag(), &|told| bar.tell(told));
+    call.unwatch();
     bar.finish();
     let done = done?;
     if !making.quiet {
-        summary(&done, &order, begun.elapsed());
+        summary(&done, &order, begun.elapsed(), call);
     }
-    ending(done)
+    ending(done, call)
 }
 
 /// What the manifest says: versions, and the class of machine.
@@ -161,8 +164,8 @@ fn machine() -> BTreeMap<String, String> {
 }
 
 /// What decides about the numbers: all of that but the number of processors, and the program itself, to the byte.
-fn program(machine: &BTreeMap<String, String>) -> String {
-    let itself = std::env::current_exe().and_then(std::fs::read);
+fn program(machine: &BTreeMap<String, String>, call: &Call) -> String {
+    let itself = call.program().and_then(std::fs::read);
     let mut text = itself.map_or_else(|_| String::new(), |bytes| hash(&bytes));
     for (name, value) in machine.iter().filter(|(name, _)| *name != "processors") {
         text += &format!("; {name} {value}");
@@ -170,16 +173,16 @@ fn program(machine: &BTreeMap<String, String>) -> String {
     text
 }
 
-fn summary(done: &Done, order: &Selection, wall: Duration) {
+fn summary(done: &Done, order: &Selection, wall: Duration, call: &Call) {
     for (product, seconds) in &done.made {
-        say(format_args!(
+        call.say(format_args!(
             "{:<10} {seconds:7.2} s  {}",
             product.id, product.title
         ));
     }
     if !done.stood.is_empty() {
         let ids: Vec<&str> = done.stood.iter().map(|product| product.id).collect();
-        say(format_args!(
+        call.say(format_args!(
             "up to date, not made again: {}",
             ids.join(", ")
         ));
@@ -189,7 +192,7 @@ fn summary(done: &Done, order: &Selection, wall: Duration) {
         _ => "; the times above are of the processor, and count a piece for each that shows it",
     };
     let report = if order.report { ", report.html" } else { "" };
-    say(format_args!(
+    call.say(format_args!(
         "{} made in {}{report}, in the directory {}{of_processor}",
         count(done.made.len()),
         time(wall.as_secs_f64()),
@@ -198,7 +201,7 @@ fn summary(done: &Done, order: &Selection, wall: Duration) {
 }
 
 /// One clear error: what can't be written goes before what was interrupted for that.
-fn ending(done: Done) -> Result<Ending> {
+fn ending(done: Done, call: &Call) -> Result<Ending> {
     let file = |error: &Error| matches!(error, Error::File { .. });
     if let Some((_, error)) = done.failed.iter().find(|(_, error)| file(error)) {
         return Err(error.clone());
@@ -208,7 +211,7 @@ fn ending(done: Done) -> Result<Ending> {
         if *error == Error::Interrupted {
             ending = Ending::Interrupted;
         } else {
-            say(format_args!("error: {}: {error}", product.id));
+            call.say(format_args!("error: {}: {error}", product.id));
             if ending == Ending::Done {
                 ending = Ending::Stuck;
             }
@@ -218,15 +221,18 @@ fn ending(done: Done) -> Result<Ending> {
 }
 
 /// What is being made, on a terminal.
-struct Bar {
+struct Bar<'a> {
+    call: &'a Call,
+    /// How many there are, and how many have ended.
+    count: Mutex<(usize, usize)>,
     bar: ProgressBar,
     /// What goes on now, by its name.
     going: Mutex<BTreeMap<String, String>>,
 }
 
-impl Bar {
-    fn new(quiet: bool) -> Self {
-        let bar = if quiet || !std::io::stderr().is_terminal() {
+impl<'a> Bar<'a> {
+    fn new(quiet: bool, call: &'a Call) -> Self {
+        let bar = if quiet || call.outlet.is_some() || !std::io::stderr().is_terminal() {
             ProgressBar::hidden()
         } else {
             let style =
@@ -237,12 +243,27 @@ impl Bar {
             bar
         };
         Bar {
+            call,
+            count: Mutex::default(),
             bar,
             going: Mutex::default(),
         }
     }
 
     fn tell(&self, told: RunEvent<'_>) {
+        if let Some(outlet) = &self.call.outlet {
+            let mut count = self.count.lock().expect("no thread panicked");
+            match told {
+                RunEvent::Begun { products, pieces } => count.0 = products + pieces,
+                RunEvent::Made(..) => count.1 += 1,
+                RunEvent::Piece(Going {
+                    reached: Reached::Whole,
+                    ..
+                }) => count.1 += 1,
+                _ => (),
+            }
+            outlet.reached(count.1 as f64 / count.0.max(1) as f64);
+        }
         if self.bar.is_hidden() {
             return;
         }

@@ -39,9 +39,8 @@ pub fn run(options: &RunOptions, call: &Call) -> Result<Ending> {
         Some(path) if !options.list => path,
         _ => return said(&list()),
     };
-    let built_in = built_in(path)?;
     if options.show {
-        return match built_in {
+        return match built_in(path)? {
             Some((_, text)) => said(text),
             None => Err(Error::Input(format!(
                 "--show is for scenes that are built in, and {} is a file",
@@ -49,10 +48,7 @@ pub fn run(options: &RunOptions, call: &Call) -> Result<Ending> {
             ))),
         };
     }
-    let scene = match built_in {
-        Some((name, text)) => SceneFile::parse(&name, text, &Command::program())?,
-        None => SceneFile::read(path, &Command::program())?,
-    };
+    let scene = read(path)?;
     let (mut replaced, mut added) = (Vec::new(), Vec::new());
     let texts = [
         ("plot", text(&options.plot)),
@@ -85,6 +81,17 @@ pub fn run(options: &RunOptions, call: &Call) -> Result<Ending> {
         error @ (Error::Parameter { .. } | Error::Input(_)) => scene.locate(&error),
         error => error,
     })
+}
+
+/// A scene that is built in, or a file.
+///
+/// # Errors
+/// [`Error::File`] if it can't be read, [`Error::Input`] with file and line for what is wrong in it.
+pub fn read(path: &Path) -> Result<SceneFile> {
+    match built_in(path)? {
+        Some((name, text)) => SceneFile::parse(&name, text, &Command::program()),
+        None => SceneFile::read(path, &Command::program()),
+    }
 }
 
 /// The name and text of the scene that is built in, if there is no such file: `fig12`, `fig12.toml` or `scenes/fig12.toml`.

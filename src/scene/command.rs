@@ -73,13 +73,16 @@ impl Command {
 
     /// A command line, the name of the program first; what is wrong with it as one sentence.
     pub(crate) fn of_words(words: &[String]) -> Result<Self, String> {
-        let line = SceneLine::try_parse_from(words).map_err(|error| {
-            // What stands before the first empty line is the sentence; advice on flags follows, which not everybody has.
-            let text = error.to_string();
-            let lines = text.lines().take_while(|line| !line.is_empty());
-            let sentence = lines.map(str::trim).collect::<Vec<_>>().join(" ");
-            sentence.trim_start_matches("error: ").to_owned()
-        })?;
+        let line = SceneLine::try_parse_from(words).map_err(|error| sentence(&error))?;
         Ok(line.command)
     }
+}
+
+/// What is wrong with a command line. What stands before the first empty line is the sentence; advice on flags follows, which not everybody
+/// has.
+pub(crate) fn sentence(error: &clap::Error) -> String {
+    let text = error.to_string();
+    let lines = text.lines().take_while(|line| !line.is_empty());
+    let sentence = lines.map(str::trim).collect::<Vec<_>>().join(" ");
+    sentence.trim_start_matches("error: ").to_owned()
 }

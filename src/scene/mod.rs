@@ -59,6 +59,7 @@ mod units;
 pub use branch::{BranchKind, BranchParameter, BranchPlan};
 pub use column::{CellValue, Column};
 pub use command::Command;
+pub(crate) use command::sentence;
 pub use continuation::{BranchOptions, ContinuationOptions, LocusOptions, SearchOptions};
 pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, EquilibriaPlan};
 pub use event::SlipEvent;

@@ -34,7 +34,7 @@ pub fn curves<'a>(plans: &'a [LocusPlan], report: &Report<'_>) -> Vec<(&'a str, 
         .enumerate()
         .map(|(i, locus)| {
             let title = locus.curve.title;
-            let kept = KeptCurve::of(locus);
+            let kept = KeptCurve::of(locus, report);
             if let Some(points) = kept.as_ref().and_then(KeptCurve::read) {
                 return (title, points);
             }
@@ -118,8 +118,8 @@ struct KeptCurve {
 }
 
 impl KeptCurve {
-    fn of(locus: &LocusPlan) -> Option<Self> {
-        let program = std::env::current_exe().and_then(fs::metadata).ok()?;
+    fn of(locus: &LocusPlan, report: &Report<'_>) -> Option<Self> {
+        let program = report.call.program().and_then(fs::metadata).ok()?;
         let made = program.modified().ok()?.duration_since(UNIX_EPOCH).ok()?;
         let key = format!(
             "twinslip {} of {} bytes made at {}: {locus:?}",
