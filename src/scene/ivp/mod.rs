@@ -32,11 +32,12 @@
 
 mod chart;
 mod event;
+mod outcome;
 mod plan;
 mod run;
 mod solution;
 
 pub use event::{Halt, IvpEvent};
+pub use outcome::{IvpAsked, IvpError, IvpOutcome};
 pub use plan::IvpPlan;
-pub use run::{IvpAsked, IvpError, IvpOutcome};
 pub use solution::{IvpParts, IvpSolution};
