@@ -104,13 +104,7 @@ impl IvpSolution {
             }
             None => {
                 let length = step.t1 - step.t0;
-                let values: Vec<_> = (0..=degree)
-                    .map(|k| step.dense(step.t0 + 0.5 * length * (1.0 + node(k, degree))))
-                    .collect();
-                for i in 0..n {
-                    let of_one = (0..=degree).map(|j| transformed(j, &values, i));
-                    self.coefficients.extend(of_one);
-                }
+                self.coefficients.extend(interpolated(step, n, degree));
                 Piece {
                     begin: DoubleDouble::from(step.t0),
                     length,
@@ -271,23 +265,41 @@ impl IvpSolution {
     }
 }
 
-/// The k-th of the Chebyshev points of this degree, within (-1, 1).
-fn node(k: usize, degree: usize) -> f64 {
-    angle(k, degree).cos()
-}
-
-fn angle(k: usize, degree: usize) -> f64 {
-    PI * (2 * k + 1) as f64 / (2 * degree + 2) as f64
-}
-
-/// The j-th Chebyshev coefficient of a variable from its values at the points.
-fn transformed(j: usize, values: &[crate::field::Vector], variable: usize) -> f64 {
-    let degree = values.len() - 1;
-    let terms = values.iter().enumerate();
-    let sum: f64 = terms
-        .map(|(k, y)| y[variable] * (j as f64 * angle(k, degree)).cos())
-        .sum();
-    sum * if j == 0 { 1.0 } else { 2.0 } / values.len() as f64
+/// The Chebyshev coefficients of n variables over a step, from the dense output at as many points as its degree needs.
+fn interpolated(step: &AnyStep<'_>, n: usize, degree: usize) -> Vec<f64> {
+    /// Shorter steps, in spacings of the times around them, have no room for the points.
+    const ROOM: f64 = 1e4;
+    /// What is left of the errors of the points falls by more than 10 each time.
+    const CORRECTIONS: usize = 3;
+    let (t0, length) = (step.t0, step.t1 - step.t0);
+    let angle = |k: usize| PI * (2 * k + 1) as f64 / (2 * degree + 2) as f64;
+    let times = (0..=degree).map(|k| t0 + 0.5 * length * (1.0 + angle(k).cos()));
+    let times: Vec<f64> = times.collect();
+    let spacing = f64::EPSILON * t0.abs().max(step.t1.abs());
+    // Times are rounded, in a short step by much of it: the polynomial is corrected by what it is off where the points really are.
+    let corrections = if length.abs() > ROOM * spacing {
+        CORRECTIONS
+    } else {
+        0
+    };
+    let values: Vec<_> = times.iter().map(|&t| step.dense(t)).collect();
+    let mut coefficients = vec![0.0; n * (degree + 1)];
+    for (i, of_one) in coefficients.chunks_mut(degree + 1).enumerate() {
+        let mut off: Vec<f64> = values.iter().map(|y| y[i]).collect();
+        for correction in 0..=corrections {
+            for (j, c) in of_one.iter_mut().enumerate() {
+                let terms = off.iter().enumerate();
+                let sum: f64 = terms.map(|(k, y)| y * (j as f64 * angle(k)).cos()).sum();
+                *c += sum * if j == 0 { 1.0 } else { 2.0 } / (degree + 1) as f64;
+            }
+            if correction < corrections {
+                for ((off, y), t) in off.iter_mut().zip(&values).zip(&times) {
+                    *off = y[i] - clenshaw(of_one, 2.0 * (t - t0) / length - 1.0);
+                }
+            }
+        }
+    }
+    coefficients
 }
 
 /// A sum of Chebyshev polynomials (Clenshaw).
