@@ -53,6 +53,9 @@ mod figures_of_laws;
 mod friction;
 mod guide;
 mod internals;
+mod ivp;
+mod ivp_events;
+mod ivp_solutions;
 #[cfg(target_arch = "x86_64")]
 mod lanes;
 mod law_bifurcations;

@@ -75,6 +75,8 @@ pub trait StepSeries {
     fn slip(&self, interface: usize, time: f64) -> f64;
     /// The time from the beginning of the step to a time of the solution ([`Expansion::since_begin`]).
     fn since_begin(&self, time: f64) -> f64;
+    /// The state that these values of the variables stand for ([`Expansion::chart`]).
+    fn state_of(&self, variables: &[f64]) -> Vector;
     /// Appends the zeros of a section within this step to `found` ([`Expansion::crossings`]).
     fn crossings(
         &self,
@@ -120,6 +122,10 @@ impl<const N: usize> StepSeries for Expansion<N> {
 
     fn since_begin(&self, time: f64) -> f64 {
         self.since_begin(time)
+    }
+
+    fn state_of(&self, variables: &[f64]) -> Vector {
+        Vector::from_row_slice(&(self.chart)(std::array::from_fn(|i| variables[i])))
     }
 
     fn crossings(

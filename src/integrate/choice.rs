@@ -125,6 +125,25 @@ impl Choice {
         }
     }
 
+    /// The highest degree in time of the dense output of steps that have no series.
+    pub(crate) fn dense_degree(self) -> usize {
+        match self {
+            // Of either of the two methods that it takes beside Taylor's.
+            Choice::Auto => Choice::Rosenbrock(RosenbrockMethod::Rodas5P).dense_degree(),
+            // None is without.
+            Choice::Taylor => 0,
+            Choice::Rosenbrock(method) => {
+                let weights = method.tableau().d;
+                let used = weights.iter().filter(|row| row.iter().any(|&d| d != 0.0));
+                1 + used.count()
+            }
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::MultistepMethod::Bdf) => 5,
+            #[cfg(feature = "sundials")]
+            Choice::Cvode(sundials::MultistepMethod::Adams) => 12,
+        }
+    }
+
     /// Why one would take it, for a reader of `--explain`.
     pub fn reason(self) -> &'static str {
         match self {

@@ -37,6 +37,7 @@ mod file;
 mod following;
 mod general;
 mod instant;
+mod ivp;
 mod law;
 mod locus;
 mod many;
@@ -71,6 +72,7 @@ pub use general::{
     Subject, TextSubject, plane, shown,
 };
 pub use instant::{Instant, run_columns};
+pub use ivp::{Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan, IvpSolution};
 pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
 pub use locus::{CurveChoice, LocusPlan};
 pub use many::{

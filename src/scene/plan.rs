@@ -388,7 +388,7 @@ fn near_symmetric(
     Ok((system.steady_stress(loading.driving), log_state))
 }
 
-fn bounded(log_state: [f64; 2], system: &System) -> Result<()> {
+pub(super) fn bounded(log_state: [f64; 2], system: &System) -> Result<()> {
     match log_state.into_iter().find(|&w| w > 0.0) {
         Some(w) if system.law.bounds_state() => Err(Error::parameter(
             "psi in `start`",

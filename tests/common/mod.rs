@@ -4,6 +4,7 @@
 pub mod among;
 pub mod branches;
 pub mod heard;
+pub mod ivp;
 pub mod lorenz;
 pub mod pages;
 pub mod returns;

@@ -25,6 +25,7 @@ pub use law_file::LawFile;
 pub use model::TextModel;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
+pub(super) use plan::numerics;
 pub use plan::{TextInstant, TextPlan, text_columns};
 pub use run::run_text;
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};

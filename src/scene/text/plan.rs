@@ -101,7 +101,7 @@ fn interface_columns(slab: &TextSlab, system: &TextSystem) -> Vec<Column<TextIns
 }
 
 /// The method and the tolerances, checked.
-pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
+pub(in crate::scene) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
     if options.max_steps == 0 {
         return Err(Error::parameter("max-steps", 0, "at least 1"));
     }

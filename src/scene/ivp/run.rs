@@ -1,0 +1,271 @@
+//! The run of an initial value problem, step by step: its events, its rows and its solution.
+
+use super::chart::Given;
+use super::event::{Halt, zero};
+use super::outcome::{IvpAsked, IvpError, IvpOutcome};
+use super::plan::IvpPlan;
+use super::solution::IvpSolution;
+use crate::error::{Error, Result};
+use crate::integrate::{AnyStep, Control};
+use crate::scene::system::Described;
+
+/// What ends a run on its way.
+enum Ended<E> {
+    Halt(Halt<E>),
+    Failed(Error),
+}
+
+impl<E> From<Halt<E>> for Ended<E> {
+    fn from(halt: Halt<E>) -> Self {
+        Ended::Halt(halt)
+    }
+}
+
+impl IvpPlan {
+    /// Runs it.
+    ///
+    /// # Errors
+    /// [`IvpError::Own`] for times that are not within the span or not in its direction (they are called `t_eval`), and for what the
+    /// integrator refuses; [`IvpError::Event`]. A failure on the way is in [`IvpOutcome::failure`].
+    pub fn solve<E>(&self, asked: IvpAsked<'_, E>) -> Result<IvpOutcome, IvpError<E>> {
+        if let Some(times) = asked.times {
+            self.check(times)?;
+        }
+        let field = self.field()?;
+        let mut integrator = self.integrator()?;
+        let events = asked.events.len();
+        let mut watch = match Watch::new(self, asked) {
+            Ok(watch) => watch,
+            Err(Halt::Failed(error)) => return Err(IvpError::Event(error)),
+            Err(Halt::Stop) => return Ok(IvpOutcome::interrupted(events)),
+        };
+        let mut ended = None;
+        let mut observer = |step: &AnyStep<'_>| {
+            Ok(watch.see(step).unwrap_or_else(|how| {
+                ended = Some(how);
+                Control::Stop
+            }))
+        };
+        let end = integrator.flow(&field, self.inner_span, &self.from, Some(&mut observer));
+        let mut outcome = watch.outcome;
+        outcome.work = integrator.work();
+        let failure = match (ended, end) {
+            (Some(Ended::Halt(Halt::Failed(error))), _) => return Err(IvpError::Event(error)),
+            (Some(Ended::Halt(Halt::Stop)), _) => Some(Error::Interrupted),
+            (Some(Ended::Failed(error)), _) => Some(error),
+            (None, Err(error @ Error::Parameter { .. })) => return Err(error.into()),
+            (None, Err(error)) => Some(self.units().told(error)),
+            (None, Ok(_)) => None,
+        };
+        outcome.stopped = failure == Some(Error::Interrupted);
+        if failure.is_some() {
+            outcome.status = -1;
+        }
+        outcome.failure = failure;
+        outcome.solution = outcome.solution.filter(|made| made.times().len() > 1);
+        Ok(outcome)
+    }
+
+    fn check(&self, times: &[f64]) -> Result<()> {
+        let (begin, end) = self.span;
+        let forward = end > begin;
+        for (i, &time) in times.iter().enumerate() {
+            let name = || format!("t_eval[{i}]");
+            if !(begin.min(end)..=begin.max(end)).contains(&time) {
+                let must = format!("within `span`, from {begin} to {end}");
+                return Err(Error::parameter(name(), time, must));
+            }
+            let Some(&before) = i.checked_sub(1).and_then(|i| times.get(i)) else {
+                continue;
+            };
+            if (forward && time <= before) || (!forward && time >= before) {
+                let way = if forward { "greater" } else { "less" };
+                let must = format!("{way} than {before}, the time before, as `span` goes that way");
+                return Err(Error::parameter(name(), time, must));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Sees the steps of a run.
+struct Watch<'p, 'a, E> {
+    plan: &'p IvpPlan,
+    asked: IvpAsked<'a, E>,
+    /// The degree of the dense output of steps without a series.
+    degree: usize,
+    /// The user's time and values at the beginning of the step, and those of the events' functions.
+    time: f64,
+    values: Vec<f64>,
+    functions: Vec<f64>,
+    /// How many of the times that are asked for have their row.
+    sampled: usize,
+    outcome: IvpOutcome,
+}
+
+/// A step with the user's time and values at its ends.
+#[derive(Clone, Copy)]
+struct Seen<'s, 'a> {
+    plan: &'s IvpPlan,
+    step: &'s AnyStep<'a>,
+    begin: (f64, &'s [f64]),
+    end: (f64, &'s [f64]),
+}
+
+impl Seen<'_, '_> {
+    /// The user's values at a time.
+    fn at(&self, time: f64) -> Vec<f64> {
+        for (known, values) in [self.end, self.begin] {
+            if time == known {
+                return values.to_vec();
+            }
+        }
+        let chart = &self.plan.chart;
+        let mut values = Vec::with_capacity(chart.values());
+        let y = self.step.dense(chart.time_inward(time));
+        chart.outward(y.as_slice(), Given::Variables, &mut values);
+        values
+    }
+}
+
+impl<'p, 'a, E> Watch<'p, 'a, E> {
+    fn new(plan: &'p IvpPlan, mut asked: IvpAsked<'a, E>) -> Result<Self, Halt<E>> {
+        let (time, values) = (plan.span.0, plan.start.clone());
+        let events = asked.events.iter_mut();
+        let functions: Result<Vec<f64>, _> = events
+            .map(|event| (event.function)(time, &values))
+            .collect();
+        let functions = functions?;
+        let mut outcome = IvpOutcome::new(functions.len());
+        if asked.dense_output {
+            outcome.solution = Some(IvpSolution::new(plan.chart, time));
+        }
+        if asked.times.is_none() {
+            outcome.t.push(time);
+            outcome.y.extend_from_slice(&values);
+        }
+        Ok(Watch {
+            plan,
+            asked,
+            degree: plan.method().dense_degree(),
+            time,
+            values,
+            functions,
+            sampled: 0,
+            outcome,
+        })
+    }
+
+    fn see(&mut self, step: &AnyStep<'_>) -> Result<Control, Ended<E>> {
+        let end = self.plan.time_outward(step.t1);
+        let mut values = Vec::with_capacity(self.values.len());
+        let chart = &self.plan.chart;
+        chart.outward(step.y1, Given::Variables, &mut values);
+        let before = std::mem::take(&mut self.values);
+        let seen = Seen {
+            plan: self.plan,
+            step,
+            begin: (self.time, &before),
+            end: (end, &values),
+        };
+        if let Some(solution) = &mut self.outcome.solution {
+            solution.push(step, end, self.degree);
+        }
+        let last = self.events(&seen)?;
+        let (time, here) = match last {
+            None => (end, None),
+            Some(time) => (time, Some(seen.at(time))),
+        };
+        self.rows(&seen, time, here.as_deref().unwrap_or(&values));
+        (self.time, self.values) = (time, here.unwrap_or(values));
+        self.reached(last.is_some())
+    }
+
+    /// Finds the events of a step; the time of the one that ends the run.
+    fn events(&mut self, seen: &Seen<'_, '_>) -> Result<Option<f64>, Ended<E>> {
+        let (end, values) = seen.end;
+        let mut found = Vec::new();
+        for (i, event) in self.asked.events.iter_mut().enumerate() {
+            let after = (event.function)(end, values)?;
+            let before = std::mem::replace(&mut self.functions[i], after);
+            if event.is_between(before, after) {
+                found.push((i, before, after));
+            }
+        }
+        let (mut roots, mut terminal) = (Vec::with_capacity(found.len()), Vec::new());
+        for (i, before, after) in found {
+            let event = &mut self.asked.events[i];
+            let function = |time: f64| (event.function)(time, &seen.at(time));
+            let root = zero((seen.begin.0, before), (end, after), function)?;
+            let root = root.ok_or_else(|| {
+                let where_ = format!("between t = {} and {end}", seen.begin.0);
+                Ended::Failed(Error::Input(format!(
+                    "the function of event {i} is not a number {where_}, where it changes its sign"
+                )))
+            })?;
+            roots.push((i, root));
+            // Of this step there is one at most.
+            if event.ends_after(self.outcome.t_events[i].len() + 1) {
+                terminal.push(i);
+            }
+        }
+        let mut last = None;
+        if !terminal.is_empty() {
+            let way = (end - seen.begin.0).signum();
+            roots.sort_by(|a, b| (way * a.1).total_cmp(&(way * b.1)));
+            if let Some(place) = roots.iter().position(|(i, _)| terminal.contains(i)) {
+                roots.truncate(place + 1);
+                last = Some(roots[place].1);
+            }
+        }
+        for (i, root) in roots {
+            self.outcome.t_events[i].push(root);
+            self.outcome.y_events[i].extend(seen.at(root));
+        }
+        if let Some(time) = last {
+            self.outcome.status = 1;
+            if let Some(solution) = &mut self.outcome.solution {
+                solution.end_at(time);
+            }
+        }
+        Ok(last)
+    }
+
+    /// Adds the rows of a step up to a time, at which these are the values.
+    fn rows(&mut self, seen: &Seen<'_, '_>, last: f64, values: &[f64]) {
+        let outcome = &mut self.outcome;
+        let Some(times) = self.asked.times else {
+            let again = outcome.t.len() > 1 && outcome.t.last() == Some(&last);
+            if !(again && self.asked.dense_output) {
+                outcome.t.push(last);
+                outcome.y.extend_from_slice(values);
+            }
+            return;
+        };
+        let forward = self.plan.span.1 > self.plan.span.0;
+        while let Some(&time) = times.get(self.sampled) {
+            if if forward { time > last } else { time < last } {
+                break;
+            }
+            outcome.t.push(time);
+            outcome.y.extend(seen.at(time));
+            self.sampled += 1;
+        }
+    }
+
+    /// The run has come to the end of a step.
+    fn reached(&mut self, over: bool) -> Result<Control, Ended<E>> {
+        let (begin, end) = self.plan.span;
+        let told = match &mut self.asked.reached {
+            Some(reached) => reached((self.time - begin) / (end - begin)),
+            None => Control::Continue,
+        };
+        if over {
+            return Ok(Control::Stop);
+        }
+        if told == Control::Stop && self.time != end {
+            return Err(Halt::Stop.into());
+        }
+        Ok(Control::Continue)
+    }
+}
