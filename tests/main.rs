@@ -122,6 +122,7 @@ mod tableaus;
 mod taylor;
 mod text_commands;
 mod text_files;
+mod text_given;
 mod text_laws;
 mod text_laws_input;
 mod text_laws_steady;

@@ -401,7 +401,11 @@ fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_alphanumeric() || "-_=./,:+".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
         word.to_owned()
+    } else if word.contains('\n') {
+        // A remark has one line.
+        let escaped = word.replace('\\', r"\\").replace('\'', r"\'");
+        format!("$'{}'", escaped.replace('\n', r"\n"))
     } else {
-        format!("'{}'", word.replace('\'', r"'\''").replace('\n', " "))
+        format!("'{}'", word.replace('\'', r"'\''"))
     }
 }

@@ -2,6 +2,7 @@
 
 use super::options::{ModelOptions, SlabOptions};
 use super::program::Program;
+use super::text::given_text;
 use super::unequal::OfOne;
 use super::units::{Quantity, TimeUnit, Units};
 use crate::equilibrium::MOST_INTERFACES;
@@ -45,11 +46,18 @@ impl SlabOptions {
         self.evolution_effect.unwrap_or(EVOLUTION_EFFECT)
     }
 
-    /// The file of a law of one's own; `None` where the law is built in.
+    /// The file of a law of one's own, or its text; `None` where the law is built in.
     pub(super) fn law_file(&self) -> Option<&Path> {
         let path = Path::new(&self.law);
-        let is_file = path.extension().is_some_and(|ending| ending == "toml") || path.is_file();
+        let is_file = given_text(path).is_some()
+            || path.extension().is_some_and(|ending| ending == "toml")
+            || path.is_file();
         (!AnyLaw::NAMES.contains(&self.law.as_str()) && is_file).then_some(path)
+    }
+
+    /// What messages call the law: not its text, where that was given.
+    fn law_told(&self) -> &str {
+        given_text(Path::new(&self.law)).map_or(&self.law, |_| "(a text)")
     }
 
     /// How many interfaces there are: as many as are asked for, else as in all clusters, else 2.
@@ -153,7 +161,7 @@ impl System {
         if interfaces > 2 && slab.law_file().is_some() {
             return Err(Error::Input(format!(
                 "`law` {} is from a file; the steady states of {interfaces} interfaces are of built-in laws, those of one or two of any law",
-                slab.law
+                slab.law_told()
             )));
         }
         if interfaces > 2 && OfOne::read(slab)?.any() {
@@ -186,7 +194,7 @@ impl System {
         if options.law_file().is_some() {
             return Err(Error::Input(format!(
                 "`law` {} is a law from a file; law, integrate, equilibria, section, orbit, branch, locus and sweep take it",
-                options.law
+                options.law_told()
             )));
         }
         let of_one = OfOne::read(options)?;

@@ -164,6 +164,11 @@ impl SweepPlan {
     /// # Errors
     /// [`Error::Input`] if it is none of a sweep.
     pub fn of_command(command: &str) -> Result<Self> {
+        if command.contains("$'") {
+            return Err(Error::Input(
+                "it is of a system or law that was given as text; parts are joined of those in a file".into(),
+            ));
+        }
         let words = command.strip_prefix("twinslip sweep").unwrap_or_default();
         let words = std::iter::once("sweep").chain(words.split_whitespace());
         let line = SweepLine::try_parse_from(words)

@@ -23,6 +23,7 @@ pub use friction::{Friction, Steady};
 pub use law::{TextLawPlan, TextLawPoint};
 pub use law_file::LawFile;
 pub use model::TextModel;
+pub(super) use model::given_text;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
 pub(super) use plan::numerics;

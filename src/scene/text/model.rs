@@ -234,8 +234,26 @@ pub(super) fn number(text: &str) -> Option<f64> {
     text.trim().parse::<f64>().ok().filter(|x| x.is_finite())
 }
 
-/// The file, or where there is none of that name the system that is built in.
+/// What is given in place of a file's name: a text of several lines, which no name has.
+pub(in crate::scene) fn given_text(word: &Path) -> Option<&str> {
+    word.to_str().filter(|text| text.contains('\n'))
+}
+
+/// Such a text, unless it is longer than a file may be; `name` is what messages call it.
+fn bounded<'a>(name: &str, text: &'a str) -> Result<&'a str> {
+    if text.len() as u64 > LONGEST {
+        let what = format!("{name}: its text is longer than {LONGEST} bytes");
+        return Err(Error::Input(what));
+    }
+    Ok(text)
+}
+
+/// The file, or where there is none of that name the system that is built in; or the text itself.
 fn read(path: &Path) -> Result<SystemFile> {
+    if let Some(text) = given_text(path) {
+        const NAME: &str = "the system";
+        return SystemFile::parse(NAME, bounded(NAME, text)?);
+    }
     let name = path.display().to_string();
     if path.exists() {
         return SystemFile::parse(&name, &read_bounded(path, LONGEST)?);
@@ -260,8 +278,12 @@ fn built_in_law(name: &str) -> Result<LawFile> {
     )
 }
 
-/// The file of a law, or where there is none of that name the one that the program carries.
+/// The file of a law, or where there is none of that name the one that the program carries; or the text itself.
 fn read_law(path: &Path) -> Result<LawFile> {
+    if let Some(text) = given_text(path) {
+        const NAME: &str = "the law";
+        return LawFile::parse(NAME, bounded(NAME, text)?);
+    }
     let name = path.display().to_string();
     match shipped_law(path) {
         Some(text) if !path.exists() => LawFile::parse(&name, text),
