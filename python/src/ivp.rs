@@ -166,7 +166,13 @@ pub fn solve_ivp(
     events: Vec<Event>,
     dense_output: bool,
 ) -> PyResult<(Option<IvpRun>, Option<Refused>, Option<Py<PyAny>>)> {
-    let refused = |error: Error| Ok((None, Some((crate::run::field(&error), error.to_string())), None));
+    let refused = |error: Error| {
+        Ok((
+            None,
+            Some((crate::run::field(&error), error.to_string())),
+            None,
+        ))
+    };
     let options = match parsed(&words) {
         Ok(Command::Integrate(options)) => options,
         Ok(_) => return refused(Error::Input("not the words of integrate".into())),
@@ -186,11 +192,13 @@ pub fn solve_ivp(
                 Control::Stop
             }
         };
-        let events = events.iter().map(|(function, direction, terminal)| IvpEvent {
-            direction: *direction,
-            terminal: *terminal,
-            ..IvpEvent::new(|t, y| called(function, t, y).map_err(Halt::Failed))
-        });
+        let events = events
+            .iter()
+            .map(|(function, direction, terminal)| IvpEvent {
+                direction: *direction,
+                terminal: *terminal,
+                ..IvpEvent::new(|t, y| called(function, t, y).map_err(Halt::Failed))
+            });
         plan.solve(IvpAsked {
             times: times.as_deref(),
             events: events.collect(),

@@ -24,7 +24,7 @@ SI = System(
 )  # fmt: skip
 
 CASES = {
-    "law": (lambda: SLAB.law(points=20), "law --points 20"),
+    "law": (lambda: System().law(points=20), "law --points 20"),
     "law-range": (
         lambda: System("bounded").law(range=(1e-2, 1e2), points=7),
         "law --law bounded --from 1e-2 --to 1e2 --points 7",
@@ -84,8 +84,8 @@ CASES = {
         "orbit --driving 10 --stiffness 0.14 --symmetry asymmetric --points 9 --crosscheck none",
     ),
     "section": (
-        lambda: SLAB.section(returns=50, lyapunov=True),
-        "section --driving 10 --stiffness 0.14 --returns 50 --lyapunov",
+        lambda: SLAB.section(returns=100, lyapunov=True),
+        "section --driving 10 --stiffness 0.14 --returns 100 --lyapunov",
     ),
     "branch": (
         lambda: SLAB.branch("equilibria", range=(0.05, 300)),
@@ -96,8 +96,8 @@ CASES = {
         "branch orbits --stiffness 0.14 --from 1 --to 3 --symmetry symmetric",
     ),
     "branch-own": (
-        lambda: LORENZ.branch("equilibria", along="rho", range=(0.5, 30), start=(0, 0, 0)),
-        "branch equilibria --system lorenz --along rho --from 0.5 --to 30 --start 0,0,0",
+        lambda: LORENZ.branch("equilibria", along="r", range=(0.5, 30), start=(0, 0, 0)),
+        "branch equilibria --system lorenz --along r --from 0.5 --to 30 --start 0,0,0",
     ),
     "locus": (
         lambda: SLAB.locus("hopf", driving=(0.1, 100), stiffness=(0.05, 0.3)),
@@ -106,18 +106,18 @@ CASES = {
     "locus-within": (
         lambda: SLAB.locus(
             "pitchfork", within=("driving", "residual_strength"), driving=(1, 100),
-            residual_strength=(5e-4, 2e-3),
+            residual_strength=(5e-4, 0.2),
         ),
         "locus pitchfork --stiffness 0.14 --in driving,residual_strength --range driving=1,100 "
-        "--range residual_strength=5e-4,2e-3",
+        "--range residual_strength=5e-4,0.2",
     ),
     "sweep": (
         lambda: System().sweep(driving=(0.14, 0.5, 3), stiffness=(0.05, 0.15, 2, "log")),
         "sweep --driving 0.14:0.5:3 --stiffness 0.05:0.15:2log",
     ),
     "sweep-grid": (
-        lambda: LORENZ.sweep(grid={"rho": (10, 30, 3)}),
-        "sweep --system lorenz --grid rho=10:30:3",
+        lambda: LORENZ.sweep(grid={"r": (10, 30, 3)}),
+        "sweep --system lorenz --grid r=10:30:3",
     ),
 }  # fmt: skip
 
@@ -188,7 +188,8 @@ def test_numbers_are_those_of_the_command_line(name: str, binary: Path) -> None:
         assert len(values) == len(cells), column
         for value, hidden, cell in zip(np.ma.getdata(values), missing, cells):
             assert hidden == (cell is None), column
-            assert hidden or value == cell, column
+            # What is a word in one row of a sweep, as "2;1", is no number in the others of its JSON.
+            assert hidden or value == cell or str(value) == cell, column
     empty = set(result.columns) - set(rows)
     assert all(np.ma.getmaskarray(result[column]).all() for column in empty), empty
 
@@ -217,10 +218,10 @@ def test_every_command_has_its_arguments() -> None:
 
 
 def test_scenes_run_as_their_commands(binary: Path) -> None:
-    result = twinslip.run("fig12")
+    result = twinslip.run("fig13")
     assert type(result).__name__ == "Trajectory"
     done = subprocess.run(
-        [str(binary), "run", "fig12", "--format", "json", "--quiet"], capture_output=True, check=True
+        [str(binary), "run", "fig13", "--format", "json", "--quiet"], capture_output=True, check=True
     )
     expected = json.loads(done.stdout)["result"]
     same(result.final, expected["final"], "final")
@@ -232,16 +233,16 @@ def test_scenes_run_as_their_commands(binary: Path) -> None:
 
 
 def test_the_paper_is_reproduced_as_by_the_command(binary: Path, tmp_path: Path) -> None:
-    twinslip.reproduce(tmp_path / "a", only="fig03")
+    twinslip.reproduce(tmp_path / "a", only="fig01")
     subprocess.run(
-        [str(binary), "reproduce", "--only", "fig03", "--out", str(tmp_path / "b"), "--quiet"], check=True
+        [str(binary), "reproduce", "--only", "fig01", "--out", str(tmp_path / "b"), "--quiet"], check=True
     )
-    ours = (tmp_path / "a" / "fig03.csv").read_text().splitlines()
-    theirs = (tmp_path / "b" / "fig03.csv").read_text().splitlines()
+    ours = (tmp_path / "a" / "fig01.csv").read_text().splitlines()
+    theirs = (tmp_path / "b" / "fig01.csv").read_text().splitlines()
     assert ours == theirs
-    again = twinslip.reproduce(tmp_path / "a", only="fig03")
+    again = twinslip.reproduce(tmp_path / "a", only="fig01")
     assert any("up to date" in line for line in again)
-    twinslip.figure(3, tmp_path / "c")
-    assert (tmp_path / "c" / "fig03.svg").exists()
+    twinslip.figure(1, tmp_path / "c")
+    assert (tmp_path / "c" / "fig01.svg").exists()
     with pytest.raises(twinslip.InputError):
         twinslip.figure(99, tmp_path)

@@ -153,10 +153,14 @@ pub fn integrate(
     for path in pictures.into_iter().flatten() {
         plot::PictureFormat::of(path)?;
     }
-    let places = [
-        place(&options.output, "events", &options.events)?,
-        place(&options.output, "participation", &options.participation)?,
-    ];
+    let places = match call.outlet {
+        // All is in the object.
+        Some(_) => [None, None],
+        None => [
+            place(&options.output, "events", &options.events)?,
+            place(&options.output, "participation", &options.participation)?,
+        ],
+    };
     let tables = places.iter().flatten().map(|(path, _)| path.as_path());
     let pictures = pictures.into_iter().flatten().map(PathBuf::as_path);
     let others: Vec<&Path> = pictures.chain(tables).collect();
