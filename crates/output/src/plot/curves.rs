@@ -2,6 +2,7 @@
 
 use super::bands::{self, Part};
 use super::canvas::{Canvas, Colour, PAPER, Pixel, colour};
+use super::clip::Point;
 use super::frame::Frame;
 use super::smooth::smooth;
 use super::thin::thinned;
@@ -70,20 +71,21 @@ fn casing(canvas: &Canvas, series: &PlotSeries, frame: &Frame, breadth: f64) {
     line(canvas, &whole, frame, (PAPER, breadth + 2.0 * CASING));
 }
 
+/// The curve through the points of a series, in the coordinates of the axes; where it breaks there is a point that is no number.
+pub fn through(series: &PlotSeries, frame: &Frame) -> Vec<Point> {
+    let points = series.x.iter().zip(&series.y);
+    let points: Vec<Point> = points.map(|(&a, &b)| frame.coordinates(a, b)).collect();
+    smooth(&points, frame.per_pixel(), &series.left_out)
+}
+
 fn line(
     canvas: &Canvas,
     series: &PlotSeries,
     frame: &Frame,
     (colour, width): (Colour, f64),
 ) -> Vec<Pixel> {
-    let (x, y) = (&series.x, &series.y);
-    let points = x.iter().zip(y).map(|(&a, &b)| frame.coordinates(a, b));
-    let points = smooth(
-        &points.collect::<Vec<_>>(),
-        frame.per_pixel(),
-        &series.left_out,
-    );
-    let grows = x.is_sorted();
+    let points = through(series, frame);
+    let grows = series.x.is_sorted();
     let (mut seen, mut been) = (Vec::new(), strokes::Been::default());
     let curves = thinned(points.into_iter(), frame.per_pixel(), grows);
     let pieces = curves.iter().flat_map(|curve| frame.window().line(curve));

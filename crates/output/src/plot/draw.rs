@@ -4,7 +4,7 @@ use super::canvas::{Align, Canvas, INK, Words, picture};
 use super::cells::cells;
 use super::curves::curves;
 use super::layout::{Placed, page};
-use super::marks::{behind, marks, notes};
+use super::marks::{behind, marks, notes, write};
 use super::text::TITLE;
 use super::{Block, unrendered};
 use crate::error::Result;
@@ -37,8 +37,9 @@ fn draw(canvas: &Canvas, placed: &Placed<'_>) {
     }
     behind(canvas, panel, frame);
     let seen = curves(canvas, panel, frame);
-    let words = notes(canvas, panel, frame, &seen);
-    marks(canvas, panel, frame, &seen, &words);
+    let notes = notes(panel, frame, &seen);
+    write(canvas, frame, &notes);
+    marks(canvas, panel, frame, &seen, &notes);
     // Last, as the white edges of symbols would cover it.
     frame.draw_border(canvas);
 }

@@ -93,6 +93,11 @@ impl Frame {
         &self.inside
     }
 
+    /// Its axes, horizontal and vertical.
+    pub fn scales(&self) -> (&Scale, &Scale) {
+        (&self.x, &self.y)
+    }
+
     /// Its inside in the coordinates of the axes.
     pub fn window(&self) -> Window {
         Window {

@@ -5,7 +5,7 @@ use super::clip::Window;
 use super::frame::Frame;
 use super::symbols::{self, Look};
 use super::text::{self, TEXT};
-use super::{Mark, Panel, names};
+use super::{Mark, Note, Panel, names};
 
 /// Room between a name and its neighbours.
 const AIR: f64 = 4.0;
@@ -18,19 +18,17 @@ const ONE: f64 = 3.0;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
-/// Writes the notes that lie in the frame, each where it covers neither a curve nor another one, as near to its place as that
-/// allows, and gives their middles and sizes.
-pub fn notes(
-    canvas: &Canvas,
-    panel: &Panel,
-    frame: &Frame,
-    curves: &[Pixel],
-) -> Vec<(Pixel, (f64, f64))> {
+/// A note with its middle and size.
+pub type Written<'a> = (&'a Note, (Pixel, (f64, f64)));
+
+/// Where the notes that lie in the frame stand: each where it covers neither a curve nor another one, as near to its place as that
+/// allows.
+pub fn notes<'a>(panel: &'a Panel, frame: &Frame, curves: &[Pixel]) -> Vec<Written<'a>> {
     let marks = panel.marks.iter();
     let points: Vec<Pixel> = marks
         .filter_map(|mark| frame.place(mark.x, mark.y))
         .collect();
-    let mut written: Vec<(Pixel, (f64, f64))> = Vec::new();
+    let mut written: Vec<Written<'_>> = Vec::new();
     for note in &panel.notes {
         let Some(at) = frame.place(note.x, note.y) else {
             continue;
@@ -42,13 +40,20 @@ pub fn notes(
         let half = (0.5 * size.0, 0.5 * size.1);
         // Near a side, words move inwards.
         let at = frame.inside().without(half).nearest(at);
-        let at = names::beside(at, size, (curves, &points, &written), frame.inside());
+        let words: Vec<(Pixel, (f64, f64))> = written.iter().map(|(_, place)| *place).collect();
+        let at = names::beside(at, size, (curves, &points, &words), frame.inside());
+        written.push((note, (at, size)));
+    }
+    written
+}
+
+/// Writes the notes.
+pub fn write(canvas: &Canvas, frame: &Frame, notes: &[Written<'_>]) {
+    for &(note, (at, size)) in notes {
         backed(canvas, frame, at, size);
         let ink = note.colour.map_or(INK, colour);
         canvas.words(&note.text, at, Align::Middle, TEXT, ink);
-        written.push((at, size));
     }
-    written
 }
 
 /// White behind words of that size with their middle there.
@@ -66,11 +71,9 @@ pub fn marks(
     panel: &Panel,
     frame: &Frame,
     curves: &[Pixel],
-    words: &[(Pixel, (f64, f64))],
+    notes: &[Written<'_>],
 ) {
-    let shown = shown(panel, frame);
-    let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
-    let centres = names::placed(&named, curves, words, frame.inside());
+    let (shown, centres) = placed(panel, frame, curves, notes);
     for (one, centre) in shown.iter().zip(&centres) {
         tie(canvas, &one.named, *centre, mark_colour(one.mark));
     }
@@ -87,6 +90,36 @@ pub fn marks(
             canvas.words(name, *centre, Align::Middle, TEXT, mark_colour(mark));
         }
     }
+}
+
+/// The points in the frame, each with its name and how far the middle of that is from it.
+pub fn named<'a>(
+    panel: &'a Panel,
+    frame: &Frame,
+    curves: &[Pixel],
+    notes: &[Written<'_>],
+) -> Vec<(&'a Mark, String, Pixel)> {
+    let (shown, centres) = placed(panel, frame, curves, notes);
+    let both = shown.into_iter().zip(centres);
+    both.map(|(one, centre)| {
+        let at = one.named.at;
+        (one.mark, one.name, (centre.0 - at.0, centre.1 - at.1))
+    })
+    .collect()
+}
+
+/// The points in the frame, and the middles of their names.
+fn placed<'a>(
+    panel: &'a Panel,
+    frame: &Frame,
+    curves: &[Pixel],
+    notes: &[Written<'_>],
+) -> (Vec<Shown<'a>>, Vec<Pixel>) {
+    let shown = shown(panel, frame);
+    let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
+    let words: Vec<(Pixel, (f64, f64))> = notes.iter().map(|(_, place)| *place).collect();
+    let centres = names::placed(&named, curves, &words, frame.inside());
+    (shown, centres)
 }
 
 /// Draws the points that the curves go over.

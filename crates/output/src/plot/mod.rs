@@ -6,6 +6,7 @@ mod canvas;
 mod cells;
 mod clip;
 mod curves;
+mod describe;
 mod draw;
 mod frame;
 mod layout;
@@ -88,6 +89,26 @@ impl Drawing {
     /// [`Error::Input`] if there is nothing that can be drawn.
     pub fn svg(&self) -> Result<String> {
         draw::svg(&self.blocks, Words::Text)
+    }
+
+    /// The picture as an object, from which another program draws the same one with its own means: all ranges, colours, breadths,
+    /// curves and places of names are decided in it.
+    ///
+    /// - `size`: width and height in pixels, to which all lengths below refer; letters are 13 high.
+    /// - `blocks`, from top to bottom, each with its `title` and `columns` of panels from left to right.
+    ///
+    /// A panel has `title`, `frame` (width and height), the axes `x` and `y` (`label`, `log`, `range`), `zero_line`, and
+    /// - `cells`: null, or a map (`x_edges`, `y_edges`, `fills` with a list of colours for each cell, the lowest row first, and `swatches`
+    ///   with `colours` and `label`), behind
+    /// - `series`: `label`, `x`, `y` (null where a curve breaks), `dots` or a line, `stroke`, `width` (of dots the radius) and `colour`,
+    /// - `marks`: `x`, `y`, `label` with the `offset` of its middle to the right and downwards, `symbol`, `filled`, `colour` and `behind`,
+    /// - `notes`: `x`, `y`, `text`, `offset` and `colour`, and more of the legend:
+    /// - `strokes` (`stroke`, `label`) and `keys` (`symbol`, `filled`, `colour`, `label`).
+    ///
+    /// # Errors
+    /// As [`Drawing::svg`].
+    pub fn describe(&self) -> Result<serde_json::Value> {
+        describe::described(&self.blocks)
     }
 
     /// The picture as PNG.

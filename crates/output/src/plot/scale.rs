@@ -77,6 +77,11 @@ impl Scale {
         coordinate(self.log, x)
     }
 
+    /// The value that is drawn at a coordinate.
+    pub fn value(&self, at: f64) -> f64 {
+        if self.log { 10f64.powf(at) } else { at }
+    }
+
     /// Which part of the axis lies below a coordinate.
     pub fn part(&self, at: f64) -> f64 {
         (at - self.lo) / (self.hi - self.lo)
