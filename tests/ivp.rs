@@ -356,6 +356,10 @@ fn what_is_wrong_is_named() {
         ),
         (of(slab, (3.0, 3.0), &good), ["span is (3, 3)", "differ"]),
         (
+            of(&format!("{slab} --interfaces 9"), unit, &[0.5; 10]),
+            ["`interfaces` 9", "at most 7"],
+        ),
+        (
             of("--stiffness 1", unit, &good),
             ["`driving` V_H is missing", ""],
         ),

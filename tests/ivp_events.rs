@@ -185,6 +185,17 @@ fn a_zero_at_the_start_is_an_event() {
 }
 
 #[test]
+fn a_zero_at_the_joint_of_two_steps_is_one_of_either() {
+    // As scipy.integrate.solve_ivp has it.
+    let problem = circle("ivp-joint", "--rtol 1e-10", (0.1, 10.0));
+    let joint = with_events(&problem, Vec::new()).t[3];
+    let outcome = with_events(&problem, vec![Event::new(move |t, _| Ok(t - joint))]);
+    assert_eq!(outcome.t_events, [[joint, joint]]);
+    assert_eq!(outcome.y_events[0][..2], outcome.y_events[0][2..]);
+    assert_eq!(outcome.y_events[0][..2], outcome.y[6..8]);
+}
+
+#[test]
 fn events_of_a_slab_are_in_the_users_numbers() {
     let plain = plan(
         "--driving 10 --stiffness 0.14 --rtol 1e-12",

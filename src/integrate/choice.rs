@@ -126,7 +126,7 @@ impl Choice {
     }
 
     /// The highest degree in time of the dense output of steps that have no series.
-    pub(crate) fn dense_degree(self) -> usize {
+    pub fn dense_degree(self) -> usize {
         match self {
             // Of either of the two methods that it takes beside Taylor's.
             Choice::Auto => Choice::Rosenbrock(RosenbrockMethod::Rodas5P).dense_degree(),
