@@ -1,8 +1,9 @@
 //! Initial value problems in the terms of SciPy.
 
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twinslip::Error;
 use twinslip::cli::parsed;
@@ -182,13 +183,15 @@ pub fn solve_ivp(
         Ok(plan) => plan,
         Err(error) => return refused(error),
     };
-    let mut raised: Option<PyErr> = None;
+    // Ctrl-C comes between steps, or while a function of an event runs.
+    let raised: Mutex<Option<PyErr>> = Mutex::default();
+    let stop = |error: PyErr| *raised.lock().unwrap_or_else(PoisonError::into_inner) = Some(error);
     let solved = py.detach(|| {
         let mut clock = Clock::new();
         let mut reached = |_: f64| match clock.look() {
             Ok(()) => Control::Continue,
             Err(error) => {
-                raised = Some(error);
+                stop(error);
                 Control::Stop
             }
         };
@@ -197,7 +200,15 @@ pub fn solve_ivp(
             .map(|(function, direction, terminal)| IvpEvent {
                 direction: *direction,
                 terminal: *terminal,
-                ..IvpEvent::new(|t, y| called(function, t, y).map_err(Halt::Failed))
+                ..IvpEvent::new(|t, y| {
+                    called(function, t, y).map_err(|error| match interrupts(&error) {
+                        true => {
+                            stop(error);
+                            Halt::Stop
+                        }
+                        false => Halt::Failed(error),
+                    })
+                })
             });
         plan.solve(IvpAsked {
             times: times.as_deref(),
@@ -211,9 +222,14 @@ pub fn solve_ivp(
         Err(IvpError::Own(error)) => return refused(error),
         Err(IvpError::Event(error)) => return Err(error),
     };
+    let raised = raised.into_inner().unwrap_or_else(PoisonError::into_inner);
     let raised = raised.map(|error| error.into_value(py).into_any());
     let dimension = plan.dimension();
     Ok((Some(IvpRun { outcome, dimension }), None, raised))
+}
+
+fn interrupts(error: &PyErr) -> bool {
+    Python::attach(|py| error.is_instance_of::<PyKeyboardInterrupt>(py))
 }
 
 /// An event's function at a time.

@@ -344,6 +344,12 @@ impl Picture {
         py.detach(|| self.0.svg()).map_err(told)
     }
 
+    /// What it shows, as a text in JSON.
+    fn describe(&self, py: Python<'_>) -> PyResult<String> {
+        py.detach(|| self.0.describe().map(|told| told.to_string()))
+            .map_err(told)
+    }
+
     /// As PNG.
     fn png<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
         let png = py.detach(|| self.0.png()).map_err(told)?;

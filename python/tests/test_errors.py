@@ -69,10 +69,12 @@ def test_a_failure_keeps_what_was_computed() -> None:
     with pytest.raises(NumericalError) as told:
         grows.integrate(until=2)
     result = told.value.result
-    assert len(result) > 5 and 0.9 < result.time[-1] < 1.0 and not result.complete
-    assert np.allclose(result["x"], 1 / (1 - result.time), rtol=1e-6)
+    # The numerical singularity is not where the true one is, to the tolerance.
+    assert len(result) > 5 and abs(result.time[-1] - 1) < 1e-7 and not result.complete
+    early = result.time < 0.9
+    assert early.any() and np.allclose(result["x"][early], 1 / (1 - result.time[early]), rtol=1e-6)
     solved = twinslip.solve_ivp(grows, (0, 2), [1.0])
-    assert not solved.success and solved.status == -1 and 0.9 < solved.t[-1] < 1.0
+    assert not solved.success and solved.status == -1 and abs(solved.t[-1] - 1) < 1e-7
     assert np.isfinite(solved.y).all() and solved.message
 
 

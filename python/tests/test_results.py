@@ -159,7 +159,8 @@ def test_own_systems_from_functions() -> None:
 
 def test_undecided_verdicts_are_told() -> None:
     with pytest.warns(twinslip.UndecidedWarning):
-        result = SLAB.section(returns=10, skip=0, patience=0.01)
+        # A few returns of a torus: it may yet be anything.
+        result = System(driving=0.102, stiffness=0.2).section(returns=50)
     assert result.regime == "undecided"
 
 

@@ -9,6 +9,7 @@ array is masked. What is not in rows is an attribute by the name that JSON has. 
 from __future__ import annotations
 
 import json
+import re
 import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NoReturn, Optional
@@ -317,7 +318,7 @@ class _Yielding(Result):
                 bar.show(0.0 if self._run is None else self._run.fraction(), known)
         except KeyboardInterrupt:
             self._end()
-            raise
+            raise Interrupted("interrupted; what was found is in the result", self) from None
         finally:
             bar.close()
         columns = {name: self[name] for name in self._columns}
@@ -348,6 +349,11 @@ def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) ->
         By its kind.
     """
     kind, field, message = failure
+    if field == "set":
+        # Parameters are arguments here.
+        named = re.fullmatch(r"set is ([^ ,]+), but must be (.*)", message, re.DOTALL)
+        if named is not None:
+            field, message = named[1], f"{named[1]} is no parameter; there are {named[2]}"
     if kind == "input":
         raise InputError(message, field)
     if kind == "file":
@@ -388,8 +394,11 @@ class Trajectory(Result):
         if not self._pictures:
             rows = ("--points", "--every", "--final-only")
             words = [word for word in self._words if not word.startswith(rows)]
-            again = _core.Run([*words, "--final-only", "--plot=picture.svg"])
+            again = _core.Run([*words, "--points=2", "--plot=picture.svg"])
             finish(again, self._progress, self._words[0])
+            failure = again.failure()
+            if failure is not None and failure[0] != "numerical":
+                raised(failure, None)
             self._pictures = [Picture(drawing) for drawing in again.pictures()]
         return self._pictures
 

@@ -169,11 +169,14 @@ def _windowed(own: dict[str, Any], name: str, ends: Any) -> None:
 def _varied(command: str, own: dict[str, Any]) -> list[str]:
     """The parameters that a command varies."""
     if command == "branch":
-        return [str(own.get("along") or "driving")]
+        along = own.get("along")
+        return ["driving"] if along is None else [along] if isinstance(along, str) else []
     if command == "locus":
-        plane = own.get("within") or "driving,stiffness"
-        names = plane.split(",") if isinstance(plane, str) else list(plane)
-        return [str(name).strip() for name in names]
+        plane = own.get("within")
+        if plane is None:
+            return ["driving", "stiffness"]
+        names = plane.split(",") if isinstance(plane, str) else plane
+        return [str(name).strip() for name in names] if isinstance(names, (list, tuple)) else []
     if command == "sweep":
         grid = own.get("grid")
         return list(grid) if isinstance(grid, Mapping) else []
@@ -188,4 +191,4 @@ def _pictured(command: str, own: dict[str, Any]) -> list[str]:
     if command != "sweep":
         return [picture]
     # Curves over a map take longer than a small map does.
-    return [picture] if own.get("curves") else [picture, "--curves=none"]
+    return [picture] if own.get("curves") is not None else [picture, "--curves=none"]
