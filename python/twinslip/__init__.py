@@ -3,7 +3,7 @@
 >>> import twinslip
 >>> slab = twinslip.System(driving=10, stiffness=0.14)
 >>> [one.verdict for one in slab.equilibria()]
-['unstable', 'unstable', 'unstable']
+['unstable', 'unstable']
 
 Everything is dimensionless (stress in a sigma, slip rate in V*, length in L, time in L/V*) unless ``si=True`` is given.
 """

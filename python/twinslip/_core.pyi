@@ -1,10 +1,25 @@
 from collections.abc import Callable
 from os import PathLike
-from typing import Any, Optional, Union
+from typing import Any, Optional, Union, final
 
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "IvpRun",
+    "Picture",
+    "Run",
+    "Solution",
+    "commands",
+    "options",
+    "scene",
+    "scenes",
+    "solve_ivp",
+    "sundials",
+    "version",
+]
+
+@final
 class Run:
     def __new__(cls, words: list[str]) -> Run: ...
     def wait(self, seconds: float) -> bool: ...
@@ -19,11 +34,13 @@ class Run:
     def rows(self, first: int, end: int) -> tuple[list[str], list[list[Any]]]: ...
     def pictures(self) -> list[Picture]: ...
 
+@final
 class Picture:
     def svg(self) -> str: ...
     def png(self) -> bytes: ...
     def describe(self) -> str: ...
 
+@final
 class IvpRun:
     @property
     def dimension(self) -> int: ...
@@ -39,6 +56,7 @@ class IvpRun:
     def y_events(self) -> list[npt.NDArray[np.float64]]: ...
     def solution(self) -> Optional[Solution]: ...
 
+@final
 class Solution:
     def __new__(
         cls,

@@ -30,19 +30,17 @@ class Bar:
             return
         if self._bar is None:
             try:
-                from tqdm.auto import tqdm
+                from tqdm.auto import tqdm  # type: ignore[import-untyped,unused-ignore]
             except ImportError:
                 self._wanted = False
                 return
             layout = "{desc}: {percentage:3.0f} % |{bar}| {elapsed}, {remaining} to go{postfix}"
             total = 1.0 if fraction > 0.0 else None
-            self._bar = tqdm(total=total, desc=self._title, leave=False, bar_format=layout if total else None)
-        if self._bar.total:
-            self._bar.n = fraction
-            self._bar.refresh()
-        else:
-            self._bar.n = rows
-            self._bar.refresh()
+            self._bar = tqdm(
+                total=total, desc=self._title, leave=False, bar_format=layout if total else None
+            )
+        self._bar.n = fraction if self._bar.total else rows
+        self._bar.refresh()
 
     def close(self) -> None:
         if self._bar is not None:
@@ -62,7 +60,7 @@ def finish(run: _core.Run, progress: Optional[bool], title: str) -> None:
     KeyboardInterrupt
         If Ctrl-C is pressed: the run is asked to end, and what it has come to stays.
     """
-    if run.wait(SHOWN if sys.platform == "never" else LOOK):
+    if run.wait(LOOK):
         return
     bar = Bar(progress, title)
     try:

@@ -168,8 +168,7 @@ class Result:
     def __len__(self) -> int:
         """So many rows."""
         self._finish()
-        first = next(iter(self._columns.values()), ([], None))
-        return len(first[0])
+        return next((len(values) for values, _ in self._columns.values()), 0)
 
     def __getitem__(self, name: str) -> Array:
         """A column; of numbered ones all, as an array of shape (rows, number)."""
@@ -225,7 +224,8 @@ class Result:
                 frame[name] = series.where(~np.ma.getmaskarray(column), missing)
             else:
                 frame[name] = pandas.Series(column)
-        return pandas.DataFrame(frame)
+        table: pandas.DataFrame = pandas.DataFrame(frame)
+        return table
 
     def _drawn(self) -> list[Picture]:
         self._finish()
@@ -439,7 +439,8 @@ class Equilibria(Result):
         """One row for each equilibrium."""
         import pandas
 
-        return pandas.DataFrame([_flat(one) for one in self])
+        table: pandas.DataFrame = pandas.DataFrame([_flat(one) for one in self])
+        return table
 
     def _short(self) -> str:
         verdicts = [str(one.get("verdict")) for one in self]

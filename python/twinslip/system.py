@@ -47,7 +47,8 @@ class System(Commands, Model):
         ValueError
             By the first command, if the file is not a system; the message names line and column.
         """
-        return cls(system=path, **parameters)
+        given: dict[str, Any] = {"system": path, **parameters}
+        return cls(**given)
 
     @classmethod
     def from_function(
