@@ -375,7 +375,7 @@ def _heading(panel: Description, ax: Axes) -> None:
         )
         legend.set_zorder(4.0)
     if panel["title"]:
-        pad = 5.0 + 1.4 * _WORDS * lines
+        pad = 5.0 + 1.52 * _WORDS * lines
         title = _text(_wrapped(panel["title"], width))
         ax.set_title(title, loc="left", fontsize=_WORDS, color=_INK, pad=pad)
 
