@@ -107,3 +107,17 @@ fn all_features_share_one_build_of_the_models() {
         assert_eq!(missing, [""; 0], "with {features:?}");
     }
 }
+
+/// Else whoever builds both compiles all twice.
+#[test]
+fn the_python_package_shares_the_build_of_the_command() {
+    const EDGES: &[&str] = &["--edges", "normal,build"];
+    let of = |package: &str| tree("{p} [{f}]", &[EDGES, &["--package", package]].concat());
+    let (command, python) = (of("twinslip"), of("twinslip-python"));
+    let missing: Vec<_> = command.difference(&python).cloned().collect();
+    assert_eq!(missing, [""; 0]);
+    assert!(
+        python.iter().any(|line| line.starts_with("pyo3 ")),
+        "{python:?}"
+    );
+}

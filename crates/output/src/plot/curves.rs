@@ -78,20 +78,35 @@ pub fn through(series: &PlotSeries, frame: &Frame) -> Vec<Point> {
     smooth(&points, frame.per_pixel(), &series.left_out)
 }
 
+/// What of it is drawn, in pixels.
+fn pieces(series: &PlotSeries, frame: &Frame) -> Vec<Vec<Pixel>> {
+    let points = through(series, frame).into_iter();
+    let curves = thinned(points, frame.per_pixel(), series.x.is_sorted());
+    let pieces = curves.iter().flat_map(|curve| frame.window().line(curve));
+    pieces
+        .map(|piece| piece.into_iter().map(|at| frame.pixel(at)).collect())
+        .collect()
+}
+
+/// How broad the line of the series of this number is drawn, or the radius of its points.
+pub fn drawn_width(panel: &Panel, number: usize, frame: &Frame) -> f64 {
+    let (series, width) = (&panel.series[number], line_width(panel, number));
+    if series.dots || series.x.is_sorted() {
+        width
+    } else {
+        finer(width, &pieces(series, frame))
+    }
+}
+
 fn line(
     canvas: &Canvas,
     series: &PlotSeries,
     frame: &Frame,
     (colour, width): (Colour, f64),
 ) -> Vec<Pixel> {
-    let points = through(series, frame);
     let grows = series.x.is_sorted();
     let (mut seen, mut been) = (Vec::new(), strokes::Been::default());
-    let curves = thinned(points.into_iter(), frame.per_pixel(), grows);
-    let pieces = curves.iter().flat_map(|curve| frame.window().line(curve));
-    let pieces: Vec<Vec<Pixel>> = pieces
-        .map(|piece| piece.into_iter().map(|at| frame.pixel(at)).collect())
-        .collect();
+    let pieces = pieces(series, frame);
     let width = if grows { width } else { finer(width, &pieces) };
     for piece in pieces {
         seen.extend(names::along(&piece, SAMPLES));

@@ -2,7 +2,7 @@
 
 use super::canvas::{Colour, INK, MARK, Pixel, Words, colour, picture};
 use super::cells::tint;
-use super::curves::{curves, line_width, series_colour, through};
+use super::curves::{curves, drawn_width, series_colour, through};
 use super::frame::Frame;
 use super::layout::{Placed, page};
 use super::marks::{self, Written};
@@ -105,7 +105,7 @@ fn series(panel: &Panel, (number, series): (usize, &PlotSeries), frame: &Frame) 
         "y": y,
         "dots": series.dots,
         "stroke": stroke(series.stroke),
-        "width": line_width(panel, number),
+        "width": drawn_width(panel, number, frame),
         "colour": told(series_colour(series, number)),
     })
 }
