@@ -1,11 +1,7 @@
 """The compiled part of twinslip."""
 
-from __future__ import annotations
-
-from typing import Optional
-
 def version() -> str:
     """The version of twinslip."""
 
-def sundials() -> Optional[str]:
+def sundials() -> str | None:
     """The version of SUNDIALS, or None in the build without C."""
