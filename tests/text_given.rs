@@ -113,3 +113,22 @@ fn the_remarks_of_rows_have_the_text_on_one_line() {
     assert_eq!(rows[0], ["time", "x"]);
     assert_eq!(rows.len(), 3);
 }
+
+#[test]
+fn parts_of_a_sweep_are_joined_of_files_alone() {
+    let path = command::folder("text_given_sweep").join("map.csv");
+    let file = path.to_str().expect("a path");
+    let text = text_of("scenes/systems/roessler.toml");
+    let sweep = format!("sweep --surface x=0 --grid c=2.5:3:2 --max-returns 200 -o {file}");
+    let ended = with(&sweep, "--system", &text);
+    assert_eq!(ended.code, 0, "{}", ended.err);
+    let ended = run(&["merge", file, "-o", &format!("{file}.csv")]);
+    assert_eq!(ended.code, 2, "{}", ended.err);
+    assert!(
+        ended
+            .err
+            .contains("map.csv: it is of a system or law that was given as text"),
+        "{}",
+        ended.err
+    );
+}

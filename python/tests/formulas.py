@@ -1,11 +1,13 @@
-"""The values of a system's text, worked out by Python's own parser and arithmetic: nothing of twinslip is in it."""
+"""The values of a system's text, worked out by Python's own parser and arithmetic: nothing of
+twinslip is in it.
+"""
 
 from __future__ import annotations
 
 import ast
 import math
 import sys
-from typing import Any, Callable, Union
+from typing import Any, Callable
 
 import numpy as np
 
@@ -72,7 +74,7 @@ class TextOfSystem:
 
 
 def _operation(operator: ast.operator, a: float, b: float) -> float:
-    made: Union[float, complex]
+    made: float | complex
     if isinstance(operator, ast.Add):
         made = a + b
     elif isinstance(operator, ast.Sub):

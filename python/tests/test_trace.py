@@ -1,4 +1,6 @@
-"""Systems from Python functions: their texts against the files of the same systems, and against the functions themselves."""
+"""Systems from Python functions: their texts against the files of the same systems, and against
+the functions themselves.
+"""
 
 from __future__ import annotations
 

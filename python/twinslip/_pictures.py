@@ -1,69 +1,48 @@
 """Pictures with matplotlib, from the descriptions that the compiled part gives of them.
 
-A description is what the Rust function ``Drawing::describe`` says: blocks of panels with all curves, points, names, ranges and colours.
-Lengths in it are pixels of 1/96 inch.
+A description is what the Rust function ``Drawing::describe`` says: blocks of panels with all
+curves, points, names, ranges and colours. Lengths in it are pixels of 1/96 inch.
 """
 
 from __future__ import annotations
 
 import math
-import re
-import textwrap
-from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING, Any, Optional, Union
+from collections.abc import Iterator, Sequence
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ._legend import draw_heading
+from ._looks import (
+    GRID,
+    INK,
+    LETTER,
+    PAPER,
+    PER_INCH,
+    POINT,
+    TITLE,
+    WORDS,
+    Description,
+    dashes_of,
+    look_of,
+    text_of,
+)
+
 if TYPE_CHECKING:
-    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure, SubFigure
 
-Description = Mapping[str, Any]
-
-#: Pixels of a description per inch, and points per pixel.
-_PER_INCH = 96.0
-_POINT = 72.0 / _PER_INCH
-#: Sizes of words, and of the titles of blocks, in points.
-_WORDS = 13.0 * _POINT
-_TITLE = 15.5 * _POINT
-_INK = "#282828"
-_GRID = "#E4E4E4"
-_PAPER = "#FFFFFF"
-#: Lengths of dashes and gaps in turn, in pixels, for lines up to a breadth of 2.
-_DASHES: dict[str, tuple[float, ...]] = {
-    "solid": (),
-    "dashed": (7.0, 4.0),
-    "dash-dot": (9.0, 3.2, 2.0, 3.2),
-    "dash-dot-dot": (9.0, 3.0, 2.0, 3.0, 2.0, 3.0),
-    "dotted": (2.0, 3.0),
-}
-#: Markers with their sizes in pixels.
-_MARKERS = {
-    "circle": ("o", 7.8),
-    "square": ("s", 6.9),
-    "diamond": ("D", 7.4),
-    "triangle": ("^", 8.6),
-    "plus": ("+", 9.4),
-    "cross": ("x", 6.6),
-    "star": ("*", 12.4),
-    "dot": ("o", 2.4),
-}
-#: The finest line or point of a legend, and what an entry takes beside its words, in pixels.
-_FINEST = 1.6
-_SAMPLE = 48.0
-#: Logarithmic axes of fewer decades have ticks at 2 and 5 too, those of fewer at 3 and 7, and the shortest at equal differences.
+#: Logarithmic axes of fewer decades have ticks at 2 and 5 too, those of fewer at 3 and 7, and the
+#: shortest at equal differences.
 _FEW_DECADES = 2.6
 _SHORT = 0.8
 _SHORTEST = 0.3
-#: A letter is about so wide, as a part of its size.
-_LETTER = 0.58
 #: A name that begins farther than this from its point is tied to it, in pixels.
 _TIED = 12.0
 
 
-def draw(description: Description, axes: Optional[Sequence[Axes]] = None) -> list[Axes]:
+def draw(description: Description, axes: Sequence[Axes] | None = None) -> list[Axes]:
     """Draws a picture with matplotlib.
 
     Parameters
@@ -71,8 +50,8 @@ def draw(description: Description, axes: Optional[Sequence[Axes]] = None) -> lis
     description : mapping
         What is drawn.
     axes : sequence of matplotlib.axes.Axes, optional
-        One for each panel, in the order of the blocks, each column by column from the top; by default those of a new figure
-        (``axes[0].figure``), as large as the picture that the command draws.
+        One for each panel, in the order of the blocks, each column by column from the top; by
+        default those of a new figure, as large as the picture that the command draws.
 
     Returns
     -------
@@ -106,18 +85,18 @@ def _figure(description: Description) -> Iterator[Axes]:
         raise ImportError("pictures need matplotlib: pip install matplotlib") from error
 
     width, height = description["size"]
-    figure = pyplot.figure(figsize=(width / _PER_INCH, height / _PER_INCH), layout="constrained")
+    figure = pyplot.figure(figsize=(width / PER_INCH, height / PER_INCH), layout="constrained")
     # room at the edges of the figure, in inches
-    figure.get_layout_engine().set(w_pad=8.0 / _PER_INCH, h_pad=5.0 / _PER_INCH)  # type: ignore[union-attr, call-arg]
+    figure.get_layout_engine().set(w_pad=8.0 / PER_INCH, h_pad=5.0 / PER_INCH)  # type: ignore[union-attr, call-arg]
     blocks = description["blocks"]
     heights = [_height(block) for block in blocks]
-    parts: list[Union[Figure, SubFigure]] = [figure]
+    parts: list[Figure | SubFigure] = [figure]
     if len(blocks) > 1:
         rows = figure.subfigures(len(blocks), 1, height_ratios=heights, squeeze=False)
         parts = [row[0] for row in np.asarray(rows)]
     for block, part in zip(blocks, parts):
         if block["title"]:
-            part.suptitle(_text(block["title"]), fontsize=_TITLE, color=_INK, x=0.01, ha="left")
+            part.suptitle(text_of(block["title"]), fontsize=TITLE, color=INK, x=0.01, ha="left")
         columns = block["columns"]
         grid = part.add_gridspec(1, len(columns))
         highest = max(_frames(column) for column in columns)
@@ -150,7 +129,7 @@ def _panel(panel: Description, ax: Axes) -> None:
     ):
         scale("log" if axis["log"] else "linear")
         limits(*axis["range"])
-        label(_text(axis["label"]), fontsize=_WORDS, color=_INK)
+        label(text_of(axis["label"]), fontsize=WORDS, color=INK)
     for axis, of in ((ax.xaxis, panel["x"]), (ax.yaxis, panel["y"])):
         _ticks(axis, of)
     _frame(panel, ax)
@@ -163,18 +142,18 @@ def _panel(panel: Description, ax: Axes) -> None:
         _series(series, ax, on_map)
     for note in panel["notes"]:
         _words(note["text"], note, ax, note["colour"], backed=True)
-    _heading(panel, ax)
+    draw_heading(panel, ax)
 
 
 def _frame(panel: Description, ax: Axes) -> None:
     ax.set_axisbelow(True)
-    ax.grid(True, which="major", color=_GRID, linewidth=0.8 * _POINT)
-    ax.tick_params(labelsize=_WORDS, colors=_INK, labelcolor=_INK)
+    ax.grid(True, which="major", color=GRID, linewidth=0.8 * POINT)
+    ax.tick_params(labelsize=WORDS, colors=INK, labelcolor=INK)
     for spine in ax.spines.values():
-        spine.set_color(_INK)
-        spine.set_linewidth(0.9 * _POINT)
+        spine.set_color(INK)
+        spine.set_linewidth(0.9 * POINT)
     if panel["zero_line"]:
-        ax.axhline(0.0, color=_INK, linewidth=0.7 * _POINT, zorder=1.2)
+        ax.axhline(0.0, color=INK, linewidth=0.7 * POINT, zorder=1.2)
 
 
 def _ticks(axis: Axis, of: Description) -> None:
@@ -202,15 +181,15 @@ def _ticks(axis: Axis, of: Description) -> None:
     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
 
 
-def _numbers(values: Sequence[Optional[float]]) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _numbers(values: Sequence[float | None]) -> np.ndarray[Any, np.dtype[np.float64]]:
     """With nan for what is unknown."""
     return np.array([math.nan if value is None else value for value in values], dtype=np.float64)
 
 
 def _series(series: Description, ax: Axes, on_map: bool) -> None:
     x, y = _numbers(series["x"]), _numbers(series["y"])
-    label = _text(series["label"]) or "_nolegend_"
-    width = series["width"] * _POINT
+    label = text_of(series["label"]) or "_nolegend_"
+    width = series["width"] * POINT
     if series["dots"]:
         size = 2.0 * width
         (line,) = ax.plot(
@@ -218,51 +197,24 @@ def _series(series: Description, ax: Axes, on_map: bool) -> None:
         )
         # on a map, what sets points off from it
         if on_map:
-            line.set(markeredgecolor=_PAPER, markeredgewidth=_POINT, markersize=size + _POINT)
+            line.set(markeredgecolor=PAPER, markeredgewidth=POINT, markersize=size + POINT)
         return
     if on_map:
         # unbroken, so that the gaps of dashes are set off too
-        ax.plot(x, y, color=_PAPER, linewidth=width + 2.0 * _POINT, label="_nolegend_")
-    dashes = _dashes(series["stroke"], width)
+        ax.plot(x, y, color=PAPER, linewidth=width + 2.0 * POINT, label="_nolegend_")
+    dashes = dashes_of(series["stroke"], width)
     ax.plot(x, y, color=series["colour"], linewidth=width, label=label, **dashes)
-
-
-def _dashes(stroke: str, width: float) -> dict[str, Any]:
-    """The pattern of a line of that width in points."""
-    lengths = _DASHES[stroke]
-    if not lengths:
-        return {"linestyle": "solid"}
-    # matplotlib takes lengths as multiples of the width
-    longer = max(1.0, width / _POINT / 2.0)
-    return {
-        "linestyle": (0.0, tuple(longer * length * _POINT / width for length in lengths)),
-        "dash_capstyle": "butt",
-    }
-
-
-def _look(symbol: str, filled: bool, colour: str) -> dict[str, Any]:
-    """What a marker looks like."""
-    marker, size = _MARKERS[symbol]
-    look: dict[str, Any] = {
-        "marker": marker,
-        "markersize": size * _POINT,
-        "markerfacecolor": colour if filled else _PAPER,
-        "markeredgecolor": colour,
-        "markeredgewidth": (2.0 if symbol in ("plus", "cross") else 1.5) * _POINT,
-        "linestyle": "none",
-    }
-    return look
 
 
 def _mark(mark: Description, ax: Axes, on_map: bool) -> None:
     from matplotlib.patheffects import Normal, Stroke
 
     zorder = 1.5 if mark["behind"] else 3.0
-    look = _look(mark["symbol"], mark["filled"], mark["colour"])
+    look = look_of(mark["symbol"], mark["filled"], mark["colour"])
     (drawn,) = ax.plot([mark["x"]], [mark["y"]], zorder=zorder, label="_nolegend_", **look)
     # a white edge sets it off from the lines it lies on
-    edge = look["markeredgewidth"] + 2.6 * _POINT
-    drawn.set_path_effects([Stroke(linewidth=edge, foreground=_PAPER), Normal()])
+    edge = look["markeredgewidth"] + 2.6 * POINT
+    drawn.set_path_effects([Stroke(linewidth=edge, foreground=PAPER), Normal()])
     if mark["label"]:
         _words(mark["label"], mark, ax, mark["colour"], backed=on_map)
 
@@ -271,25 +223,25 @@ def _words(text: str, at: Description, ax: Axes, colour: str, backed: bool) -> N
     """Words with their middle at an offset from a place."""
     right, down = at["offset"]
     tie = None
-    half = 0.5 * _LETTER * len(text) * _WORDS / _POINT
+    half = 0.5 * LETTER * len(text) * WORDS / POINT
     gap = math.hypot(max(abs(right) - half, 0.0), max(abs(down) - 6.5, 0.0))
     if "symbol" in at and gap > _TIED:
         tie = {
             "arrowstyle": "-",
             "color": colour,
-            "linewidth": 0.7 * _POINT,
+            "linewidth": 0.7 * POINT,
             "shrinkA": 0.0,
             "shrinkB": 0.0,
         }
-    box = {"facecolor": _PAPER, "edgecolor": "none", "pad": 1.5} if backed else None
+    box = {"facecolor": PAPER, "edgecolor": "none", "pad": 1.5} if backed else None
     words = ax.annotate(
-        _text(text),
+        text_of(text),
         (at["x"], at["y"]),
-        xytext=(right * _POINT, -down * _POINT),
+        xytext=(right * POINT, -down * POINT),
         textcoords="offset points",
         ha="center",
         va="center",
-        fontsize=_WORDS,
+        fontsize=WORDS,
         color=colour,
         bbox=box,
         arrowprops=tie,
@@ -342,115 +294,3 @@ def _stripes(
         corners, facecolor="none", edgecolor=colour, hatch="////", linewidth=0.0, zorder=0.8
     )
     ax.add_collection(stripes, autolim=False)
-
-
-def _heading(panel: Description, ax: Axes) -> None:
-    """The title and the legend, both above the frame."""
-    from matplotlib.legend_handler import HandlerTuple
-
-    width = panel["frame"][0]
-    entries = [
-        (handle, _wrapped(label, width - _SAMPLE), colour)
-        for handle, label, colour in _entries(panel)
-    ]
-    lines = 0
-    if entries:
-        columns, lines = _arranged([label for _, label, _ in entries], width)
-        # matplotlib goes down the columns, a reader along the lines
-        entries = [one for first in range(columns) for one in entries[first::columns]]
-        legend = ax.legend(
-            [handle for handle, _, _ in entries],
-            [_text(label) for _, label, _ in entries],
-            loc="lower left",
-            bbox_to_anchor=(0.0, 1.0),
-            borderaxespad=0.2,
-            borderpad=0.2,
-            ncols=columns,
-            frameon=False,
-            fontsize=_WORDS,
-            labelcolor=[colour for _, _, colour in entries],
-            handler_map={tuple: HandlerTuple(ndivide=None, pad=0.0)},
-            handlelength=(32.0 if any(map(_is_line, entries)) else 12.0) / 13.0,
-            columnspacing=1.2,
-        )
-        legend.set_zorder(4.0)
-    if panel["title"]:
-        pad = 5.0 + 1.52 * _WORDS * lines
-        title = _text(_wrapped(panel["title"], width))
-        ax.set_title(title, loc="left", fontsize=_WORDS, color=_INK, pad=pad)
-
-
-def _is_line(entry: tuple[Any, str, str]) -> bool:
-    """Whether a line or several squares stand before the words: these need room."""
-    handle = entry[0]
-    return isinstance(handle, tuple) or handle.get_linestyle() not in ("None", "none")
-
-
-def _arranged(labels: Sequence[str], width: float) -> tuple[int, int]:
-    """As many columns as have room, and how many lines that makes."""
-    letters = [max(map(len, label.split("\n"))) for label in labels]
-    for columns in range(len(labels), 0, -1):
-        longest = [max(letters[first::columns]) for first in range(columns)]
-        if sum(_SAMPLE + _LETTER * 13.0 * many + 16.0 for many in longest) <= width:
-            break
-    rows = [labels[first : first + columns] for first in range(0, len(labels), columns)]
-    return columns, sum(1 + max(label.count("\n") for label in row) for row in rows)
-
-
-def _wrapped(text: str, width: float) -> str:
-    """In lines that have room in so many pixels."""
-    return textwrap.fill(text, max(10, int(width / (_LETTER * 13.0))), break_long_words=False)
-
-
-def _entries(panel: Description) -> Iterator[tuple[Any, str, str]]:
-    """What the legend explains: what stands before the words, these, and their colour."""
-    from matplotlib.lines import Line2D
-
-    def line(colour: str, stroke: str, breadth: float) -> Artist:
-        width = max(breadth, _FINEST) * _POINT
-        return Line2D([], [], color=colour, linewidth=width, **_dashes(stroke, width))
-
-    for swatch in [] if panel["cells"] is None else panel["cells"]["swatches"]:
-        yield _squares(swatch["colours"]), swatch["label"], _INK
-    for series in panel["series"]:
-        colour = series["colour"]
-        if not series["label"]:
-            continue
-        if series["dots"]:
-            yield _dots(colour, max(series["width"], _FINEST)), series["label"], colour
-        else:
-            yield line(colour, series["stroke"], series["width"]), series["label"], colour
-    for stroke in panel["strokes"]:
-        yield line(_INK, stroke["stroke"], _FINEST), stroke["label"], _INK
-    for key in panel["keys"]:
-        look = _look(key["symbol"], key["filled"], key["colour"])
-        yield Line2D([], [], **look), key["label"], _INK
-
-
-def _squares(colours: Sequence[str]) -> Any:
-    """Squares of these colours; nothing for words alone."""
-    from matplotlib.lines import Line2D
-    from matplotlib.patches import Patch
-
-    if len(colours) > 1:
-        return tuple(Patch(facecolor=colour, edgecolor=_INK, linewidth=0.4) for colour in colours)
-    square = {"marker": "s", "markersize": 11.0 * _POINT, "markeredgecolor": _INK}
-    look: dict[str, Any] = (
-        {**square, "markeredgewidth": 0.4, "color": colours[0]} if colours else {}
-    )
-    return Line2D([], [], linestyle="none", **look)
-
-
-def _dots(colour: str, radius: float) -> Artist:
-    from matplotlib.lines import Line2D
-
-    size = 2.0 * radius * _POINT
-    return Line2D(
-        [], [], color=colour, marker="o", markersize=size, markeredgewidth=0.0, linestyle="none"
-    )
-
-
-def _text(text: str) -> str:
-    """Words in the language of matplotlib: what follows a single letter and an underscore is a subscript."""
-    escaped = text.replace("$", r"\$")
-    return re.sub(r"(?<!\w)([^\W\d_])_([^\W_]+)", r"\1$_{\\mathrm{\2}}$", escaped)

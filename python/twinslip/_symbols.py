@@ -1,13 +1,14 @@
 """Symbols: what a function is called with, so that its formula is known.
 
-An operation on symbols makes no number but another symbol. Each operation is there once, however often a function writes it.
+An operation on symbols makes no number but another symbol. Each operation is there once, however
+often a function writes it.
 """
 
 from __future__ import annotations
 
 import math
 import numbers
-from typing import Any, Callable, Optional
+from typing import Any, Callable
 
 import numpy as np
 
@@ -17,14 +18,19 @@ MOST_OPERATIONS = 10_000
 LARGEST_POWER = 1024.0
 
 NO_NUMBER = (
-    "a symbol has no value, as the function is called once for all values: use numpy's functions in place of math's, "
+    "a symbol has no value, as the function is called once for all values: use numpy's functions "
+    "in place of math's, "
     "as np.sin(x), and lists or arrays of dtype=object in place of arrays of numbers"
 )
 NO_CHOICE = (
-    "a symbol has no value, so nothing can be decided by comparing it: use np.maximum or np.minimum of two symbols, abs, or "
+    "a symbol has no value, so nothing can be decided by comparing it: use np.maximum or "
+    "np.minimum of two symbols, abs, or "
     "a smooth form such as (1 + np.tanh(x/width))/2"
 )
-NO_STEPS = "a symbol can't be rounded and has no remainder, as no formula has jumps: use a smooth form, such as np.sin"
+NO_STEPS = (
+    "a symbol can't be rounded and has no remainder, as no formula has jumps: use a smooth form, "
+    "such as np.sin"
+)
 
 
 class Operation:
@@ -54,7 +60,8 @@ class Formulas:
             place = len(self.operations)
             if place >= MOST_OPERATIONS:
                 raise ValueError(
-                    f"f: its formulas have more than {MOST_OPERATIONS} operations, which is the most allowed"
+                    f"f: its formulas have more than {MOST_OPERATIONS} operations, which is the "
+                    "most allowed"
                 )
             self._places[key] = place
             self.operations.append(operation)
@@ -82,7 +89,7 @@ class Formulas:
         places = tuple(operand.place for operand in operands)
         return self._place(("call", name, *places), Operation("call", places, name))
 
-    def symbol(self, value: object) -> Optional[Symbol]:
+    def symbol(self, value: object) -> Symbol | None:
         """A symbol or number as a symbol; None for anything else."""
         if isinstance(value, Symbol):
             if value.formulas is not self:
@@ -97,7 +104,8 @@ class Formulas:
                 raise ValueError("f: a whole number in it is beyond the range of doubles") from None
         if isinstance(value, str):
             raise TypeError(
-                f"a symbol can't be combined with the text {value!r}: symbols are had by x[{value!r}] and p[{value!r}]"
+                f"a symbol can't be combined with the text {value!r}: symbols are had by "
+                f"x[{value!r}] and p[{value!r}]"
             )
         return None
 
@@ -193,7 +201,8 @@ def _power(a: Symbol, b: Symbol) -> Symbol:
         return a.call("sqrt")
     if y is not None and y.is_integer() and abs(y) > LARGEST_POWER:
         raise ValueError(
-            f"f: the whole exponent {y:.0f} must be between {-LARGEST_POWER:.0f} and {LARGEST_POWER:.0f}"
+            f"f: the whole exponent {y:.0f} must be between {-LARGEST_POWER:.0f} and "
+            f"{LARGEST_POWER:.0f}"
         )
     return a.formulas.made("^", a, b)
 
@@ -210,7 +219,8 @@ def _refused(sentence: str) -> Any:
 class Symbol:
     """A state, a parameter, a number or what was made of them, with no value of its own.
 
-    Arithmetic goes, and so do numpy's functions that have a formula: ``np.exp``, ``np.log``, ``np.sqrt``, ``np.sin``,
+    Arithmetic goes, and so do numpy's functions that have a formula: ``np.exp``, ``np.log``,
+    ``np.sqrt``, ``np.sin``,
     ``np.tanh``, ``np.maximum`` and so on.
     """
 
@@ -225,7 +235,7 @@ class Symbol:
         """What it was made by."""
         return self.formulas.operations[self.place].kind
 
-    def known(self) -> Optional[float]:
+    def known(self) -> float | None:
         """Its value, where it is a number."""
         operation = self.formulas.operations[self.place]
         return operation.number if operation.kind == "number" else None
@@ -313,7 +323,8 @@ class Symbol:
         return applied(ufunc, method, inputs, options)
 
     def __getattr__(self, name: str) -> Callable[..., Symbol]:
-        # numpy calls functions of what is in arrays as methods: np.sin(array) asks each for its sin.
+        # numpy calls functions of what is in arrays as methods: np.sin(array) asks each for its
+        # sin.
         from ._ufuncs import FUNCTIONS
 
         function = FUNCTIONS.get(name)

@@ -12,9 +12,11 @@ from ._symbols import Formulas, Operation
 NAMES_OF_FUNCTIONS = frozenset(
     "exp ln log10 sqrt sin cos tan sinh cosh tanh asinh atan abs min max pow".split()
 )
-#: What is used more than once and is longer than this gets a name; longer where there would be too many names.
+#: What is used more than once and is longer than this gets a name; longer where there would be
+#: too many names.
 _WORTH_A_NAME = (16, 48, 128, 384, 1024)
-#: What is longer or nested deeper gets one in any case: formulas have at most 4000 letters, and nest at most 64 deep.
+#: What is longer or nested deeper gets one in any case: formulas have at most 4000 letters, and
+#: nest at most 64 deep.
 _LONG = 1800
 _DEEP = 30
 #: How strongly operators bind, and what has none.
@@ -111,7 +113,8 @@ def definitions(
         if len(defined) <= most:
             return texts, defined
     raise ValueError(
-        f"f: its formulas are too long, as they need {len(defined)} definitions, at most {most} are allowed"
+        f"f: its formulas are too long, as they need {len(defined)} definitions, at most {most} "
+        "are allowed"
     )
 
 

@@ -7,7 +7,7 @@ import math
 import numbers
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from typing import Any, Callable, Optional, Union, cast
+from typing import Any, Callable, cast
 
 import numpy as np
 
@@ -28,9 +28,11 @@ RateFunction = Callable[..., Any]
 
 
 class States(np.ndarray):
-    """The symbols of all states: an array of objects, ``x[0]``, that has them by name as well, ``x["theta"]``."""
+    """The symbols of all states: an array of objects, ``x[0]``, that has them by name as well,
+    ``x["theta"]``.
+    """
 
-    names: Optional[tuple[str, ...]]
+    names: tuple[str, ...] | None
 
     def __array_finalize__(self, source: Any) -> None:
         # Of what is made of it nothing has these names.
@@ -77,19 +79,20 @@ class Parameters(Mapping[str, Symbol]):
 def system_text(
     f: RateFunction,
     states: Sequence[str],
-    parameters: Optional[Mapping[str, float]] = None,
+    parameters: Mapping[str, float] | None = None,
     *,
-    name: Optional[str] = None,
-    start: Union[Mapping[str, float], Sequence[float], None] = None,
+    name: str | None = None,
+    start: Mapping[str, float] | Sequence[float] | None = None,
 ) -> str:
     """The text of the system dx/dt = f(x, p), as a file of twinslip has it.
 
     Parameters
     ----------
     f : callable
-        ``f(x, p)`` gives the rates of all states: a sequence in their order, or a mapping by their names. It is called once,
-        with symbols: ``x[0]`` or ``x["theta"]``, ``p["mu"]`` or ``p.mu``. Arithmetic and numpy's functions go; a choice by the
-        value of a symbol does not, nor do the functions of ``math``. A power whose exponent is no whole number, or is a
+        ``f(x, p)`` gives the rates of all states: a sequence in their order, or a mapping by
+        their names. It is called once, with symbols: ``x[0]`` or ``x["theta"]``, ``p["mu"]`` or
+        ``p.mu``. Arithmetic and numpy's functions go; a choice by the value of a symbol does not,
+        nor do the functions of ``math``. A power whose exponent is no whole number, or is a
         parameter, needs a positive base.
     states : sequence of str
         The names of 1 to 8 states.
@@ -103,7 +106,7 @@ def system_text(
     Returns
     -------
     str
-        The text, TOML of several lines. Every number in it is that of the function, to the last bit.
+        The text, TOML of several lines. Its numbers are those of the function, to the last bit.
 
     Raises
     ------
@@ -157,7 +160,8 @@ def _check_identifier(argument: str, name: object) -> str:
         raise ValueError(f"{argument}: {name!r} is no name, but of type {type(name).__name__}")
     if not re.fullmatch(r"[^\W\d]\w*", name) or not name.isidentifier():
         raise ValueError(
-            f"{argument}: {name!r} is no name, these are of letters, digits and _, and begin with no digit"
+            f"{argument}: {name!r} is no name, these are of letters, digits and _, and begin "
+            "with no digit"
         )
     if name == "pi" or name in NAMES_OF_FUNCTIONS:
         raise ValueError(
@@ -200,7 +204,8 @@ def _checked_parameters(
 ) -> dict[str, float]:
     if not isinstance(parameters, Mapping):
         raise ValueError(
-            f"parameters: it must be a mapping of names to numbers, not of type {type(parameters).__name__}"
+            "parameters: it must be a mapping of names to numbers, not of type "
+            f"{type(parameters).__name__}"
         )
     if len(parameters) > MOST_ENTRIES:
         raise ValueError(
@@ -215,7 +220,7 @@ def _checked_parameters(
     return values
 
 
-def _checked_name(f: RateFunction, name: Optional[str]) -> str:
+def _checked_name(f: RateFunction, name: str | None) -> str:
     if name is None:
         name = getattr(f, "__name__", "")
         name = name if name and name != "<lambda>" else "system"
@@ -227,7 +232,7 @@ def _checked_name(f: RateFunction, name: Optional[str]) -> str:
 
 
 def _checked_start(
-    start: Union[Mapping[str, float], Sequence[float], None], states: tuple[str, ...]
+    start: Mapping[str, float] | Sequence[float] | None, states: tuple[str, ...]
 ) -> dict[str, float]:
     if start is None:
         return {}
@@ -246,7 +251,8 @@ def _checked_start(
         values = []
     if isinstance(start, str) or len(values) != len(states):
         raise ValueError(
-            f"start: it must have {len(states)} values, one for each of {', '.join(states)}, not {start!r}"
+            f"start: it must have {len(states)} values, one for each of {', '.join(states)}, not "
+            f"{start!r}"
         )
     return {state: _checked_number("start", state, value) for state, value in zip(states, values)}
 
@@ -268,7 +274,8 @@ def _check_arguments(f: RateFunction) -> None:
         fits = False
     if of_time and (not fits or places[0] in ("t", "time")):
         raise ValueError(
-            f"f: it has the arguments {', '.join(places)}, but must be f(x, p), as rates can't depend on time itself: "
+            f"f: it has the arguments {', '.join(places)}, but must be f(x, p), as rates can't "
+            "depend on time itself: "
             'make time a state of its own, such as "clock", with the rate 1 and the start 0'
         )
     if not fits:
@@ -280,7 +287,8 @@ def _checked_rates(made: Any, states: tuple[str, ...], formulas: Formulas) -> li
         for key in made:
             if key not in states:
                 raise ValueError(
-                    f"f: it gives a rate of {key!r}, which is no state; there are {', '.join(states)}"
+                    f"f: it gives a rate of {key!r}, which is no state; there are "
+                    f"{', '.join(states)}"
                 )
         missing = [state for state in states if state not in made]
         if missing:
@@ -292,11 +300,13 @@ def _checked_rates(made: Any, states: tuple[str, ...], formulas: Formulas) -> li
         rates = list(made)
     else:
         raise ValueError(
-            f"f: it must give a sequence of {len(states)} rates, or a mapping by the states, not {made!r}"
+            f"f: it must give a sequence of {len(states)} rates, or a mapping by the states, not "
+            f"{made!r}"
         )
     if len(rates) != len(states):
         raise ValueError(
-            f"f: it gives {len(rates)} rates, but there are {len(states)} states, {', '.join(states)}"
+            f"f: it gives {len(rates)} rates, but there are {len(states)} states, "
+            f"{', '.join(states)}"
         )
     symbols = [formulas.symbol(rate) for rate in rates]
     for state, rate, symbol in zip(states, rates, symbols):

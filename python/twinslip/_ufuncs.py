@@ -120,16 +120,21 @@ _COMPARISONS = {
     "logical_xor",
     "not_equal",
 }
-_NO_ARRAY = "a symbol has no value, and so no place in an array of numbers: make the array with dtype=object"
+_NO_ARRAY = (
+    "a symbol has no value, and so no place in an array of numbers: make the array with "
+    "dtype=object"
+)
 
 
 def applied(ufunc: np.ufunc, method: str, inputs: tuple[Any, ...], options: dict[str, Any]) -> Any:
-    """What a function of numpy makes of inputs of which one at least is a symbol, the others numbers or arrays.
+    """What a function of numpy makes of inputs of which one at least is a symbol, the others
+    numbers or arrays.
 
     Returns
     -------
     Symbol or numpy.ndarray
-        An array of objects, in the shape to which all inputs are broadcast, where one of them is an array.
+        An array of objects, in the shape to which all inputs are broadcast, where one of them is
+        an array.
 
     Raises
     ------
