@@ -19,6 +19,9 @@ from twinslip import System
 
 SLAB = System(driving=10, stiffness=0.14)
 
+#: Where programs run: not beside the sources of the package, which they would import.
+HERE = Path(__file__).parent
+
 #: What a program prints when Ctrl-C reaches it in the midst of a computation.
 INTERRUPTED = {
     "integrate": """
@@ -71,7 +74,7 @@ def test_ctrl_c_ends_within_a_tenth_of_a_second_and_keeps_what_there_is(name: st
             os._exit(0)
     """).format(made=textwrap.dedent(INTERRUPTED[name]).strip("\n"))
     ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True
+        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True, cwd=HERE
     )
     took, rows, kind = ended.stdout.split()
     assert float(took) < LIMIT, ended.stdout
@@ -128,7 +131,7 @@ def test_many_calls_leave_nothing_behind() -> None:
     if not Path("/proc/self/statm").exists():
         pytest.skip("there is no /proc here")
     ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=500
+        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=500, cwd=HERE
     )
     # A leak of 100 bytes a call would be twice this.
     assert int(ended.stdout) < 1_000_000

@@ -15,17 +15,17 @@ PACKAGE = Path(twinslip.__file__).parent
 SOURCES = Path(__file__).resolve().parents[1]
 
 
-def run(*words: str) -> None:
-    ended = subprocess.run([sys.executable, *words], capture_output=True, text=True, cwd=SOURCES, check=False)
+def run(where: Path, *words: str) -> None:
+    ended = subprocess.run([sys.executable, *words], capture_output=True, text=True, cwd=where, check=False)
     assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
 def test_types_are_complete() -> None:
-    run("-m", "mypy", "--strict", "twinslip", "generate")
+    run(SOURCES, "-m", "mypy", "--strict", "twinslip", "scripts/write-commands")
 
 
-def test_types_of_the_compiled_part_are_those_of_the_module() -> None:
-    run("-m", "mypy.stubtest", "twinslip._core")
+def test_types_of_the_compiled_part_are_those_of_the_module(tmp_path: Path) -> None:
+    run(tmp_path, "-m", "mypy.stubtest", "twinslip._core")
 
 
 def test_every_name_of_the_compiled_part_is_typed() -> None:
@@ -46,7 +46,7 @@ def test_every_name_of_the_compiled_part_is_typed() -> None:
 
 
 def test_commands_are_written_from_the_options() -> None:
-    run("generate", "--check")
+    run(SOURCES, "scripts/write-commands", "--check")
 
 
 def test_every_public_name_is_documented() -> None:

@@ -72,10 +72,29 @@ impl Command {
     }
 
     /// A command line, the name of the program first; what is wrong with it as one sentence.
+    ///
+    /// Only the options of the command that it names are made, which takes an eighth of the time of all.
     pub(crate) fn of_words(words: &[String]) -> Result<Self, String> {
-        let line = SceneLine::try_parse_from(words).map_err(|error| sentence(&error))?;
-        Ok(line.command)
+        let parsed = match words.get(1).map_or("", String::as_str) {
+            "law" => options(words).map(Command::Law),
+            "integrate" => options(words).map(Command::Integrate),
+            "equilibria" => options(words).map(Command::Equilibria),
+            "orbit" => options(words).map(Command::Orbit),
+            "section" => options(words).map(Command::Section),
+            "branch" => options(words).map(Command::Branch),
+            "locus" => options(words).map(Command::Locus),
+            "sweep" => options(words).map(Command::Sweep),
+            _ => SceneLine::try_parse_from(words).map(|line| line.command),
+        };
+        parsed.map_err(|error| sentence(&error))
     }
+}
+
+/// The options of one command, from a command line whose second word is its name.
+fn options<O: clap::Args>(words: &[String]) -> Result<Box<O>, clap::Error> {
+    let command = O::augment_args(clap::Command::new("twinslip"));
+    let matches = command.try_get_matches_from(&words[1..])?;
+    O::from_arg_matches(&matches).map(Box::new)
 }
 
 /// What is wrong with a command line. What stands before the first empty line is the sentence; advice on flags follows, which not everybody
