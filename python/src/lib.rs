@@ -5,6 +5,7 @@
 mod ivp;
 mod run;
 mod table;
+mod threads;
 
 use ivp::{IvpRun, Solution, solve_ivp};
 use pyo3::prelude::*;

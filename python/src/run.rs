@@ -1,6 +1,7 @@
 //! A command that runs on a thread of its own, and what it has come to.
 
 use crate::table::{Column, Table, Values};
+use crate::threads;
 use numpy::IntoPyArray;
 use pyo3::IntoPyObjectExt;
 use pyo3::prelude::*;
@@ -11,15 +12,11 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
-use std::thread;
 use std::time::Duration;
 use twinslip::Error;
 use twinslip::cli::{Ending, Outlet, run_into};
 use twinslip::output::Cell;
 use twinslip::output::plot::Drawing;
-
-/// Room for the calls of a command: as that of the main thread, and more where searches go deep.
-const STACK: usize = 64 << 20;
 
 /// What a command has yielded so far.
 #[derive(Default)]
@@ -182,7 +179,7 @@ impl Run {
             own.kept().ended = Some(ended);
             own.changed.notify_all();
         };
-        thread::Builder::new().stack_size(STACK).spawn(work)?;
+        threads::run(work)?;
         Ok(Run { shared })
     }
 

@@ -69,7 +69,8 @@ class Result:
         self._words = words
         self._progress = progress
         self._columns: dict[str, tuple[Any, Any]] = {}
-        self._told = Record()
+        self._object = b""
+        self._told: Optional[Record] = Record()
         self._messages: list[str] = []
         self._pictures: list[Picture] = []
         self._ending: Optional[str] = None
@@ -101,13 +102,14 @@ class Result:
         """Takes what the run has come to; it is not asked again."""
         self._run = None
         self._ending = run.ending()
-        text = run.object()
-        whole = json.loads(text) if text else {}
-        rows = whole.get("result", {}).pop("rows", None) or []
-        self._columns = run.columns() or columns_of(rows)
-        self._told = value_of(whole)
+        self._object = run.object()
+        # It is read when it is asked for: that may take as long as a short run.
+        self._told = None
+        self._columns = run.columns()
         self._messages = run.messages()
         self._pictures = [Picture(drawing) for drawing in run.pictures()]
+        if not self._columns:
+            self._whole()
 
     @property
     def complete(self) -> bool:
@@ -116,6 +118,12 @@ class Result:
 
     def _whole(self) -> Record:
         self._finish()
+        if self._told is None:
+            whole = json.loads(self._object) if self._object else {}
+            rows = whole.get("result", {}).pop("rows", None)
+            if not self._columns:
+                self._columns = columns_of(rows or [])
+            self._told, self._object = value_of(whole), b""
         return self._told
 
     @property
@@ -201,7 +209,7 @@ class Result:
             raise AttributeError(f"there is no {name}; there are {known}") from error
 
     def __dir__(self) -> list[str]:
-        names = [*self._columns, *self._told.get("result", {})]
+        names = [*self._columns, *self._whole().get("result", {})]
         return [*super().__dir__(), *(name for name in names if name.isidentifier())]
 
     def to_dataframe(self) -> pandas.DataFrame:
@@ -492,7 +500,7 @@ class Orbit(Result):
         return super().__getattr__(name)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._told.get("result", {}).get("orbit", {})]
+        return [*super().__dir__(), *self._whole().get("result", {}).get("orbit", {})]
 
     def _short(self) -> str:
         orbit = self.result.get("orbit")

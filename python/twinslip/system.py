@@ -19,16 +19,17 @@ class System(Commands, Model):
         known = _words.model_options()
         self._given: dict[str, Any] = {}
         self._parameters: dict[str, Any] = {}
+        self._spoken: dict[str, list[str]] = {}
         parameters = given.pop("parameters")
         for name, value in given.items():
             if value is None or value is False:
                 continue
-            _words.words(known[name], value)
+            self._spoken[name] = _words.words(known[name], value)
             self._given[name] = value
         for name, value in parameters.items():
             if value is None:
                 continue
-            _words.number(name, value)
+            self._spoken[name] = [f"--set={name}={_words.number(name, value)}"]
             self._parameters[name] = value
 
     @classmethod
@@ -105,19 +106,17 @@ class System(Commands, Model):
             ends = own.pop("range")
             own["from_"], own["to"] = (None, None) if ends is None else _pair("range", ends)
         varied = _varied(command, own)
-        words = [command]
+        words, flags = [command], []
         for name, value in own.items():
-            if known[name].positional:
-                words += _words.words(known[name], value)
-        for name, value in self._given.items():
-            if name in known and name not in varied and own.get(name) is None:
-                words += _words.words(known[name], value)
-        for name, value in self._parameters.items():
-            if name not in varied:
-                words.append(f"--set={name}={_words.number(name, value)}")
-        for name, value in own.items():
-            if not known[name].positional:
-                words += _words.words(known[name], value)
+            if value is not None and value is not False:
+                option = known[name]
+                (words if option.positional else flags).extend(_words.words(option, value))
+        for name, spoken in self._spoken.items():
+            if name not in varied and (name not in own or own[name] is None) and (
+                name in known or name in self._parameters
+            ):
+                words += spoken
+        words += flags
         return words + _pictured(command, own), progress
 
     def _solver_words(
@@ -126,10 +125,7 @@ class System(Commands, Model):
         """What is integrated, and how, in the words of ``integrate``."""
         known = _words.options("integrate")
         own = {"method": method, "rtol": rtol, "atol": atol, "max_steps": max_steps}
-        words = ["integrate"]
-        for name, value in self._given.items():
-            words += _words.words(known[name], value)
-        words += [f"--set={name}={_words.number(name, x)}" for name, x in self._parameters.items()]
+        words = ["integrate", *(word for spoken in self._spoken.values() for word in spoken)]
         for name, value in own.items():
             words += _words.words(known[name], value)
         return words

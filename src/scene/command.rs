@@ -10,6 +10,8 @@ use super::system::System;
 use super::units::Units;
 use crate::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// A computation with its options.
 #[derive(Debug, Clone, PartialEq, Subcommand)]
@@ -73,7 +75,7 @@ impl Command {
 
     /// A command line, the name of the program first; what is wrong with it as one sentence.
     ///
-    /// Only the options of the command that it names are made, which takes an eighth of the time of all.
+    /// Only the options of the command that it names are made, and those once: that takes longer than a short run.
     pub(crate) fn of_words(words: &[String]) -> Result<Self, String> {
         let parsed = match words.get(1).map_or("", String::as_str) {
             "law" => options(words).map(Command::Law),
@@ -92,9 +94,15 @@ impl Command {
 
 /// The options of one command, from a command line whose second word is its name.
 fn options<O: clap::Args>(words: &[String]) -> Result<Box<O>, clap::Error> {
-    let command = O::augment_args(clap::Command::new("twinslip"));
-    let matches = command.try_get_matches_from(&words[1..])?;
-    O::from_arg_matches(&matches).map(Box::new)
+    /// The parsers that nobody uses just now, by the names of their commands.
+    static MADE: Mutex<BTreeMap<String, clap::Command>> = Mutex::new(BTreeMap::new());
+    let made = || MADE.lock().unwrap_or_else(PoisonError::into_inner);
+    let own = &words[1..];
+    let at_hand = made().remove(&own[0]);
+    let mut parser = at_hand.unwrap_or_else(|| O::augment_args(clap::Command::new("twinslip")));
+    let matches = parser.try_get_matches_from_mut(own);
+    made().insert(own[0].clone(), parser);
+    O::from_arg_matches(&matches?).map(Box::new)
 }
 
 /// What is wrong with a command line. What stands before the first empty line is the sentence; advice on flags follows, which not everybody
