@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
 import sys
@@ -24,19 +23,20 @@ HERE = Path(__file__).parent
 #: What a program prints when Ctrl-C reaches it in the midst of a computation.
 INTERRUPTED = {
     "integrate": """
-        run = lambda: System(driving=10, stiffness=0.14).integrate(until=1e7, points=1000, max_steps=10**9)
+        run = lambda: System(driving=10, stiffness=0.14).integrate(until=1e9, points=100000, max_steps=10**9)
     """,
     "branch": """
-        run = lambda: System(stiffness=0.1).branch("orbits", range=(0.05, 300)).special
+        run = lambda: System(stiffness=0.1).branch("orbits", range=(0.05, 300), step_limit=0.002, max_points=10**7).special
     """,
     "iterated": """
-        branch = System(stiffness=0.1).branch("orbits", range=(0.05, 300))
+        branch = System(stiffness=0.1).branch("orbits", range=(0.05, 300), step_limit=0.002, max_points=10**7)
         def run():
             for point in branch:
                 pass
     """,
     "orbit": """
-        run = lambda: System(driving=0.0884, stiffness=0.07).orbit(symmetry="asymmetric", period_guess=500)
+        run = lambda: System(driving=0.1, stiffness=0.1).orbit(
+            symmetry="asymmetric", method="rosenbrock23", rtol=1e-12, max_steps=10**9)
     """,
     "solve_ivp": """
         run = lambda: twinslip.solve_ivp(System(driving=10, stiffness=0.14), (0, 1e8), [9.95, 0.002, 0.00199],
@@ -58,7 +58,7 @@ def test_ctrl_c_ends_within_a_tenth_of_a_second_and_keeps_what_there_is(name: st
         {made}
         sent = []
         def press():
-            time.sleep(0.6)
+            time.sleep(0.4)
             sent.append(time.monotonic())
             os.kill(os.getpid(), signal.SIGINT)
         threading.Thread(target=press, daemon=True).start()
@@ -72,18 +72,24 @@ def test_ctrl_c_ends_within_a_tenth_of_a_second_and_keeps_what_there_is(name: st
             print(took, rows, type(caught).__name__, flush=True)
             os._exit(0)
     """).format(made=textwrap.dedent(INTERRUPTED[name]).strip("\n"))
-    ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True, cwd=HERE
-    )
-    took, rows, kind = ended.stdout.split()
-    assert float(took) < LIMIT, ended.stdout
-    assert kind == "Interrupted"
-    if name in ("integrate", "iterated", "solve_ivp", "solve_ivp_events"):
-        assert int(rows) >= 1
+    took = []
+    # Whatever else the machine does may hold up one of them.
+    for _ in range(3):
+        ended = subprocess.run(
+            [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True, cwd=HERE
+        )
+        seconds, rows, kind = ended.stdout.split()
+        assert kind == "Interrupted"
+        if name in ("integrate", "iterated", "solve_ivp", "solve_ivp_events"):
+            assert int(rows) >= 1
+        took.append(float(seconds))
+        if took[-1] < LIMIT:
+            return
+    raise AssertionError(f"it took {took} s")
 
 
-#: A tenth of a second, and what a machine that does other work at the time may take to notice.
-LIMIT = 0.1 + 0.1 * (os.environ.get("CI") is not None)
+#: In seconds.
+LIMIT = 0.1
 
 
 def test_systems_at_once_from_a_pool_give_the_same_as_one_by_one() -> None:
@@ -100,7 +106,7 @@ def test_systems_at_once_from_a_pool_give_the_same_as_one_by_one() -> None:
 def test_python_goes_on_while_a_run_computes() -> None:
     """The lock of the interpreter is not held: this thread counts while another one waits for its run."""
     with ThreadPoolExecutor(1) as pool:
-        future = pool.submit(lambda: SLAB.integrate(until=3e4, final_only=True, max_steps=10**9))
+        future = pool.submit(lambda: SLAB.integrate(until=5e5, final_only=True, max_steps=10**9))
         counted = 0
         while not future.done():
             counted += 1
@@ -169,9 +175,9 @@ def test_processes_that_are_forked_have_threads_of_their_own() -> None:
 
 def test_progress_is_shown_where_it_is_asked_for(capfd: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("tqdm")
-    quiet = SLAB.integrate(until=2e4, final_only=True, max_steps=10**9)
+    quiet = SLAB.integrate(until=2e5, final_only=True, max_steps=10**9)
     assert capfd.readouterr().err == ""
-    shown = SLAB.integrate(until=2e5, final_only=True, max_steps=10**9, progress=True)
+    shown = SLAB.integrate(until=2e6, final_only=True, max_steps=10**9, progress=True)
     assert "integrate" in capfd.readouterr().err
     assert quiet.complete and shown.complete
 

@@ -1,6 +1,6 @@
 """The commands as methods, with the options of the command line as their arguments.
 
-Written by the script ``generate``: a change here does not last.
+Written by ``python/scripts/write-commands``: a change here does not last.
 """
 
 from __future__ import annotations
@@ -702,7 +702,7 @@ class Commands:
             Threads [default: one per processor]; rows do not depend on them
         curves : str, number or sequence, optional
             Bifurcations to draw over the map, comma-separated, as locus has them, or none
-            [default: pitchfork,hopf,orbit-pitchfork,period-doubling,torus]
+            [default: none]
         progress : bool, optional
             Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
             terminal].

@@ -9,9 +9,9 @@ from typing import Any, Optional
 from . import _core
 
 #: Seconds between two looks at whether Ctrl-C was pressed.
-LOOK = 0.03
+LOOK = 0.02
 #: So long a run may take to end after that; its thread goes on unheard if it takes longer.
-PATIENCE = 0.06
+PATIENCE = 0.05
 #: Shorter runs show no progress.
 SHOWN = 0.8
 

@@ -106,7 +106,8 @@ class System(Commands, Model):
             ends = own.pop("range")
             own["from_"], own["to"] = (None, None) if ends is None else _pair("range", ends)
         varied = _varied(command, own)
-        words, flags = [command], []
+        words = [command]
+        flags: list[str] = []
         for name, value in own.items():
             if value is not None and value is not False:
                 option = known[name]
