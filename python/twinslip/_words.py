@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from functools import cache
 from typing import Any, NamedTuple, Optional
 
 import numpy as np
@@ -35,14 +35,14 @@ class Option(NamedTuple):
         return RENAMED.get(plain, plain)
 
 
-@lru_cache(maxsize=None)
+@cache
 def options(command: str) -> dict[str, Option]:
     """The options of a command by their names in Python."""
     every = (Option(*told) for told in _core.options(command))
     return {option.argument: option for option in every}
 
 
-@lru_cache(maxsize=None)
+@cache
 def model_options() -> dict[str, Option]:
     """The options that say what slides, by their names in Python."""
     every = options("orbit").items()

@@ -8,6 +8,7 @@ from typing import Optional, Union
 
 from . import _core, results
 from ._errors import InputError, Interrupted, NumericalError
+from ._result import raised
 from ._running import finish
 
 __all__ = ["figure", "reproduce", "run", "scenes"]
@@ -152,7 +153,7 @@ def _made(
     messages = job.messages()
     failure = job.failure()
     if failure is not None:
-        results.raised(failure, None)
+        raised(failure, None)
     if job.ending() == "stuck":
         raise NumericalError("; ".join(messages))
     return messages
