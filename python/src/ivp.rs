@@ -154,6 +154,9 @@ impl Solution {
 /// Why there is no outcome: of the input, a sentence with the field to blame; or what a function of an event raised.
 type Refused = (Option<String>, String);
 
+/// The run, or why there is none; and the exception that ended it from outside.
+type Solved = (Option<IvpRun>, Option<Refused>, Option<Py<PyAny>>);
+
 /// Solves an initial value problem; the words are those of `integrate`, which say what it is of and how it is solved. Gives the run, or why
 /// the input is refused; and an exception that ended the run from outside.
 #[pyfunction]
@@ -166,7 +169,7 @@ pub fn solve_ivp(
     times: Option<Vec<f64>>,
     events: Vec<Event>,
     dense_output: bool,
-) -> PyResult<(Option<IvpRun>, Option<Refused>, Option<Py<PyAny>>)> {
+) -> PyResult<Solved> {
     let refused = |error: Error| {
         Ok((
             None,

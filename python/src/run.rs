@@ -149,6 +149,9 @@ fn file(py: Python<'_>) -> PyResult<&PathBuf> {
     })
 }
 
+/// The names of columns, and the cells of rows in their order.
+type NamedRows<'py> = (Vec<String>, Vec<Vec<Bound<'py, PyAny>>>);
+
 /// A command that runs, or has run.
 ///
 /// Parameters
@@ -289,12 +292,7 @@ impl Run {
     }
 
     /// The rows from one on to another one, as lists of cells in the order of the columns; None where a cell is missing.
-    fn rows<'py>(
-        &self,
-        py: Python<'py>,
-        first: usize,
-        end: usize,
-    ) -> PyResult<(Vec<String>, Vec<Vec<Bound<'py, PyAny>>>)> {
+    fn rows<'py>(&self, py: Python<'py>, first: usize, end: usize) -> PyResult<NamedRows<'py>> {
         let kept = self.shared.kept();
         let columns = &kept.table.columns;
         let names = columns.iter().map(|column| column.name.clone()).collect();
