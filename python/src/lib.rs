@@ -6,10 +6,12 @@ mod ivp;
 mod run;
 mod table;
 mod threads;
+mod timing;
 
 use ivp::{IvpRun, Solution, solve_ivp};
 use pyo3::prelude::*;
 use run::{Picture, Run};
+use timing::timed;
 use twinslip::cli::{OptionInfo, commands, options, scene_words};
 
 /// An option: name, whether it is positional, kind, form, whether it may be given again, default, heading, help.
@@ -43,7 +45,7 @@ mod _core {
     use super::*;
 
     #[pymodule_export]
-    use super::{IvpRun, Picture, Run, Solution, solve_ivp};
+    use super::{IvpRun, Picture, Run, Solution, solve_ivp, timed};
 
     /// The version of twinslip.
     #[pyfunction]

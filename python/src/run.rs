@@ -30,12 +30,12 @@ struct Kept {
 
 /// Why a command failed.
 #[derive(Debug, Clone)]
-struct Failure {
+pub struct Failure {
     /// `input`, `file` or `numerical`.
     kind: &'static str,
     /// The field that is to blame, where it is known.
     field: Option<String>,
-    words: String,
+    pub words: String,
 }
 
 impl Failure {
@@ -52,7 +52,7 @@ impl Failure {
         }
     }
 
-    fn of_panic(panic: &(dyn Any + Send)) -> Self {
+    pub fn of_panic(panic: &(dyn Any + Send)) -> Self {
         let text = panic.downcast_ref::<&str>().copied();
         let text = text.or(panic.downcast_ref::<String>().map(String::as_str));
         Failure {
@@ -86,7 +86,7 @@ pub fn field(error: &Error) -> Option<String> {
 
 /// What the thread of a command and those who wait for it share.
 #[derive(Default)]
-struct Shared {
+pub struct Shared {
     kept: Mutex<Kept>,
     changed: Condvar,
     stop: AtomicBool,
@@ -99,6 +99,14 @@ struct Shared {
 }
 
 impl Shared {
+    /// Nothing yet; the file is that of this module.
+    pub fn new(program: PathBuf) -> Self {
+        Shared {
+            program,
+            ..Shared::default()
+        }
+    }
+
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -142,7 +150,7 @@ impl Outlet for Shared {
 }
 
 /// The file of this module.
-fn file(py: Python<'_>) -> PyResult<&PathBuf> {
+pub fn file(py: Python<'_>) -> PyResult<&PathBuf> {
     static FILE: PyOnceLock<PathBuf> = PyOnceLock::new();
     FILE.get_or_try_init(py, || {
         py.import("twinslip._core")?.getattr("__file__")?.extract()
@@ -168,10 +176,7 @@ impl Run {
     /// Begins at once, on a thread of its own.
     #[new]
     fn new(py: Python<'_>, words: Vec<String>) -> PyResult<Self> {
-        let shared = Arc::new(Shared {
-            program: file(py)?.clone(),
-            ..Shared::default()
-        });
+        let shared = Arc::new(Shared::new(file(py)?.clone()));
         let own = Arc::clone(&shared);
         let work = move || {
             let ended = catch_unwind(AssertUnwindSafe(|| run_into(&words, own.clone())));

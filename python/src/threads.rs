@@ -5,7 +5,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::{io, thread};
 
 /// Room for the calls of a command: searches go deep.
-const STACK: usize = 64 << 20;
+pub const STACK: usize = 64 << 20;
 /// No more threads wait for work.
 const MOST: usize = 16;
 
