@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-import math
+import re
 from collections.abc import Callable, Sequence
 from typing import Any, Optional, Union
 
@@ -58,7 +58,7 @@ class OdeSolution:
         ndarray, shape (n,) or (n, m)
             Values.
         """
-        times = np.asarray(t, dtype=float)
+        times = _array("t", t)
         if times.ndim > 1:
             raise InputError(f"t has {times.ndim} dimensions, but must be a number or have 1", "t")
         values = self._solution.at(times.reshape(-1).tolist())
@@ -80,8 +80,8 @@ class IvpResult(Record):
         Values at these times.
     sol : OdeSolution or None
         The solution as a function of time, where it was asked for.
-    t_events, y_events : list of ndarray, or None
-        For each event its times, and the values there.
+    t_events, y_events : list of ndarray, shapes (k,) and (k, n), or None
+        For each event its times, and the values there; None where there are no events to look for.
     nfev, njev, nlu : int
         Evaluations of f and of its Jacobian, factorisations.
     status : int
@@ -104,13 +104,16 @@ class IvpResult(Record):
     message: str
     success: bool
 
+    def __repr__(self) -> str:
+        return f"Ivp{super().__repr__().replace('Record', 'Result', 1)}"
+
     def __reduce__(self) -> Any:
         return (IvpResult, (dict(self),))
 
 
 def solve_ivp(
     system: System,
-    t_span: Sequence[float],
+    t_span: npt.ArrayLike,
     y0: npt.ArrayLike,
     method: str = "auto",
     t_eval: Optional[npt.ArrayLike] = None,
@@ -124,35 +127,41 @@ def solve_ivp(
     max_steps: Optional[int] = None,
     jac: Any = None,
     first_step: Optional[float] = None,
-    max_step: float = math.inf,
+    max_step: float = np.inf,
 ) -> IvpResult:
-    """Solves an initial value problem; a call of ``scipy.integrate.solve_ivp`` needs another first argument.
+    """Solves an initial value problem; a call of SciPy's needs another first argument.
 
     Parameters
     ----------
     system : System
         What is integrated, in place of a function.
     t_span : (float, float)
-        Where it begins and ends [L/V*; s in SI]; backward in time where the end is the smaller one.
+        Where it begins and ends [L/V*; s in SI]; backward in time where the end is the smaller
+        one.
     y0 : array_like, shape (n,)
         The start: (tau, psi_1, psi_2, ...) of interfaces, or the states of a system of one's own.
     method : str
-        ``"auto"``, ``"taylor"``, ``"rodas5p"``, ``"rodas4"``, ``"rosenbrock23"``, ``"cvode-bdf"`` or ``"cvode-adams"``.
+        ``"auto"``, ``"taylor"``, ``"rodas5p"``, ``"rodas4"``, ``"rosenbrock23"``,
+        ``"cvode-bdf"`` or ``"cvode-adams"``.
     t_eval : array_like, optional
-        Times at which the solution is kept, within the span and in its order; else the ends of all steps.
+        Times at which the solution is kept, within the span and in its order; else the ends of
+        all steps.
     dense_output : bool
         Whether ``sol`` is made.
     events : callable or sequence of callables, optional
-        ``event(t, y)``, whose zeros are found; with the attributes ``terminal`` (True, or after how many the run ends) and
-        ``direction`` (only upwards if positive, only downwards if negative).
+        ``event(t, y)``, whose zeros are found; with the attributes ``terminal`` (True, or after
+        how many the run ends) and ``direction`` (only upwards if positive, only downwards if
+        negative, along the run). What it raises comes through.
     args : sequence, optional
         More arguments of the events.
     rtol, atol : float
-        Local error tolerances; of interfaces they are of tau and ln psi, dimensionless. atol is rtol unless it is given.
+        Local error tolerances, each one number; of interfaces they are of tau and ln psi,
+        dimensionless. atol is rtol unless it is given.
     max_steps : int, optional
         Give up after so many steps.
     vectorized, jac, first_step
-        Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds itself.
+        Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds
+        itself.
     max_step : float
         Must be infinite: no event and no change of the system is missed for the length of a step.
 
@@ -170,26 +179,24 @@ def solve_ivp(
     if not isinstance(system, System):
         hint = "; make one with System.from_function" if callable(system) else ""
         raise InputError(f"system is {system!r}, but must be a twinslip.System{hint}", "system")
-    if not math.isinf(max_step):
+    if not (isinstance(max_step, (float, np.floating)) and max_step == np.inf):
         raise InputError(f"max_step is {max_step!r}, but must be infinite", "max_step")
     span = _numbers("t_span", t_span)
     if len(span) != 2:
-        raise InputError(f"t_span has {len(span)} numbers, but must have 2", "t_span")
+        raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
     start = _numbers("y0", y0)
     times = None if t_eval is None else _numbers("t_eval", t_eval)
-    functions: list[EventFunction] = [] if events is None else [events] if callable(events) else list(events)
-    words = system._solver_words(method, rtol, atol, max_steps)
-    told = [_event(function, args) for function in functions]
+    # A class of SciPy's is told by its name, as the names of SciPy are.
+    named = method if isinstance(method, str) else getattr(method, "__name__", repr(method))
+    words = system._solver_words(named, rtol, atol, max_steps)
+    told = _events(events, args)
     run, refused, raised = _core.solve_ivp(
         words, (span[0], span[1]), start, times, told, bool(dense_output)
     )
     if refused is not None:
-        field, message = refused
-        for ours, theirs in (("start", "y0"), ("span", "t_span")):
-            field = theirs if field is not None and field.startswith(ours) else field
-        raise InputError(message, field)
+        raise _refusal(*refused)
     assert run is not None
-    result = _result(run, bool(functions))
+    result = _result(run, events is not None)
     if raised is not None:
         if isinstance(raised, KeyboardInterrupt):
             raise Interrupted("interrupted; what was computed is in the result", result) from None
@@ -216,35 +223,80 @@ def _result(run: _core.IvpRun, has_events: bool) -> IvpResult:
     )
 
 
-def _numbers(field: str, values: npt.ArrayLike) -> list[float]:
+def _refusal(field: Optional[str], message: str) -> InputError:
+    """What the input is refused for, in the names of SciPy."""
+    for ours, theirs in (("start", "y0"), ("span", "t_span"), ("t_eval", "t_eval")):
+        if field is not None and re.search(rf"\b{ours}\b", field):
+            message = re.sub(r"(?<![\w])start(?=\b)", "y0", message)
+            message = re.sub(r"(?<![\w])span(?=\b)", "t_span", message)
+            return InputError(message, theirs)
+    return InputError(message, field)
+
+
+def _array(field: str, values: npt.ArrayLike) -> Array:
     try:
-        array = np.atleast_1d(np.asarray(values, dtype=float))
-    except (TypeError, ValueError):
-        raise InputError(f"{field} is {values!r}, but must be numbers", field) from None
+        given = np.asarray(values)
+        if given.dtype.kind in "biuf":
+            return given.astype(np.float64)
+        # Numbers of other kinds, such as fractions; imaginary parts are not dropped.
+        if given.dtype.kind == "O":
+            return np.asarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise InputError(f"{field} is {values!r}, but must be numbers", field)
+
+
+def _numbers(field: str, values: npt.ArrayLike) -> list[float]:
+    array = np.atleast_1d(_array(field, values))
     if array.ndim != 1:
         raise InputError(f"{field} has {array.ndim} dimensions, but must have 1", field)
     numbers: list[float] = array.tolist()
     return numbers
 
 
+def _events(
+    events: Union[EventFunction, Sequence[EventFunction], None], args: Optional[Sequence[Any]]
+) -> list[tuple[EventFunction, float, Optional[int]]]:
+    try:
+        more = () if args is None else tuple(args)
+    except TypeError:
+        told = f"args is {args!r}, but must be a sequence, such as ({args!r},)"
+        raise InputError(told, "args") from None
+    if events is None:
+        return []
+    if callable(events):
+        return [_event(events, more)]
+    try:
+        functions = list(events)
+    except TypeError:
+        told = f"events is {events!r}, but must be a function or a sequence of functions"
+        raise InputError(told, "events") from None
+    return [_event(function, more) for function in functions]
+
+
 def _event(
-    function: EventFunction, args: Optional[Sequence[Any]]
+    function: EventFunction, more: tuple[Any, ...]
 ) -> tuple[EventFunction, float, Optional[int]]:
     if not callable(function):
-        raise InputError(f"events has {function!r}, but must be functions", "events")
-    terminal = getattr(function, "terminal", None)
-    direction = float(getattr(function, "direction", 0.0) or 0.0)
-    if terminal is None or terminal is False:
-        most = None
-    elif terminal is True:
-        most = 1
-    elif int(terminal) == terminal and terminal > 0:
-        most = int(terminal)
-    else:
-        raise InputError("the `terminal` of an event must be True, False or a positive whole number", "events")
-    more = () if args is None else tuple(args)
+        raise InputError(f"events has {function!r}, but must have functions", "events")
+    terminal: Any = getattr(function, "terminal", None)
+    direction: Any = getattr(function, "direction", None)
+    try:
+        most = 0 if terminal is None else int(terminal)
+        right = most >= 0 and (terminal is None or most == terminal)
+    except (TypeError, ValueError, OverflowError):
+        right = False
+    if not right:
+        must = "True, False or a whole number, not negative"
+        raise InputError(f"events has a `terminal` of {terminal!r}, but must have {must}", "events")
+    try:
+        way = 0.0 if direction is None else float(direction)
+    except (TypeError, ValueError, OverflowError):
+        way = np.nan
+    if way != way:
+        raise InputError(f"events has a `direction` of {direction!r}, but must have a number", "events")
 
     def called(t: float, y: Array) -> float:
         return float(function(t, y, *more))
 
-    return called, direction, most
+    return called, way, most or None
