@@ -9,7 +9,9 @@ array is masked. What is not in rows is an attribute by the name that JSON has. 
 from __future__ import annotations
 
 import json
+import os
 import re
+import sys
 import warnings
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, NoReturn, Optional
@@ -21,7 +23,7 @@ from . import _core
 from ._errors import IncompleteWarning, InputError, Interrupted, NumericalError, UndecidedWarning
 from ._picture import Picture
 from ._running import LOOK, PATIENCE, Bar, finish
-from ._values import Record, columns_of, value_of
+from ._values import Record, columns_of, flat, value_of
 
 if TYPE_CHECKING:
     import pandas
@@ -82,9 +84,9 @@ class Result:
             raised(failure, self)
         if self._ending == "undecided":
             told = "; ".join(self._messages) or "a verdict is undecided"
-            warnings.warn(told, UndecidedWarning, stacklevel=4)
+            warnings.warn(told, UndecidedWarning, stacklevel=_outside())
         elif self._ending == "stuck":
-            warnings.warn("; ".join(self._messages), IncompleteWarning, stacklevel=4)
+            warnings.warn("; ".join(self._messages), IncompleteWarning, stacklevel=_outside())
 
     def _take(self, run: _core.Run) -> None:
         """Takes what the run has come to; it is not asked again."""
@@ -200,16 +202,32 @@ class Result:
         names = [*self._columns, *self._whole().get("result", {})]
         return [*super().__dir__(), *(name for name in names if name.isidentifier())]
 
-    def to_dataframe(self) -> pandas.DataFrame:
-        """The rows as a table of pandas; cells without a value are missing there.
+    def to_dataframe(self, of: Optional[str] = None) -> pandas.DataFrame:
+        """The rows, or a list that the result has, as a table of pandas.
+
+        Parameters
+        ----------
+        of : str, optional
+            The name of a list, such as ``"special"`` of a branch or ``"events"`` of a run; without
+            it the rows.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Cells without a value are missing there; a number with a bound has two columns, the
+            second with ``_uncertainty`` behind its name.
 
         Raises
         ------
         ImportError
             If there is no pandas.
+        ValueError
+            If there is no such list.
         """
         import pandas
 
+        if of is not None:
+            return self._listed(of)
         self._finish()
         frame = {}
         for name in self._columns:
@@ -221,6 +239,25 @@ class Result:
             else:
                 frame[name] = pandas.Series(column)
         table: pandas.DataFrame = pandas.DataFrame(frame)
+        return table
+
+    def _listed(self, name: str) -> pandas.DataFrame:
+        """A list of records as a table."""
+        import pandas
+
+        lists = {
+            one: found
+            for one, found in self.result.items()
+            if isinstance(found, list) and all(isinstance(record, Record) for record in found)
+        }
+        if name not in lists:
+            known = ", ".join(lists) or "none"
+            raise InputError(f"of is {name!r}, but must be the name of a list; there are {known}", "of")
+        cells = [flat(record) for record in lists[name]]
+        # In the order of the record that has most of them.
+        by_count = sorted(cells, key=len, reverse=True)
+        columns = list(dict.fromkeys(key for one in by_count for key in one))
+        table: pandas.DataFrame = pandas.DataFrame(cells, columns=columns)
         return table
 
     def _drawn(self) -> list[Picture]:
@@ -336,6 +373,15 @@ class Yielding(Result):
             self._take(run)
 
 
+def _outside() -> int:
+    """The level of the caller's own line, for warnings: the first that is not in this package."""
+    here = os.path.dirname(__file__)
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and os.path.dirname(frame.f_code.co_filename) == here:
+        level, frame = level + 1, frame.f_back
+    return level
+
+
 def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) -> NoReturn:
     """Raises what a computation failed with.
 
@@ -349,7 +395,8 @@ def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) ->
         # Parameters are arguments here.
         named = re.fullmatch(r"set is ([^ ,]+), but must be (.*)", message, re.DOTALL)
         if named is not None:
-            field, message = named[1], f"{named[1]} is no parameter; there are {named[2]}"
+            known = named[2].replace("one of ", "", 1)
+            field, message = named[1], f"{named[1]} is no parameter; there are {known}"
     if kind == "input":
         raise InputError(message, field)
     if kind == "file":

@@ -47,6 +47,22 @@ class Record(dict[str, Any]):
     def __repr__(self) -> str:
         return f"Record({', '.join(f'{name}={value!r}' for name, value in self.items())})"
 
+    def __str__(self) -> str:
+        """A value on each line."""
+        width = max(map(len, self), default=0)
+        lines = []
+        for name, value in self.items():
+            told = str(value).replace("\n", "\n" + " " * (width + 2))
+            lines.append(f"{name:>{width}}: {told}")
+        return "\n".join(lines)
+
+    def _repr_pretty_(self, printer: Any, cycle: bool) -> None:
+        """What notebooks show."""
+        for i, line in enumerate(str(self).split("\n")):
+            if i:
+                printer.break_()
+            printer.text(line)
+
     def __reduce__(self) -> Any:
         return (Record, (dict(self),))
 
@@ -94,3 +110,19 @@ def _column(cells: list[Any]) -> tuple[Any, Any]:
     else:
         values = ["" if one is None else str(one) for one in cells]
     return values, (mask if mask.any() else None)
+
+
+def flat(one: Record) -> dict[str, Any]:
+    """Numbers with bounds in two cells, lists in as many as they have."""
+    cells: dict[str, Any] = {}
+    for name, value in one.items():
+        if isinstance(value, Uncertain):
+            cells[name], cells[f"{name}_uncertainty"] = value
+        elif isinstance(value, np.ndarray) and value.ndim == 1:
+            cells.update({f"{name}_{i}": x for i, x in enumerate(value, 1)})
+        elif isinstance(value, list) and all(isinstance(x, Uncertain) for x in value):
+            for i, x in enumerate(value, 1):
+                cells[f"{name}_{i}"], cells[f"{name}_{i}_uncertainty"] = x
+        else:
+            cells[name] = value
+    return cells

@@ -9,7 +9,7 @@ array is masked. What is not in rows is an attribute by the name that JSON has. 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Optional
 
 import numpy as np
 
@@ -17,7 +17,7 @@ from . import _core
 from ._picture import Picture
 from ._result import Array, Result, Yielding, raised
 from ._running import finish
-from ._values import Record, Uncertain
+from ._values import Record, Uncertain, flat
 
 if TYPE_CHECKING:
     import pandas
@@ -107,32 +107,18 @@ class Equilibria(Result):
             return [one.get(name) for one in every]
         return super().__getitem__(name)
 
-    def to_dataframe(self) -> pandas.DataFrame:
-        """One row for each equilibrium."""
+    def to_dataframe(self, of: Optional[str] = None) -> pandas.DataFrame:
+        """One row for each equilibrium, or for each of another list."""
+        if of is not None:
+            return self._listed(of)
         import pandas
 
-        table: pandas.DataFrame = pandas.DataFrame([_flat(one) for one in self])
+        table: pandas.DataFrame = pandas.DataFrame([flat(one) for one in self])
         return table
 
     def _short(self) -> str:
         verdicts = [str(one.get("verdict")) for one in self]
         return f"{len(self)}: {', '.join(verdicts)}" if verdicts else f"{len(self)}"
-
-
-def _flat(one: Record) -> dict[str, Any]:
-    """Numbers with bounds in two cells, lists in as many as they have."""
-    cells: dict[str, Any] = {}
-    for name, value in one.items():
-        if isinstance(value, Uncertain):
-            cells[name], cells[f"{name}_uncertainty"] = value
-        elif isinstance(value, np.ndarray) and value.ndim == 1:
-            cells.update({f"{name}_{i}": x for i, x in enumerate(value, 1)})
-        elif isinstance(value, list) and all(isinstance(x, Uncertain) for x in value):
-            for i, x in enumerate(value, 1):
-                cells[f"{name}_{i}"], cells[f"{name}_{i}_uncertainty"] = x
-        else:
-            cells[name] = value
-    return cells
 
 
 class Orbit(Result):
