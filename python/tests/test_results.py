@@ -86,6 +86,33 @@ def test_tables_of_pandas() -> None:
     assert isinstance(steady, pandas.DataFrame)
 
 
+def test_lists_are_tables_too() -> None:
+    pandas = pytest.importorskip("pandas")
+    branch = SLAB.branch("equilibria", range=(0.05, 300))
+    special = branch.to_dataframe("special")
+    assert isinstance(special, pandas.DataFrame)
+    assert special["label"].tolist() == [one.label for one in branch.special]
+    hopf = [one for one in branch.special if one.label == "HB"]
+    table = special[special["label"] == "HB"]
+    assert table["driving"].tolist() == [one.driving.value for one in hopf]
+    assert table["period_uncertainty"].tolist() == [one.period.uncertainty for one in hopf]
+    assert special["period"].isna().tolist() == [one.period is None for one in branch.special]
+    run = SLAB.integrate(until=20, events=True)
+    assert run.to_dataframe("events")["onset"].tolist() == [one.onset for one in run.events]
+    with pytest.raises(twinslip.InputError, match="there are events"):
+        run.to_dataframe("special")
+
+
+def test_records_are_told_a_value_to_a_line() -> None:
+    state = SLAB.equilibria()[0]
+    lines = str(state).splitlines()
+    assert f"stress: {state.stress}" in [line.strip() for line in lines]
+    told = [line for line in lines if line.strip().startswith(("verdict: ", "stress: "))]
+    assert len(told) == 2 and told[0].index(":") == told[1].index(":")
+    assert str(twinslip.Record()) == ""
+    assert repr(twinslip.Record(x=1.0)) == "Record(x=1.0)"
+
+
 MADE = {
     "law": lambda: SLAB.law(points=20),
     "integrate": lambda: SLAB.integrate(until=5, points=6),
@@ -164,8 +191,31 @@ def test_undecided_verdicts_are_told() -> None:
     assert result.regime == "undecided"
 
 
+def test_warnings_are_of_the_line_that_asks() -> None:
+    with pytest.warns(twinslip.UndecidedWarning) as told:
+        System(driving=0.102, stiffness=0.2).section(returns=50)
+    assert told[0].filename == __file__
+    sweep = System(stiffness=0.2).sweep(driving=(0.101, 0.1015, 2), max_returns=200)
+    with pytest.warns(twinslip.UndecidedWarning) as told:
+        assert sweep.regimes.undecided > 0
+    assert told[0].filename == __file__
+
+
+def test_unknown_parameters_are_told_with_the_known_ones() -> None:
+    expected = "stiffnes is no parameter; there are driving, "
+    with pytest.raises(twinslip.InputError, match=expected) as told:
+        System(driving=10, stiffnes=1).equilibria()
+    assert told.value.field == "stiffnes"
+
+
 def test_no_other_warnings() -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         for make in MADE.values():
             make()
+
+
+def test_errors_have_the_names_of_arguments() -> None:
+    with pytest.raises(twinslip.InputError, match="^max_steps is 0, but must be") as told:
+        SLAB.integrate(until=1, max_steps=0)
+    assert told.value.field == "max_steps"

@@ -25,9 +25,9 @@ def draw_heading(panel: Description, ax: Axes) -> None:
         (handle, wrapped(label, width - _SAMPLE), colour)
         for handle, label, colour in _entries(panel)
     ]
-    lines = 0
+    height = 0.0
     if entries:
-        columns, lines = _arranged([label for _, label, _ in entries], width)
+        columns = _arranged([label for _, label, _ in entries], width)
         # matplotlib goes down the columns, a reader along the lines
         entries = [one for first in range(columns) for one in entries[first::columns]]
         legend = ax.legend(
@@ -46,8 +46,10 @@ def draw_heading(panel: Description, ax: Axes) -> None:
             columnspacing=1.2,
         )
         legend.set_zorder(4.0)
+        # measured, as the lines of different fonts are not equally high
+        height = 0.2 * WORDS + legend.get_window_extent().height * 72.0 / ax.figure.dpi
     if panel["title"]:
-        pad = 5.0 + 1.52 * WORDS * lines
+        pad = 5.0 + height
         title = text_of(wrapped(panel["title"], width))
         ax.set_title(title, loc="left", fontsize=WORDS, color=INK, pad=pad)
 
@@ -58,15 +60,14 @@ def _is_line(entry: tuple[Any, str, str]) -> bool:
     return isinstance(handle, tuple) or handle.get_linestyle() not in ("None", "none")
 
 
-def _arranged(labels: Sequence[str], width: float) -> tuple[int, int]:
-    """As many columns as have room, and how many lines that makes."""
+def _arranged(labels: Sequence[str], width: float) -> int:
+    """As many columns as have room."""
     letters = [max(map(len, label.split("\n"))) for label in labels]
     for columns in range(len(labels), 0, -1):
         longest = [max(letters[first::columns]) for first in range(columns)]
         if sum(_SAMPLE + LETTER * 13.0 * many + 16.0 for many in longest) <= width:
             break
-    rows = [labels[first : first + columns] for first in range(0, len(labels), columns)]
-    return columns, sum(1 + max(label.count("\n") for label in row) for row in rows)
+    return columns
 
 
 def _entries(panel: Description) -> Iterator[tuple[Any, str, str]]:

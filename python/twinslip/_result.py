@@ -252,7 +252,8 @@ class Result:
         }
         if name not in lists:
             known = ", ".join(lists) or "none"
-            raise InputError(f"of is {name!r}, but must be the name of a list; there are {known}", "of")
+            message = f"of is {name!r}, but must be the name of a list; there are {known}"
+            raise InputError(message, "of")
         cells = [flat(record) for record in lists[name]]
         # In the order of the record that has most of them.
         by_count = sorted(cells, key=len, reverse=True)
@@ -398,6 +399,10 @@ def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) ->
             known = named[2].replace("one of ", "", 1)
             field, message = named[1], f"{named[1]} is no parameter; there are {known}"
     if kind == "input":
+        if field is not None:
+            # Arguments have _ where options have -.
+            option = re.escape(field.replace("_", "-"))
+            message = re.sub(rf"(?<![\w-]){option}(?![\w-])", field, message)
         raise InputError(message, field)
     if kind == "file":
         raise OSError(message)

@@ -62,7 +62,7 @@ impl<'a> SweepOut<'a> {
             counts: [0; REGIMES.len()],
             new: 0,
             broken: None,
-            progress: Progress::new(report.quiet || scrolling),
+            progress: report.call.progress(report.quiet || scrolling),
         }
     }
 
