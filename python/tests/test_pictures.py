@@ -190,3 +190,23 @@ def test_text_with_letters_of_formulas_is_taken_as_it_is(description: dict[str, 
         ax.get_title(loc="left") == "costs 5\\$ and b$_{\\mathrm{long}}$, x_ y$_{\\mathrm{max}}$_1"
     )
     ax.figure.canvas.draw()
+
+
+def test_titles_stand_above_long_legends(description: dict[str, Any]) -> None:
+    panel = next(
+        panel
+        for block in description["blocks"]
+        for column in block["columns"]
+        for panel in column
+        if panel["cells"] is not None
+    )
+    # many regimes, one below the other
+    swatch = {**panel["cells"]["swatches"][0], "label": "a regime with a name as long as the map"}
+    panel["cells"]["swatches"] = [swatch] * 8
+    panel["title"] = "regimes"
+    ax = next(ax for ax in draw(description) if ax.get_title("left") == "regimes")
+    pyplot.gcf().draw_without_rendering()
+    legend = ax.get_legend()
+    assert legend is not None and len(legend.get_texts()) >= 8
+    title = next(one for one in ax.get_children() if getattr(one, "get_text", str)() == "regimes")
+    assert title.get_window_extent().y0 >= legend.get_window_extent().y1
