@@ -182,6 +182,12 @@ def test_progress_is_shown_where_it_is_asked_for(capfd: pytest.CaptureFixture[st
     assert quiet.complete and shown.complete
 
 
+def test_how_far_a_computation_has_come_is_known() -> None:
+    sweep = System().sweep(driving=(0.14, 0.5, 3), stiffness=(0.05, 0.15, 2))
+    run = sweep._run
+    assert run is not None and run.wait(60.0) and run.fraction() == 1.0
+
+
 def test_signals_are_python_s_own_again() -> None:
     handler = signal.getsignal(signal.SIGINT)
     SLAB.integrate(until=1)
