@@ -71,7 +71,7 @@ class Model:
 
         Parameters
         ----------
-        law : path or text, optional
+        law : str, optional
             Friction law, by the paper's equations or others: spinodal (35), bounded (6),
             regularised-ageing (5), dieterich-ruina (4) or slip Ruina (1983). Or a law of one's
             own: FILE.toml with its slip_rate, in tau and psi, its evolution, in v and psi, and its
@@ -87,7 +87,7 @@ class Model:
             Number N of frictional interfaces, which all share the stress: up to 7 that move on
             their own, up to 600 in equilibria, up to millions in integrate [default: as many as in
             all clusters, or 2]
-        clusters : str, number or sequence, optional
+        clusters : sequence of int, optional
             Equal interfaces in clusters that move alike: how many there are in each, which
             together are N. States, slip rates and starts then have one number a cluster
         healing_time : float, optional
@@ -113,7 +113,7 @@ class Model:
             With ``si``: L in m [default: 0.9e-6]
         reference_rate : float, optional
             With ``si``: V* in m/s [default: 1e-6]
-        time_unit : str, number or sequence, optional
+        time_unit : str, optional
             With ``si``: unit of times in and out (run, period, state of laws in which it is a
             time); parameters stay in SI [default: s]
         normal_stress : float, optional
@@ -166,7 +166,7 @@ class Commands:
         Returns
         -------
         LawCurve
-            See there.
+            tau_ss(V) and k_c(V) as arrays, extrema and the largest k_c with their bounds.
 
         Raises
         ------
@@ -204,7 +204,7 @@ class Commands:
 
         Parameters
         ----------
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
             symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
             where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
@@ -212,13 +212,13 @@ class Commands:
             interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
             steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the
             values of all states in their order [default: its table start]
-        draw : str, number or sequence, optional
+        draw : dict of (A, B) or (A, B, "log"), optional
             A constant that each of many interfaces has of its own, drawn between A and B,
             NAME=A:B, or by its logarithm, NAME=A:Blog. NAME is healing_time, residual_strength,
             evolution_effect, reference_friction or slip_length
         seed : int, optional
             With ``draw``: another seed, other constants [default: 1]
-        program : str, number or sequence, optional
+        program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
             How V_H changes on the way, from ``driving`` on: "T:V,T:V,..." for steps to V at T,
             where V = 0 is a hold, and "T1-T2:V" for a ramp; or FILE.csv with the columns time,
             driving and, for ramps, until. Rows then have a column driving, and stand at both sides
@@ -232,14 +232,12 @@ class Commands:
         final_only : bool, optional
             Only the last row: nothing else is stored, and without slip columns nothing but steps
             is computed
-        columns : str, number or sequence, optional
+        columns : str or sequence of str, optional
             Only these columns, comma-separated; what is not asked for is not computed
         events : bool, optional
             Find stick-slip events: times between a maximum and a minimum of stress, when the
             interfaces together slip faster than V_H. Of three interfaces and more: times in which
-            at least one slips faster than a threshold. In JSON they are result.events; a table on
-            standard output is followed by theirs; in CSV they go to FILE, or beside -o RUN.csv to
-            RUN.events.csv
+            at least one slips faster than a threshold
         event_threshold : float, optional
             Count events whose total slip rate exceeds X times V_H [default: 2]; with ``program``
             times the V_H of that moment, so that a hold, in which all slip is faster than V_H = 0,
@@ -247,15 +245,14 @@ class Commands:
             V_H/N [default: 10]
         participation : bool, optional
             With ``events`` of three interfaces and more: in how many events each interface slips,
-            how far, and its constants that are drawn. In JSON these are result.participation; else
-            they go to FILE, or beside -o RUN.csv to RUN.participation.csv
+            how far, and its constants that are drawn
         estimate_error : bool, optional
             Estimate the error of the last row by a second run with 100 times tighter tolerances,
             below ``rtol`` 1e-12 by the reference
         reference : bool, optional
             With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
             hundred times slower than taylor
-        method : str, number or sequence, optional
+        method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
             [default: auto]
         rtol : float, optional
@@ -271,7 +268,7 @@ class Commands:
         Returns
         -------
         Trajectory
-            See there.
+            The rows as arrays, the last one as ``final``, events where they are asked for.
 
         Raises
         ------
@@ -296,22 +293,22 @@ class Commands:
 
         Parameters
         ----------
-        box : str, number or sequence, optional
+        box : dict of (A, B), optional
             With ``system``, or a ``law`` from a file: all steady states in a box, a range for
             every state: x=-10:10,y=0:5 [default of a law: what its steady states have at rates
             from V_H/1e6 to V_H]
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             With ``system``: near which values of all states, in their order [default: its table
             start]. With a ``law`` from a file TAU,PSI1,PSI2 or near-symmetric:EPS. With ``draw``
             as in integrate [default: near-symmetric:0]
-        draw : str, number or sequence, optional
+        draw : dict of (A, B) or (A, B, "log"), optional
             A constant that each of many interfaces has of its own, drawn as in integrate:
             NAME=A:B, or by its logarithm NAME=A:Blog. One steady state of possibly many is found,
             that which Newton's method comes to from ``start``, with the number of eigenvalues that
             grow; all are found for equal interfaces
         seed : int, optional
             With ``draw``: another seed, other constants [default: 1]
-        solver : str, number or sequence, optional
+        solver : str, optional
             kinsol or newton, both to the same digits [default: kinsol; newton in a build without
             SUNDIALS]
         progress : bool, optional
@@ -321,7 +318,7 @@ class Commands:
         Returns
         -------
         Equilibria
-            See there.
+            All steady states, each with its bounds, eigenvalues and verdict.
 
         Raises
         ------
@@ -350,10 +347,10 @@ class Commands:
 
         Parameters
         ----------
-        symmetry : str, number or sequence, optional
+        symmetry : str, optional
             symmetric (both interfaces move alike) or asymmetric; without meaning where they differ
             [default: symmetric]
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS];
             or hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is
             looked for. Of a system from a file: the values of all states in their order [default:
@@ -364,10 +361,10 @@ class Commands:
             Rows over one period, as those of integrate: N equally spaced in time, from
             result.orbit.point back to it. A table or CSV then holds these, and in JSON they are
             result.rows
-        crosscheck : bool or str, optional
+        crosscheck : str, optional
             A second method that computes the orbit again, or none [default: cvode-adams; rodas5p
             in a build without SUNDIALS]
-        method : str, number or sequence, optional
+        method : str, optional
             The method of the flow and its derivatives: auto (taylor), taylor, cvode-bdf, cvode-
             adams, rodas5p, rodas4 or rosenbrock23 [default: auto]
         rtol : float, optional
@@ -383,7 +380,7 @@ class Commands:
         Returns
         -------
         Orbit
-            See there.
+            The period with its bound, multipliers, extremes and verdict.
 
         Raises
         ------
@@ -414,7 +411,7 @@ class Commands:
 
         Parameters
         ----------
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the
             symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01
             where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
@@ -439,7 +436,7 @@ class Commands:
         lyapunov : bool, optional
             Lyapunov exponents: of a periodic orbit by its multipliers, else along as many returns
             of a run of their own; without them chaos is not recognised
-        method : str, number or sequence, optional
+        method : str, optional
             Integrator: auto, taylor, rodas5p, rodas4, rosenbrock23, cvode-bdf or cvode-adams
             [default: auto]
         rtol : float, optional
@@ -455,7 +452,7 @@ class Commands:
         Returns
         -------
         Section
-            See there.
+            The returns as arrays, and what the run settles on.
 
         Raises
         ------
@@ -488,23 +485,23 @@ class Commands:
 
         Parameters
         ----------
-        of : str, number or sequence, optional
+        of : str, optional
             What is followed: equilibria or orbits; in a scene file the key `of`
-        along : str, number or sequence, optional
+        along : str, optional
             What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a
             system from a file any of its own [default: driving]
-        symmetry : str, number or sequence, optional
+        symmetry : str, optional
             symmetric (both interfaces alike), asymmetric or both [default: both]
-        at : str, number or sequence, optional
+        at : sequence of float, optional
             Values of the parameter to land on exactly, comma-separated; their rows have the label
             UZ
         doublings : int, optional
             How many period doublings to follow: the branches of orbits with doubled period are
             computed too [default: 0]
-        box : str, number or sequence, optional
+        box : dict of (A, B), optional
             With ``system``: branches of equilibria begin at all in a box, a range for every state:
             x=-10:10,y=0:5
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
@@ -518,7 +515,7 @@ class Commands:
             and the points are kept [default: 20000]
         tolerance : float, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
-        crosscheck : bool or str, optional
+        crosscheck : str, optional
             Compute each special point of orbits once more with a second method and report the
             difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
         range : (float, float), optional
@@ -531,7 +528,7 @@ class Commands:
         Returns
         -------
         Branch
-            See there.
+            The points as they are found, and ``special`` points with their bounds.
 
         Raises
         ------
@@ -567,29 +564,29 @@ class Commands:
 
         Parameters
         ----------
-        of : str, number or sequence, optional
+        of : str, optional
             The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-
             pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; in a scene
             file the key `of`
-        symmetry : str, number or sequence, optional
+        symmetry : str, optional
             symmetric (both interfaces alike), asymmetric or both, where there are both [default:
             both]
-        at_driving : str, number or sequence, optional
+        at_driving : sequence of float, optional
             Values of V_H to land on exactly, comma-separated, at every crossing
-        at_stiffness : str, number or sequence, optional
+        at_stiffness : sequence of float, optional
             Values of K to land on exactly, comma-separated, at every crossing
         criticality : bool, optional
             Say at every point whether the bifurcation is supercritical or subcritical
-        within : str, number or sequence, optional
+        within : (str, str), optional
             The two parameters that vary, by their names [default: driving,stiffness]
-        range : str, number or sequence, optional
+        range : dict of (A, B), optional
             NAME=A,B: the range of one of these
-        at : str, number or sequence, optional
+        at : dict of sequences of float, optional
             NAME=V1,V2,...: values of one of these to land on exactly, at every crossing
-        box : str, number or sequence, optional
+        box : dict of (A, B), optional
             With ``system``: branches of equilibria begin at all in a box, a range for every state:
             x=-10:10,y=0:5
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
             equilibria of a ``system`` begin near it [default: the file's table start]
@@ -603,7 +600,7 @@ class Commands:
             and the points are kept [default: 20000]
         tolerance : float, optional
             Relative accuracy of special points, and of all points of a curve [default: 1e-11]
-        crosscheck : bool or str, optional
+        crosscheck : str, optional
             Compute each special point of orbits once more with a second method and report the
             difference [METHOD: cvode-adams unless given; rodas5p in a build without SUNDIALS]
         progress : bool, optional
@@ -616,7 +613,7 @@ class Commands:
         Returns
         -------
         Locus
-            See there.
+            The points as they are found, and ``special`` points with their bounds.
 
         Raises
         ------
@@ -649,26 +646,26 @@ class Commands:
         curves: Text = None,
         progress: Optional[bool] = None,
     ) -> Sweep:
-        """The regime at every point of a grid of V_H and K or any other parameters, or of every start: resumable, on many threads and machines.
+        """The regime at every point of a grid of V_H and K or any other parameters, or of every start.
 
         Parameters
         ----------
-        driving : str, number or sequence, optional
+        driving : (A, B, N) or (A, B, N, "log"), optional
             N values of V_H from A to B, both included; with log equally spaced in ln V_H. One
             value may stand alone
-        stiffness : str, number or sequence, optional
+        stiffness : (A, B, M) or (A, B, M, "log"), optional
             M values of K from A to B, both included; with log equally spaced in ln K. One value
             may stand alone
-        grid : str, number or sequence, optional
+        grid : dict of (A, B, N) or (A, B, N, "log"), optional
             Values of any other parameter, by the names that JSON has: healing_time=10:1000:30log,
             and of one interface residual_strength_2=1e-4:1e-2:20log; of a ``system`` any of its
-            own, which may be negative. May be given again: two parameters vary at most, V_H, then
-            K, then these in their order, the first fastest
+            own, which may be negative: two parameters vary at most, V_H, then K, then these in
+            their order, the first fastest
         surface : str, number or sequence, optional
             Of a ``system``: the section whose returns tell the regime, STATE=VALUE, crossed
             falling; or STATE, in the middle of what that state swings through after the transient
             [default: the first state]. That of interfaces is tau_ss at the mean slip rate
-        start : str, number or sequence, optional
+        start : str or sequence of float, optional
             Of a ``system``: the values of all states in their order, where the first run of every
             point starts [default: its table start]
         basin : bool, optional
@@ -700,7 +697,7 @@ class Commands:
             A point is undecided after so many steps [default: 10000000]
         threads : int, optional
             Threads [default: one per processor]; rows do not depend on them
-        curves : str, number or sequence, optional
+        curves : str or sequence of str, optional
             Bifurcations to draw over the map, comma-separated, as locus has them, or none
             [default: none]
         progress : bool, optional
@@ -710,7 +707,7 @@ class Commands:
         Returns
         -------
         Sweep
-            See there.
+            The rows as they are found, and how many there are of each regime.
 
         Raises
         ------
