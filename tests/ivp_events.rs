@@ -271,7 +271,7 @@ fn errors_of_functions_pass_unchanged() {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(40))]
-    /// Zeros of sin(t) - c between 0 and the end, where they are simple and not near an end.
+    /// Zeros of sin(t) - c within the span, where they are simple and not near an end: two of them are often within one step.
     #[test]
     fn levels_are_met_where_they_are(level in -0.95..0.95_f64, begin in -30.0..30.0_f64, length in 0.5..20.0_f64, back: bool) {
         let end = if back { begin - length } else { begin + length };
@@ -289,12 +289,7 @@ proptest! {
             exact.reverse();
         }
         let clear = exact.iter().all(|t| (t - low).min(high - t) > 1e-6);
-        // Two zeros in one step pass unseen, as they do in SciPy.
-        let steps = &outcome.t;
-        let alone = exact.windows(2).all(|pair| {
-            steps.iter().any(|t| (pair[0].min(pair[1])..pair[0].max(pair[1])).contains(t))
-        });
-        prop_assume!(clear && alone);
+        prop_assume!(clear);
         let found = &outcome.t_events[0];
         prop_assert_eq!(found.len(), exact.len());
         for (made, exact) in found.iter().zip(&exact) {

@@ -3,9 +3,10 @@
     python python/benchmarks/peers.py            # some ten minutes; prints markdown
     python python/benchmarks/peers.py overhead   # only what Python adds
 
-All runs of a scene are measured in turns, and the least time of each counts: what else the machine does meets all alike. SciPy gets
-rates in scalars of the math module, which is faster than arrays of three, and exact Jacobians. heyoka is left out where it is not
-installed; its compilation is told apart.
+All runs of a scene are measured in turns, and the least time of each counts: what else the machine
+does meets all alike. SciPy gets rates in scalars of the math module, which is faster than arrays of
+three, and exact Jacobians. heyoka is left out where it is not installed; its compilation is told
+apart.
 """
 
 from __future__ import annotations
@@ -230,7 +231,8 @@ class Curve:
 
 
 def measured(runs: list[Run], rounds: int = ROUNDS) -> list[float]:
-    """The least seconds of each, in turns; in a turn short ones are repeated, as the caches are another one's at first."""
+    """The least seconds of each, in turns; in a turn short ones are repeated, as the caches are
+    another one's at first."""
     least, spent = [math.inf] * len(runs), [0.0] * len(runs)
     for _ in range(rounds):
         for i, run in enumerate(runs):
@@ -248,7 +250,10 @@ def compared(scene: Scene) -> tuple[dict[str, Curve], str]:
     """The curves of all methods, and how well the reference is known."""
     reference = ours(scene, 1e-15)["twinslip.solve_ivp"]()
     checks = {"31 digits": _estimated(scene), "DOP853": math.nan, "heyoka": math.nan}
-    off = lambda y: float(np.max(np.abs(y / reference - 1.0)))  # noqa: E731
+
+    def off(y: Any) -> float:
+        return float(np.max(np.abs(y / reference - 1.0)))
+
     if "DOP853" in scene.methods:
         checks["DOP853"] = off(scipys(scene._replace(methods=("DOP853",)), 3e-14)["scipy DOP853"]())
     named: list[tuple[str, Run]] = []
@@ -326,7 +331,10 @@ def overhead() -> list[str]:
     }
     rows = ["| rows | from Python | the same in Rust | ratio |", "|---|---|---|---|"]
     for kind, more in kinds.items():
-        run = lambda more=more: SLAB.integrate(until=65.0, start=START, **more)  # noqa: E731
+
+        def run(more: dict[str, Any] = more) -> Any:
+            return SLAB.integrate(until=65.0, start=START, **more)
+
         words = run().command[1:]
         least = [math.inf, math.inf]
         for _ in range(TURNS):

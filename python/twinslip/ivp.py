@@ -163,7 +163,8 @@ def solve_ivp(
         Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds
         itself.
     max_step : float
-        Must be infinite: no event and no change of the system is missed for the length of a step.
+        Must be infinite. Long steps of power series are looked at for events in half as many parts
+        as their order; two zeros within one part are missed, as by SciPy within a step.
 
     Returns
     -------
@@ -294,7 +295,8 @@ def _event(
     except (TypeError, ValueError, OverflowError):
         way = np.nan
     if way != way:
-        raise InputError(f"events has a `direction` of {direction!r}, but must have a number", "events")
+        told = f"events has a `direction` of {direction!r}, but must have a number"
+        raise InputError(told, "events")
 
     def called(t: float, y: Array) -> float:
         return float(function(t, y, *more))

@@ -94,10 +94,11 @@ struct Watch<'p, 'a, E> {
     asked: IvpAsked<'a, E>,
     /// The degree of the dense output of steps without a series.
     degree: usize,
-    /// The user's time and values at the beginning of the step, and those of the events' functions.
+    /// The user's time and values at the beginning of the step.
     time: f64,
     values: Vec<f64>,
-    functions: Vec<f64>,
+    /// When the function of each event was looked at last, and what it was.
+    functions: Vec<(f64, f64)>,
     /// How many of the times that are asked for have their row.
     sampled: usize,
     outcome: IvpOutcome,
@@ -113,6 +114,22 @@ struct Seen<'s, 'a> {
 }
 
 impl Seen<'_, '_> {
+    /// The times within the step, and its end, at which the functions of events are looked at. Steps of power series are many times longer
+    /// than those of other methods: they are divided into half as many parts as their order, so that no more is missed than
+    /// with short steps.
+    fn looks(&self) -> Vec<f64> {
+        let (begin, end) = (self.begin.0, self.end.0);
+        let order = self.step.series().map_or(0, |series| series.order());
+        let parts = (order / 2).max(1);
+        let within = (1..parts).map(|k| begin + (end - begin) * (k as f64 / parts as f64));
+        let mut looks: Vec<f64> = within.collect();
+        // A step of a few roundings has no room.
+        looks.dedup();
+        looks.retain(|&time| time != begin && time != end);
+        looks.push(end);
+        looks
+    }
+
     /// The user's values at a time.
     fn at(&self, time: f64) -> Vec<f64> {
         for (known, values) in [self.end, self.begin] {
@@ -132,8 +149,8 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
     fn new(plan: &'p IvpPlan, mut asked: IvpAsked<'a, E>) -> Result<Self, Halt<E>> {
         let (time, values) = (plan.span.0, plan.start.clone());
         let events = asked.events.iter_mut();
-        let functions: Result<Vec<f64>, _> = events
-            .map(|event| (event.function)(time, &values))
+        let functions: Result<Vec<(f64, f64)>, _> = events
+            .map(|event| (event.function)(time, &values).map(|g| (time, g)))
             .collect();
         let functions = functions?;
         let mut outcome = IvpOutcome::new(functions.len());
@@ -183,52 +200,60 @@ impl<'p, 'a, E> Watch<'p, 'a, E> {
 
     /// Finds the events of a step; the time of the one that ends the run.
     fn events(&mut self, seen: &Seen<'_, '_>) -> Result<Option<f64>, Ended<E>> {
-        let (end, values) = seen.end;
-        let mut found = Vec::new();
-        for (i, event) in self.asked.events.iter_mut().enumerate() {
-            let after = (event.function)(end, values)?;
-            let before = std::mem::replace(&mut self.functions[i], after);
-            if event.is_between(before, after) {
-                found.push((i, before, after));
+        if self.asked.events.is_empty() {
+            return Ok(None);
+        }
+        let mut roots = Vec::new();
+        for time in seen.looks() {
+            self.look(seen, time, &mut roots)?;
+        }
+        let way = (seen.end.0 - seen.begin.0).signum();
+        roots.sort_by(|a, b| (way * a.1).total_cmp(&(way * b.1)));
+        for (i, root) in roots {
+            self.outcome.t_events[i].push(root);
+            self.outcome.y_events[i].extend(seen.at(root));
+            if self.asked.events[i].ends_after(self.outcome.t_events[i].len()) {
+                self.outcome.status = 1;
+                if let Some(solution) = &mut self.outcome.solution {
+                    solution.end_at(root);
+                }
+                return Ok(Some(root));
             }
         }
-        let (mut roots, mut terminal) = (Vec::with_capacity(found.len()), Vec::new());
-        for (i, before, after) in found {
-            let event = &mut self.asked.events[i];
+        Ok(None)
+    }
+
+    /// Finds the events since the last look.
+    fn look(
+        &mut self,
+        seen: &Seen<'_, '_>,
+        end: f64,
+        roots: &mut Vec<(usize, f64)>,
+    ) -> Result<(), Ended<E>> {
+        let values = seen.at(end);
+        for (i, event) in self.asked.events.iter_mut().enumerate() {
+            let after = (event.function)(end, &values)?;
+            // What is not a number within a step hides no change of the sign.
+            if after.is_nan() && end != seen.end.0 {
+                continue;
+            }
+            let (begin, before) = std::mem::replace(&mut self.functions[i], (end, after));
+            // A zero at a look within the step is the end of one part, and not the beginning of another one too.
+            let told = before == 0.0 && begin != seen.begin.0;
+            if told || !event.is_between(before, after) {
+                continue;
+            }
             let function = |time: f64| (event.function)(time, &seen.at(time));
-            let root = zero((seen.begin.0, before), (end, after), function)?;
+            let root = zero((begin, before), (end, after), function)?;
             let root = root.ok_or_else(|| {
-                let where_ = format!("between t = {} and {end}", seen.begin.0);
+                let where_ = format!("between t = {begin} and {end}");
                 Ended::Failed(Error::Input(format!(
                     "the function of event {i} is not a number {where_}, where it changes its sign"
                 )))
             })?;
             roots.push((i, root));
-            // Of this step there is one at most.
-            if event.ends_after(self.outcome.t_events[i].len() + 1) {
-                terminal.push(i);
-            }
         }
-        let mut last = None;
-        if !terminal.is_empty() {
-            let way = (end - seen.begin.0).signum();
-            roots.sort_by(|a, b| (way * a.1).total_cmp(&(way * b.1)));
-            if let Some(place) = roots.iter().position(|(i, _)| terminal.contains(i)) {
-                roots.truncate(place + 1);
-                last = Some(roots[place].1);
-            }
-        }
-        for (i, root) in roots {
-            self.outcome.t_events[i].push(root);
-            self.outcome.y_events[i].extend(seen.at(root));
-        }
-        if let Some(time) = last {
-            self.outcome.status = 1;
-            if let Some(solution) = &mut self.outcome.solution {
-                solution.end_at(time);
-            }
-        }
-        Ok(last)
+        Ok(())
     }
 
     /// Adds the rows of a step up to a time, at which these are the values.
