@@ -313,7 +313,9 @@ def told(seconds: Optional[float], best: Optional[float]) -> str:
 def table(name: str, curves: dict[str, Curve]) -> list[str]:
     """Rows of a scene; in brackets the ratio to the fastest that is not of twinslip."""
     peers = [curve for by, curve in curves.items() if by.startswith(("scipy", "heyoka"))]
-    best = [min((t for peer in peers if (t := peer.at(e)) is not None), default=None) for e in ERRORS]
+    best = [
+        min((t for peer in peers if (t := peer.at(e)) is not None), default=None) for e in ERRORS
+    ]
     rows = []
     for by, curve in curves.items():
         cells = (told(curve.at(e), fastest) for e, fastest in zip(ERRORS, best))
@@ -341,7 +343,9 @@ def overhead() -> list[str]:
             least[0] = min(least[0], *measured([run], 1))
             least[1] = min(least[1], _core.timed(words, REPEATS))
         python, rust = least
-        rows.append(f"| {kind} | {1e6 * python:.0f} µs | {1e6 * rust:.0f} µs | {python / rust:.2f} |")
+        rows.append(
+            f"| {kind} | {1e6 * python:.0f} µs | {1e6 * rust:.0f} µs | {python / rust:.2f} |"
+        )
     return rows
 
 

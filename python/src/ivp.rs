@@ -3,13 +3,14 @@
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::{PyKeyboardInterrupt, PyValueError};
 use pyo3::prelude::*;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant};
 use twinslip::Error;
 use twinslip::cli::parsed;
 use twinslip::integrate::Control;
 use twinslip::scene::{
-    Command, Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan, IvpSolution,
+    Command, Halt, IntegrateOptions, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan,
+    IvpSolution,
 };
 
 /// Between two looks at whether Ctrl-C was pressed.
@@ -177,9 +178,8 @@ pub fn solve_ivp(
             None,
         ))
     };
-    let options = match parsed(&words) {
-        Ok(Command::Integrate(options)) => options,
-        Ok(_) => return refused(Error::Input("not the words of integrate".into())),
+    let options = match options(words) {
+        Ok(options) => options,
         Err(error) => return refused(error),
     };
     let plan = match IvpPlan::new(&options.model, &options.numerics, span, &start) {
@@ -229,6 +229,24 @@ pub fn solve_ivp(
     let raised = raised.map(|error| error.into_value(py).into_any());
     let dimension = plan.dimension();
     Ok((Some(IvpRun { outcome, dimension }), None, raised))
+}
+
+/// The options of these words; those of the last call are kept, as calls often differ in their starts alone.
+fn options(words: Vec<String>) -> Result<Arc<IntegrateOptions>, Error> {
+    type Read = (Vec<String>, Arc<IntegrateOptions>);
+    static LAST: Mutex<Option<Read>> = Mutex::new(None);
+    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((known, options)) = &*last()
+        && *known == words
+    {
+        return Ok(Arc::clone(options));
+    }
+    let Command::Integrate(options) = parsed(&words)? else {
+        return Err(Error::Input("not the words of integrate".into()));
+    };
+    let options = Arc::new(*options);
+    *last() = Some((words, Arc::clone(&options)));
+    Ok(options)
 }
 
 fn interrupts(error: &PyErr) -> bool {

@@ -116,17 +116,22 @@ def _relaxation(t: float, y: Any) -> list[float]:
 
 
 PROBLEMS = {
-    "oscillator": Problem(OSCILLATOR, lambda t, y: [y[1], -y[0]], [1.0, 0.5], 20.0, "DOP853", 2e-13),
+    "oscillator": Problem(
+        OSCILLATOR, lambda t, y: [y[1], -y[0]], [1.0, 0.5], 20.0, "DOP853", 2e-13
+    ),
     "decay": Problem(DECAY, lambda t, y: [-0.7 * y[0]], [3.0], 10.0, "DOP853", 1e-13),
     "van der Pol, 5": Problem(
         System.from_file("van-der-pol", mu=5), _van_der_pol(5.0), [2.0, 0.0], 30.0, "DOP853", 1e-12
     ),
     "van der Pol, 1000": Problem(
-        System.from_file("van-der-pol", mu=1000), _van_der_pol(1000.0), [2.0, 0.0], 1000.0, "Radau", 1e-11
+        System.from_file("van-der-pol", mu=1000),
+        _van_der_pol(1000.0),
+        [2.0, 0.0],
+        1000.0,
+        "Radau",
+        1e-11,
     ),
-    "Lorenz": Problem(
-        System.from_file("lorenz"), _lorenz, [1.0, 1.0, 20.0], 5.0, "DOP853", 5e-12
-    ),
+    "Lorenz": Problem(System.from_file("lorenz"), _lorenz, [1.0, 1.0, 20.0], 5.0, "DOP853", 5e-12),
     "Roessler": Problem(
         System.from_file("roessler"), _roessler, [1.0, 1.0, 0.0], 50.0, "DOP853", 5e-13
     ),
@@ -136,9 +141,7 @@ PROBLEMS = {
     "FitzHugh-Nagumo": Problem(
         System.from_file("fitzhugh-nagumo"), _fitzhugh_nagumo, [-1.0, 1.0], 100.0, "DOP853", 1e-12
     ),
-    "Lotka-Volterra": Problem(
-        LOTKA_VOLTERRA, _lotka_volterra, [2.0, 1.0], 30.0, "DOP853", 2e-13
-    ),
+    "Lotka-Volterra": Problem(LOTKA_VOLTERRA, _lotka_volterra, [2.0, 1.0], 30.0, "DOP853", 2e-13),
     "Kepler": Problem(KEPLER, _kepler, [0.4, 0.0, 0.0, 2.0], 20.0, "DOP853", 2e-11),
     "pendulum": Problem(
         PENDULUM, lambda t, y: [y[1], -math.sin(y[0])], [3.0, 0.0], 30.0, "DOP853", 2e-11

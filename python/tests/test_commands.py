@@ -124,7 +124,9 @@ CASES = {
 
 def command_line(binary: Path, text: str) -> dict[str, Any]:
     done = subprocess.run(
-        [str(binary), *text.split(), "--format", "json", "--quiet"], capture_output=True, check=False
+        [str(binary), *text.split(), "--format", "json", "--quiet"],
+        capture_output=True,
+        check=False,
     )
     assert done.returncode in (0, 3), done.stderr.decode()
     found: dict[str, Any] = json.loads(done.stdout)
@@ -155,7 +157,9 @@ def same(found: Any, expected: Any, where: str) -> None:
                 assert found is None, where
                 return
             assert found.value == expected["value"], where
-            assert expected["uncertainty"] is None or found.uncertainty == expected["uncertainty"], where
+            assert (
+                expected["uncertainty"] is None or found.uncertainty == expected["uncertainty"]
+            ), where
             return
         assert set(found) == set(expected), where
         for name, value in expected.items():
@@ -207,11 +211,15 @@ def test_every_command_has_its_arguments() -> None:
     for command, _ in _core.commands():
         taken = set(inspect.signature(getattr(System, command)).parameters) - {"self", "progress"}
         known = set(_words.options(command)) - left_out
-        known -= set(_words.model_options()) - ({"driving", "stiffness"} if command in ("sweep", "locus") else set())
+        known -= set(_words.model_options()) - (
+            {"driving", "stiffness"} if command in ("sweep", "locus") else set()
+        )
         if command in ("branch", "law"):
             known = known - {"from_", "to"} | {"range"}
         if command == "locus":
-            known = known - {"driving_range", "stiffness_range", "driving", "stiffness"} | {"ranges"}
+            known = known - {"driving_range", "stiffness_range", "driving", "stiffness"} | {
+                "ranges"
+            }
         assert taken == known, command
     model = set(inspect.signature(System.__init__).parameters) - {"self", "parameters"}
     assert model == set(_words.model_options()) - {"set"}
@@ -221,7 +229,9 @@ def test_scenes_run_as_their_commands(binary: Path) -> None:
     result = twinslip.run("fig13")
     assert type(result).__name__ == "Trajectory"
     done = subprocess.run(
-        [str(binary), "run", "fig13", "--format", "json", "--quiet"], capture_output=True, check=True
+        [str(binary), "run", "fig13", "--format", "json", "--quiet"],
+        capture_output=True,
+        check=True,
     )
     expected = json.loads(done.stdout)["result"]
     same(result.final, expected["final"], "final")
@@ -235,7 +245,8 @@ def test_scenes_run_as_their_commands(binary: Path) -> None:
 def test_the_paper_is_reproduced_as_by_the_command(binary: Path, tmp_path: Path) -> None:
     twinslip.reproduce(tmp_path / "a", only="fig01")
     subprocess.run(
-        [str(binary), "reproduce", "--only", "fig01", "--out", str(tmp_path / "b"), "--quiet"], check=True
+        [str(binary), "reproduce", "--only", "fig01", "--out", str(tmp_path / "b"), "--quiet"],
+        check=True,
     )
     ours = (tmp_path / "a" / "fig01.csv").read_text().splitlines()
     theirs = (tmp_path / "b" / "fig01.csv").read_text().splitlines()

@@ -51,7 +51,10 @@ def test_errors_name_the_argument(case: int) -> None:
     with pytest.raises(ValueError) as told:
         make()
     assert isinstance(told.value, InputError)
-    assert told.value.field is not None and field in told.value.field, (told.value.field, str(told.value))
+    assert told.value.field is not None and field in told.value.field, (
+        told.value.field,
+        str(told.value),
+    )
     message = str(told.value)
     assert field.replace("_", "-") in message or field in message
     assert "\n" not in message and len(message) < 1500
@@ -116,7 +119,11 @@ def checked(make: Any) -> None:
 def test_any_system(driving: Any, stiffness: Any, law: Any, interfaces: Any) -> None:
     if isinstance(interfaces, int) and interfaces > 20:
         interfaces = 7
-    checked(lambda: System(law, driving=driving, stiffness=stiffness, interfaces=interfaces).equilibria())
+    checked(
+        lambda: System(
+            law, driving=driving, stiffness=stiffness, interfaces=interfaces
+        ).equilibria()
+    )
 
 
 @QUICK
@@ -127,7 +134,13 @@ def test_any_run(until: Any, start: Any, points: Any, method: Any, rtol: Any, at
     slab = System(driving=10, stiffness=0.14)
     checked(
         lambda: slab.integrate(
-            until=until, start=start, points=points, method=method, rtol=rtol, atol=atol, max_steps=2000
+            until=until,
+            start=start,
+            points=points,
+            method=method,
+            rtol=rtol,
+            atol=atol,
+            max_steps=2000,
         )
     )
 
@@ -149,7 +162,9 @@ def test_any_initial_value_problem(span: Any, y0: Any, t_eval: Any, events: Any)
 @given(ANY, NUMBERS, NUMBERS, ANY, ANY)
 def test_any_branch(of: Any, first: Any, last: Any, along: Any, at: Any) -> None:
     checked(
-        lambda: System(stiffness=0.14, driving=10).branch(of, range=(first, last), along=along, at=at, max_points=50)
+        lambda: System(stiffness=0.14, driving=10).branch(
+            of, range=(first, last), along=along, at=at, max_points=50
+        )
     )
 
 
@@ -157,6 +172,10 @@ def test_any_branch(of: Any, first: Any, last: Any, along: Any, at: Any) -> None
 @given(ANY, ANY, ANY)
 def test_any_sweep(driving: Any, stiffness: Any, grid: Any) -> None:
     def few(value: Any) -> Any:
-        return None if isinstance(value, (str, tuple, list, dict, np.ndarray)) and len(value) > 2 else value
+        return (
+            None
+            if isinstance(value, (str, tuple, list, dict, np.ndarray)) and len(value) > 2
+            else value
+        )
 
     checked(lambda: System().sweep(driving=few(driving), stiffness=few(stiffness), grid=few(grid)))

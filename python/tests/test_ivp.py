@@ -43,7 +43,13 @@ def scipy_runs(name: str, t_eval: Any) -> Any:
     # Of Robertson's second variable everything is below 4e-5.
     atol = np.array([1e-15, 1e-21, 1e-15]) if name == "Robertson" else 1e-2 * TIGHTEST
     solved = integrate.solve_ivp(
-        problem.rates, (0, problem.until), problem.y0, problem.method, t_eval, rtol=TIGHTEST, atol=atol
+        problem.rates,
+        (0, problem.until),
+        problem.y0,
+        problem.method,
+        t_eval,
+        rtol=TIGHTEST,
+        atol=atol,
     )
     assert solved.success
     return solved.y
@@ -63,7 +69,13 @@ def test_values_are_those_of_scipy(name: str) -> None:
     problem = PROBLEMS[name]
     times = np.linspace(0, problem.until, 41)
     solved = solve_ivp(
-        problem.system, (0, problem.until), problem.y0, t_eval=times, rtol=1e-14, atol=1e-18, dense_output=True
+        problem.system,
+        (0, problem.until),
+        problem.y0,
+        t_eval=times,
+        rtol=1e-14,
+        atol=1e-18,
+        dense_output=True,
     )
     assert solved.success and np.array_equal(solved.t, times)
     assert np.array_equal(solved.y[:, 0], problem.y0)
@@ -162,7 +174,8 @@ def test_linear_systems_are_exponentials(
 ) -> None:
     a = np.array(entries).reshape(3, 3)
     linear = System.from_function(
-        lambda x, p: [sum(a[i, j] * x[j] for j in range(3)) + 0 * x[0] for i in range(3)], ["x", "y", "z"]
+        lambda x, p: [sum(a[i, j] * x[j] for j in range(3)) + 0 * x[0] for i in range(3)],
+        ["x", "y", "z"],
     )
     end = begin + length if forward else begin - length
     solved = solve_ivp(linear, (begin, end), y0, rtol=1e-14, dense_output=True)
@@ -185,7 +198,9 @@ def test_interfaces_in_si_are_the_dimensionless_ones() -> None:
     # psi of this law has no unit.
     start = [9.95 * stress, 0.002, 0.00199]
     plain = solve_ivp(SLAB, (0, 5), SLAB_START, t_eval=times, rtol=1e-13)
-    solved = solve_ivp(slab, (0, 5 * second), start, t_eval=times * second, rtol=1e-13, dense_output=True)
+    solved = solve_ivp(
+        slab, (0, 5 * second), start, t_eval=times * second, rtol=1e-13, dense_output=True
+    )
     scale = np.array([[stress], [1.0], [1.0]])
     assert np.abs(solved.y / scale / plain.y - 1).max() <= 1e-11
     assert solved.sol is not None
@@ -225,7 +240,9 @@ def falls(t: float, y: Any) -> float:
 
 
 @pytest.mark.parametrize("t_eval", [None, [0.0, 2.0, 10.0], [1.0], np.arange(0, 10, 2), []])
-@pytest.mark.parametrize("events", [None, falls, [falls, lambda t, y: t - 3], [lambda t, y: 5.0], []])
+@pytest.mark.parametrize(
+    "events", [None, falls, [falls, lambda t, y: t - 3], [lambda t, y: 5.0], []]
+)
 @pytest.mark.parametrize("dense", [False, True])
 def test_fields_are_those_of_scipy(t_eval: Any, events: Any, dense: bool) -> None:
     ours, theirs = both(events, t_eval, dense)
@@ -389,13 +406,29 @@ def test_functions_that_are_zero_throughout_are_events_of_each_step() -> None:
 
 @pytest.mark.parametrize(
     "terminal, count",
-    [(True, 1), (1, 1), (3, 3), (np.True_, 1), (np.int64(2), 2), (2.0, 2), (False, 6), (0, 6), (np.False_, 6), (None, 6), (99, 6)],
+    [
+        (True, 1),
+        (1, 1),
+        (3, 3),
+        (np.True_, 1),
+        (np.int64(2), 2),
+        (2.0, 2),
+        (False, 6),
+        (0, 6),
+        (np.False_, 6),
+        (None, 6),
+        (99, 6),
+    ],
 )
 def test_terminal_events_end_the_run(terminal: Any, count: int) -> None:
     event = At(falls, terminal=terminal)
     ours, theirs = both(event, dense=True, until=19.0)
     over = count < 6
-    assert ours.status == theirs.status == int(over) and ours.success and ours.message == theirs.message
+    assert (
+        ours.status == theirs.status == int(over)
+        and ours.success
+        and ours.message == theirs.message
+    )
     assert ours.t_events is not None and ours.y_events is not None and ours.sol is not None
     assert ours.t_events[0].shape == theirs.t_events[0].shape == (count,)
     last = ours.t_events[0][-1]
@@ -415,12 +448,18 @@ def test_events_get_their_arguments() -> None:
 
 
 def test_the_first_of_several_terminal_events_ends_the_run() -> None:
-    events = [At(lambda t, y, t0=t0: t - t0, terminal=n) for t0, n in ((3.0, 1), (2.5, 1), (2.75, 2))]
+    events = [
+        At(lambda t, y, t0=t0: t - t0, terminal=n) for t0, n in ((3.0, 1), (2.5, 1), (2.75, 2))
+    ]
     events.append(At(falls, terminal=2))
     ours, theirs = both(events, dense=True)
     assert ours.status == theirs.status == 1 and ours.t[-1] == 2.5
     assert ours.t_events is not None
-    assert [len(found) for found in ours.t_events] == [len(found) for found in theirs.t_events] == [0, 1, 0, 1]
+    assert (
+        [len(found) for found in ours.t_events]
+        == [len(found) for found in theirs.t_events]
+        == [0, 1, 0, 1]
+    )
     assert np.abs(ours.t_events[3] - [np.pi / 2]).max() <= 1e-11
 
 
@@ -430,7 +469,13 @@ def test_backward_in_time() -> None:
         event = At(falls, direction=direction, terminal=3)
         ours = solve_ivp(OSCILLATOR, (5, -20), [1, 0], events=event, rtol=1e-14, dense_output=True)
         theirs = integrate.solve_ivp(
-            lambda t, y: [y[1], -y[0]], (5, -20), [1, 0], "DOP853", events=event, rtol=1e-13, atol=1e-15
+            lambda t, y: [y[1], -y[0]],
+            (5, -20),
+            [1, 0],
+            "DOP853",
+            events=event,
+            rtol=1e-13,
+            atol=1e-15,
         )
         assert ours.t_events is not None and ours.status == theirs.status == 1
         assert np.abs(ours.t_events[0] - theirs.t_events[0]).max() <= 1e-11
@@ -470,7 +515,9 @@ class Own(Exception):
 
 @pytest.mark.parametrize("kind", [Own, ZeroDivisionError, SystemExit, InputError, StopIteration])
 @pytest.mark.parametrize("call", [1, 2, 30])
-def test_exceptions_of_events_come_through_as_they_are(kind: type[BaseException], call: int) -> None:
+def test_exceptions_of_events_come_through_as_they_are(
+    kind: type[BaseException], call: int
+) -> None:
     error, calls = kind("mine"), []
 
     def event(t: float, y: Any) -> float:

@@ -36,9 +36,16 @@ def test_what_is_committed_is_valid_and_has_no_outputs(name: str) -> None:
 def test_it_runs(name: str, tmp_path: Path) -> None:
     ended = subprocess.run(
         [
-            sys.executable, "-m", "nbconvert", "--execute", "--to", "html",
+            sys.executable,
+            "-m",
+            "nbconvert",
+            "--execute",
+            "--to",
+            "html",
             f"--ExecutePreprocessor.timeout={PATIENCE}",
-            "--output-dir", str(tmp_path), str(HERE / f"{name}.ipynb"),
+            "--output-dir",
+            str(tmp_path),
+            str(HERE / f"{name}.ipynb"),
         ],
         capture_output=True,
         text=True,

@@ -141,7 +141,11 @@ def test_copies_by_pickle_are_the_same(name: str) -> None:
 def test_notebooks_show_a_picture(name: str) -> None:
     result = MADE[name]()
     text = result._repr_html_()
-    assert text is not None and "<svg" in text and repr(result).replace("<", "&lt;").replace(">", "&gt;") in text
+    assert (
+        text is not None
+        and "<svg" in text
+        and repr(result).replace("<", "&lt;").replace(">", "&gt;") in text
+    )
     assert result.svg().startswith("<svg")
 
 
@@ -179,7 +183,9 @@ def test_own_systems_from_functions() -> None:
     # Period of the van der Pol oscillator at mu = 5.
     assert abs(orbit.period.value - 11.612230661) < 1e-8
     copy = pickle.loads(pickle.dumps(system))
-    assert copy == system and np.array_equal(copy.integrate(until=10, points=11, rtol=1e-13)["x"], ours["x"])
+    assert copy == system and np.array_equal(
+        copy.integrate(until=10, points=11, rtol=1e-13)["x"], ours["x"]
+    )
     other = system.replace(mu=1.0).orbit()
     assert abs(other.period.value - 6.6632868593) < 1e-8
 

@@ -76,7 +76,12 @@ def test_ctrl_c_ends_within_a_tenth_of_a_second_and_keeps_what_there_is(name: st
     # Whatever else the machine does may hold up one of them.
     for _ in range(3):
         ended = subprocess.run(
-            [sys.executable, "-c", program], capture_output=True, text=True, timeout=120, check=True, cwd=HERE
+            [sys.executable, "-c", program],
+            capture_output=True,
+            text=True,
+            timeout=120,
+            check=True,
+            cwd=HERE,
         )
         seconds, rows, kind = ended.stdout.split()
         assert kind == "Interrupted"
@@ -136,7 +141,12 @@ def test_many_calls_leave_nothing_behind() -> None:
     if not Path("/proc/self/statm").exists():
         pytest.skip("there is no /proc here")
     ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=500, cwd=HERE
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=500,
+        cwd=HERE,
     )
     # A leak of 100 bytes a call would be twice this.
     assert int(ended.stdout) < 1_000_000
@@ -168,7 +178,12 @@ def test_processes_that_are_forked_have_threads_of_their_own() -> None:
     if sys.platform != "linux":
         pytest.skip("no fork here")
     ended = subprocess.run(
-        [sys.executable, "-c", program], capture_output=True, text=True, check=True, timeout=100, cwd=HERE
+        [sys.executable, "-c", program],
+        capture_output=True,
+        text=True,
+        check=True,
+        timeout=100,
+        cwd=HERE,
     )
     assert ended.stdout.strip() == "True"
 

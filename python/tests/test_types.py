@@ -18,7 +18,9 @@ SOURCES = Path(__file__).resolve().parents[1]
 
 
 def run(where: Path, *words: str) -> None:
-    ended = subprocess.run([sys.executable, *words], capture_output=True, text=True, cwd=where, check=False)
+    ended = subprocess.run(
+        [sys.executable, *words], capture_output=True, text=True, cwd=where, check=False
+    )
     assert ended.returncode == 0, ended.stdout + ended.stderr
 
 
@@ -61,6 +63,8 @@ def test_every_public_name_is_documented() -> None:
         assert inspect.getdoc(thing), name
         if inspect.isclass(thing):
             for member, value in vars(thing).items():
-                if not member.startswith("_") and (inspect.isfunction(value) or isinstance(value, property)):
+                if not member.startswith("_") and (
+                    inspect.isfunction(value) or isinstance(value, property)
+                ):
                     assert inspect.getdoc(value), f"{name}.{member}"
     assert (PACKAGE / "py.typed").exists()

@@ -411,5 +411,3 @@ def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) ->
 
 def _plain(cell: Any) -> Any:
     return cell.item() if hasattr(cell, "item") else cell
-
-

@@ -87,7 +87,9 @@ class System(Commands, Model):
         """
         from . import _trace
 
-        return cls(system=_trace.system_text(function, states, parameters or {}, start=start, name=name))
+        return cls(
+            system=_trace.system_text(function, states, parameters or {}, start=start, name=name)
+        )
 
     def replace(self, **changes: Any) -> System:
         """The same system with other arguments or parameters; None takes one away."""
@@ -113,16 +115,16 @@ class System(Commands, Model):
                 option = known[name]
                 (words if option.positional else flags).extend(_words.words(option, value))
         for name, spoken in self._spoken.items():
-            if name not in varied and (name not in own or own[name] is None) and (
-                name in known or name in self._parameters
+            if (
+                name not in varied
+                and (name not in own or own[name] is None)
+                and (name in known or name in self._parameters)
             ):
                 words += spoken
         words += flags
         return words + _pictured(command, own), progress
 
-    def _solver_words(
-        self, method: Any, rtol: Any, atol: Any, max_steps: Any
-    ) -> list[str]:
+    def _solver_words(self, method: Any, rtol: Any, atol: Any, max_steps: Any) -> list[str]:
         """What is integrated, and how, in the words of ``integrate``."""
         known = _words.options("integrate")
         own = {"method": method, "rtol": rtol, "atol": atol, "max_steps": max_steps}

@@ -19,6 +19,7 @@ use crate::scene::units::Units;
 use serde_json::{Map, Value, json};
 use std::borrow::Cow;
 use std::path::Path;
+use std::sync::{Mutex, PoisonError};
 
 /// No file is longer, in bytes.
 const LONGEST: u64 = 1 << 16;
@@ -252,14 +253,14 @@ fn bounded<'a>(name: &str, text: &'a str) -> Result<&'a str> {
 fn read(path: &Path) -> Result<SystemFile> {
     if let Some(text) = given_text(path) {
         const NAME: &str = "the system";
-        return SystemFile::parse(NAME, bounded(NAME, text)?);
+        return parsed(NAME, bounded(NAME, text)?);
     }
     let name = path.display().to_string();
     if path.exists() {
-        return SystemFile::parse(&name, &read_bounded(path, LONGEST)?);
+        return parsed(&name, &read_bounded(path, LONGEST)?);
     }
     if let Some(text) = shipped_system(path) {
-        return SystemFile::parse(&name, text);
+        return parsed(&name, text);
     }
     let known = shipped_system_names();
     let hint = did_you_mean(&name, known.iter().copied());
@@ -267,6 +268,26 @@ fn read(path: &Path) -> Result<SystemFile> {
         "`system` {name}: there is no such file, and no built-in system of this name; those are {}{hint}",
         known.join(", ")
     )))
+}
+
+/// The system of a text. The last ones are kept: a short run takes no longer than to read its text.
+fn parsed(name: &str, text: &str) -> Result<SystemFile> {
+    const KEPT: usize = 8;
+    /// Each with its text, the last one that was asked for first.
+    static LAST: Mutex<Vec<(String, SystemFile)>> = Mutex::new(Vec::new());
+    let last = || LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    {
+        let mut last = last();
+        if let Some(at) = last.iter().position(|(known, _)| known == text) {
+            last[..=at].rotate_right(1);
+            return Ok(last[0].1.clone());
+        }
+    }
+    let system = SystemFile::parse(name, text)?;
+    let mut last = last();
+    last.truncate(KEPT - 1);
+    last.insert(0, (text.to_owned(), system.clone()));
+    Ok(system)
 }
 
 /// The formulas of a law that is built in, with its own constants.
