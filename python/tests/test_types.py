@@ -60,7 +60,8 @@ def test_every_public_name_is_documented() -> None:
         thing = getattr(twinslip, name)
         if name == "__version__":
             continue
-        assert inspect.getdoc(thing), name
+        # Its own, not that of a class above it.
+        assert vars(thing).get("__doc__") if inspect.isclass(thing) else inspect.getdoc(thing), name
         if inspect.isclass(thing):
             for member, value in vars(thing).items():
                 if not member.startswith("_") and (

@@ -14,6 +14,13 @@ __all__ = ["System"]
 
 
 class System(Commands, Model):
+    """What slides and how it is driven, or a small system of one's own; its methods are the commands.
+
+    A system is a value: it holds no memory of what was computed, can be compared, pickled, and used by many threads at once. Two interfaces
+    with the paper's law are ``System(driving=10, stiffness=0.14)``; others are made by :meth:`from_file` and :meth:`from_function`,
+    and from another one by :meth:`replace`. ``help(System.__init__)`` lists the arguments.
+    """
+
     def _assign(self, given: dict[str, Any]) -> None:
         """Keeps the arguments that are given, checked for their type; their domain is checked by each command."""
         known = _words.model_options()
