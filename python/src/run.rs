@@ -18,6 +18,9 @@ use twinslip::cli::{Ending, Outlet, run_into};
 use twinslip::output::Cell;
 use twinslip::output::plot::Drawing;
 
+/// Nobody waits longer at once.
+const LONGEST: Duration = Duration::from_secs(3600);
+
 /// What a command has yielded so far.
 #[derive(Default)]
 struct Kept {
@@ -110,6 +113,27 @@ impl Shared {
     fn kept(&self) -> MutexGuard<'_, Kept> {
         self.kept.lock().unwrap_or_else(PoisonError::into_inner)
     }
+
+    /// Waits without the lock of the interpreter for this or the end, at most so many seconds; how many rows there are, and whether it
+    /// has ended.
+    fn wait(
+        &self,
+        py: Python<'_>,
+        seconds: f64,
+        come: impl Fn(&Kept) -> bool + Sync,
+    ) -> (usize, bool) {
+        py.detach(|| {
+            let patience = Duration::try_from_secs_f64(seconds)
+                .unwrap_or_default()
+                .min(LONGEST);
+            let waiting = |kept: &mut Kept| kept.ended.is_none() && !come(kept);
+            let waited = self
+                .changed
+                .wait_timeout_while(self.kept(), patience, waiting);
+            let (kept, _) = waited.unwrap_or_else(PoisonError::into_inner);
+            (kept.table.rows, kept.ended.is_some())
+        })
+    }
 }
 
 impl Outlet for Shared {
@@ -193,34 +217,15 @@ impl Run {
 
     /// Waits for its end, at most so many seconds; whether it has ended.
     fn wait(&self, py: Python<'_>, seconds: f64) -> bool {
-        py.detach(|| {
-            let kept = self.shared.kept();
-            let patience = Duration::from_secs_f64(seconds.clamp(0.0, 3600.0));
-            let waited = self
-                .shared
-                .changed
-                .wait_timeout_while(kept, patience, |kept| kept.ended.is_none());
-            let (kept, _) = waited.unwrap_or_else(PoisonError::into_inner);
-            kept.ended.is_some()
-        })
+        self.shared.wait(py, seconds, |_| false).1
     }
 
     /// Waits for a row after the first so many, or the end, at most so many seconds; how many rows there are, and whether it has
     /// ended.
     fn wait_for_rows(&self, py: Python<'_>, known: usize, seconds: f64) -> (usize, bool) {
         self.shared.watched.store(true, Ordering::Relaxed);
-        py.detach(|| {
-            let kept = self.shared.kept();
-            let patience = Duration::from_secs_f64(seconds.clamp(0.0, 3600.0));
-            let waited = self
-                .shared
-                .changed
-                .wait_timeout_while(kept, patience, |kept| {
-                    kept.ended.is_none() && kept.table.rows <= known
-                });
-            let (kept, _) = waited.unwrap_or_else(PoisonError::into_inner);
-            (kept.table.rows, kept.ended.is_some())
-        })
+        self.shared
+            .wait(py, seconds, |kept| kept.table.rows > known)
     }
 
     /// Asks it to end; rows so far stay.

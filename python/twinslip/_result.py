@@ -116,6 +116,10 @@ class Result:
             self._told, self._object = value_of(whole), b""
         return self._told
 
+    def _part(self, name: str) -> Record:
+        found: Record = self._whole().get(name, Record())
+        return found
+
     @property
     def command(self) -> list[str]:
         """The command line that gives the same."""
@@ -124,26 +128,22 @@ class Result:
     @property
     def model(self) -> Record:
         """The parameters."""
-        found: Record = self._whole().get("model", Record())
-        return found
+        return self._part("model")
 
     @property
     def units(self) -> Record:
         """What quantities are measured in; empty where there are no units."""
-        found: Record = self._whole().get("units", Record())
-        return found
+        return self._part("units")
 
     @property
     def numerics(self) -> Record:
         """Method and tolerances."""
-        found: Record = self._whole().get("numerics", Record())
-        return found
+        return self._part("numerics")
 
     @property
     def work(self) -> Record:
         """What it cost."""
-        found: Record = self._whole().get("work", Record())
-        return found
+        return self._part("work")
 
     @property
     def messages(self) -> list[str]:
@@ -154,8 +154,7 @@ class Result:
     @property
     def result(self) -> Record:
         """All that JSON has under ``result``, but for the rows that are columns."""
-        found: Record = self._whole().get("result", Record())
-        return found
+        return self._part("result")
 
     @property
     def columns(self) -> list[str]:
