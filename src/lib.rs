@@ -19,6 +19,7 @@
 //! | [`bifurcation::Event`] | what is found along branches and along the curves of their bifurcations |
 //! | [`bifurcation::equilibria`] | branches of equilibria, and curves of their bifurcations in the (V_H, K) plane |
 //! | [`section::record()`] | the returns of a run to a section; what they settle on by [`section::verdict()`] |
+//! | [`fit::fit()`] | friction parameters from laboratory records, with errors that hold |
 //! | [`sweep::run()`] | maps of regimes over a grid of (V_H, K) or any parameters, or of starts |
 //! | `scene::Plan` | what a run computes: only what its outputs need (feature `cli`) |
 //! | `paper::reproduce()` | the paper's figures, Table 1, scorecard and report, of which only what is missing is computed (feature `cli`) |
@@ -61,6 +62,8 @@ pub mod sweep;
 pub mod bifurcation;
 
 pub mod many;
+
+pub mod fit;
 
 #[cfg(feature = "cli")]
 pub mod scene;

@@ -50,6 +50,8 @@ mod estimates;
 mod events;
 mod extremes;
 mod figures_of_laws;
+mod fit;
+mod fit_command;
 mod friction;
 mod guide;
 mod internals;

@@ -82,8 +82,20 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         ],
     ),
     (
+        "fit",
+        &[
+            "integrate",
+            "model",
+            "field",
+            "series",
+            "number",
+            "sundials",
+        ],
+    ),
+    (
         "scene",
         &[
+            "fit",
             "many",
             "sundials",
             "sweep",
@@ -105,6 +117,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
         "views",
         &[
             "scene",
+            "fit",
             "many",
             "sweep",
             "bifurcation",
@@ -138,6 +151,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
             "paper",
             "views",
             "scene",
+            "fit",
             "many",
             "sweep",
             "bifurcation",

@@ -18,6 +18,7 @@ from .paper import figure, reproduce, run, scenes
 from .results import (
     Branch,
     Equilibria,
+    Fit,
     LawCurve,
     Locus,
     Orbit,
@@ -32,6 +33,7 @@ __version__ = version()
 __all__ = [
     "Branch",
     "Equilibria",
+    "Fit",
     "IncompleteWarning",
     "InputError",
     "Interrupted",

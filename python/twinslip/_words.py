@@ -106,6 +106,21 @@ def _change(field: str, change: Any) -> str:
         ) from None
 
 
+def _columns(field: str, value: Any) -> str:
+    """Columns by name, or a DataFrame, as the text of a CSV file."""
+    try:
+        names = [str(name) for name in value]
+        columns = [np.asarray(value[name], dtype=float).ravel().tolist() for name in value]
+    except (TypeError, ValueError, KeyError):
+        raise InputError(
+            f"{field} is a {type(value).__name__}, but must be a file, a mapping of columns or a DataFrame", field
+        ) from None
+    if len({len(column) for column in columns}) > 1:
+        raise InputError(f"{field} has columns of different lengths", field)
+    rows = [",".join(names), *(",".join(map(repr, row)) for row in zip(*columns))]
+    return "\n".join(rows) + "\n"
+
+
 def text(option: Option, value: Any) -> list[str]:
     """The values of an option, as many as it is given."""
     field, form = option.argument, option.form
@@ -115,6 +130,8 @@ def text(option: Option, value: Any) -> list[str]:
         return [os.fspath(value)]
     if option.name == "program" and isinstance(value, Sequence):
         return [",".join(_change(field, change) for change in value)]
+    if option.name == "data":
+        return [_columns(field, value)]
     if isinstance(value, Mapping):
         if option.name == "box":
             pairs = (f"{name}={_joined(field, pair, 'A:B')}" for name, pair in value.items())

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Branch",
     "Equilibria",
+    "Fit",
     "LawCurve",
     "Locus",
     "Orbit",
@@ -224,3 +225,48 @@ class Sweep(Yielding):
     def _short(self) -> str:
         regimes = self.result.get("regimes", {}).items()
         return f"{len(self)} points: {', '.join(f'{n} {name}' for name, n in regimes if n)}"
+
+
+class Fit(Result):
+    """Friction parameters from laboratory data, all in SI.
+
+    Attributes
+    ----------
+    time, displacement, observed, fitted, residual : ndarray, shape (samples,)
+        The record and what was fitted to it.
+    parameters : list of Record
+        Each with ``name``, ``unit``, ``value``, ``uncertainty`` (standard error), ``interval_95`` and ``scale``.
+    correlation : list of list of float
+        Of logarithms, where these were varied.
+    verdict : str
+        ``"converged"`` or ``"undecided"``; then ``undecided`` says in words what the data do not determine.
+    laws : list of Record
+        Where several laws were asked for: the fit of each, with its AICc.
+    """
+
+    time: Array
+
+    def __getattr__(self, name: str) -> Any:
+        if not name.startswith("_"):
+            fit = self.result.get("fit", {})
+            if name in fit:
+                return fit[name]
+        return super().__getattr__(name)
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._whole().get("result", {}).get("fit", {})]
+
+    def __getitem__(self, name: Any) -> Any:
+        """A parameter by its name, with its standard error; else a column."""
+        for one in self.result.get("fit", {}).get("parameters", []):
+            if one["name"] == name:
+                return Uncertain(one["value"], one["uncertainty"])
+        return super().__getitem__(name)
+
+    def _short(self) -> str:
+        found = self.result.get("fit", {})
+        each = ", ".join(
+            f"{one['name']} {Uncertain(one['value'], one['uncertainty'])}"
+            for one in found.get("parameters", [])
+        )
+        return f"{found.get('law')}, {found.get('verdict')}: {each}"

@@ -195,6 +195,8 @@ def _pictured(command: str, own: dict[str, Any]) -> list[str]:
     picture = "--plot=picture.svg"
     if command in ("integrate", "equilibria"):
         return []
+    if command == "fit":
+        return [picture, "--plot-parameters=parameters.svg", "--plot-law=law.svg"]
     if command != "sweep":
         return [picture]
     # Curves over a map take longer than a small map does.

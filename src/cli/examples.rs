@@ -1,7 +1,7 @@
 //! What the help of each computing command ends with: its examples.
 
 /// Examples by the command's name.
-pub const EXAMPLES: [(&str, &str); 8] = [
+pub const EXAMPLES: [(&str, &str); 9] = [
     ("law", LAW),
     ("integrate", INTEGRATE),
     ("equilibria", EQUILIBRIA),
@@ -10,6 +10,7 @@ pub const EXAMPLES: [(&str, &str); 8] = [
     ("branch", BRANCH),
     ("locus", LOCUS),
     ("sweep", SWEEP),
+    ("fit", FIT),
 ];
 
 const LAW: &str = "Example, the paper's law and its extrema:
@@ -64,3 +65,9 @@ Over other parameters, of interfaces and of another system:
   twinslip sweep --system roessler --grid c=2:6:60 --grid a=0.1:0.3:40 -o roessler.csv --plot roessler.svg
 Which starts go to which attractor, where a symmetric and an asymmetric orbit coexist:
   twinslip sweep --basin --driving 0.08 --stiffness 0.1 --state-1 1e-6:1:40log --state-2 1e-6:1:40log -o basin.csv";
+
+const FIT: &str = "Example, a velocity step on basalt powder, by the slip law and by the ageing law, the load point moved as it was recorded:
+  twinslip fit basalt.txt --law slip,dieterich-ruina --load-point recorded --plot fit.svg --report fit.html
+What comes of it is carried on: the bands of the law, and of the critical stiffness
+  twinslip fit basalt.txt --law slip -o fit.json
+  twinslip law --ensemble fit.json --plot law.svg";

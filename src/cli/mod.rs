@@ -7,6 +7,7 @@ mod checkpoint;
 mod continuation;
 mod equilibria;
 mod examples;
+mod fit;
 mod general;
 mod integrate;
 mod interrupt;
@@ -281,6 +282,7 @@ fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
         scene::Command::Branch(options) => branch::run(options, call),
         scene::Command::Locus(options) => locus::run(options, call),
         scene::Command::Sweep(options) => sweep::run(options, call),
+        scene::Command::Fit(options) => fit::run(options, call),
     };
     ended.map_err(|error| {
         command

@@ -193,6 +193,7 @@ impl<'a> Pieces<'a> {
                 })))
             }
             Command::Sweep(_) => Err(not(name, "what figures show, but a sweep")),
+            Command::Fit(_) => Err(not(name, "what figures show, but a fit")),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::continuation::{BranchOptions, LocusOptions};
 use super::file::SceneFile;
+use super::fit::FitOptions;
 use super::options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions,
 };
@@ -32,6 +33,8 @@ pub enum Command {
     Locus(Box<LocusOptions>),
     /// The regime at every point of a grid of V_H and K or any other parameters, or of every start: resumable, on many threads and machines
     Sweep(Box<SweepOptions>),
+    /// Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals
+    Fit(Box<FitOptions>),
 }
 
 #[derive(Debug, Parser)]
@@ -53,6 +56,7 @@ impl Command {
             Command::Branch(options) => &options.model.slab,
             Command::Locus(options) => &options.model.slab,
             Command::Sweep(options) => &options.slab,
+            Command::Fit(_) => return None,
         };
         System::of(slab, None, None).ok().map(|system| system.units)
     }
@@ -86,6 +90,7 @@ impl Command {
             "branch" => options(words).map(Command::Branch),
             "locus" => options(words).map(Command::Locus),
             "sweep" => options(words).map(Command::Sweep),
+            "fit" => options(words).map(Command::Fit),
             _ => SceneLine::try_parse_from(words).map(|line| line.command),
         };
         parsed.map_err(|error| sentence(&error))

@@ -14,8 +14,8 @@ use toml::de::{DeArray, DeTable, DeValue};
 /// No scene is longer, in bytes.
 const LONGEST: u64 = 1 << 18;
 
-/// The key of the word after the command, as in `branch orbits`.
-const POSITIONAL: &str = "of";
+/// The keys of the word after the command, as in `branch orbits` and `fit DATA.csv`.
+const POSITIONAL: [&str; 2] = ["of", "data"];
 
 /// A scene file, read.
 #[derive(Debug, Clone, PartialEq)]
@@ -76,7 +76,7 @@ impl SceneFile {
             }
             let line = reader.line(&key.span());
             match reader.flag(key, value, &options)? {
-                Some((key, value)) if key == POSITIONAL => of = value,
+                Some((key, value)) if POSITIONAL.contains(&key.as_str()) => of = value,
                 Some((flag, value)) => flags.push((flag, value, line)),
                 None => {}
             }
@@ -266,7 +266,7 @@ impl Reader<'_> {
 /// The key that stands for an option: its long name, or that of the word after the command.
 fn key_of(arg: &Arg) -> Option<&str> {
     if arg.is_positional() {
-        Some(arg.get_id().as_str()).filter(|&id| id == POSITIONAL)
+        Some(arg.get_id().as_str()).filter(|id| POSITIONAL.contains(id))
     } else {
         arg.get_long()
     }

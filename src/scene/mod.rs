@@ -34,6 +34,7 @@ mod estimate;
 mod event;
 mod explain;
 mod file;
+mod fit;
 mod following;
 mod general;
 mod instant;
@@ -66,6 +67,7 @@ pub use equilibria::{AnyStability, ClassifiedEquilibria, ClassifiedEquilibrium, 
 pub use event::SlipEvent;
 pub use explain::{Keeping, explain};
 pub use file::SceneFile;
+pub use fit::{FitOptions, FitPlan, LawToFit, Measured, WithProblem};
 pub use following::Following;
 pub use general::{
     Free, GeneralBranchPlan, GeneralFound, GeneralLocusPlan, GeneralRow, RowKind, SlabSubject,
@@ -98,7 +100,7 @@ pub use system::{Described, System};
 pub use text::{
     Friction, LawFile, SearchPlace, Steady, SystemFile, TextEquilibria, TextEquilibriaPlan,
     TextEquilibrium, TextInstant, TextLawPlan, TextLawPoint, TextModel, TextOptions, TextOrbitPlan,
-    TextPlan, TextReturn, TextSectionPlan, TextSlab, run_text, run_text_section, text_columns,
-    text_section_columns,
+    TextPlan, TextReturn, TextSectionPlan, TextSlab, TextSlider, run_text, run_text_section,
+    text_columns, text_section_columns,
 };
 pub use units::{Quantity, TimeUnit, Units};

@@ -9,6 +9,7 @@ mod catalogue;
 mod clusters;
 mod diagram;
 mod equilibria;
+mod fit;
 mod general;
 mod law;
 mod listing;
@@ -26,6 +27,9 @@ pub use catalogue::{many_event_columns, participation_columns, picture_of_events
 pub use clusters::{cluster_columns, staircase};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
+pub use fit::{
+    FitRow, fit_columns, parameter_label, picture_of_fit, picture_of_parameters, scale_name,
+};
 pub use general::{general_branches, general_curves, general_lines, quantity_label};
 pub use law::law_columns;
 pub use listing::{Listed, Listing};

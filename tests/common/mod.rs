@@ -10,6 +10,7 @@ pub mod pages;
 pub mod returns;
 pub mod sections;
 pub mod stiff_classics;
+pub mod synthetic;
 pub mod text;
 pub mod trajectories;
 

@@ -16,6 +16,7 @@ mod plan;
 mod run;
 mod section;
 mod slab;
+mod slider;
 
 pub use equilibria::{SearchPlace, TextEquilibria, TextEquilibriaPlan, TextEquilibrium};
 pub use file::SystemFile;
@@ -32,3 +33,4 @@ pub use run::run_text;
 pub use section::{TextReturn, TextSectionPlan, run_text_section, text_section_columns};
 pub(super) use slab::SPREAD;
 pub use slab::TextSlab;
+pub use slider::TextSlider;

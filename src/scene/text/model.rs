@@ -300,7 +300,7 @@ fn built_in_law(name: &str) -> Result<LawFile> {
 }
 
 /// The file of a law, or where there is none of that name the one that the program carries; or the text itself.
-fn read_law(path: &Path) -> Result<LawFile> {
+pub(super) fn read_law(path: &Path) -> Result<LawFile> {
     if let Some(text) = given_text(path) {
         const NAME: &str = "the law";
         return LawFile::parse(NAME, bounded(NAME, text)?);

@@ -44,6 +44,8 @@ pub(super) trait Trajectory {
     fn derivative(&self, _i: usize, _direction: usize) -> f64 {
         0.0
     }
+    /// The k-th coefficients of the i-th variable's derivatives in all directions; none if not asked for.
+    fn derivative_level(&self, _i: usize, _k: usize, _into: &mut Vec<f64>) {}
     /// The integral of the Jacobian's trace, and the logarithm of the growth across a symmetric subspace.
     fn log_growth(&self) -> (f64, Option<f64>) {
         (0.0, None)

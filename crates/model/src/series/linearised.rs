@@ -363,6 +363,14 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         }
     }
 
+    fn derivative_level(&self, i: usize, k: usize, into: &mut Vec<f64>) {
+        let chunks = self.columns.chunks;
+        let level = &self.columns.level(k)[i * chunks..][..chunks];
+        let directions = self.columns.variables + self.parameters;
+        let lanes = level.iter().flat_map(|x| (0..X::LANES).map(|l| x.lane(l)));
+        into.extend(lanes.take(directions));
+    }
+
     fn log_growth(&self) -> (f64, Option<f64>) {
         let across = self.symmetric.then(|| self.log_transverse.to_f64());
         (self.log_determinant.to_f64(), across)

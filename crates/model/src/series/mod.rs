@@ -141,6 +141,13 @@ pub trait Solution<const N: usize> {
 pub trait Tangent<const N: usize>: Solution<N> {
     /// The derivatives of the state reached.
     fn derivatives(&self) -> Derivatives<N>;
+
+    /// The series, at the beginning of the last step and in its unit of time, of a variable's derivatives in the N components of the
+    /// start and then in the parameters: the k-th coefficients of all stand together. Whether there are any: systems without a
+    /// recorded formula keep none.
+    fn derivative_series(&self, _variable: usize, _order: usize, _into: &mut Vec<f64>) -> bool {
+        false
+    }
 }
 
 /// Derivatives of a state in its start and in parameters.

@@ -138,6 +138,14 @@ impl<const N: usize> Tangent<N> for Known<Box<dyn Trajectory + '_>, N> {
             log_transverse,
         }
     }
+
+    fn derivative_series(&self, variable: usize, order: usize, into: &mut Vec<f64>) -> bool {
+        into.clear();
+        for k in 0..=order {
+            self.0.derivative_level(variable, k, into);
+        }
+        true
+    }
 }
 
 impl<const N: usize> TaylorMap<N> for Known<Box<Transported<'_>>, N> {

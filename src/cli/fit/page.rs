@@ -1,0 +1,195 @@
+//! The page of a fit: all that is known of it, to be read in a browser.
+
+use super::Fitted;
+use super::object;
+use super::steps::FittedStep;
+use crate::cli::call::Call;
+use crate::cli::report::sundials;
+use crate::error::{Error, Result};
+use crate::number::between_in_log;
+use crate::output::Place;
+use crate::output::page::{Figure, Page, Table};
+use crate::output::plot::{Axis, Drawing, Panel, PlotSeries, Stroke};
+use crate::scene::FitPlan;
+use crate::views::{FitRow, parameter_label, picture_of_fit, picture_of_parameters};
+use std::path::Path;
+
+/// Points of the law.
+const POINTS: usize = 200;
+/// How far beyond the velocities of the record the law is drawn.
+const BEYOND: f64 = 10.0;
+
+/// The steady friction coefficient against the slip rate, with its 95 % band.
+///
+/// # Errors
+/// Those of the law's steady state.
+pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
+    let rates = plan.motion.stretches.iter().flat_map(|stretch| {
+        let (from, to) = stretch.velocity;
+        [from, to]
+    });
+    let rates: Vec<f64> = rates
+        .chain([plan.motion.before])
+        .filter(|v| *v > 0.0)
+        .collect();
+    // As recorded, velocities scatter.
+    let (low, high) = if rates.len() > 100 {
+        (plan.motion.before, plan.motion.before)
+    } else {
+        let low = rates.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = rates.iter().copied().fold(0.0, f64::max);
+        (low, high)
+    };
+    let part = |i: usize| i as f64 / (POINTS - 1) as f64;
+    let grid = (0..POINTS).map(|i| between_in_log(low / BEYOND, high * BEYOND, part(i)));
+    let grid: Vec<f64> = grid.collect();
+    let band = fitted.law.steady_band(plan, &fitted.fit, &grid)?;
+    let of = |i: usize| band.iter().map(|three| three[i]).collect::<Vec<f64>>();
+    let line = |label: &str, i: usize| PlotSeries::new(label, grid.clone(), of(i)).colour(0);
+    let panel = Panel {
+        series: vec![
+            line(&fitted.law.name, 0).wide(),
+            line("95 % of the fit", 1).stroke(Stroke::Dashed),
+            line("", 2).stroke(Stroke::Dashed),
+        ],
+        ..Panel::new(
+            "steady-state friction",
+            Axis::log("slip rate V [m/s]"),
+            Axis::linear("friction coefficient μₛₛ"),
+        )
+    };
+    Ok(Drawing::columns(vec![vec![panel]]))
+}
+
+/// Writes the page.
+///
+/// # Errors
+/// [`Error::Input`] unless the name ends in .html, [`Error::File`], and those of [`law_picture`].
+pub fn write(
+    path: &Path,
+    call: &Call,
+    plan: &FitPlan,
+    (found, steps): (&[Fitted<'_>], &[FittedStep]),
+    rows: &[FitRow],
+) -> Result<()> {
+    if path.extension().is_none_or(|ending| ending != "html") {
+        return Err(Error::Input(format!(
+            "`report` {}: the name must end in .html",
+            path.display()
+        )));
+    }
+    let best = &found[0];
+    let figure = |id: &str, title: &str, caption: &str, drawing: &Drawing| -> Result<Figure> {
+        Ok(Figure {
+            id: id.into(),
+            title: title.into(),
+            caption: caption.into(),
+            alt: title.into(),
+            svg: drawing.svg()?,
+            ..Figure::default()
+        })
+    };
+    let mut figures = vec![
+        figure(
+            "fig01",
+            "Friction and residuals",
+            "Measured friction with the fit; below, measured less fitted.",
+            &picture_of_fit(rows, &best.law.name),
+        )?,
+        figure(
+            "fig02",
+            "Parameters",
+            "Above each column how the sum of squares grows along a parameter, in standard errors, and the ends of its 95 % interval; \
+             below, the ellipses that hold 68 and 95 % of each pair.",
+            &picture_of_parameters(&best.fit, plan.measured.normal_stress),
+        )?,
+    ];
+    figures.push(figure(
+        "fig03",
+        "Steady-state law",
+        "The steady-state friction that follows, with its 95 % band.",
+        &law_picture(plan, best)?,
+    )?);
+    let page = Page {
+        title: format!("Fit of {}", plan.measured.file),
+        lead: object::lines(plan, found, steps),
+        facts: vec![
+            ("verdict".into(), best.fit.verdict.name().into()),
+            ("samples".into(), plan.record.times.len().to_string()),
+            (
+                "as many white ones".into(),
+                format!("{:.0}", best.fit.effective_samples),
+            ),
+            (
+                "residuals, root mean square".into(),
+                format!("{:.2e}", best.fit.rms),
+            ),
+        ],
+        figures,
+        tables: vec![parameters(plan, best), correlations(best)],
+        manifest: vec![
+            ("version".into(), env!("CARGO_PKG_VERSION").into()),
+            ("command".into(), call.words.join(" ")),
+            (
+                "SUNDIALS".into(),
+                sundials().unwrap_or_else(|| "not built in".into()),
+            ),
+        ],
+        ..Page::default()
+    };
+    Place::File(path.to_owned())
+        .write(page.html().as_bytes())
+        .map_err(|error| Error::File {
+            action: "write",
+            path: path.to_owned(),
+            reason: error.to_string(),
+        })
+}
+
+fn parameters(plan: &FitPlan, fitted: &Fitted<'_>) -> Table {
+    let stress = plan.measured.normal_stress;
+    let rows = fitted.fit.parameters.iter().map(|one| {
+        let (label, by) = parameter_label(&one.name, stress.is_some());
+        let by = by * stress.filter(|_| one.name == "stiffness").unwrap_or(1.0);
+        let number = |x: f64| match (x * by).is_finite() {
+            true => format!("{:.4e}", x * by),
+            false => "none".into(),
+        };
+        vec![
+            one.name.clone(),
+            label,
+            number(one.value),
+            number(one.uncertainty),
+            number(one.interval.0),
+            number(one.interval.1),
+            format!("{:.2}", one.widening),
+        ]
+    });
+    Table {
+        id: "table1".into(),
+        title: "Parameters".into(),
+        caption: "Standard errors are those of noise as the residuals show it; the last column says how many times larger they are than those of white noise.".into(),
+        columns: ["parameter", "symbol", "value", "standard error", "95 % from", "to", "widening"]
+            .map(String::from)
+            .to_vec(),
+        rows: rows.collect(),
+        ..Table::default()
+    }
+}
+
+fn correlations(fitted: &Fitted<'_>) -> Table {
+    let parameters = &fitted.fit.parameters;
+    let names = parameters.iter().map(|one| one.name.clone());
+    let rows = parameters.iter().enumerate().map(|(i, one)| {
+        let each = (0..parameters.len()).map(|j| format!("{:.3}", fitted.fit.correlation[(i, j)]));
+        std::iter::once(one.name.clone()).chain(each).collect()
+    });
+    Table {
+        id: "table2".into(),
+        title: "Correlation".into(),
+        caption: "Of logarithms where parameters are positive.".into(),
+        columns: std::iter::once(String::new()).chain(names).collect(),
+        rows: rows.collect(),
+        ..Table::default()
+    }
+}

@@ -1,0 +1,60 @@
+//! How well one law does beside others: by information and by prediction.
+
+use super::problem::{Problem, Record};
+use super::{Autoregression, Fit, MAX_ITERATIONS};
+use crate::error::Result;
+
+/// Blocks of a record that are predicted from the others.
+const BLOCKS: usize = 5;
+
+/// What a fit is compared by.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Comparison {
+    /// AICc: less is better, by 10 decidedly.
+    pub akaike: f64,
+    /// The root of the mean square by which blocks of the record are missed that took no part in the fit; `None` where a block could not
+    /// be predicted.
+    pub cross_validation: Option<f64>,
+}
+
+/// AICc of a fit (Hurvich and Tsai 1989): -2 ln L + 2 k n/(n - k - 1), with the likelihood of residuals that are an autoregression; its
+/// coefficients and the variance count as parameters.
+pub fn akaike(record: &Record, fit: &Fit) -> f64 {
+    let pairs = record.friction.iter().zip(&fit.fitted);
+    let residuals: Vec<f64> = pairs.map(|(measured, made)| measured - made).collect();
+    let noise = Autoregression::of(&residuals);
+    let n = residuals.len() as f64;
+    let k = (fit.parameters.len() + noise.coefficients.len() + 1) as f64;
+    n * noise.innovation.ln() + 2.0 * k * n / (n - k - 1.0)
+}
+
+/// The root of the mean square of prediction over blocks left out in turn; `None` where one cannot be fitted without.
+///
+/// # Errors
+/// Those of the fit at the minimum.
+pub fn cross_validation<const N: usize>(
+    problem: &Problem<'_, N>,
+    fit: &Fit,
+) -> Result<Option<f64>> {
+    let count = problem.record.times.len();
+    let mut squares = 0.0;
+    for block in 0..BLOCKS {
+        let held = block * count / BLOCKS..(block + 1) * count / BLOCKS;
+        let mut record = problem.record.clone();
+        record.weights[held.clone()].fill(0.0);
+        let without = Problem {
+            record: &record,
+            parameters: problem.parameters.clone(),
+            free: problem.free.clone(),
+            ..*problem
+        };
+        let minimum = without.minimum(&fit.variables, &without.bounds(), MAX_ITERATIONS)?;
+        let Ok((friction, _)) = without.response(&minimum.variables) else {
+            return Ok(None);
+        };
+        squares += held
+            .map(|i| (problem.record.friction[i] - friction[i]).powi(2))
+            .sum::<f64>();
+    }
+    Ok(Some((squares / count as f64).sqrt()))
+}

@@ -1,0 +1,304 @@
+//! From measured friction to parameters with errors: sliders fitted to records of velocity steps by least squares.
+//!
+//! The friction of a slider and its derivatives in all parameters come from power series along its motion ([`Response`]), the least sum
+//! of squares by Levenberg-Marquardt steps ([`minimise`]), standard errors with the noise as the residuals show it
+//! ([`Autoregression`]), and 95 % intervals from profiles of the sum of squares ([`Profile`]).
+
+mod compare;
+mod least_squares;
+mod noise;
+mod problem;
+mod profile;
+mod response;
+mod sensitivities;
+mod slider;
+mod start;
+mod verdict;
+
+pub use compare::{Comparison, akaike, cross_validation};
+pub use least_squares::{Evaluate, Minimum, Residuals, minimise};
+pub use noise::Autoregression;
+pub use problem::{DRIFT, FreeParameter, Loss, Problem, Record, Scale};
+pub use profile::{Profile, ProfilePoint};
+pub use response::{Response, steady_friction};
+pub use sensitivities::by_sensitivities;
+pub use slider::{Motion, Sliders, Stretch};
+pub use start::{Guess, guess, spread};
+pub use verdict::{Verdict, undecided};
+
+use crate::error::{Error, Result};
+use nalgebra::DMatrix;
+use statrs::distribution::{ContinuousCDF, StudentsT};
+
+/// Samples that starts are compared by.
+const THIN: usize = 400;
+/// Steps of a search, and of one that looks where to begin.
+const MAX_ITERATIONS: usize = 100;
+const FIRST_ITERATIONS: usize = 30;
+/// Starts that are followed to their minima, of those that were compared.
+const FOLLOWED: usize = 2;
+
+/// A parameter as it was found.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FittedParameter {
+    /// Its name.
+    pub name: String,
+    /// What it was varied by.
+    pub scale: Scale,
+    /// In SI.
+    pub value: f64,
+    /// Its standard error, with the noise as the residuals show it; infinite where the data do not determine it.
+    pub uncertainty: f64,
+    /// The 95 % interval by the profile of the sum of squares; infinite at an end that it does not have.
+    pub interval: (f64, f64),
+    /// The standard error over that of white noise of the same variance.
+    pub widening: f64,
+}
+
+/// A fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Fit {
+    /// The parameters, in the order in which they were asked for.
+    pub parameters: Vec<FittedParameter>,
+    /// Of the variables: logarithms, where these were varied.
+    pub correlation: DMatrix<f64>,
+    /// The friction that was fitted, at all times.
+    pub fitted: Vec<f64>,
+    /// The root of the mean square of measured less fitted friction.
+    pub rms: f64,
+    /// Observations less parameters.
+    pub degrees_of_freedom: usize,
+    /// White samples that know as much of a mean as these.
+    pub effective_samples: f64,
+    /// The noise.
+    pub noise: Autoregression,
+    /// How many times the friction was computed.
+    pub evaluations: usize,
+    /// How the sum of squares grows along each parameter; none where intervals are of the linear kind.
+    pub profiles: Vec<Profile>,
+    /// What is certain of it.
+    pub verdict: Verdict,
+    /// The variables of the minimum.
+    pub variables: Vec<f64>,
+}
+
+impl Fit {
+    /// The standard errors of the variables.
+    pub fn standard_errors(&self) -> Vec<f64> {
+        let each = self.parameters.iter();
+        each.map(|one| one.uncertainty / one.scale.slope(one.value))
+            .collect()
+    }
+}
+
+/// How 95 % intervals are made.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Intervals {
+    /// By profiles.
+    Profile,
+    /// From the standard errors.
+    Linear,
+}
+
+/// Fits a problem from the best of some starts, lists of values of the free parameters.
+///
+/// # Errors
+/// [`Error::Input`] where there are fewer observations than parameters, [`Error::NotConverged`] where no start has a friction.
+pub fn fit<const N: usize>(
+    problem: &Problem<'_, N>,
+    starts: &[Vec<f64>],
+    intervals: Intervals,
+) -> Result<Fit> {
+    let (count, free) = (problem.record.times.len(), problem.free.len());
+    if count <= free {
+        return Err(Error::Input(format!(
+            "{count} samples do not determine {free} parameters"
+        )));
+    }
+    let bounds = problem.bounds();
+    let (start, mut evaluations) = best_start(problem, starts, &bounds)?;
+    let minimum = problem.minimum(&start, &bounds, MAX_ITERATIONS)?;
+    evaluations += minimum.evaluations;
+    let errors = Errors::of(problem, &minimum)?;
+    let quantile = errors.quantile();
+    let mut profiles = Vec::new();
+    if intervals == Intervals::Profile {
+        for at in 0..free {
+            let profile = Profile::of(problem, (&minimum, &errors), at, quantile)?;
+            evaluations += profile.evaluations;
+            profiles.push(profile);
+        }
+    }
+    let parameter = |(at, free): (usize, &FreeParameter)| {
+        let x = minimum.variables[at];
+        let error = errors.standard[at];
+        let interval = match profiles.get(at) {
+            Some(profile) => profile.interval,
+            None => (x - quantile * error, x + quantile * error),
+        };
+        let value = free.scale.outward(x);
+        FittedParameter {
+            name: free.name.clone(),
+            scale: free.scale,
+            value,
+            uncertainty: free.scale.slope(value) * error,
+            interval: (
+                free.scale.outward(interval.0),
+                free.scale.outward(interval.1),
+            ),
+            widening: errors.widening[at],
+        }
+    };
+    let parameters: Vec<_> = problem.free.iter().enumerate().map(parameter).collect();
+    let verdict = undecided(problem, &minimum, &parameters, &errors.correlation);
+    Ok(Fit {
+        parameters,
+        correlation: errors.correlation,
+        fitted: errors.fitted,
+        rms: errors.rms,
+        degrees_of_freedom: count - free,
+        effective_samples: errors.effective_samples,
+        noise: errors.noise,
+        evaluations,
+        profiles,
+        verdict,
+        variables: minimum.variables,
+    })
+}
+
+/// The start from which the least sum of squares is reached on a thinned record: the starts with the least sums of squares are followed.
+fn best_start<const N: usize>(
+    problem: &Problem<'_, N>,
+    starts: &[Vec<f64>],
+    bounds: &[(f64, f64)],
+) -> Result<(Vec<f64>, usize)> {
+    let record = problem.record.thinned(THIN);
+    let thin = Problem {
+        record: &record,
+        parameters: problem.parameters.clone(),
+        free: problem.free.clone(),
+        ..*problem
+    };
+    let cost = |x: &[f64]| -> Option<f64> {
+        let (friction, _) = thin.response(x).ok()?;
+        let pairs = friction.iter().zip(&record.friction).zip(&record.weights);
+        Some(pairs.map(|((c, m), w)| w * (c - m).powi(2)).sum())
+    };
+    let variables = starts.iter().map(|values| thin.variables(values));
+    let mut ranked: Vec<(f64, Vec<f64>)> = variables.filter_map(|x| Some((cost(&x)?, x))).collect();
+    let mut evaluations = starts.len();
+    ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for (_, start) in ranked.iter().take(FOLLOWED) {
+        let minimum = thin.minimum(start, bounds, FIRST_ITERATIONS)?;
+        evaluations += minimum.evaluations;
+        let cost = minimum.residuals.cost();
+        if best.as_ref().is_none_or(|(least, _)| cost < *least) {
+            best = Some((cost, minimum.variables));
+        }
+    }
+    let (_, variables) = best.ok_or(Error::NotConverged {
+        what: "the friction of the slider at any start",
+        iterations: starts.len(),
+        residual: f64::INFINITY,
+        tolerance: 0.0,
+    })?;
+    Ok((variables, evaluations))
+}
+
+/// The errors of a minimum.
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Errors {
+    /// Of each variable.
+    pub standard: Vec<f64>,
+    /// Over those of white noise.
+    pub widening: Vec<f64>,
+    pub correlation: DMatrix<f64>,
+    /// The same of white noise: (J'J)^-1.
+    pub inverse: DMatrix<f64>,
+    /// The variance of a residual that counts once.
+    pub variance: f64,
+    pub effective_samples: f64,
+    noise: Autoregression,
+    fitted: Vec<f64>,
+    rms: f64,
+}
+
+impl Errors {
+    fn of<const N: usize>(problem: &Problem<'_, N>, minimum: &Minimum) -> Result<Self> {
+        let jacobian = &minimum.residuals.jacobian;
+        let (count, free) = jacobian.shape();
+        let (fitted, _) = problem.response(&minimum.variables)?;
+        let pairs = || problem.record.friction.iter().zip(&fitted);
+        let squares: f64 = pairs()
+            .map(|(measured, made)| (measured - made).powi(2))
+            .sum();
+        let counted = minimum.residuals.values.as_slice();
+        let noise = Autoregression::of(counted);
+        let variance = minimum.residuals.cost() / (count - free) as f64;
+        // Columns of one length: parameters have units.
+        let sizes: Vec<f64> = jacobian
+            .column_iter()
+            .map(|column| f64::max(column.norm(), f64::MIN_POSITIVE))
+            .collect();
+        let mut scaled = jacobian.clone();
+        for (mut column, size) in scaled.column_iter_mut().zip(&sizes) {
+            column /= *size;
+        }
+        let decomposition = scaled.qr().unpack_r().svd(false, true);
+        let (values, turned) = (decomposition.singular_values, decomposition.v_t);
+        let turned = turned.ok_or(Error::NotConverged {
+            what: "the singular values of the fit",
+            iterations: 0,
+            residual: f64::INFINITY,
+            tolerance: 0.0,
+        })?;
+        // A direction in which nothing changes is not determined at all.
+        let inverses = values.map(|s| if s > 0.0 { 1.0 / s } else { f64::MAX.sqrt() });
+        let root = turned.transpose() * DMatrix::from_diagonal(&inverses);
+        let mut inverse = &root * root.transpose();
+        for ((i, j), x) in (0..free)
+            .flat_map(|j| (0..free).map(move |i| (i, j)))
+            .zip(inverse.as_mut_slice())
+        {
+            *x /= sizes[i] * sizes[j];
+        }
+        let white = &inverse * variance;
+        let sandwich = &inverse * noise.covariance_of(jacobian) * &inverse;
+        // As variances of residuals go: what the parameters took from them.
+        let sandwich = sandwich * (count as f64 / (count - free) as f64);
+        let standard: Vec<f64> = (0..free)
+            .map(|i| sandwich[(i, i)].max(0.0).sqrt())
+            .collect();
+        let widening = (0..free)
+            .map(|i| standard[i] / white[(i, i)].sqrt())
+            .collect();
+        let correlation = DMatrix::from_fn(free, free, |i, j| {
+            if i == j {
+                return 1.0;
+            }
+            let rho = sandwich[(i, j)] / (standard[i] * standard[j]);
+            rho.clamp(-1.0, 1.0)
+        });
+        let spread = counted.iter().map(|x| x * x).sum::<f64>() / count as f64;
+        Ok(Errors {
+            widening,
+            correlation,
+            inverse,
+            variance,
+            effective_samples: (count as f64 * spread / noise.long_run_variance())
+                .min(count as f64),
+            noise,
+            rms: (squares / count as f64).sqrt(),
+            fitted,
+            standard,
+        })
+    }
+
+    /// How many standard errors a 95 % interval goes to each side.
+    fn quantile(&self) -> f64 {
+        let free = self.standard.len() as f64;
+        let freedom = f64::max(self.effective_samples - free, 1.0);
+        StudentsT::new(0.0, 1.0, freedom).map_or(1.96, |t| t.inverse_cdf(0.975))
+    }
+}

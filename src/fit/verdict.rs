@@ -1,0 +1,98 @@
+//! Whether a fit determines its parameters, and if not, in words, which.
+
+use super::FittedParameter;
+use super::least_squares::Minimum;
+use super::problem::{Problem, Scale};
+use nalgebra::DMatrix;
+
+/// A parameter whose standard error is a factor of more than this, e, is not determined.
+const UNDETERMINED: f64 = 1.0;
+/// Beyond this correlation two parameters are known by one combination.
+const INSEPARABLE: f64 = 0.9995;
+
+/// What is certain of a fit.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Verdict {
+    /// Whether the search ended at a minimum.
+    pub is_minimum: bool,
+    /// A sentence for each parameter, or pair, that the data do not determine.
+    pub undecided: Vec<String>,
+}
+
+impl Verdict {
+    /// "converged" where it is a minimum that determines all parameters, else "undecided".
+    pub fn name(&self) -> &'static str {
+        if self.is_minimum && self.undecided.is_empty() {
+            "converged"
+        } else {
+            "undecided"
+        }
+    }
+}
+
+/// The verdict on a minimum.
+pub fn undecided<const N: usize>(
+    problem: &Problem<'_, N>,
+    minimum: &Minimum,
+    parameters: &[FittedParameter],
+    correlation: &DMatrix<f64>,
+) -> Verdict {
+    let mut sentences = Vec::new();
+    if !minimum.converged {
+        sentences.push("the search ended before a minimum of the sum of squares".to_owned());
+    }
+    let mut told = vec![false; parameters.len()];
+    for (i, one) in parameters.iter().enumerate() {
+        let (low, high) = problem.free[i].bounds;
+        let zero = if one.scale == Scale::Logarithmic {
+            0.0
+        } else {
+            f64::NEG_INFINITY
+        };
+        let wide = one.scale == Scale::Logarithmic && one.uncertainty > UNDETERMINED * one.value;
+        let why = if one.value <= low || one.value >= high {
+            "it stands at its bound"
+        } else if one.interval.0 <= zero && one.interval.1.is_infinite() {
+            "its 95 % interval has no ends"
+        } else if one.interval.1.is_infinite() {
+            "its 95 % interval has no upper end"
+        } else if one.interval.0 <= zero {
+            "its 95 % interval has no lower end"
+        } else if wide || !one.uncertainty.is_finite() {
+            "its standard error is larger than itself"
+        } else {
+            continue;
+        };
+        told[i] = true;
+        let partner = partner(correlation, i).filter(|(_, rho)| rho.abs() > 0.9);
+        let with = partner.map_or(String::new(), |(j, rho)| {
+            format!(
+                ", and data like these know it together with {} (correlation {rho:.4})",
+                parameters[j].name
+            )
+        });
+        sentences.push(format!("{} is not determined: {why}{with}", one.name));
+    }
+    for i in 0..parameters.len() {
+        for j in 0..i {
+            let rho = correlation[(i, j)];
+            if rho.abs() > INSEPARABLE && !told[i] && !told[j] {
+                sentences.push(format!(
+                    "{} and {} are determined in one combination alone (correlation {rho:.5}): fix one of them",
+                    parameters[j].name, parameters[i].name
+                ));
+            }
+        }
+    }
+    Verdict {
+        is_minimum: minimum.converged,
+        undecided: sentences,
+    }
+}
+
+/// The parameter with which one is correlated most.
+fn partner(correlation: &DMatrix<f64>, of: usize) -> Option<(usize, f64)> {
+    let others = (0..correlation.ncols()).filter(|&j| j != of);
+    let each = others.map(|j| (j, correlation[(of, j)]));
+    each.max_by(|one, other| one.1.abs().total_cmp(&other.1.abs()))
+}

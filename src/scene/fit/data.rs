@@ -1,0 +1,233 @@
+//! From a laboratory's file to a record: which columns, in which units, which window.
+
+use super::options::FitOptions;
+use super::table::Table;
+use super::unit::Measure;
+use crate::error::{Error, Result};
+use crate::friction::positive;
+
+/// Fewer samples are no record.
+const FEWEST: usize = 20;
+/// A sample that comes so many times later than its neighbours do is behind a gap.
+const GAP: f64 = 50.0;
+
+const TIMES: [&str; 4] = ["time", "t", "elapsed", "times"];
+const DISPLACEMENTS: [&str; 9] = [
+    "displacement",
+    "displ",
+    "disp",
+    "loadpoint",
+    "loadpointdisplacement",
+    "lp",
+    "position",
+    "shearslip",
+    "x",
+];
+const FRICTIONS: [&str; 7] = [
+    "friction",
+    "mu",
+    "frictioncoefficient",
+    "coefficient",
+    "µ",
+    "shearstress",
+    "tau",
+];
+const NORMAL_STRESSES: [&str; 5] = [
+    "normalstress",
+    "normal",
+    "sigman",
+    "sigma",
+    "effnormalstress",
+];
+
+/// What was measured, in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Measured {
+    /// In s, as in the file.
+    pub times: Vec<f64>,
+    /// Of the load point in m, where it was recorded.
+    pub displacement: Option<Vec<f64>>,
+    /// The friction coefficient.
+    pub friction: Vec<f64>,
+    /// By which squares of residuals are multiplied; their mean is 1.
+    pub weights: Vec<f64>,
+    /// sigma in Pa, where it is known.
+    pub normal_stress: Option<f64>,
+    /// The file.
+    pub file: String,
+    /// The names of the columns that were taken: time, displacement, friction, normal stress.
+    pub columns: [Option<String>; 4],
+}
+
+impl Measured {
+    /// Reads the file that the options name.
+    ///
+    /// # Errors
+    /// [`Error::File`]; [`Error::Input`] for what is no record: columns that are not there, numbers that are none, times that run back,
+    /// gaps, too few samples.
+    pub fn read(options: &FitOptions) -> Result<Self> {
+        let path = options
+            .data
+            .as_deref()
+            .ok_or_else(|| Error::Input("`data`: the file of the record is missing".into()))?;
+        let table = Table::read(path)?;
+        let find = |asked: &Option<String>, option: &str, names: &[&str]| match asked {
+            Some(column) => table.asked(option, column).map(Some),
+            None => Ok(table.like(names)),
+        };
+        let time = find(&options.time, "time", &TIMES)?;
+        let friction = find(&options.friction, "friction", &FRICTIONS)?;
+        let displacement = find(&options.displacement, "displacement", &DISPLACEMENTS)?;
+        let normal = find(
+            &options.normal_stress_column,
+            "normal_stress_column",
+            &NORMAL_STRESSES,
+        )?;
+        let needed = |place: Option<usize>, option: &str| {
+            place.ok_or_else(|| {
+                let there = if table.headings.is_empty() {
+                    "there is no header".to_owned()
+                } else {
+                    format!("the columns are {}", table.names().join(", "))
+                };
+                Error::Input(format!(
+                    "{}: which column is the {option}? {there}; say so by `{option}`",
+                    table.file
+                ))
+            })
+        };
+        let (time, friction) = (needed(time, "time")?, needed(friction, "friction")?);
+        let column = |place: usize, what: &str, measure: Measure| -> Result<Vec<f64>> {
+            let heading = table.headings.get(place);
+            let unit = heading.and_then(|heading| heading.unit.as_deref());
+            let factor = measure.factor(unit, heading.map_or("", |one| &one.name))?;
+            let numbers = table.numbers(place, what)?;
+            Ok(numbers.into_iter().map(|x| x * factor).collect())
+        };
+        let times = column(time, "time", Measure::Time)?;
+        ascend(&table, &times)?;
+        let rows = window(options, &table, &times)?;
+        let cut = |all: Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| all[row]).collect() };
+        let normal_stress = match normal {
+            Some(place) => Some(cut(column(place, "normal stress", Measure::Stress)?)),
+            None => None,
+        };
+        let given = options.normal_stress;
+        let given = given.map(|x| positive("normal-stress", x)).transpose()?;
+        let is_stress = |place: usize| {
+            let unit = table
+                .headings
+                .get(place)
+                .and_then(|one| one.unit.as_deref());
+            unit.is_some_and(|unit| Measure::Stress.factor(Some(unit), "").is_ok())
+        };
+        let friction_values = if is_stress(friction) {
+            let shear = cut(column(friction, "shear stress", Measure::Stress)?);
+            let by = |i: usize| match (given, &normal_stress) {
+                (Some(sigma), _) => Ok(sigma),
+                (None, Some(column)) => Ok(column[i]),
+                (None, None) => Err(Error::Input(
+                    "`friction` is a stress: give the normal_stress, or the normal_stress_column"
+                        .into(),
+                )),
+            };
+            let ratios = shear.iter().enumerate();
+            ratios
+                .map(|(i, tau)| Ok(tau / by(i)?))
+                .collect::<Result<_>>()?
+        } else {
+            cut(column(friction, "friction", Measure::Ratio)?)
+        };
+        let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
+        let weights = match &options.weights {
+            None => vec![1.0; rows.len()],
+            Some(name) => normalised(cut(table.numbers(table.asked("weights", name)?, "weight")?))?,
+        };
+        let name = |place: Option<usize>| {
+            place.map(|i| {
+                table
+                    .headings
+                    .get(i)
+                    .map_or((i + 1).to_string(), |h| h.name.clone())
+            })
+        };
+        Ok(Measured {
+            file: table.file.clone(),
+            displacement: displacement
+                .map(|place| column(place, "displacement", Measure::Length).map(&cut))
+                .transpose()?,
+            friction: friction_values,
+            weights,
+            normal_stress: given.or_else(|| normal_stress.as_ref().map(mean)),
+            columns: [Some(time), displacement, Some(friction), normal].map(name),
+            times: cut(times),
+        })
+    }
+}
+
+/// # Errors
+/// [`Error::Input`] for times that do not ascend, and gaps between them.
+fn ascend(table: &Table, times: &[f64]) -> Result<()> {
+    for (row, pair) in times.windows(2).enumerate() {
+        if pair[1] <= pair[0] {
+            return Err(Error::Input(format!(
+                "{}:{}: the time {} must be after {}, that of the row before",
+                table.file,
+                table.line(row + 1),
+                pair[1],
+                pair[0]
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The rows of the window, thinned, without gaps.
+fn window(options: &FitOptions, table: &Table, times: &[f64]) -> Result<Vec<usize>> {
+    if options.decimate == 0 {
+        return Err(Error::parameter("decimate", 0, "at least 1"));
+    }
+    let from = options.from.unwrap_or(f64::NEG_INFINITY);
+    let to = options.to.unwrap_or(f64::INFINITY);
+    let inside = (0..times.len()).filter(|&row| (from..=to).contains(&times[row]));
+    let rows: Vec<usize> = inside.step_by(options.decimate).collect();
+    if rows.len() < FEWEST {
+        let (first, last) = (times[0], times[times.len() - 1]);
+        return Err(Error::Input(format!(
+            "{}: the window has {} samples, but must have at least {FEWEST}; the record goes from {first} to {last} s, {} rows",
+            table.file,
+            rows.len(),
+            table.len()
+        )));
+    }
+    let spacing = |i: usize| times[rows[i + 1]] - times[rows[i]];
+    for i in 1..rows.len().saturating_sub(2) {
+        let usual = f64::max(spacing(i - 1), spacing(i + 1));
+        if spacing(i) > GAP * usual {
+            return Err(Error::Input(format!(
+                "{}:{}: a gap of {} s before this row, {:.0} times as long as its neighbours; give a window on one side of it by `from` and `to`",
+                table.file,
+                table.line(rows[i + 1]),
+                spacing(i),
+                spacing(i) / usual
+            )));
+        }
+    }
+    Ok(rows)
+}
+
+/// # Errors
+/// [`Error::Input`] for a weight that is negative, and where all are zero.
+fn normalised(weights: Vec<f64>) -> Result<Vec<f64>> {
+    if let Some(negative) = weights.iter().find(|&&weight| weight < 0.0) {
+        return Err(Error::Input(format!(
+            "`weights`: {negative} must be zero or positive"
+        )));
+    }
+    let mean = weights.iter().sum::<f64>() / weights.len() as f64;
+    if mean > 0.0 {
+        Ok(weights.into_iter().map(|weight| weight / mean).collect())
+    } else {
+        Err(Error::Input("`weights`: all are zero".into()))
+    }
+}

@@ -1,0 +1,13 @@
+//! Fits of laboratory data from options: the record, the motion of the load point, the laws.
+
+mod data;
+mod motion;
+mod options;
+mod plan;
+mod steps;
+mod table;
+mod unit;
+
+pub use data::Measured;
+pub use options::FitOptions;
+pub use plan::{FitPlan, LawToFit, WithProblem};

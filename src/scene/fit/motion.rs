@@ -1,0 +1,124 @@
+//! How the load point moved: by a program, by the steps that its displacement shows, or as it was recorded.
+
+use super::data::Measured;
+use super::options::FitOptions;
+use super::steps::{motion_as_recorded, motion_in_steps};
+use crate::error::{Error, Result};
+use crate::fit::{Motion, Record, Stretch};
+use crate::friction::positive;
+use crate::scene::program::{Change, Program};
+
+/// Velocities nearer to each other than this factor are one.
+const STEP: f64 = 1.05;
+
+/// The motion, the steps in it, and the record with the displacement that belongs to it.
+pub(super) fn loaded(
+    options: &FitOptions,
+    measured: &Measured,
+) -> Result<(Motion, Motion, Record)> {
+    let Measured {
+        times,
+        displacement,
+        friction,
+        weights,
+        ..
+    } = measured;
+    let shown = displacement.as_ref().map(|x| motion_in_steps(times, x));
+    let steps = shown.clone();
+    let motion = match (&options.program, options.load_point.as_str()) {
+        (Some(_), "recorded") => {
+            return Err(Error::Input(
+                "`program` and `load_point` recorded: the load point moves by one or the other"
+                    .into(),
+            ));
+        }
+        (Some(program), "steps") => by_program(program, options.driving, times, shown.as_ref())?,
+        (None, "steps") => shown.ok_or_else(|| {
+            Error::Input("`program` is missing: the record has no column of displacement".into())
+        })?,
+        (None, "recorded") => {
+            let (Some(x), Some(steps)) = (displacement, &shown) else {
+                return Err(Error::Input(
+                    "`load_point` recorded: the record has no column of displacement".into(),
+                ));
+            };
+            motion_as_recorded(times, x, steps.before)
+        }
+        (_, other) => return Err(Error::unknown("load_point", other, &["steps", "recorded"])),
+    };
+    let before = match options.driving {
+        Some(driving) if options.program.is_none() => positive("driving", driving)?,
+        _ => motion.before,
+    };
+    let motion = Motion { before, ..motion };
+    if motion.before <= 0.0 {
+        return Err(Error::Input(format!(
+            "the load point moves at {} m/s as the window begins; a fit begins at steady sliding: give `driving`, or begin the window by `from` where it slides",
+            motion.before
+        )));
+    }
+    let changes = |v: f64| v > STEP * motion.before || v < motion.before / STEP;
+    if !motion
+        .stretches
+        .iter()
+        .any(|stretch| changes(stretch.velocity.1))
+    {
+        return Err(Error::Input(format!(
+            "the window from {} to {} s has no step of velocity: the load point moves at {:e} m/s all the time",
+            times[0],
+            times[times.len() - 1],
+            motion.before
+        )));
+    }
+    let record = Record {
+        displacement: match displacement {
+            Some(x) => x.iter().map(|at| at - x[0]).collect(),
+            None => motion.displacement(times),
+        },
+        times: times.clone(),
+        friction: friction.clone(),
+        weights: weights.clone(),
+    };
+    let steps = match options.load_point.as_str() {
+        "recorded" => steps.unwrap_or_else(|| motion.clone()),
+        _ => motion.clone(),
+    };
+    Ok((motion, steps, record))
+}
+
+/// By a program: what it changes before the window is the velocity that it begins with.
+fn by_program(
+    program: &str,
+    driving: Option<f64>,
+    times: &[f64],
+    shown: Option<&Motion>,
+) -> Result<Motion> {
+    let (begin, end) = (times[0], times[times.len() - 1]);
+    let program = Program::read(program, end)?;
+    let done = |change: &&Change| change.until.unwrap_or(change.time) <= begin;
+    let earlier = program.changes.iter().take_while(done).last();
+    let known = earlier.map(|change| change.driving).or(driving);
+    let before = known.or(shown.map(|motion| motion.before)).ok_or_else(|| {
+        Error::Input(
+            "`driving`, the velocity before the first change of the `program`, is missing".into(),
+        )
+    })?;
+    let (mut stretches, mut now, mut velocity) = (Vec::new(), begin, before);
+    let mut add = |span: (f64, f64), velocity: (f64, f64)| {
+        if span.1 > span.0 {
+            stretches.push(Stretch { span, velocity });
+        }
+    };
+    for change in program.changes.iter().skip_while(done) {
+        let at = change.time.max(begin);
+        add((now, at), (velocity, velocity));
+        now = at;
+        if let Some(until) = change.until {
+            add((at, until), (velocity, change.driving));
+            now = until;
+        }
+        velocity = change.driving;
+    }
+    add((now, end), (velocity, velocity));
+    Ok(Motion { before, stretches })
+}

@@ -1,0 +1,135 @@
+//! The steps of velocity that a record of the load point shows.
+//!
+//! The displacement is cut in two where two straight lines fit it best, as long as their slopes differ; then each part again.
+
+use crate::fit::{Motion, Stretch};
+
+/// Samples that a line goes through, at least.
+const LEAST: usize = 8;
+/// Samples on each side of a step that say when it was.
+const NEXT: usize = 40;
+/// Velocities nearer to each other than this factor are one: motors hunt.
+const STEP: f64 = 1.25;
+/// By so much two lines must lessen the sum of squares, in variances of a sample about them.
+const DECIDED: f64 = 100.0;
+
+/// The motion of a load point in steps, from its displacement at ascending times.
+pub(super) fn motion_in_steps(times: &[f64], displacement: &[f64]) -> Motion {
+    let mut cuts = Vec::new();
+    let sums = Sums::of(times, displacement);
+    sums.cut(0, times.len(), &mut cuts);
+    let mut edges = vec![0];
+    edges.extend(&cuts);
+    edges.push(times.len());
+    let lines: Vec<Line> = edges.windows(2).map(|e| sums.line(e[0], e[1])).collect();
+    let origin = times[0];
+    let mut stretches = Vec::with_capacity(lines.len());
+    let mut begin = origin;
+    for (i, line) in lines.iter().enumerate() {
+        let end = match lines.get(i + 1) {
+            None => times[times.len() - 1],
+            Some(_) => {
+                // Where lines through the samples next to it meet, if that is near: motors hunt, and lines through all are not straight.
+                let at = edges[i + 1];
+                let before = sums.line(edges[i].max(at.saturating_sub(NEXT)), at);
+                let after = sums.line(at, edges[i + 2].min(at + NEXT));
+                let meet = (before.level - after.level) / (after.slope - before.slope) + origin;
+                let (low, high) = (times[at - 1], times[at]);
+                let room = 3.0 * (high - low);
+                if meet.is_finite() {
+                    meet.clamp(low - room, high + room)
+                } else {
+                    0.5 * (low + high)
+                }
+            }
+        };
+        let velocity = line.slope.max(0.0);
+        stretches.push(Stretch {
+            span: (begin, end),
+            velocity: (velocity, velocity),
+        });
+        begin = end;
+    }
+    Motion {
+        before: stretches[0].velocity.0,
+        stretches,
+    }
+}
+
+/// The same as it was recorded: from sample to sample.
+pub(super) fn motion_as_recorded(times: &[f64], displacement: &[f64], before: f64) -> Motion {
+    let samples = times.windows(2).zip(displacement.windows(2));
+    let stretches = samples.map(|(t, x)| {
+        let velocity = (x[1] - x[0]) / (t[1] - t[0]);
+        Stretch {
+            span: (t[0], t[1]),
+            velocity: (velocity, velocity),
+        }
+    });
+    Motion {
+        before,
+        stretches: stretches.collect(),
+    }
+}
+
+/// x = level + slope (t - t_0), with the sum of squares about it.
+#[derive(Debug, Clone, Copy)]
+struct Line {
+    level: f64,
+    slope: f64,
+    squares: f64,
+}
+
+/// Sums over the first samples, of t, x, t^2, t x and x^2, from the first sample on.
+struct Sums(Vec<[f64; 5]>);
+
+impl Sums {
+    fn of(times: &[f64], displacement: &[f64]) -> Self {
+        let (t_0, x_0) = (times[0], displacement[0]);
+        let mut sums = vec![[0.0; 5]];
+        for (t, x) in times.iter().zip(displacement) {
+            let (t, x) = (t - t_0, x - x_0);
+            let last = sums[sums.len() - 1];
+            let terms = [t, x, t * t, t * x, x * x];
+            sums.push(std::array::from_fn(|i| last[i] + terms[i]));
+        }
+        Sums(sums)
+    }
+
+    fn line(&self, from: usize, to: usize) -> Line {
+        let n = (to - from) as f64;
+        let [t, x, tt, tx, xx] = std::array::from_fn(|i| self.0[to][i] - self.0[from][i]);
+        let (spread, together) = (tt - t * t / n, tx - t * x / n);
+        let slope = if spread > 0.0 { together / spread } else { 0.0 };
+        Line {
+            level: (x - slope * t) / n,
+            slope,
+            squares: (xx - x * x / n - slope * together).max(0.0),
+        }
+    }
+
+    fn cut(&self, from: usize, to: usize, cuts: &mut Vec<usize>) {
+        if to < from + 2 * LEAST {
+            return;
+        }
+        let both = |at: usize| self.line(from, at).squares + self.line(at, to).squares;
+        let places = from + LEAST..=to - LEAST;
+        let Some(at) = places.min_by(|&i, &j| both(i).total_cmp(&both(j))) else {
+            return;
+        };
+        let (one, other) = (self.line(from, at), self.line(at, to));
+        let whole = self.line(from, to).squares;
+        let variance = (one.squares + other.squares) / (to - from) as f64;
+        let (slow, fast) = if one.slope < other.slope {
+            (one.slope, other.slope)
+        } else {
+            (other.slope, one.slope)
+        };
+        let is_step = fast > STEP * slow.max(0.0) && fast > 0.0;
+        if is_step && whole - both(at) > DECIDED * variance {
+            self.cut(from, at, cuts);
+            cuts.push(at);
+            self.cut(at, to, cuts);
+        }
+    }
+}
