@@ -1,0 +1,225 @@
+//! `--ensemble FIT.json[:N]`: a command with the uncertainty of a fit.
+//!
+//! The members of an ensemble are the command itself with other values of the fitted parameters. Those on both sides of the estimate
+//! give derivatives, and with the covariance of the fit a band for every number; those that are drawn check these, and say how probable
+//! it is what may be so or not.
+
+mod added;
+mod bands;
+mod draws;
+mod gather;
+mod item;
+mod law;
+mod member;
+mod write;
+
+use super::call::Call;
+use super::report::Report;
+use super::words::several;
+use super::{Ending, interrupt};
+use crate::error::Result;
+use crate::output::{plot, seven_digits};
+use crate::scene::{Command, EnsemblePlan};
+use added::Added;
+use bands::{Banded, Check, bands};
+use gather::{Gathered, Items, Members};
+use item::Item;
+use member::Yield;
+use serde_json::{Value, json};
+use write::Finished;
+
+/// Bands by derivatives and by draws that differ by more than this part of half the band are told.
+const APART: f64 = 0.2;
+
+/// Runs a command that asks for an ensemble.
+pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending> {
+    let plot = command.plot();
+    if let Some(path) = plot {
+        plot::PictureFormat::of(path)?;
+    }
+    let plots: Vec<&std::path::Path> = plot.into_iter().collect();
+    let report = Report::new(command.output(), call, &plots)?;
+    if !plan.fit.converged {
+        report.say(format!(
+            "warning: the fit in {} is undecided: its uncertainty may be wrong",
+            plan.file.path.display()
+        ));
+    }
+    if call.outlet.is_none() {
+        // All is in memory until the end.
+        interrupt::keeps("");
+        interrupt::holds();
+    }
+    call.watch();
+    let ended = Ensemble {
+        plan,
+        report: &report,
+    }
+    .ended(command);
+    call.unwatch();
+    ended
+}
+
+/// An ensemble that is asked for, and where it goes.
+struct Ensemble<'a> {
+    plan: &'a EnsemblePlan,
+    report: &'a Report<'a>,
+}
+
+/// What members have come to.
+struct Known {
+    /// What is known of each thing of the estimate.
+    banded: Vec<Banded>,
+    /// How far both kinds of bands are apart, and where.
+    check: Check,
+    /// How many draws there are.
+    draws: usize,
+}
+
+impl Ensemble<'_> {
+    fn ended(&self, command: &Command) -> Result<Ending> {
+        let (estimate, ending) = member::run(&self.plan.estimate(), self.report.call, true)?;
+        match command {
+            Command::Law(_) => self.law(estimate, ending),
+            _ => Ok(ending),
+        }
+    }
+
+    /// The members beside the estimate, of which these are the things.
+    fn members(&self, besides: usize) -> Members<'_> {
+        let sides = 2 * self.plan.fit.parameters.len();
+        Members::new(self.plan, self.report, sides + besides)
+    }
+
+    /// What all members have come to.
+    fn known(
+        &self,
+        members: &Members<'_>,
+        estimate: &[Item],
+        items: (Items<'_>, &[f64]),
+    ) -> Result<Known> {
+        let Gathered { sides, draws } = members.gather(estimate, items)?;
+        let correlation = &self.plan.fit.correlation;
+        let (banded, check) = bands(estimate, (&sides, correlation), &draws);
+        Ok(Known {
+            banded,
+            check,
+            draws: draws.len(),
+        })
+    }
+
+    /// `result.ensemble`, and its lines.
+    fn told(&self, members: &Members<'_>, draws: usize, check: Option<(&Check, &[Item])>) -> Value {
+        let (failed, first) = members.failures();
+        let fit = &self.plan.fit;
+        let names: Vec<&str> = fit.parameters.iter().map(|one| one.name).collect();
+        let check = check.map(|(check, items)| {
+            let place = check.at.map(|(item, number)| {
+                format!(
+                    "{} of {}",
+                    items[item].numbers[number].name, items[item].class
+                )
+            });
+            (check, place)
+        });
+        self.report.say(format!(
+            "the uncertainty of {} in {}: {} (seed {}){}",
+            names.join(", "),
+            self.plan.file.path.display(),
+            several(draws, "draw", "draws"),
+            draws::SEED,
+            match (failed, first) {
+                (0, _) | (_, None) => String::new(),
+                (n, Some(error)) => format!(
+                    "; {} failed, the first one as {error}",
+                    several(n, "member", "members")
+                ),
+            }
+        ));
+        if let Some((check, Some(place))) = &check
+            && check.largest > check.by_chance.max(APART)
+        {
+            self.report.say(format!(
+                "the bands of derivatives and of draws differ by up to {:.2} of half their breadth, at {place}: the fit is too uncertain for bands that are linear in its parameters",
+                check.largest
+            ));
+        }
+        json!({
+            "file": self.plan.file.path.display().to_string(),
+            "draws": draws,
+            "seed": draws::SEED,
+            "failed": failed,
+            "parameters": names,
+            "check": check.and_then(|(check, place)| Some(json!({
+                "largest": check.largest,
+                "where": place?,
+                "by_chance": check.by_chance,
+            }))),
+        })
+    }
+
+    /// How it ended, if the estimate ended so.
+    fn ending(&self, estimate: Ending) -> Ending {
+        match self.report.call.stops() {
+            true => Ending::Interrupted,
+            false => estimate,
+        }
+    }
+
+    fn law(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
+        let items = law::items(&estimate);
+        let members = self.members(0);
+        let known = self.known(&members, &items, (&law::items, &[]))?;
+        let (rows, lines) = law::finish(&mut estimate, &items, &known.banded);
+        let ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
+        estimate.object["result"]["ensemble"] = ensemble;
+        self.finish(&estimate, rows, lines, ending)
+    }
+
+    /// Writes rows and lines that belong to a command without special points.
+    fn finish(
+        &self,
+        estimate: &Yield,
+        rows: Added,
+        lines: Vec<String>,
+        ending: Ending,
+    ) -> Result<Ending> {
+        let whole = !self.report.call.stops();
+        if self.report.format != crate::output::Format::Json {
+            lines.iter().for_each(|line| self.report.say(line));
+        }
+        let written = Finished {
+            report: self.report,
+            estimate,
+            rows,
+            special: Added::default(),
+            remarks: lines,
+            whole,
+            streams: false,
+            special_file: None,
+        }
+        .write()?;
+        Ok(match written {
+            Ending::Done => self.ending(ending),
+            other => other,
+        })
+    }
+}
+
+/// A thing with its bands in words.
+fn told(item: &Item, known: &Banded) -> String {
+    let number = |(number, band): (&item::Measured, &bands::Band)| {
+        let ends = band.linear.map(|ends| ends.map(seven_digits));
+        let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
+        format!("{} {}{ends}", number.name, seven_digits(number.value))
+    };
+    let numbers = item.numbers.iter().zip(&known.bands);
+    let numbers: Vec<String> = numbers
+        .filter(|(number, _)| number.value.is_finite())
+        .map(number)
+        .collect();
+    let probability = known.probability.map_or(String::new(), |probability| {
+        format!(", in {} % of draws", seven_digits(100.0 * probability))
+    });
+    format!("{} at {}{probability}", item.class, numbers.join(", "))
+}
