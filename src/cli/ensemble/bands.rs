@@ -21,6 +21,8 @@ pub struct Sample {
     has: Vec<bool>,
     /// Of which of them what may hold does.
     holds: Vec<bool>,
+    /// How many things the member has.
+    pub things: usize,
 }
 
 impl Sample {
@@ -37,6 +39,7 @@ impl Sample {
         });
         Sample {
             values: values.collect(),
+            things: member.len(),
             has: found.iter().map(Option::is_some).collect(),
             holds: pairs()
                 .map(|(_, found)| found.is_some_and(|found| member[found].holds))

@@ -6,11 +6,14 @@
 
 mod added;
 mod bands;
+mod curves;
 mod draws;
+mod equilibria;
 mod gather;
 mod item;
 mod law;
 mod member;
+mod sweep;
 mod write;
 
 use super::call::Call;
@@ -18,15 +21,16 @@ use super::report::Report;
 use super::words::several;
 use super::{Ending, interrupt};
 use crate::error::Result;
-use crate::output::{plot, seven_digits};
+use crate::output::{Format, RowFile, plot, seven_digits};
 use crate::scene::{Command, EnsemblePlan};
-use added::Added;
 use bands::{Banded, Check, bands};
+use curves::Course;
 use gather::{Gathered, Items, Members};
 use item::Item;
 use member::Yield;
 use serde_json::{Value, json};
-use write::Finished;
+use sweep::Tally;
+use write::{Finished, Parts};
 
 /// Bands by derivatives and by draws that differ by more than this part of half the band are told.
 const APART: f64 = 0.2;
@@ -50,12 +54,17 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
         interrupt::keeps("");
         interrupt::holds();
     }
+    let curves = matches!(command, Command::Branch(_) | Command::Locus(_));
+    let special_file = match curves {
+        true => write::claim_special(&report, command.output().force)?,
+        false => None,
+    };
     call.watch();
     let ended = Ensemble {
         plan,
         report: &report,
     }
-    .ended(command);
+    .ended(command, special_file);
     call.unwatch();
     ended
 }
@@ -74,14 +83,18 @@ struct Known {
     check: Check,
     /// How many draws there are.
     draws: usize,
+    /// How many things each of them has.
+    counts: Vec<usize>,
 }
 
 impl Ensemble<'_> {
-    fn ended(&self, command: &Command) -> Result<Ending> {
+    fn ended(&self, command: &Command, special_file: Option<RowFile>) -> Result<Ending> {
         let (estimate, ending) = member::run(&self.plan.estimate(), self.report.call, true)?;
         match command {
             Command::Law(_) => self.law(estimate, ending),
-            _ => Ok(ending),
+            Command::Equilibria(_) => self.equilibria(estimate, ending),
+            Command::Sweep(_) => self.sweep(estimate, ending),
+            _ => self.curves(estimate, ending, special_file),
         }
     }
 
@@ -105,6 +118,7 @@ impl Ensemble<'_> {
             banded,
             check,
             draws: draws.len(),
+            counts: draws.iter().map(|draw| draw.things).collect(),
         })
     }
 
@@ -158,49 +172,103 @@ impl Ensemble<'_> {
         })
     }
 
-    /// How it ended, if the estimate ended so.
-    fn ending(&self, estimate: Ending) -> Ending {
-        match self.report.call.stops() {
-            true => Ending::Interrupted,
-            false => estimate,
-        }
-    }
-
     fn law(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
         let items = law::items(&estimate);
         let members = self.members(0);
         let known = self.known(&members, &items, (&law::items, &[]))?;
         let (rows, lines) = law::finish(&mut estimate, &items, &known.banded);
         let ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
-        estimate.object["result"]["ensemble"] = ensemble;
-        self.finish(&estimate, rows, lines, ending)
+        self.finish(
+            estimate,
+            ensemble,
+            Parts::of_rows(rows, lines, false),
+            ending,
+        )
     }
 
-    /// Writes rows and lines that belong to a command without special points.
+    fn equilibria(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
+        let items = equilibria::items(&estimate);
+        let members = self.members(0);
+        let known = self.known(&members, &items, (&equilibria::items, &[]))?;
+        let (rows, lines) = equilibria::finish(&mut estimate, &items, &known.banded);
+        let mut ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
+        ensemble["counts"] = json!(equilibria::counts(&known.counts));
+        self.finish(
+            estimate,
+            ensemble,
+            Parts::of_rows(rows, lines, false),
+            ending,
+        )
+    }
+
+    fn sweep(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
+        let members = self.members(0);
+        let tally = Tally::of(self.plan, &members, estimate.rows.len());
+        let (rows, regimes, lines) = tally.finish(&mut estimate);
+        let mut ensemble = self.told(&members, tally.draws, None);
+        ensemble["regimes"] = Value::Object(regimes);
+        self.finish(
+            estimate,
+            ensemble,
+            Parts::of_rows(rows, lines, true),
+            ending,
+        )
+    }
+
+    fn curves(
+        &self,
+        mut estimate: Yield,
+        ending: Ending,
+        special_file: Option<RowFile>,
+    ) -> Result<Ending> {
+        let course = Course::new(self.plan, &estimate);
+        let course = course.expect("curves have something that varies");
+        let members = self.members(1);
+        let landings = &course.landings;
+        let middle = self.plan.fit.middle();
+        let landed = members.run(&self.plan.landing(self.plan.member(&middle), landings));
+        let mut items = landed.map_or(Vec::new(), |landed| course.rows(&landed));
+        let of_rows = items.len();
+        items.extend(course.special(&estimate, false));
+        let both = |found: &Yield| [course.rows(found), course.special(found, true)].concat();
+        let known = self.known(&members, &items, (&both, landings))?;
+        let (rows, special) = known.banded.split_at(of_rows);
+        let (landed, special_items) = items.split_at(of_rows);
+        let rows = course.of_rows(&estimate, landed, rows);
+        let (rows, special, lines) = course.finish(&mut estimate, &rows, (special_items, special));
+        let ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
+        let parts = Parts {
+            special,
+            special_file,
+            ..Parts::of_rows(rows, lines, true)
+        };
+        self.finish(estimate, ensemble, parts, ending)
+    }
+
+    /// Writes all of it, and says how it ended.
     fn finish(
         &self,
-        estimate: &Yield,
-        rows: Added,
-        lines: Vec<String>,
+        mut estimate: Yield,
+        ensemble: Value,
+        parts: Parts,
         ending: Ending,
     ) -> Result<Ending> {
-        let whole = !self.report.call.stops();
-        if self.report.format != crate::output::Format::Json {
-            lines.iter().for_each(|line| self.report.say(line));
+        let report = self.report;
+        estimate.object["result"]["ensemble"] = ensemble;
+        if report.format != Format::Json {
+            parts.lines.iter().for_each(|line| report.say(line));
         }
+        let whole = !report.call.stops();
         let written = Finished {
-            report: self.report,
+            report,
             estimate,
-            rows,
-            special: Added::default(),
-            remarks: lines,
+            parts,
             whole,
-            streams: false,
-            special_file: None,
         }
         .write()?;
         Ok(match written {
-            Ending::Done => self.ending(ending),
+            Ending::Done if !whole => Ending::Interrupted,
+            Ending::Done => ending,
             other => other,
         })
     }

@@ -16,19 +16,38 @@ pub struct Finished<'a> {
     /// Where to.
     pub report: &'a Report<'a>,
     /// The estimate; what is added is in its object already.
-    pub estimate: &'a Yield,
-    /// What is added to its rows.
-    pub rows: Added,
-    /// What is added to its special points.
-    pub special: Added,
-    /// Lines of remarks.
-    pub remarks: Vec<String>,
+    pub estimate: Yield,
+    /// What is added.
+    pub parts: Parts,
     /// Whether all that was asked for is there.
     pub whole: bool,
+}
+
+/// What is added to an estimate.
+pub struct Parts {
+    /// To its rows.
+    pub rows: Added,
+    /// To its special points.
+    pub special: Added,
+    /// Remarks, and messages.
+    pub lines: Vec<String>,
     /// Whether a program takes rows by columns, and not in the object.
     pub streams: bool,
     /// The file of special points, where there is one.
     pub special_file: Option<RowFile>,
+}
+
+impl Parts {
+    /// Without special points.
+    pub fn of_rows(rows: Added, lines: Vec<String>, streams: bool) -> Self {
+        Parts {
+            rows,
+            special: Added::default(),
+            lines,
+            streams,
+            special_file: None,
+        }
+    }
 }
 
 /// The file of special points beside that of rows, claimed before anything is computed.
@@ -59,13 +78,18 @@ impl Finished<'_> {
             }
             return self.write_special().and(rows);
         }
-        if report.streams() && self.streams {
+        if report.streams() && self.parts.streams {
             let (columns, units) = self.named();
             let begun = report.begin(Vec::new(), &columns, &units);
             let all = begun.and_then(|mut to| self.each_row(|cells| to.row(cells)));
             written(all, &Place::Standard)?;
         }
-        let mut bytes = serde_json::to_vec(&self.estimate.object).expect("it was read as JSON");
+        let mut object = self.estimate.object;
+        if report.streams() && self.parts.streams {
+            // Those that were handed on need not be there twice.
+            object["result"]["rows"] = Value::Array(Vec::new());
+        }
+        let mut bytes = serde_json::to_vec(&object).expect("it was read as JSON");
         bytes.push(b'\n');
         report.write(&bytes)
     }
@@ -81,7 +105,7 @@ impl Finished<'_> {
         let echo = object["model"].as_object().unwrap_or(&nothing);
         let words = &self.report.call.words;
         let mut remarks = remarks_of(words, echo, &object["numerics"], &units);
-        remarks.extend(self.remarks.iter().cloned());
+        remarks.extend(self.parts.lines.iter().cloned());
         remarks
     }
 
@@ -89,16 +113,16 @@ impl Finished<'_> {
     fn named(&self) -> (Vec<String>, Vec<String>) {
         let both = |own: &[String], added: &[String]| [own, added].concat();
         (
-            both(&self.estimate.columns, &self.rows.columns),
-            both(&self.estimate.units, &self.rows.units),
+            both(&self.estimate.columns, &self.parts.rows.columns),
+            both(&self.estimate.units, &self.parts.rows.units),
         )
     }
 
     fn each_row(&self, mut write: impl FnMut(&[Cell]) -> io::Result<()>) -> io::Result<()> {
         for (i, row) in self.estimate.rows.iter().enumerate() {
-            let added = self.rows.rows.get(i).map_or(&[][..], Vec::as_slice);
+            let added = self.parts.rows.rows.get(i).map_or(&[][..], Vec::as_slice);
             let mut cells = [row, added].concat();
-            cells.resize(row.len() + self.rows.columns.len(), Cell::Missing);
+            cells.resize(row.len() + self.parts.rows.columns.len(), Cell::Missing);
             write(&cells)?;
         }
         Ok(())
@@ -119,11 +143,11 @@ impl Finished<'_> {
     }
 
     fn write_special(&self) -> Result<()> {
-        let Some(file) = &self.special_file else {
+        let Some(file) = &self.parts.special_file else {
             return Ok(());
         };
-        let estimate = self.estimate;
-        let columns = [&estimate.special_columns[..], &self.special.columns].concat();
+        let estimate = &self.estimate;
+        let columns = [&estimate.special_columns[..], &self.parts.special.columns].concat();
         let mut remarks = self.remarks();
         remarks.push(Status::Unfinished.remark());
         let write = || -> io::Result<()> {
@@ -131,7 +155,7 @@ impl Finished<'_> {
             to.write_all(&output::head(&remarks, &columns))?;
             let mut to = CsvRows::after(to);
             for (i, one) in estimate.special.iter().enumerate() {
-                let added = self.special.rows.get(i).cloned();
+                let added = self.parts.special.rows.get(i).cloned();
                 let mut cells = [&one[..], &added.unwrap_or_default()].concat();
                 cells.resize(columns.len(), Cell::Missing);
                 to.row(&cells)?;
@@ -175,9 +199,4 @@ fn shown(columns: &[String], table: bool) -> Vec<usize> {
         );
     }
     shown
-}
-
-/// The place of something in the object of an estimate.
-pub fn result<'a>(estimate: &'a mut Yield, name: &str) -> &'a mut Value {
-    &mut estimate.object["result"][name]
 }

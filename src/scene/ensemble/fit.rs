@@ -155,6 +155,11 @@ impl FrictionFit {
         })
     }
 
+    /// The values of all parameters at the estimate.
+    pub fn middle(&self) -> Vec<f64> {
+        self.parameters.iter().map(|one| one.value).collect()
+    }
+
     /// The values of all parameters so many standard errors above the estimate.
     pub fn above(&self, deviations: &DVector<f64>) -> Vec<f64> {
         let all = self.parameters.iter().zip(deviations.iter());
