@@ -127,8 +127,10 @@ pub fn bands(
                 }
             }
             let out = |ends: Ends| ends.map(|x| measured.unscaled(x));
+            // Through a logarithm and back rounding may leave the value itself outside.
+            let around = |[low, high]: Ends| [low.min(measured.value), high.max(measured.value)];
             own.push(Band {
-                linear: linear.map(|half| out([middle - half, middle + half])),
+                linear: linear.map(|half| around(out([middle - half, middle + half]))),
                 draws: quantiles.map(out),
             });
             place += 1;

@@ -4,6 +4,7 @@ use super::added::{Added, put_band};
 use super::bands::Banded;
 use super::item::{Item, Measured};
 use super::member::{Yield, number, word};
+use super::picture::{BandsAt, PointAt};
 use super::told;
 use crate::output::Cell;
 use crate::scene::EnsemblePlan;
@@ -19,6 +20,8 @@ const MOST: usize = 1000;
 pub struct Course<'a> {
     /// The parameter at the same values of which they are compared.
     abscissa: &'a str,
+    /// What depends on it, of curves in a plane.
+    ordinate: Option<&'a str>,
     /// The columns that have bands there.
     names: Vec<String>,
     /// The values, sorted.
@@ -72,6 +75,7 @@ impl<'a> Course<'a> {
         let special = estimate.special_columns.iter().filter(has_bound);
         Some(Course {
             abscissa,
+            ordinate,
             names,
             own,
             special: special.cloned().collect(),
@@ -194,6 +198,41 @@ impl<'a> Course<'a> {
             (apart(found) <= LOCATED).then(|| &banded[i])
         };
         estimate.rows.iter().map(one).collect()
+    }
+
+    /// Where a picture shows the rows, with their bands.
+    pub fn shown(&self, estimate: &Yield, rows: &[Option<&Banded>]) -> BandsAt {
+        let mut at = BandsAt::default();
+        for (row, known) in estimate.rows.iter().zip(rows) {
+            let bands = known.iter().flat_map(|known| &known.bands);
+            for (name, band) in self.names.iter().zip(bands) {
+                let Some(ends) = band.linear else { continue };
+                let x = estimate.number(row, self.abscissa);
+                at.put(x, estimate.number(row, name), ends);
+                // Of equilibria a picture shows the largest stress, which is the only one.
+                if name == "stress" {
+                    at.put(x, estimate.number(row, "stress_max"), ends);
+                }
+            }
+        }
+        at
+    }
+
+    /// Where a picture shows the special points: those of curves in a plane in it, those of branches at their parameter.
+    pub fn points(&self, items: &[Item], special: &[Banded]) -> Vec<PointAt> {
+        let of = |name: &str| self.special.iter().position(|own| own == name);
+        let Some(abscissa) = of(self.abscissa) else {
+            return Vec::new();
+        };
+        let ordinate = self.ordinate.and_then(of);
+        let both = items.iter().zip(special);
+        both.map(|(item, known)| PointAt {
+            x: item.numbers[abscissa].value,
+            y: ordinate.map(|i| item.numbers[i].value),
+            along: known.bands[abscissa].linear,
+            across: ordinate.and_then(|i| known.bands[i].linear),
+        })
+        .collect()
     }
 
     /// What is added to rows and special points, and put into the object; and the special points in words.

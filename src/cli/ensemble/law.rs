@@ -1,9 +1,10 @@
 //! Bands of a friction law.
 
 use super::added::{Added, put_band};
-use super::bands::Banded;
+use super::bands::{Band, Banded};
 use super::item::{Item, Measured};
 use super::member::Yield;
+use super::picture::{BandsAt, PointAt};
 use super::told;
 use serde_json::Value;
 
@@ -130,4 +131,47 @@ pub fn finish(estimate: &mut Yield, items: &[Item], banded: &[Banded]) -> (Added
         added,
         lines.map(|(item, known)| told(item, known)).collect(),
     )
+}
+
+/// Where a picture shows the rows, with their bands.
+pub fn shown(estimate: &Yield, banded: &[Banded]) -> BandsAt {
+    let mut at = BandsAt::default();
+    for (row, known) in estimate.rows.iter().zip(banded) {
+        let rate = estimate.number(row, "slip_rate");
+        for (name, band) in COLUMNS.iter().zip(&known.bands) {
+            if let Some(ends) = band.linear {
+                at.put(rate, estimate.number(row, name), ends);
+            }
+        }
+    }
+    at
+}
+
+/// Where a picture shows the landmarks: the stress of extrema, or its coefficient of friction, and critical stiffnesses.
+pub fn points(estimate: &Yield, items: &[Item], banded: &[Banded]) -> Vec<PointAt> {
+    let rows = estimate.rows.len();
+    let first = estimate.rows.first();
+    let coefficient = first.map_or(f64::NAN, |row| {
+        estimate.number(row, "friction") / estimate.number(row, "stress")
+    });
+    let found = items[rows..].iter().zip(&banded[rows..]);
+    found
+        .flat_map(|(item, known)| {
+            let numbers = item.numbers.iter().zip(&known.bands);
+            let (rate, along) = (item.numbers[0].value, known.bands[0].linear);
+            let point = move |factor: f64, y: f64, band: &Band| PointAt {
+                x: rate,
+                y: Some(factor * y),
+                along,
+                across: band.linear.map(|ends| ends.map(|end| factor * end)),
+            };
+            numbers
+                .skip(1)
+                .flat_map(move |(number, band)| {
+                    let factors = [1.0, coefficient];
+                    factors.map(|factor| point(factor, number.value, band))
+                })
+                .collect::<Vec<_>>()
+        })
+        .collect()
 }

@@ -13,6 +13,7 @@ mod gather;
 mod item;
 mod law;
 mod member;
+mod picture;
 mod sweep;
 mod write;
 
@@ -29,6 +30,7 @@ use gather::{Gathered, Items, Members};
 use item::Item;
 use member::Yield;
 use serde_json::{Value, json};
+use std::path::Path;
 use sweep::Tally;
 use write::{Finished, Parts};
 
@@ -41,7 +43,7 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     if let Some(path) = plot {
         plot::PictureFormat::of(path)?;
     }
-    let plots: Vec<&std::path::Path> = plot.into_iter().collect();
+    let plots: Vec<&Path> = plot.into_iter().collect();
     let report = Report::new(command.output(), call, &plots)?;
     if !plan.fit.converged {
         report.say(format!(
@@ -63,6 +65,7 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     let ended = Ensemble {
         plan,
         report: &report,
+        plot,
     }
     .ended(command, special_file);
     call.unwatch();
@@ -73,6 +76,7 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
 struct Ensemble<'a> {
     plan: &'a EnsemblePlan,
     report: &'a Report<'a>,
+    plot: Option<&'a Path>,
 }
 
 /// What members have come to.
@@ -176,6 +180,12 @@ impl Ensemble<'_> {
         let items = law::items(&estimate);
         let members = self.members(0);
         let known = self.known(&members, &items, (&law::items, &[]))?;
+        if let Some(mut drawing) = estimate.picture.take() {
+            let points = law::points(&estimate, &items, &known.banded);
+            let shown = law::shown(&estimate, &known.banded);
+            picture::with_bands(&mut drawing, &shown, &points);
+            estimate.picture = Some(drawing);
+        }
         let (rows, lines) = law::finish(&mut estimate, &items, &known.banded);
         let ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
         self.finish(
@@ -204,6 +214,10 @@ impl Ensemble<'_> {
     fn sweep(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
         let members = self.members(0);
         let tally = Tally::of(self.plan, &members, estimate.rows.len());
+        let own = sweep::regimes(&estimate);
+        if let Some(drawing) = &mut estimate.picture {
+            picture::with_probabilities(drawing, &tally, &own);
+        }
         let (rows, regimes, lines) = tally.finish(&mut estimate);
         let mut ensemble = self.told(&members, tally.draws, None);
         ensemble["regimes"] = Value::Object(regimes);
@@ -235,6 +249,11 @@ impl Ensemble<'_> {
         let (rows, special) = known.banded.split_at(of_rows);
         let (landed, special_items) = items.split_at(of_rows);
         let rows = course.of_rows(&estimate, landed, rows);
+        if let Some(mut drawing) = estimate.picture.take() {
+            let points = course.points(special_items, special);
+            picture::with_bands(&mut drawing, &course.shown(&estimate, &rows), &points);
+            estimate.picture = Some(drawing);
+        }
         let (rows, special, lines) = course.finish(&mut estimate, &rows, (special_items, special));
         let ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
         let parts = Parts {
@@ -259,6 +278,9 @@ impl Ensemble<'_> {
             parts.lines.iter().for_each(|line| report.say(line));
         }
         let whole = !report.call.stops();
+        if let (Some(path), Some(drawing)) = (self.plot, &estimate.picture) {
+            report.draw(path, drawing)?;
+        }
         let written = Finished {
             report,
             estimate,

@@ -23,7 +23,7 @@ fn regime(name: &str) -> Option<usize> {
 }
 
 /// The regimes of all rows.
-fn regimes(found: &Yield) -> Vec<Option<usize>> {
+pub fn regimes(found: &Yield) -> Vec<Option<usize>> {
     let regime = |row: &Vec<_>| regime(found.word(row, "regime"));
     found.rows.iter().map(regime).collect()
 }

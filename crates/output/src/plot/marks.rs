@@ -15,6 +15,9 @@ const BACKING: f64 = 2.0;
 const TIED: f64 = 12.0;
 /// Points nearer than this look like one: they share a name.
 const ONE: f64 = 3.0;
+/// Breadth of bars, and half the length of the lines at their ends.
+const BAR: f64 = 1.2;
+const CAP: f64 = 3.5;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
@@ -76,6 +79,9 @@ pub fn marks(
     let (shown, centres) = placed(panel, frame, curves, notes);
     for (one, centre) in shown.iter().zip(&centres) {
         tie(canvas, &one.named, *centre, mark_colour(one.mark));
+    }
+    for one in &shown {
+        bars(canvas, frame, one.mark);
     }
     for one in shown.iter().filter(|one| !one.mark.behind) {
         symbols::draw(canvas, look(one.mark), one.named.at, frame.inside());
@@ -184,6 +190,33 @@ fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Vec<Shown<'a>> {
         one.named.size = (text::width(&one.name, TEXT) + AIR, TEXT + AIR);
     }
     shown
+}
+
+/// Draws the bars of a point, each with a short line across at both ends.
+fn bars(canvas: &Canvas, frame: &Frame, mark: &Mark) {
+    let colour = mark_colour(mark);
+    let line = |ends: [(f64, f64); 2], across: Pixel| {
+        let [from, to] = ends.map(|(x, y)| frame.coordinates(x, y));
+        let Some((start, end)) = frame.window().segment(from, to) else {
+            return;
+        };
+        let place = |at| frame.pixel(at);
+        canvas.line(&[place(start), place(end)], colour, BAR);
+        // Not where the frame cuts it.
+        for (at, end) in [(start, from), (end, to)] {
+            if at == end {
+                let (x, y) = place(at);
+                let cap = [(x - across.0, y - across.1), (x + across.0, y + across.1)];
+                canvas.line(&cap, colour, BAR);
+            }
+        }
+    };
+    if let Some((low, high)) = mark.bars.x {
+        line([(low, mark.y), (high, mark.y)], (0.0, CAP));
+    }
+    if let Some((low, high)) = mark.bars.y {
+        line([(mark.x, low), (mark.x, high)], (CAP, 0.0));
+    }
 }
 
 /// Ties a name that stands far off to its point, up to its edge.

@@ -81,6 +81,23 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
             take(at(x.1, y.1));
         }
     }
+    for area in &panel.areas {
+        for (&x, (&low, &high)) in area.x.iter().zip(area.lower.iter().zip(&area.upper)) {
+            take(at(x, low));
+            take(at(x, high));
+        }
+    }
+    for mark in &panel.marks {
+        let (x, y) = (mark.bars.x, mark.bars.y);
+        x.into_iter().for_each(|(low, high)| {
+            take(at(low, mark.y));
+            take(at(high, mark.y));
+        });
+        y.into_iter().for_each(|(low, high)| {
+            take(at(mark.x, low));
+            take(at(mark.x, high));
+        });
+    }
     let places = panel.marks.iter().map(|mark| (mark.x, mark.y));
     let notes = panel.notes.iter().map(|note| (note.x, note.y));
     places.chain(notes).for_each(|(x, y)| take(at(x, y)));
