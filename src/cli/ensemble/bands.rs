@@ -9,6 +9,8 @@ pub const DEVIATIONS: f64 = 1.959_963_984_540_054;
 const TAIL: f64 = 0.025;
 /// Of fewer draws an end of 95 % is not known.
 const FEWEST: usize = 40;
+/// Both kinds of bands are apart where their ends differ by more than this part of half the band.
+const APART: f64 = 0.2;
 /// Bands that are narrower than this, relatively, are rounding.
 const ROUNDING: f64 = 1e-8;
 
@@ -87,6 +89,10 @@ pub struct Check {
     pub largest: f64,
     /// The number of which it is: the thing, and the place among its numbers.
     pub at: Option<(usize, usize)>,
+    /// How many numbers have bands that differ by more than a fifth, and by more than chance makes them.
+    pub apart: usize,
+    /// How many numbers have both kinds of bands.
+    pub numbers: usize,
     /// What the draws of it differ by chance: three standard errors of such an end.
     pub by_chance: f64,
 }
@@ -118,11 +124,15 @@ pub fn bands(
                 let apart = [middle - half, middle + half].into_iter().zip(ends);
                 let apart = apart.map(|(one, other)| (one - other).abs() / half);
                 let apart = apart.fold(0.0, f64::max);
+                let chance = by_chance(of_draws.len());
+                check.numbers += 1;
+                check.apart += usize::from(apart > chance.max(APART));
                 if apart > check.largest {
                     check = Check {
                         largest: apart,
                         at: Some((number, i)),
-                        by_chance: by_chance(of_draws.len()),
+                        by_chance: chance,
+                        ..check
                     };
                 }
             }

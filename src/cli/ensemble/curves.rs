@@ -15,6 +15,8 @@ const SAME: f64 = 1e-9;
 const LOCATED: f64 = 1e-6;
 /// Curves land on so many values at most.
 const MOST: usize = 1000;
+/// And those of draws on so many.
+const MOST_OF_DRAWS: usize = 40;
 
 /// What is compared along curves.
 pub struct Course<'a> {
@@ -83,6 +85,16 @@ impl<'a> Course<'a> {
         })
     }
 
+    /// Fewer values, on which the curves of draws land: they check what is known of the others.
+    pub fn thinned(&self) -> Vec<f64> {
+        let every = self.landings.len().div_ceil(MOST_OF_DRAWS).max(1);
+        let kept = self.landings.iter().enumerate();
+        let is_own = |x: f64| self.own.iter().any(|&own| same(own, x));
+        kept.filter(|(i, x)| i % every == 0 || is_own(**x))
+            .map(|(_, &x)| x)
+            .collect()
+    }
+
     /// The rows of a member at the values on which curves land, each once, and at the ends.
     pub fn rows(&self, found: &Yield) -> Vec<Item> {
         let mut all: Vec<Item> = Vec::new();
@@ -111,7 +123,7 @@ impl<'a> Course<'a> {
             .find(|&i| self.landings.get(i).is_some_and(|&x| same(x, at)));
         // Ends are where nothing lands.
         let place = match landed {
-            Some(i) => i.to_string(),
+            Some(i) => format!("{:.6e}", self.landings[i]),
             None if self.ends(at) => format!("{at:.6e}"),
             None => return None,
         };

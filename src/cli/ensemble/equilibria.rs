@@ -4,7 +4,7 @@ use super::added::{Added, put_band};
 use super::bands::{Band, Banded};
 use super::item::{Item, Measured};
 use super::member::Yield;
-use super::told;
+use super::{percent, told};
 use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
@@ -114,10 +114,7 @@ pub fn finish(estimate: &mut Yield, items: &[Item], banded: &[Banded]) -> (Added
             .holds
             .filter(|_| stability)
             .map_or(String::new(), |part| {
-                format!(
-                    ", stable in {} %",
-                    crate::output::seven_digits(100.0 * part)
-                )
+                format!(", stable in {}", percent(part))
             });
         format!("{}{stable}", told(&shown, known))
     });

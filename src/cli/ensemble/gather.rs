@@ -106,13 +106,13 @@ impl<'a> Members<'a> {
     pub fn gather(
         &self,
         estimate: &[Item],
-        (items, landings): (Items<'_>, &[f64]),
+        (items, [of_sides, of_draws]): (Items<'_>, [&[f64]; 2]),
     ) -> Result<Gathered> {
         let pool = rayon::ThreadPoolBuilder::new()
             .stack_size(STACK)
             .build()
             .map_err(|error| Error::Input(format!("the threads of an ensemble: {error}")))?;
-        let sample = |values: &[f64]| {
+        let sample = |values: &[f64], landings: &[f64]| {
             let command = self.plan.landing(self.plan.member(values), landings);
             let found = self.run(&command)?;
             Some(Sample::of(estimate, &items(&found)))
@@ -124,7 +124,9 @@ impl<'a> Members<'a> {
                 let mut by = DVector::zeros(parameters.len());
                 by[i] = sign * step;
                 let known = step > 0.0;
-                known.then(|| sample(&self.plan.fit.above(&by))).flatten()
+                known
+                    .then(|| sample(&self.plan.fit.above(&by), of_sides))
+                    .flatten()
             };
             Sides {
                 samples: [at(-1.0), at(1.0)],
@@ -132,7 +134,7 @@ impl<'a> Members<'a> {
             }
         };
         let sides = pool.install(|| (0..parameters.len()).into_par_iter().map(side).collect());
-        let draw = |draw: usize| sample(&self.drawn(draw));
+        let draw = |draw: usize| sample(&self.drawn(draw), of_draws);
         let draws = pool.install(|| {
             (0..self.plan.draws)
                 .into_par_iter()

@@ -21,7 +21,7 @@ use super::call::Call;
 use super::report::Report;
 use super::words::several;
 use super::{Ending, interrupt};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::output::{Format, RowFile, plot, seven_digits};
 use crate::scene::{Command, EnsemblePlan};
 use bands::{Banded, Check, bands};
@@ -34,11 +34,20 @@ use std::path::Path;
 use sweep::Tally;
 use write::{Finished, Parts};
 
-/// Bands by derivatives and by draws that differ by more than this part of half the band are told.
-const APART: f64 = 0.2;
+/// A band that is narrower than this, relatively, is none.
+const SAME: f64 = 1e-9;
 
 /// Runs a command that asks for an ensemble.
 pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending> {
+    if let Some(law) = given_law(&call.words)
+        && law != plan.fit.law
+    {
+        return Err(Error::Input(format!(
+            "`law` {law}: `ensemble` {} is a fit of the law {}",
+            plan.file.path.display(),
+            plan.fit.law
+        )));
+    }
     let plot = command.plot();
     if let Some(path) = plot {
         plot::PictureFormat::of(path)?;
@@ -70,6 +79,19 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     .ended(command, special_file);
     call.unwatch();
     ended
+}
+
+/// The law that a command line names: the options have one in any case.
+fn given_law(words: &[String]) -> Option<&str> {
+    let mut words = words.iter();
+    while let Some(word) = words.next() {
+        match word.strip_prefix("--law") {
+            Some("") => return words.next().map(String::as_str),
+            Some(rest) if rest.starts_with('=') => return Some(&rest[1..]),
+            _ => {}
+        }
+    }
+    None
 }
 
 /// An ensemble that is asked for, and where it goes.
@@ -113,7 +135,7 @@ impl Ensemble<'_> {
         &self,
         members: &Members<'_>,
         estimate: &[Item],
-        items: (Items<'_>, &[f64]),
+        items: (Items<'_>, [&[f64]; 2]),
     ) -> Result<Known> {
         let Gathered { sides, draws } = members.gather(estimate, items)?;
         let correlation = &self.plan.fit.correlation;
@@ -155,11 +177,11 @@ impl Ensemble<'_> {
             }
         ));
         if let Some((check, Some(place))) = &check
-            && check.largest > check.by_chance.max(APART)
+            && check.apart > 0
         {
             self.report.say(format!(
-                "the bands of derivatives and of draws differ by up to {:.2} of half their breadth, at {place}: the fit is too uncertain for bands that are linear in its parameters",
-                check.largest
+                "the bands of derivatives and of draws differ at {} of {} numbers by more than a fifth of half their breadth, and by up to {:.2} of it at {place}: there the fit is too uncertain for bands that are linear in its parameters",
+                check.apart, check.numbers, check.largest
             ));
         }
         json!({
@@ -172,6 +194,8 @@ impl Ensemble<'_> {
                 "largest": check.largest,
                 "where": place?,
                 "by_chance": check.by_chance,
+                "apart": check.apart,
+                "numbers": check.numbers,
             }))),
         })
     }
@@ -179,7 +203,7 @@ impl Ensemble<'_> {
     fn law(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
         let items = law::items(&estimate);
         let members = self.members(0);
-        let known = self.known(&members, &items, (&law::items, &[]))?;
+        let known = self.known(&members, &items, (&law::items, [&[]; 2]))?;
         if let Some(mut drawing) = estimate.picture.take() {
             let points = law::points(&estimate, &items, &known.banded);
             let shown = law::shown(&estimate, &known.banded);
@@ -199,7 +223,7 @@ impl Ensemble<'_> {
     fn equilibria(&self, mut estimate: Yield, ending: Ending) -> Result<Ending> {
         let items = equilibria::items(&estimate);
         let members = self.members(0);
-        let known = self.known(&members, &items, (&equilibria::items, &[]))?;
+        let known = self.known(&members, &items, (&equilibria::items, [&[]; 2]))?;
         let (rows, lines) = equilibria::finish(&mut estimate, &items, &known.banded);
         let mut ensemble = self.told(&members, known.draws, Some((&known.check, &items)));
         ensemble["counts"] = json!(equilibria::counts(&known.counts));
@@ -245,7 +269,7 @@ impl Ensemble<'_> {
         let of_rows = items.len();
         items.extend(course.special(&estimate, false));
         let both = |found: &Yield| [course.rows(found), course.special(found, true)].concat();
-        let known = self.known(&members, &items, (&both, landings))?;
+        let known = self.known(&members, &items, (&both, [landings, &course.thinned()]))?;
         let (rows, special) = known.banded.split_at(of_rows);
         let (landed, special_items) = items.split_at(of_rows);
         let rows = course.of_rows(&estimate, landed, rows);
@@ -299,7 +323,11 @@ impl Ensemble<'_> {
 /// A thing with its bands in words.
 fn told(item: &Item, known: &Banded) -> String {
     let number = |(number, band): (&item::Measured, &bands::Band)| {
-        let ends = band.linear.map(|ends| ends.map(seven_digits));
+        // What is the same in all members needs no band.
+        let ends = band
+            .linear
+            .filter(|[low, high]| high - low > SAME * number.value.abs());
+        let ends = ends.map(|ends| ends.map(seven_digits));
         let ends = ends.map_or(String::new(), |[low, high]| format!(" ({low} to {high})"));
         format!("{} {}{ends}", number.name, seven_digits(number.value))
     };
@@ -309,7 +337,13 @@ fn told(item: &Item, known: &Banded) -> String {
         .map(number)
         .collect();
     let probability = known.probability.map_or(String::new(), |probability| {
-        format!(", in {} % of draws", seven_digits(100.0 * probability))
+        format!(", in {} of draws", percent(probability))
     });
     format!("{} at {}{probability}", item.class, numbers.join(", "))
+}
+
+/// A part of all in percent.
+fn percent(part: f64) -> String {
+    let tenths = (1000.0 * part).round() / 10.0;
+    format!("{tenths} %")
 }

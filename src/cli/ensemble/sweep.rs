@@ -3,8 +3,8 @@
 use super::added::Added;
 use super::gather::Members;
 use super::member::Yield;
+use super::percent;
 use crate::cli::words::several;
-use crate::output::seven_digits;
 use crate::scene::EnsemblePlan;
 use crate::views::REGIMES;
 use serde_json::{Map, Value, json};
@@ -84,10 +84,10 @@ impl Tally {
         let sure = |row: &usize| self.likeliest(*row).is_some_and(|(_, part)| part >= SURE);
         let sure = (0..estimate.rows.len()).filter(sure).count();
         let line = format!(
-            "at {} of {} the same regime in at least {} % of draws",
+            "at {} of {} the same regime in at least {} of draws",
             several(sure, "point", "points"),
             several(estimate.rows.len(), "point", "points"),
-            seven_digits(100.0 * SURE)
+            percent(SURE)
         );
         let lines = (self.draws > 0).then_some(line);
         (added, means, lines.into_iter().collect())
