@@ -38,6 +38,13 @@ fn same(one: f64, other: f64) -> bool {
     (one - other).abs() <= SAME * one.abs().max(other.abs())
 }
 
+/// How far the numbers of two rows are apart, relatively.
+fn apart(one: &Item, other: &Item) -> f64 {
+    let pairs = one.numbers.iter().zip(&other.numbers);
+    let each = pairs.map(|(x, y)| (x.value - y.value).abs() / y.value.abs());
+    each.filter(|x| x.is_finite()).fold(0.0, f64::max)
+}
+
 impl<'a> Course<'a> {
     /// Along the curves of the estimate.
     pub fn new(plan: &'a EnsemblePlan, estimate: &Yield) -> Option<Self> {
@@ -103,10 +110,7 @@ impl<'a> Course<'a> {
                 continue;
             };
             // A curve that closes, or two that meet, have a row twice.
-            let twice = |other: &Item| {
-                let pairs = other.place.iter().zip(&item.place);
-                other.class == item.class && pairs.clone().all(|(x, y)| same(*x, *y))
-            };
+            let twice = |other: &Item| other.class == item.class && apart(other, &item) <= LOCATED;
             if !all.iter().rev().any(twice) {
                 all.push(item);
             }
@@ -131,7 +135,8 @@ impl<'a> Course<'a> {
         let words = words.join(" ");
         let numbers = self.names.iter().map(|name| {
             let value = found.number(row, name);
-            match name.starts_with("stress") {
+            // A stiffness that depends on something may come down to 0, where its logarithm has no band.
+            match name.starts_with("stress") || name == "stiffness" {
                 true => Measured::linear(name, value),
                 false => Measured::log(name, value),
             }
@@ -196,18 +201,13 @@ impl<'a> Course<'a> {
     ) -> Vec<Option<&'b Banded>> {
         let one = |row: &Vec<Cell>| {
             let item = self.row(estimate, row)?;
-            let apart = |other: &Item| {
-                let pairs = other.numbers.iter().zip(&item.numbers);
-                let each = pairs.map(|(x, y)| (x.value - y.value).abs() / y.value.abs());
-                each.filter(|x| x.is_finite()).fold(0.0, f64::max)
-            };
             let own = landed
                 .iter()
                 .enumerate()
                 .filter(|(_, other)| other.class == item.class);
-            let nearest = own.min_by(|(_, a), (_, b)| apart(a).total_cmp(&apart(b)));
+            let nearest = own.min_by(|(_, a), (_, b)| apart(a, &item).total_cmp(&apart(b, &item)));
             let (i, found) = nearest?;
-            (apart(found) <= LOCATED).then(|| &banded[i])
+            (apart(found, &item) <= LOCATED).then(|| &banded[i])
         };
         estimate.rows.iter().map(one).collect()
     }

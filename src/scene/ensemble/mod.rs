@@ -10,7 +10,7 @@ pub use plan::EnsemblePlan;
 
 /// What a user can set about the parameters of a fit.
 #[derive(Debug, Clone, Default, PartialEq, clap::Args)]
-#[command(next_help_heading = "Model")]
+#[command(next_help_heading = "Uncertainty")]
 pub struct EnsembleOptions {
     /// The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which is carried through everything: numbers get
     /// an interval of 95 %, what may happen or not a probability. --si is implied; what else is given holds over what was fixed in the
