@@ -42,6 +42,7 @@ mod double_double;
 mod durability_files;
 #[cfg(unix)]
 mod durability_kills;
+mod ensemble;
 mod equilibria;
 #[cfg(not(feature = "parquet"))]
 mod equilibria_generic;

@@ -154,6 +154,20 @@ def test_maps_have_their_colours(description: dict[str, Any]) -> None:
     np.testing.assert_array_equal(corners, [(1, 1), (2, 1), (2, 2), (1, 2)])
 
 
+def test_areas_and_bars_say_what_is_likely(description: dict[str, Any]) -> None:
+    description["blocks"][0]["columns"][0][0]["areas"][0]["label"] = "likely"
+    ax = draw(description)[0]
+    (area,) = ax.patches
+    corners = area.get_path().vertices[:4]
+    np.testing.assert_array_equal(corners, [(1, 0.05), (10, 0.15), (10, 0.25), (1, 0.15)])
+    assert area.get_facecolor() == pytest.approx(to_rgba("#0072B2", 0.22))
+    assert "likely" in [text.get_text() for text in ax.get_legend().get_texts()]
+    (bar,) = [line for line in ax.get_lines() if len(line.get_xdata()) == 2]
+    assert list(bar.get_xdata()) == [5.0, 20.0]
+    assert list(bar.get_ydata()) == [0.2, 0.2]
+    assert bar.get_marker() == "|"
+
+
 def test_short_logarithmic_axes_have_plain_numbers(description: dict[str, Any]) -> None:
     for hi, expected in (
         (1000.0, None),

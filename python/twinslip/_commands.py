@@ -147,6 +147,7 @@ class Commands:
     def law(
         self,
         *,
+        ensemble: Text = None,
         points: Count = None,
         range: Optional[tuple[float, float]] = None,
         progress: Optional[bool] = None,
@@ -155,6 +156,12 @@ class Commands:
 
         Parameters
         ----------
+        ensemble : str, optional
+            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
+            is carried through everything: numbers get an interval of 95 %, what may happen or not
+            a probability. ``si`` is implied; what else is given holds over what was fixed in the
+            fit. N draws check the intervals, which follow from derivatives; without draws there
+            are no probabilities [N: 200; of sweep, which has draws alone, 50]
         points : int, optional
             Number of slip rates, equally spaced in ln V [default: 200]
         range : (float, float), optional
@@ -282,6 +289,7 @@ class Commands:
     def equilibria(
         self,
         *,
+        ensemble: Text = None,
         box: Text = None,
         start: Text = None,
         draw: Text = None,
@@ -293,6 +301,12 @@ class Commands:
 
         Parameters
         ----------
+        ensemble : str, optional
+            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
+            is carried through everything: numbers get an interval of 95 %, what may happen or not
+            a probability. ``si`` is implied; what else is given holds over what was fixed in the
+            fit. N draws check the intervals, which follow from derivatives; without draws there
+            are no probabilities [N: 200; of sweep, which has draws alone, 50]
         box : dict of (A, B), optional
             With ``system``, or a ``law`` from a file: all steady states in a box, a range for
             every state: x=-10:10,y=0:5 [default of a law: what its steady states have at rates
@@ -467,6 +481,7 @@ class Commands:
         self,
         of: Text = None,
         *,
+        ensemble: Text = None,
         along: Text = None,
         symmetry: Text = None,
         at: Text = None,
@@ -487,6 +502,12 @@ class Commands:
         ----------
         of : str, optional
             What is followed: equilibria or orbits; in a scene file the key `of`
+        ensemble : str, optional
+            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
+            is carried through everything: numbers get an interval of 95 %, what may happen or not
+            a probability. ``si`` is implied; what else is given holds over what was fixed in the
+            fit. N draws check the intervals, which follow from derivatives; without draws there
+            are no probabilities [N: 200; of sweep, which has draws alone, 50]
         along : str, optional
             What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a
             system from a file any of its own [default: driving]
@@ -543,6 +564,7 @@ class Commands:
         self,
         of: Text = None,
         *,
+        ensemble: Text = None,
         symmetry: Text = None,
         at_driving: Text = None,
         at_stiffness: Text = None,
@@ -568,6 +590,12 @@ class Commands:
             The bifurcation that is followed: pitchfork, saddle-node or hopf of equilibria; orbit-
             pitchfork, orbit-saddle-node, period-doubling or torus of periodic orbits; in a scene
             file the key `of`
+        ensemble : str, optional
+            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
+            is carried through everything: numbers get an interval of 95 %, what may happen or not
+            a probability. ``si`` is implied; what else is given holds over what was fixed in the
+            fit. N draws check the intervals, which follow from derivatives; without draws there
+            are no probabilities [N: 200; of sweep, which has draws alone, 50]
         symmetry : str, optional
             symmetric (both interfaces alike), asymmetric or both, where there are both [default:
             both]
@@ -627,6 +655,7 @@ class Commands:
     def sweep(
         self,
         *,
+        ensemble: Text = None,
         driving: Text = None,
         stiffness: Text = None,
         grid: Text = None,
@@ -650,6 +679,12 @@ class Commands:
 
         Parameters
         ----------
+        ensemble : str, optional
+            The parameters of a law that `twinslip fit` has fitted, with their uncertainty, which
+            is carried through everything: numbers get an interval of 95 %, what may happen or not
+            a probability. ``si`` is implied; what else is given holds over what was fixed in the
+            fit. N draws check the intervals, which follow from derivatives; without draws there
+            are no probabilities [N: 200; of sweep, which has draws alone, 50]
         driving : (A, B, N) or (A, B, N, "log"), optional
             N values of V_H from A to B, both included; with log equally spaced in ln V_H. One
             value may stand alone

@@ -88,11 +88,28 @@ def _entries(panel: Description) -> Iterator[tuple[Any, str, str]]:
             yield _dots(colour, max(series["width"], _FINEST)), series["label"], colour
         else:
             yield line(colour, series["stroke"], series["width"]), series["label"], colour
+    for label, colours in _areas(panel).items():
+        yield _squares(colours), label, INK
     for stroke in panel["strokes"]:
         yield line(INK, stroke["stroke"], _FINEST), stroke["label"], INK
     for key in panel["keys"]:
         look = look_of(key["symbol"], key["filled"], key["colour"])
         yield Line2D([], [], **look), key["label"], INK
+
+
+def _areas(panel: Description) -> dict[str, list[str]]:
+    """The names of areas, each with the colours of all that have it, as they look on white."""
+    from matplotlib.colors import to_hex, to_rgb
+
+    named: dict[str, list[str]] = {}
+    for area in panel["areas"]:
+        part = area["opacity"]
+        red, green, blue = (1.0 - part * (1.0 - one) for one in to_rgb(area["colour"]))
+        shown = to_hex((red, green, blue))
+        colours = named.setdefault(area["label"], []) if area["label"] else [shown]
+        if shown not in colours:
+            colours.append(shown)
+    return named
 
 
 def _squares(colours: Sequence[str]) -> Any:

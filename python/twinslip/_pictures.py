@@ -38,6 +38,9 @@ if TYPE_CHECKING:
 _FEW_DECADES = 2.6
 _SHORT = 0.8
 _SHORTEST = 0.3
+#: Numbers on a linear axis that are as large as this, or smaller, have a power of ten.
+_LARGE = 1e6
+_SMALL = 1e-3
 #: A name that begins farther than this from its point is tied to it, in pixels.
 _TIED = 12.0
 
@@ -136,6 +139,8 @@ def _panel(panel: Description, ax: Axes) -> None:
     if panel["cells"] is not None:
         _cells(panel["cells"], ax)
     on_map = panel["cells"] is not None
+    for area in panel["areas"]:
+        _area(area, ax)
     for mark in panel["marks"]:
         _mark(mark, ax, on_map)
     for series in panel["series"]:
@@ -165,9 +170,13 @@ def _ticks(axis: Axis, of: Description) -> None:
         axis.set_major_locator(ticker.NullLocator())
         axis.set_minor_locator(ticker.NullLocator())
         return
-    if not of["log"]:
-        return
     lo, hi = of["range"]
+    if not of["log"]:
+        largest = max(abs(lo), abs(hi))
+        if largest >= _LARGE or largest < _SMALL:
+            # Their power of ten in each: one for all would stand where the legend does.
+            axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: _scientific(value)))
+        return
     decades = abs(math.log10(hi / lo))
     axis.set_minor_formatter(ticker.NullFormatter())
     if decades >= _FEW_DECADES:
@@ -179,6 +188,14 @@ def _ticks(axis: Axis, of: Description) -> None:
         axis.set_major_locator(ticker.LogLocator(subs=subs, numticks=50))
     axis.set_minor_locator(ticker.LogLocator(subs=range(1, 10), numticks=50))
     axis.set_major_formatter(ticker.FuncFormatter(lambda value, _: f"{value:g}"))
+
+
+def _scientific(value: float) -> str:
+    """A number as a multiple of a power of ten."""
+    if value == 0.0:
+        return "0"
+    mantissa, exponent = f"{value:.6e}".split("e")
+    return rf"{float(mantissa):g}$\cdot$10$^{{{int(exponent)}}}$"
 
 
 def _numbers(values: Sequence[float | None]) -> np.ndarray[Any, np.dtype[np.float64]]:
@@ -206,10 +223,42 @@ def _series(series: Description, ax: Axes, on_map: bool) -> None:
     ax.plot(x, y, color=series["colour"], linewidth=width, label=label, **dashes)
 
 
+def _area(area: Description, ax: Axes) -> None:
+    """What is likely of a curve, behind it."""
+    for piece in area["pieces"]:
+        ax.fill(
+            piece["x"],
+            piece["y"],
+            facecolor=area["colour"],
+            alpha=area["opacity"],
+            linewidth=0.0,
+            zorder=1.4,
+            label="_nolegend_",
+        )
+
+
+def _bars(mark: Description, ax: Axes, zorder: float) -> None:
+    """Between which values a point may be, with a short line across at both ends."""
+    look: dict[str, Any] = {
+        "color": mark["colour"],
+        "linewidth": 1.2 * POINT,
+        "markersize": 7.0 * POINT,
+        "markeredgewidth": 1.2 * POINT,
+        "zorder": zorder,
+        "label": "_nolegend_",
+    }
+    along, across = mark["bars"]["x"], mark["bars"]["y"]
+    if along is not None:
+        ax.plot(along, [mark["y"]] * 2, marker="|", **look)
+    if across is not None:
+        ax.plot([mark["x"]] * 2, across, marker="_", **look)
+
+
 def _mark(mark: Description, ax: Axes, on_map: bool) -> None:
     from matplotlib.patheffects import Normal, Stroke
 
     zorder = 1.5 if mark["behind"] else 3.0
+    _bars(mark, ax, zorder)
     look = look_of(mark["symbol"], mark["filled"], mark["colour"])
     (drawn,) = ax.plot([mark["x"]], [mark["y"]], zorder=zorder, label="_nolegend_", **look)
     # a white edge sets it off from the lines it lies on

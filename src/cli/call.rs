@@ -14,8 +14,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub trait Outlet: Send + Sync {
     /// The names of the columns of all rows that follow; error budgets have columns of their own, as in CSV.
     fn columns(&self, names: &[String]);
+    /// The units of these columns, by their names.
+    fn units(&self, _names: &[String]) {}
     /// A row.
     fn row(&self, cells: &[Cell]);
+    /// All special points, by the names of the columns that they have in CSV.
+    fn special(&self, _columns: &[String], _rows: Vec<Vec<Cell>>) {}
+    /// Whether it takes rows of every command, also those that are in the object, and an object with all of them.
+    fn keeps_all(&self) -> bool {
+        false
+    }
     /// The object as `--format json` has it, without the rows that were handed on.
     fn object(&self, json: &[u8]);
     /// The picture, where one is asked for.
@@ -109,9 +117,10 @@ impl Call {
     }
 
     /// A writer of rows to the outlet, if there is one.
-    pub fn rows(&self, columns: &[String]) -> Option<Box<dyn RowWriter>> {
+    pub fn rows(&self, columns: &[String], units: &[String]) -> Option<Box<dyn RowWriter>> {
         let outlet = self.outlet.clone()?;
         outlet.columns(columns);
+        outlet.units(units);
         Some(Box::new(HandedOn(outlet)))
     }
 }

@@ -174,8 +174,14 @@ impl<'a, R: CurveRow> Task<'a, R> {
             return Ok(Ending::Done);
         }
         let units = self.system.units();
+        if let Some(outlet) = &self.call.outlet {
+            let names = views::names(&self.special_columns, false).into_iter();
+            let names: Vec<String> = names.map(|(name, _)| name).collect();
+            let cells = |one| views::cells(&self.special_columns, one, units, false);
+            outlet.special(&names, out.special.iter().map(cells).collect());
+        }
         // Those that were handed on need not be there twice.
-        let rows = out.rows.iter().filter(|_| !report.streams());
+        let rows = out.rows.iter().filter(|_| report.repeats());
         let rows: Vec<Value> = rows
             .map(|row| Value::Object(views::object(&self.columns, row, units)))
             .collect();

@@ -53,7 +53,9 @@ fn write(
 ) -> Result<Ending> {
     let numerics = json!({"solver": plan.solver_name});
     let system = &plan.system;
+    let columns = views::equilibria_columns(system.interfaces);
     if report.format == Format::Json {
+        report.hand_on(&system.units, &columns, &found.equilibria);
         let list = found.equilibria.iter();
         let list: Vec<Value> = list.map(|one| object(one, system)).collect();
         let work = json!({"equilibria": list.len()});
@@ -64,7 +66,7 @@ fn write(
     report.write_all(
         &system.units,
         report.remarks(system, &numerics),
-        &views::equilibria_columns(system.interfaces),
+        &columns,
         &found.equilibria,
     )
 }

@@ -169,6 +169,7 @@ pub fn write<R>(
     let landmarks = Landmarks::of(curves, units);
     let points = || curves.iter().flat_map(|curve| &curve.points);
     if report.format == Format::Json {
+        report.hand_on(units, columns, points());
         let object = |point| Value::Object(views::object(columns, point, units));
         let rows: Vec<Value> = points().map(object).collect();
         let work = json!({"evaluations": rows.len()});

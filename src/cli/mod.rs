@@ -5,6 +5,7 @@ mod call;
 mod catalogue;
 mod checkpoint;
 mod continuation;
+mod ensemble;
 mod equilibria;
 mod examples;
 mod fit;
@@ -144,8 +145,13 @@ pub fn main(arguments: impl IntoIterator<Item = OsString>) -> ExitCode {
     // A file that grows larger than is allowed is then an error of writing, and not the end of the process.
     #[cfg(unix)]
     let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, Default::default());
+    let words: Vec<_> = arguments
+        .iter()
+        .map(|word| word.to_string_lossy())
+        .collect();
+    let implied = scene::implied(&words).map(OsString::from);
     let parsed = program()
-        .try_get_matches_from(&arguments)
+        .try_get_matches_from(arguments.iter().cloned().chain(implied))
         .and_then(|matches| CommandLine::from_arg_matches(&matches));
     let line = match parsed {
         Ok(line) => line,
@@ -273,6 +279,9 @@ fn shortened(text: String) -> String {
 
 /// What a scene file or the command line asks for.
 fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
+    if let Some(plan) = scene::EnsemblePlan::new(command)? {
+        return ensemble::run(&plan, command, call);
+    }
     let ended = match command {
         scene::Command::Law(options) => law::run(options, call),
         scene::Command::Integrate(options) => integrate::run(options, call),

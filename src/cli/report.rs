@@ -1,6 +1,6 @@
 //! What all commands share: format and place of the output, the object around a result, remarks, messages.
 
-use super::call::Call;
+use super::call::{Call, Outlet};
 use super::progress::Progress;
 use super::{Ending, interrupt, written};
 use crate::error::{Error, Result};
@@ -15,6 +15,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
+use std::sync::Arc;
 
 /// Where a command's output goes, checked.
 pub struct Report<'a> {
@@ -151,6 +152,31 @@ impl<'a> Report<'a> {
         self.format != Format::Json || self.call.outlet.is_some()
     }
 
+    /// Whether the rows are in the object.
+    pub fn repeats(&self) -> bool {
+        let all = |outlet: &Arc<dyn Outlet>| outlet.keeps_all();
+        !self.streams() || self.call.outlet.as_ref().is_some_and(all)
+    }
+
+    /// Hands on rows that are in the object too, to whom takes both.
+    pub fn hand_on<'r, R: 'r>(
+        &self,
+        units: &Units,
+        columns: &[Column<R>],
+        rows: impl IntoIterator<Item = &'r R>,
+    ) {
+        let Some(outlet) = self.call.outlet.as_ref().filter(|one| one.keeps_all()) else {
+            return;
+        };
+        let (names, quantities): (Vec<_>, Vec<_>) =
+            views::names(columns, false).into_iter().unzip();
+        outlet.columns(&names);
+        outlet.units(&unit_names(units, quantities.into_iter()));
+        for row in rows {
+            outlet.row(&views::cells(columns, row, units, false));
+        }
+    }
+
     /// Writes an object.
     pub fn write(&self, bytes: &[u8]) -> Result<Ending> {
         match &self.call.outlet {
@@ -180,7 +206,7 @@ impl<'a> Report<'a> {
         columns: &[String],
         units: &[String],
     ) -> io::Result<Box<dyn RowWriter>> {
-        if let Some(rows) = self.call.rows(columns) {
+        if let Some(rows) = self.call.rows(columns, units) {
             return Ok(rows);
         }
         let mut to = self.stream(0)?;
@@ -325,6 +351,16 @@ impl<'a> Report<'a> {
 
 /// The `# ` lines of CSV made by a command: program, command, parameters, units.
 pub fn remarks(words: &[String], system: &dyn Described, numerics: &Value) -> Vec<String> {
+    remarks_of(words, system.echo(), numerics, &system.units().names())
+}
+
+/// The same by what an object has of them.
+pub fn remarks_of(
+    words: &[String],
+    echo: &serde_json::Map<String, Value>,
+    numerics: &Value,
+    units: &[(&str, &str)],
+) -> Vec<String> {
     let list = |pairs: &serde_json::Map<String, Value>| {
         let pairs: Vec<String> = pairs
             .iter()
@@ -337,14 +373,14 @@ pub fn remarks(words: &[String], system: &dyn Described, numerics: &Value) -> Ve
         pairs.join(", ")
     };
     let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-    let units = system.units().names().into_iter();
     let units: Vec<String> = units
+        .iter()
         .map(|(name, unit)| format!("{name} [{unit}]"))
         .collect();
     let mut remarks = vec![
         format!("twinslip {}", env!("CARGO_PKG_VERSION")),
         format!("command: {}", words.join(" ")),
-        format!("model: {}", list(system.echo())),
+        format!("model: {}", list(echo)),
     ];
     if let Some(numerics) = numerics.as_object().filter(|map| !map.is_empty()) {
         remarks.push(format!("numerics: {}", list(numerics)));

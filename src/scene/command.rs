@@ -4,7 +4,7 @@ use super::continuation::{BranchOptions, LocusOptions};
 use super::file::SceneFile;
 use super::fit::FitOptions;
 use super::options::{
-    EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions,
+    EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions, SlabOptions,
 };
 use super::sweep::SweepOptions;
 use super::system::System;
@@ -47,7 +47,13 @@ struct SceneLine {
 impl Command {
     /// The units of its numbers; `None` where its options make no system.
     pub fn units(&self) -> Option<Units> {
-        let slab = match self {
+        let system = System::of(self.slab()?, None, None);
+        system.ok().map(|system| system.units)
+    }
+
+    /// What slides, but V_H and K; `None` where that is looked for.
+    pub(super) fn slab(&self) -> Option<&SlabOptions> {
+        Some(match self {
             Command::Law(options) => &options.model.slab,
             Command::Integrate(options) => &options.model.slab,
             Command::Equilibria(options) => &options.model.slab,
@@ -57,8 +63,7 @@ impl Command {
             Command::Locus(options) => &options.model.slab,
             Command::Sweep(options) => &options.slab,
             Command::Fit(_) => return None,
-        };
-        System::of(slab, None, None).ok().map(|system| system.units)
+        })
     }
 
     /// The command line that scene files are read against.
@@ -81,6 +86,9 @@ impl Command {
     ///
     /// Only the options of the command that it names are made, and those once: that takes longer than a short run.
     pub(crate) fn of_words(words: &[String]) -> Result<Self, String> {
+        let mut words = words.to_vec();
+        words.extend(implied(&words).map(str::to_owned));
+        let words = &words[..];
         let parsed = match words.get(1).map_or("", String::as_str) {
             "law" => options(words).map(Command::Law),
             "integrate" => options(words).map(Command::Integrate),
@@ -95,6 +103,19 @@ impl Command {
         };
         parsed.map_err(|error| sentence(&error))
     }
+}
+
+/// What the words of a command line imply: fits are in SI.
+pub(crate) fn implied<S: AsRef<str>>(words: &[S]) -> Option<&'static str> {
+    const SI: &str = "--si";
+    let has = |flag: &str| {
+        let mut words = words.iter().map(AsRef::as_ref);
+        words.any(|word| {
+            let rest = word.strip_prefix(flag);
+            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
+        })
+    };
+    (has("--ensemble") && !has(SI) && !has("--system")).then_some(SI)
 }
 
 /// The options of one command, from a command line whose second word is its name.

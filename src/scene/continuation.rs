@@ -1,6 +1,7 @@
 //! What a user can set of branches and curves; as in `options`, these fields are the flags and the keys of a scene file.
 
 use super::branch::{BranchKind, BranchParameter};
+use super::ensemble::EnsembleOptions;
 use super::following::SYMMETRIES;
 use super::general::{SlabSubject, plane};
 use super::locus::CurveChoice;
@@ -76,6 +77,9 @@ pub struct BranchOptions {
     /// What slides, with the parameter that stays fixed: --stiffness, or --driving along stiffness.
     #[command(flatten)]
     pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
     /// What varies: driving (V_H), stiffness (K) or any other parameter by its name; of a system from a file any of its own
     /// [default: driving]
     #[arg(
@@ -218,6 +222,9 @@ pub struct LocusOptions {
     /// What slides; both V_H and K vary and are not given.
     #[command(flatten)]
     pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
     /// symmetric (both interfaces alike), asymmetric or both, where there are both
     #[arg(
         long,

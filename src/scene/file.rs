@@ -2,6 +2,7 @@
 //!
 //! Its keys are turned into the flags themselves, so a scene and a command line are read, checked and run by the same code.
 
+use super::ensemble::EnsembleFile;
 use crate::error::{Error, Result, did_you_mean};
 use clap::{Arg, ArgAction, Command};
 use std::fs::File;
@@ -40,11 +41,14 @@ impl SceneFile {
         let mut scene = Self::parse(&path.display().to_string(), &text, program)?;
         // Where a file is, its systems and laws are; those that are built in have no place.
         for (flag, value, _) in &mut scene.flags {
-            if let ("system" | "law", Some(value), Some(folder)) =
+            if let ("system" | "law" | "ensemble", Some(value), Some(folder)) =
                 (flag.as_str(), value, path.parent())
             {
                 let beside = folder.join(value.as_str());
-                if beside.exists() {
+                // A number of draws may stand behind a fit.
+                let counted =
+                    || EnsembleFile::parse(value).is_ok_and(|file| folder.join(file.path).exists());
+                if beside.exists() || (flag == "ensemble" && counted()) {
                     *value = beside.display().to_string();
                 }
             }

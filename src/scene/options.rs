@@ -1,6 +1,7 @@
 //! What a user can set. Declared once: the flags of the command line, their help and the keys of a scene file are these
 //! fields, so they cannot drift apart.
 
+use super::ensemble::EnsembleOptions;
 use super::text::TextOptions;
 use super::units::TimeUnit;
 use crate::friction::AnyLaw;
@@ -158,6 +159,9 @@ pub struct LawOptions {
     /// The law; --interfaces, --driving and --stiffness are accepted and change nothing here.
     #[command(flatten)]
     pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
     /// Lowest slip rate [default: 1e-3 V*]
     #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Grid")]
     pub from: Option<f64>,
@@ -334,6 +338,9 @@ pub struct EquilibriaOptions {
     /// What slides; without --stiffness there are no eigenvalues and no verdict.
     #[command(flatten)]
     pub model: ModelOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
     /// With --system, or a --law from a file: all steady states in a box, a range for every state: x=-10:10,y=0:5 [default of a law:
     /// what its steady states have at rates from V_H/1e6 to V_H]
     #[arg(

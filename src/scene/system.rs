@@ -16,9 +16,9 @@ use serde_json::{Map, Value, json};
 use std::path::Path;
 
 /// L in m, fitted by the paper to Heslot et al. (1994).
-const SLIP_LENGTH: f64 = 0.9e-6;
+pub(super) const SLIP_LENGTH: f64 = 0.9e-6;
 /// V* in m/s of the paper.
-const REFERENCE_RATE: f64 = 1e-6;
+pub(super) const REFERENCE_RATE: f64 = 1e-6;
 /// sigma in Pa. The paper states none.
 const NORMAL_STRESS: f64 = 1e6;
 /// R of the paper.

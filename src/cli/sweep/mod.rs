@@ -94,7 +94,7 @@ fn write(plan: &SweepPlan, report: &Report<'_>, out: &SweepOut<'_>) -> Result<En
     }
     let units = plan.system.units();
     // Those that were handed on need not be there twice.
-    let rows = out.rows.iter().filter(|_| !report.streams());
+    let rows = out.rows.iter().filter(|_| report.repeats());
     let rows: Vec<Value> = rows
         .map(|row| Value::Object(views::object(out.columns, row, units)))
         .collect();

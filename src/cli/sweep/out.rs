@@ -57,7 +57,7 @@ impl<'a> SweepOut<'a> {
             columns,
             to: SweepSink::Nothing,
             torn: 0,
-            keeps: drawn || !report.streams(),
+            keeps: drawn || report.repeats(),
             rows: Vec::new(),
             counts: [0; REGIMES.len()],
             new: 0,

@@ -1,5 +1,6 @@
 //! What a user can set of sweeps; as in `options` above, these fields are the flags and the keys of a scene file.
 
+use super::super::ensemble::EnsembleOptions;
 use super::super::options::{OutputOptions, SlabOptions, count, number};
 use crate::integrate::MAX_STEPS;
 use clap::Parser;
@@ -11,6 +12,9 @@ pub struct SweepOptions {
     /// What slides.
     #[command(flatten)]
     pub slab: SlabOptions,
+    /// The uncertainty of a fit.
+    #[command(flatten)]
+    pub ensemble: EnsembleOptions,
     /// N values of V_H from A to B, both included; with log equally spaced in ln V_H. One value may stand alone
     #[arg(
         long,

@@ -56,6 +56,17 @@ impl RegimeKind {
         }
     }
 
+    /// Of a regime alone.
+    pub const fn of_regime(regime: Regime) -> Self {
+        match regime {
+            Regime::Steady => RegimeKind::SteadySymmetric,
+            Regime::Periodic => RegimeKind::PeriodicSymmetric,
+            Regime::Torus => RegimeKind::Torus,
+            Regime::Chaotic => RegimeKind::Chaotic,
+            Regime::Undecided => RegimeKind::Undecided,
+        }
+    }
+
     /// In words; of the symmetry only where outcomes have one.
     pub fn words(self, symmetries: bool) -> &'static str {
         match self {

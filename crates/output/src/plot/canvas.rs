@@ -47,6 +47,16 @@ pub fn rgb(red: u8, green: u8, blue: u8) -> Colour {
     Colour(red, green, blue)
 }
 
+/// A colour with a part of another one in it.
+pub fn mixed(one: Colour, other: Colour, part: f64) -> Colour {
+    let mix = |a: u8, b: u8| (f64::from(a) + part * (f64::from(b) - f64::from(a))).round() as u8;
+    Colour(
+        mix(one.0, other.0),
+        mix(one.1, other.1),
+        mix(one.2, other.2),
+    )
+}
+
 /// The colour of that number.
 pub fn colour(number: usize) -> Colour {
     COLOURS[number % COLOURS.len()]

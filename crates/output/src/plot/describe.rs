@@ -1,5 +1,6 @@
 //! A picture as plain values, from which another program draws the same one: see [`super::Drawing::describe`].
 
+use super::areas::{OPACITY, pieces};
 use super::canvas::{Colour, INK, MARK, Pixel, Words, colour, picture};
 use super::cells::tint;
 use super::curves::{curves, drawn_width, series_colour, through};
@@ -7,7 +8,7 @@ use super::frame::Frame;
 use super::layout::{Placed, page};
 use super::marks::{self, Written};
 use super::scale::Scale;
-use super::{Axis, Block, Cells, Panel, PlotSeries, Stroke, Symbol, unrendered};
+use super::{Area, Axis, Block, Cells, Panel, PlotSeries, Stroke, Symbol, unrendered};
 use crate::error::Result;
 use serde_json::{Value, json};
 
@@ -50,6 +51,7 @@ fn panel(placed: &Placed<'_>) -> Value {
         "y": axis(&panel.y, y),
         "zero_line": panel.zero_line,
         "cells": panel.cells.as_ref().map(cells),
+        "areas": panel.areas.iter().map(|area| areas(area, frame)).collect::<Vec<_>>(),
         "series": numbered.map(|(i, one)| series(panel, (i, one), frame)).collect::<Vec<_>>(),
         "marks": named_marks(panel, frame, &seen, &written),
         "notes": notes(frame, &written),
@@ -110,6 +112,24 @@ fn series(panel: &Panel, (number, series): (usize, &PlotSeries), frame: &Frame) 
     })
 }
 
+fn areas(area: &Area, frame: &Frame) -> Value {
+    let (x, y) = frame.scales();
+    let piece = |corners: Vec<(f64, f64)>| {
+        let (xs, ys): (Vec<f64>, Vec<f64>) = corners
+            .into_iter()
+            .map(|at| (x.value(at.0), y.value(at.1)))
+            .unzip();
+        json!({ "x": xs, "y": ys })
+    };
+    let pieces = pieces(area, frame).into_iter();
+    json!({
+        "label": area.label,
+        "colour": told(colour(area.colour)),
+        "opacity": OPACITY,
+        "pieces": pieces.map(piece).collect::<Vec<_>>(),
+    })
+}
+
 fn named_marks(
     panel: &Panel,
     frame: &Frame,
@@ -128,6 +148,7 @@ fn named_marks(
                 "filled": mark.filled,
                 "colour": told(mark.colour.map_or(MARK, colour)),
                 "behind": mark.behind,
+                "bars": { "x": mark.bars.x, "y": mark.bars.y },
             })
         })
         .collect()
@@ -205,6 +226,15 @@ mod test {
             colour: Some(0),
             label: "squares".into(),
         }];
+        panel.areas = vec![Area {
+            label: "likely".into(),
+            x: vec![1.0, 10.0, 100.0, 1000.0],
+            lower: vec![-0.5, 0.5, f64::NAN, 1.0],
+            upper: vec![0.5, 1.5, 2.0, 2.5],
+            colour: 1,
+            left_out: Vec::new(),
+        }];
+        panel.marks[0].bars.x = Some((5.0, 20.0));
         panel.strokes = vec![(Stroke::Dotted, "dotted ones".into())];
         panel.x = panel.x.within(1.0, 1e3);
         panel

@@ -1,5 +1,6 @@
 //! Draws all panels, each from what lies behind to what lies before.
 
+use super::areas::areas;
 use super::canvas::{Align, Canvas, INK, Words, picture};
 use super::cells::cells;
 use super::curves::curves;
@@ -35,6 +36,7 @@ fn draw(canvas: &Canvas, placed: &Placed<'_>) {
     if let Some(map) = &panel.cells {
         cells(canvas, map, frame);
     }
+    areas(canvas, panel, frame);
     behind(canvas, panel, frame);
     let seen = curves(canvas, panel, frame);
     let notes = notes(panel, frame, &seen);

@@ -7,7 +7,7 @@ use super::clip::Window;
 use super::curves::{line_width, series_colour};
 use super::symbols::{self, Look};
 use super::text::{TEXT, width, wrapped};
-use super::{Panel, Stroke, strokes};
+use super::{Panel, Stroke, areas, strokes};
 
 /// Height of one line.
 const LINE: f64 = 20.0;
@@ -86,6 +86,9 @@ impl Heading {
                 LegendSymbol::Line(series.stroke, width)
             };
             flow.add(sample, &series.label, colour, AFTER_ENTRY);
+        }
+        for (label, colours) in areas::named(panel) {
+            flow.add(LegendSymbol::Squares(colours), label, INK, AFTER_ENTRY);
         }
         for (stroke, words) in &panel.strokes {
             flow.add(LegendSymbol::Line(*stroke, FINEST), words, INK, AFTER_ENTRY);

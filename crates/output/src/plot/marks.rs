@@ -15,6 +15,11 @@ const BACKING: f64 = 2.0;
 const TIED: f64 = 12.0;
 /// Points nearer than this look like one: they share a name.
 const ONE: f64 = 3.0;
+/// Breadth of bars, and half the length of the lines at their ends.
+const BAR: f64 = 1.2;
+const CAP: f64 = 3.5;
+/// Distance of the points along bars that names avoid.
+const ALONG: f64 = 2.5;
 /// Breadth of the tie.
 const TIE: f64 = 0.7;
 
@@ -77,6 +82,9 @@ pub fn marks(
     for (one, centre) in shown.iter().zip(&centres) {
         tie(canvas, &one.named, *centre, mark_colour(one.mark));
     }
+    for one in &shown {
+        bars(canvas, frame, one.mark);
+    }
     for one in shown.iter().filter(|one| !one.mark.behind) {
         symbols::draw(canvas, look(one.mark), one.named.at, frame.inside());
     }
@@ -118,7 +126,12 @@ fn placed<'a>(
     let shown = shown(panel, frame);
     let named: Vec<names::Named> = shown.iter().map(|one| one.named).collect();
     let words: Vec<(Pixel, (f64, f64))> = notes.iter().map(|(_, place)| *place).collect();
-    let centres = names::placed(&named, curves, &words, frame.inside());
+    let bars = panel.marks.iter().flat_map(|mark| bar_lines(frame, mark));
+    let mut lines = curves.to_vec();
+    for (line, _) in bars {
+        lines.extend(names::along(&line, ALONG));
+    }
+    let centres = names::placed(&named, &lines, &words, frame.inside());
     (shown, centres)
 }
 
@@ -184,6 +197,34 @@ fn shown<'a>(panel: &'a Panel, frame: &Frame) -> Vec<Shown<'a>> {
         one.named.size = (text::width(&one.name, TEXT) + AIR, TEXT + AIR);
     }
     shown
+}
+
+/// The bars of a point within the frame, each with whether it ends there.
+fn bar_lines(frame: &Frame, mark: &Mark) -> Vec<([Pixel; 2], [bool; 2])> {
+    let along = mark.bars.x.map(|(a, b)| [(a, mark.y), (b, mark.y)]);
+    let across = mark.bars.y.map(|(a, b)| [(mark.x, a), (mark.x, b)]);
+    let ends = along.into_iter().chain(across);
+    ends.filter_map(|ends| {
+        let [from, to] = ends.map(|(x, y)| frame.coordinates(x, y));
+        let (start, end) = frame.window().segment(from, to)?;
+        let line = [start, end].map(|at| frame.pixel(at));
+        // Not where the frame cuts it.
+        Some((line, [start == from, end == to]))
+    })
+    .collect()
+}
+
+/// Draws the bars of a point, each with a short line across at both ends.
+fn bars(canvas: &Canvas, frame: &Frame, mark: &Mark) {
+    let colour = mark_colour(mark);
+    for (line, ends) in bar_lines(frame, mark) {
+        canvas.line(&line, colour, BAR);
+        let level = line[0].1 == line[1].1;
+        let (dx, dy) = if level { (0.0, CAP) } else { (CAP, 0.0) };
+        for ((x, y), _) in line.into_iter().zip(ends).filter(|(_, ends)| *ends) {
+            canvas.line(&[(x - dx, y - dy), (x + dx, y + dy)], colour, BAR);
+        }
+    }
 }
 
 /// Ties a name that stands far off to its point, up to its edge.

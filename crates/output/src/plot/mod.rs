@@ -1,6 +1,7 @@
 //! Pictures: panels of curves and maps, as SVG or PNG. A PNG is the SVG rendered with a font that is built in, so it looks the same on
 //! a machine without fonts.
 
+mod areas;
 mod bands;
 mod canvas;
 mod cells;
@@ -24,7 +25,8 @@ mod thin;
 mod ticks;
 
 pub use panel::{
-    Axis, Block, Cells, Key, Mark, Note, Panel, PlotSeries, Shade, Side, Stroke, Swatch, Symbol,
+    Area, Axis, Bars, Block, Cells, Key, Mark, Note, Panel, PlotSeries, Shade, Side, Stroke,
+    Swatch, Symbol,
 };
 
 use crate::error::{Error, Result};
@@ -83,6 +85,12 @@ impl Drawing {
         Drawing { blocks }
     }
 
+    /// The panels, block by block, each column by column from its top.
+    pub fn panels_mut(&mut self) -> impl Iterator<Item = &mut Panel> {
+        let columns = self.blocks.iter_mut().flat_map(|block| &mut block.columns);
+        columns.flatten()
+    }
+
     /// The picture as SVG.
     ///
     /// # Errors
@@ -100,8 +108,10 @@ impl Drawing {
     /// A panel has `title`, `frame` (width and height), the axes `x` and `y` (`label`, `log`, `range`), `zero_line`, and
     /// - `cells`: null, or a map (`x_edges`, `y_edges`, `fills` with a list of colours for each cell, the lowest row first, and `swatches`
     ///   with `colours` and `label`), behind
+    /// - `areas`: `label`, `colour`, `opacity` and `pieces`, each the `x` and the `y` of its corners,
     /// - `series`: `label`, `x`, `y` (null where a curve breaks), `dots` or a line, `stroke`, `width` (of dots the radius) and `colour`,
     /// - `marks`: `x`, `y`, `label` with the `offset` of its middle to the right and downwards, `symbol`, `filled`, `colour` and `behind`,
+    ///   with `bars` (`x` and `y`, the ends of each, or null),
     /// - `notes`: `x`, `y`, `text`, `offset` and `colour`, and more of the legend:
     /// - `strokes` (`stroke`, `label`) and `keys` (`symbol`, `filled`, `colour`, `label`).
     ///

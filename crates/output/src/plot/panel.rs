@@ -121,6 +121,32 @@ impl PlotSeries {
     }
 }
 
+/// The area between two curves, behind all curves.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Area {
+    /// Its name in the legend; empty for none. Areas of one name share an entry.
+    pub label: String,
+    /// Abscissae.
+    pub x: Vec<f64>,
+    /// Ordinates of its lower side.
+    pub lower: Vec<f64>,
+    /// Ordinates of its upper side.
+    pub upper: Vec<f64>,
+    /// Which of the colours.
+    pub colour: usize,
+    /// Stretches that are not drawn, as of a curve.
+    pub left_out: Vec<bool>,
+}
+
+/// Between which values a point may be.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub struct Bars {
+    /// Abscissae.
+    pub x: Option<(f64, f64)>,
+    /// Ordinates.
+    pub y: Option<(f64, f64)>,
+}
+
 /// Where the name of a point stands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Side {
@@ -173,6 +199,8 @@ pub struct Mark {
     pub colour: Option<usize>,
     /// Whether the curves are drawn over it.
     pub behind: bool,
+    /// Between which values it may be.
+    pub bars: Bars,
 }
 
 impl Mark {
@@ -187,6 +215,7 @@ impl Mark {
             filled: true,
             colour: None,
             behind: false,
+            bars: Bars::default(),
         }
     }
 
@@ -323,6 +352,8 @@ pub struct Panel {
     pub y: Axis,
     /// A map behind the curves.
     pub cells: Option<Cells>,
+    /// Areas behind the curves.
+    pub areas: Vec<Area>,
     /// The curves.
     pub series: Vec<PlotSeries>,
     /// The points.
@@ -345,6 +376,7 @@ impl Panel {
             x,
             y,
             cells: None,
+            areas: Vec::new(),
             series: Vec::new(),
             marks: Vec::new(),
             notes: Vec::new(),

@@ -81,8 +81,31 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
             take(at(x.1, y.1));
         }
     }
+    for mark in &panel.marks {
+        let (x, y) = (mark.bars.x, mark.bars.y);
+        x.into_iter().for_each(|(low, high)| {
+            take(at(low, mark.y));
+            take(at(high, mark.y));
+        });
+        y.into_iter().for_each(|(low, high)| {
+            take(at(mark.x, low));
+            take(at(mark.x, high));
+        });
+    }
     let places = panel.marks.iter().map(|mark| (mark.x, mark.y));
     let notes = panel.notes.iter().map(|note| (note.x, note.y));
     places.chain(notes).for_each(|(x, y)| take(at(x, y)));
+    // What is likely of a curve may go far beyond all: the frame then cuts it.
+    let room = ys.widened(1.0);
+    for area in &panel.areas {
+        let sides = [&area.lower, &area.upper];
+        let points = sides.iter().flat_map(|side| area.x.iter().zip(*side));
+        for (&x, &y) in points {
+            let (x, y) = at(x, y);
+            if !outside(x, window.x) && room.holds(y) {
+                ys.take(y);
+            }
+        }
+    }
     (xs, ys)
 }

@@ -43,6 +43,22 @@ impl Reach {
     }
 }
 
+impl Reach {
+    /// With so many times its length more on either side.
+    pub fn widened(&self, times: f64) -> Self {
+        let more = times * (self.hi - self.lo);
+        Reach {
+            lo: self.lo - more,
+            hi: self.hi + more,
+        }
+    }
+
+    /// Whether a coordinate lies in it.
+    pub fn holds(&self, x: f64) -> bool {
+        (self.lo..=self.hi).contains(&x)
+    }
+}
+
 impl Scale {
     /// The fixed range of the axis, or that of the data with a `margin` that is a part of it; `None` without either.
     pub fn new(axis: &Axis, data: Reach, margin: f64) -> Option<Self> {
