@@ -124,6 +124,7 @@ impl Div for Jet3 {
 }
 
 impl Element for Jet3 {
+    type Two = ();
     const LANES: usize = 1;
     #[inline(never)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {

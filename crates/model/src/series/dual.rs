@@ -117,6 +117,7 @@ macro_rules! functions {
 }
 
 impl<X: Element> Element for Dual<X> {
+    type Two = ();
     const LANES: usize = 1;
     const CALLED: bool = true;
     #[inline(always)]

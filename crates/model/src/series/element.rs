@@ -71,6 +71,11 @@ pub trait Element:
     }
     /// self^p
     fn powf(self, p: f64) -> Self;
+    /// The same for an exponent of 31 digits, as many of them as the element holds.
+    #[inline(always)]
+    fn power(self, p: DoubleDouble) -> Self {
+        self.powf(p.hi())
+    }
     /// sinh and cosh
     fn sinh_cosh(self) -> (Self, Self);
     /// sine and cosine; likewise, as the next two.
@@ -131,6 +136,10 @@ pub trait Element:
     ) -> Option<[Self; 3]> {
         None
     }
+    /// Two elements side by side, where [`Element::SHARES`] says so.
+    type Two: Two<Self>;
+    /// Whether sums of products that share a factor are faster side by side.
+    const SHARES: bool = false;
     /// How many lanes there are.
     const LANES: usize;
     /// Whether series of these are worth the time that it takes to compile them order by order.
@@ -158,6 +167,25 @@ pub trait Element:
     fn largest_over_interfaces(self) -> Self {
         self
     }
+}
+
+/// Two elements side by side.
+pub trait Two<T>: Copy + Debug {
+    /// Of these two.
+    fn of(both: [T; 2]) -> Self;
+    /// These two.
+    fn both(self) -> [T; 2];
+    /// a times both, added to these.
+    fn times(self, a: T, sums: Self) -> Self;
+}
+
+/// Where nothing stands side by side.
+impl<T> Two<T> for () {
+    fn of(_: [T; 2]) -> Self {}
+    fn both(self) -> [T; 2] {
+        unreachable!("nothing side by side")
+    }
+    fn times(self, _: T, (): Self) -> Self {}
 }
 
 /// The function in one lane after the other.
@@ -191,6 +219,7 @@ pub(super) fn rough_exp2(x: f64) -> f64 {
 }
 
 impl Element for f64 {
+    type Two = ();
     const LANES: usize = 1;
     const UNROLLED: bool = true;
     #[inline(always)]
@@ -277,6 +306,7 @@ impl Element for f64 {
 }
 
 impl Element for DoubleDouble {
+    type Two = ();
     const LANES: usize = 1;
     #[cfg(target_arch = "x86_64")]
     fn sums_of_older(sums: [Self; 4], rows: [&[Self]; 2]) -> Option<[Self; 4]> {
@@ -350,6 +380,9 @@ impl Element for DoubleDouble {
     }
     fn powf(self, p: f64) -> Self {
         Real::powf(self, p)
+    }
+    fn power(self, p: DoubleDouble) -> Self {
+        Real::pow(self, p)
     }
     fn sinh_cosh(self) -> (Self, Self) {
         (Real::sinh(self), Real::cosh(self))

@@ -23,6 +23,11 @@ impl<T: Element> Level<'_, T> {
             Operation::Product(a, b) => self.put(result, first(a) * first(b)),
             Operation::Quotient(a, b) => self.put(result, self.of(a) / first(b)),
             Operation::Exponential(a) => self.put(result, first(a).exp()),
+            Operation::Exponentials(a, falling) => {
+                let a = first(a);
+                self.put(falling, (-a).exp());
+                self.put(result, a.exp());
+            }
             Operation::ExponentialLessOne(a, _) => self.put(result, first(a).exp_m1()),
             Operation::Logarithm(a) => self.put(result, first(a).ln()),
             Operation::LogarithmOfOneMore(a, _) => self.put(result, first(a).ln_1p()),
@@ -43,10 +48,10 @@ impl<T: Element> Level<'_, T> {
                 self.put(u, any.like(1.0) - y * y);
                 self.put(result, y);
             }
-            Operation::Power(a, p) => self.put(result, first(a).powf(p)),
+            Operation::Power(a, p) => self.put(result, first(a).power(p)),
             Operation::Sign(a) => self.put(result, first(a).sign()),
             Operation::Signed(a, b) => self.put(result, first(a) * first(b).sign()),
-            Operation::Balanced(x, g) => self.begin_balanced(x, g, result),
+            Operation::Balanced(x, g) => self.apart().begin_balanced(x, g, result),
         }
     }
 

@@ -56,7 +56,7 @@ pub(super) trait Trajectory {
 /// as many slip rates as `watched` says are kept with its series.
 ///
 /// In two lanes ([`Program::in_two_lanes`]) two variables share a row, and x is as many numbers less.
-pub struct Interpreted<'a, T> {
+pub struct Interpreted<'a, T: Element> {
     record: RecordFormula<'a>,
     program: Program,
     rows: ProgramRows<T>,
@@ -176,11 +176,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.record_here();
         for _ in 0..=SHORTER_UNITS {
             self.rows.prepare();
-            for k in 0..order {
-                if k > 0 {
-                    self.rows.level(k);
-                }
-                self.rows.integrate(k, self.unit);
+            self.rows.integrate(self.unit);
+            for k in 1..order {
+                self.rows.level(k, self.unit);
             }
             // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the
             // coefficients do not overflow.
@@ -338,7 +336,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
 }
 
 /// A step.
-struct Advance<'s, 'a, T> {
+struct Advance<'s, 'a, T: Element> {
     solution: &'s mut Interpreted<'a, T>,
     accuracy: &'s Accuracy,
     limit: DoubleDouble,

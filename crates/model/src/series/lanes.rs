@@ -2,7 +2,7 @@
 //!
 //! The types hold a token of what the processor can do, which cannot be had without asking it: their arithmetic is safe.
 
-use super::element::Element;
+use super::element::{Element, Two};
 use super::functions::{self, Register};
 use pulp::NullaryFnOnce;
 use pulp::x86::{V3, V4};
@@ -97,6 +97,29 @@ impl Four {
                 .avx
                 ._mm256_blend_pd::<0b1010>(self.lanes, other.lanes),
         )
+    }
+}
+
+impl Two<Pair> for Four {
+    #[inline(always)]
+    fn of([a, b]: [Pair; 2]) -> Self {
+        let simd = a.simd;
+        let wide = simd.avx._mm256_castpd128_pd256(a.lanes);
+        Four {
+            lanes: simd.avx._mm256_insertf128_pd::<1>(wide, b.lanes),
+            simd,
+        }
+    }
+    #[inline(always)]
+    fn both(self) -> [Pair; 2] {
+        let Four { lanes, simd } = self;
+        let first = simd.avx._mm256_castpd256_pd128(lanes);
+        let second = simd.avx._mm256_extractf128_pd::<1>(lanes);
+        [first, second].map(|lanes| Pair { lanes, simd })
+    }
+    #[inline(always)]
+    fn times(self, a: Pair, sums: Self) -> Self {
+        self.mul_add(Self::of([a, a]), sums)
     }
 }
 
@@ -276,6 +299,8 @@ macro_rules! lanes {
         }
     };
     (@interfaces Pair) => {
+        type Two = Four;
+        const SHARES: bool = true;
         #[inline(always)]
         fn interfaces(self) -> [f64; 2] {
             self.lanes()
@@ -292,6 +317,7 @@ macro_rules! lanes {
         }
     };
     (@interfaces $other:ident) => {
+        type Two = ();
         #[inline(always)]
         fn if_positive(self, a: Self, b: Self) -> Self {
             let below = self.if_less(self.like(f64::INFINITY), a, b);

@@ -50,13 +50,9 @@ impl LaterOrders {
     /// Those of a program.
     pub fn of(program: &Program) -> Self {
         let mut uses = vec![0_usize; program.rows()];
-        for instruction in program.instructions() {
-            let operands = instruction.operation.operands();
-            operands
-                .into_iter()
-                .flatten()
-                .for_each(|row| uses[row] += 1);
-        }
+        let all = program.instructions().iter();
+        let operands = all.flat_map(|one| one.operation.operands());
+        operands.flatten().for_each(|row| uses[row] += 1);
         let mut sums: Vec<Option<Vec<Term>>> = vec![None; program.rows()];
         for instruction in program.instructions() {
             let Some(plain) = terms(instruction.operation) else {
@@ -93,6 +89,7 @@ impl LaterOrders {
                 needed[*row] = true;
             }
         }
+        let multiples = multiples(program, sums);
         let mut kept = Vec::new();
         for instruction in program.instructions().iter().rev() {
             let second = instruction.second_result().is_some_and(|row| needed[row]);
@@ -102,12 +99,9 @@ impl LaterOrders {
             match &sums[instruction.result] {
                 Some(terms) => terms.iter().for_each(|term| needed[term.row] = true),
                 None => {
-                    let (plain, _) = with_multiple(*instruction, sums);
-                    let operands = plain.operation.operands();
-                    operands
-                        .into_iter()
-                        .flatten()
-                        .for_each(|row| needed[row] = true);
+                    let (plain, _) = with_multiple(*instruction, &multiples);
+                    let operands = plain.operation.operands().into_iter();
+                    operands.flatten().for_each(|row| needed[row] = true);
                 }
             }
             kept.push(*instruction);
@@ -125,28 +119,91 @@ impl LaterOrders {
                     });
                 }
                 None => {
-                    let (plain, multiple) = with_multiple(instruction, sums);
+                    let (plain, multiple) = with_multiple(instruction, &multiples);
                     later.all.push(Later::Other(plain, multiple));
                 }
             }
         }
+        later.join_exponentials();
         later
+    }
+
+    /// Makes e^a and e^-a in one operation: they take the same slopes of a.
+    fn join_exponentials(&mut self) {
+        let mut at = 0;
+        while at < self.all.len() {
+            let (known, rest) = self.all.split_at_mut(at + 1);
+            if let Later::Other(one, Multiple { factor, .. }) = &mut known[at]
+                && let Operation::Exponential(a) = one.operation
+                && let Some((place, falling)) = exponential(rest, a, -*factor)
+            {
+                one.operation = Operation::Exponentials(a, falling);
+                self.all.remove(at + 1 + place);
+            }
+            at += 1;
+        }
     }
 }
 
+/// Where among these the exponential of this multiple of a row is made, and its row.
+fn exponential(all: &[Later], of: usize, multiple: DoubleDouble) -> Option<(usize, usize)> {
+    let result = |one: &Later| match one {
+        Later::Other(one, Multiple { factor, .. }) if *factor == multiple => {
+            (one.operation == Operation::Exponential(of)).then_some(one.result)
+        }
+        _ => None,
+    };
+    all.iter()
+        .map(result)
+        .enumerate()
+        .find_map(|(place, result)| Some((place, result?)))
+}
+
+/// What every row is a multiple of, itself if of no other. Where the factor is no double, it must be that of the first order: rounded it
+/// would be another one at all other orders of all steps.
+fn multiples(program: &Program, sums: &[Option<Vec<Term>>]) -> Vec<Multiple> {
+    let factor = DoubleDouble::ONE;
+    let itself = (0..program.rows()).map(|row| Multiple { row, factor });
+    let mut all: Vec<Multiple> = itself.collect();
+    for one in program.instructions() {
+        let Some(&[term]) = sums[one.result].as_deref() else {
+            continue;
+        };
+        let Term { row, factor, .. } = term;
+        let exact = factor.lo() == 0.0 || one.operation == Operation::Scaled(row, factor);
+        if exact && term.lane.is_none() && term.sign.is_none() {
+            all[one.result] = Multiple { row, factor };
+        }
+    }
+    all
+}
+
 /// The operation with the row of which its first operand is a multiple in the place of that.
-fn with_multiple(one: Instruction, sums: &[Option<Vec<Term>>]) -> (Instruction, Multiple) {
-    let multiple = |row, factor| Multiple { row, factor };
-    let Some(operand) = one.operation.of_multiple() else {
-        return (one, multiple(one.result, DoubleDouble::ONE));
+fn with_multiple(one: Instruction, multiples: &[Multiple]) -> (Instruction, Multiple) {
+    let operation = match one.operation {
+        // Either may come first.
+        Operation::Product(a, b) if multiples[a].row == a => Operation::Product(b, a),
+        operation => operation,
     };
-    let (row, factor) = match sums[operand].as_deref() {
-        Some([term]) if term.lane.is_none() && term.sign.is_none() => (term.row, term.factor),
-        _ => (operand, DoubleDouble::ONE),
+    let factor = DoubleDouble::ONE;
+    let (operand, of) = match (operation, operation.of_multiple()) {
+        (Operation::Product(a, b), _) if a == b => (a, Multiple { row: a, factor }),
+        (_, Some(operand)) => (operand, multiples[operand]),
+        (_, None) => (
+            one.result,
+            Multiple {
+                row: one.result,
+                factor,
+            },
+        ),
     };
-    let to = |at| if at == operand { row } else { at };
-    let operation = one.operation.moved(to);
-    (Instruction { operation, ..one }, multiple(operand, factor))
+    let to = |at| if at == operand { of.row } else { at };
+    let operation = operation.moved(to);
+    let operand = Multiple {
+        row: operand,
+        factor: of.factor,
+    };
+    (Instruction { operation, ..one }, operand)
 }
 
 /// The terms of what is linear.
@@ -164,6 +221,7 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
         Operation::Negative(a) | Operation::Complement(_, a) => vec![term(a, -one)],
         Operation::Shifted(a, _) => vec![term(a, one)],
         Operation::Scaled(a, x) => vec![term(a, x)],
+        Operation::Over(a, x) => vec![term(a, one / x)],
         Operation::Lane(a, lane) => vec![Term {
             lane: Some(lane),
             ..term(a, one)
@@ -176,19 +234,17 @@ fn terms(operation: Operation) -> Option<Vec<Term>> {
     })
 }
 
-/// A multiple of a multiple; `None` where that takes two signs, or the sign of another lane, or a factor that is no double: rounded it would
-/// be another one at all orders of all steps.
+/// A multiple of a multiple; `None` where that takes two signs, or the sign of another lane.
 fn joined(outer: Term, inner: Term) -> Option<Term> {
     let sign = match (outer.sign, inner.sign) {
         (Some(_), Some(_)) => return None,
         (_, Some(_)) if outer.lane.is_some() => return None,
         (outer, inner) => outer.or(inner),
     };
-    let factor = outer.factor * inner.factor;
-    (factor.lo() == 0.0).then_some(Term {
+    Some(Term {
         row: inner.row,
         lane: inner.lane.or(outer.lane),
-        factor,
+        factor: outer.factor * inner.factor,
         sign,
     })
 }
@@ -198,9 +254,7 @@ fn add(all: &mut Vec<Term>, term: Term) {
     let alike =
         |known: &&mut Term| (known.row, known.lane, known.sign) == (term.row, term.lane, term.sign);
     match all.iter_mut().find(alike) {
-        Some(known) if (known.factor + term.factor).lo() == 0.0 => {
-            known.factor = known.factor + term.factor;
-        }
-        _ => all.push(term),
+        Some(known) => known.factor = known.factor + term.factor,
+        None => all.push(term),
     }
 }

@@ -2,7 +2,7 @@
 
 use super::element::Element;
 use super::placed::{PlacedInstruction, Products};
-use super::products::sum_of_products;
+use super::products::{Sums, sum_of_products};
 use super::program::{Operation, Source};
 use super::program_rows::Level;
 use crate::number::{Balance, DoubleDouble};
@@ -18,18 +18,24 @@ impl<T: Element> Level<'_, T> {
         match one.products {
             Products::Nothing => {}
             Products::One(_) => one.sums[0].clear(zero),
-            Products::Two(_) => {
-                one.sums[0].clear(zero);
-                one.sums[1].clear(zero);
-            }
+            Products::Two(_) | Products::Shared(..) => match &mut one.shared {
+                Some(shared) => shared.clear(zero),
+                None => one.sums.iter_mut().for_each(|sums| sums.clear(zero)),
+            },
         }
         match one.operation {
-            Operation::Product(a, b) => one.counts = [first(b), first(a)],
+            Operation::Product(_, b) => {
+                one.counts = [first(b).scale(factor), first(one.operand.row)];
+                one.inverse = self.any.like_exact(factor);
+            }
             Operation::Quotient(_, b) => {
                 one.counts[0] = -first(one.result);
                 one.inverse = one_over(first(b));
             }
             Operation::Exponential(_) => one.counts[0] = first(one.result).scale(factor),
+            Operation::Exponentials(_, falling) => {
+                one.counts = [one.result, falling].map(|row| first(row).scale(factor));
+            }
             Operation::Hyperbolic(_, other) | Operation::Circular(_, other) => {
                 one.counts = [other, one.result].map(|row| first(row).scale(factor));
             }
@@ -42,7 +48,8 @@ impl<T: Element> Level<'_, T> {
                 one.inverse = one_over(first(u));
             }
             Operation::Power(_, p) => {
-                one.counts[0] = first(one.result).scale(DoubleDouble::from(p));
+                let one_and_p = self.any.like(1.0) + self.any.like_exact(p);
+                one.counts = [first(one.result).scale(p), one_and_p];
                 one.inverse = one_over(first(one.operand.row)).scale(factor);
             }
             Operation::Balanced(..) => {
@@ -56,18 +63,15 @@ impl<T: Element> Level<'_, T> {
     /// The newest coefficients, and what these add to the sums of products for the next ones.
     #[inline(always)]
     pub fn carry_out(&mut self, one: &mut PlacedInstruction<T>) {
-        let (result, spare, k) = (one.result, one.spare, self.k);
-        let older = one.sums[0].of(k);
+        let (result, spare) = (one.result, one.spare);
+        let older = one.sums[0].of(self.phase);
         let [first, second] = one.counts;
         match one.operation {
-            Operation::Over(a, x) => {
-                let a = self.newest(a).scale(one.operand.factor);
-                self.put(result, a / self.any.like_exact(x));
-            }
             Operation::Product(a, b) => {
                 let (a, b) = (self.newest(a), self.newest(b));
+                let older = older * one.inverse;
                 self.put(result, a.mul_add(first, b.mul_add(second, older)));
-                one.sums[0].add(k, [a, b]);
+                self.add(&mut one.sums[0], [a, b]);
             }
             Operation::Quotient(a, b) => {
                 // b_0 q_k = a_k - q_0 b_k - sum of q_j b_(k-j) over 0 < j < k
@@ -76,7 +80,7 @@ impl<T: Element> Level<'_, T> {
                 let b = self.newest(b);
                 let new = b.mul_add(first, rest) * one.inverse;
                 self.put(result, new);
-                one.sums[0].add(k, [new, b]);
+                self.add(&mut one.sums[0], [new, b]);
             }
             Operation::Exponential(a) => {
                 // k e_k = k a_k e_0 + sum of j a_j e_(k-j) over 0 < j < k
@@ -84,7 +88,17 @@ impl<T: Element> Level<'_, T> {
                 let new = a.mul_add(first, older.scale(self.one_over));
                 self.put(result, new);
                 let slope = self.slope(a, one);
-                one.sums[0].add(k, [slope, new]);
+                self.add(&mut one.sums[0], [slope, new]);
+            }
+            Operation::Exponentials(a, falling) => {
+                // The same twice but for the sign
+                let (a, [older, other]) = (self.newest(a), self.of_both(one));
+                let e = a.mul_add(first, older.scale(self.one_over));
+                let f = -a.mul_add(second, other.scale(self.one_over));
+                self.put(result, e);
+                self.put(falling, f);
+                let slope = self.slope(a, one);
+                self.add_both(one, slope, [e, f]);
             }
             Operation::ExponentialLessOne(_, whole) | Operation::LogarithmOfOneMore(_, whole) => {
                 self.put(result, self.newest(whole));
@@ -96,7 +110,7 @@ impl<T: Element> Level<'_, T> {
                 self.put(result, new);
                 let slope = new.scale(self.order);
                 self.put(spare, slope);
-                one.sums[0].add(k, [slope, u]);
+                self.add(&mut one.sums[0], [slope, u]);
             }
             Operation::Arctangent(a, u) | Operation::InverseHyperbolicSine(a, u) => {
                 // y' = a' / u: u_0 k y_k = k a_k - sum of j y_j u_(k-j) over 0 < j < k
@@ -105,56 +119,53 @@ impl<T: Element> Level<'_, T> {
                 self.put(result, new);
                 let slope = new.scale(self.order);
                 self.put(spare, slope);
-                one.sums[0].add(k, [slope, self.newest(u)]);
+                self.add(&mut one.sums[0], [slope, self.newest(u)]);
             }
             Operation::Hyperbolic(a, cosh) => {
                 // k s_k = k a_k c_0 + sum of j a_j c_(k-j), k c_k = k a_k s_0 + sum of j a_j s_(k-j) over 0 < j < k
-                let (a, other) = (self.newest(a), one.sums[1].of(k));
+                let (a, [older, other]) = (self.newest(a), self.of_both(one));
                 let s = a.mul_add(first, older.scale(self.one_over));
                 let c = a.mul_add(second, other.scale(self.one_over));
                 self.put(result, s);
                 self.put(cosh, c);
                 let slope = self.slope(a, one);
-                one.sums[0].add(k, [slope, c]);
-                one.sums[1].add(k, [slope, s]);
+                self.add_both(one, slope, [c, s]);
             }
             Operation::Circular(a, cos) => {
                 // The same but for the sign of c_k
-                let (a, other) = (self.newest(a), one.sums[1].of(k));
+                let (a, [older, other]) = (self.newest(a), self.of_both(one));
                 let s = a.mul_add(first, older.scale(self.one_over));
                 let c = -a.mul_add(second, other.scale(self.one_over));
                 self.put(result, s);
                 self.put(cos, c);
                 let slope = self.slope(a, one);
-                one.sums[0].add(k, [slope, c]);
-                one.sums[1].add(k, [slope, s]);
+                self.add_both(one, slope, [c, s]);
             }
             Operation::HyperbolicTangent(a, u) => {
                 // k y_k = k a_k u_0 + sum of j a_j u_(k-j) over 0 < j < k, u_k = -sum of y_j y_(k-j) over 0 <= j <= k
-                let (a, squared) = (self.newest(a), one.sums[1].of(k));
+                let (a, squared) = (self.newest(a), one.sums[1].of(self.phase));
                 let y = a.mul_add(first, older.scale(self.one_over));
                 let new = -y.mul_add(second, squared);
                 self.put(result, y);
                 self.put(u, new);
                 let slope = self.slope(a, one);
-                one.sums[0].add(k, [slope, new]);
-                one.sums[1].add(k, [y, y]);
+                self.add(&mut one.sums[0], [slope, new]);
+                self.add(&mut one.sums[1], [y, y]);
             }
             Operation::Power(a, p) => {
                 // y = a^p: k a_0 y_k = sum of (p (k-j) - j) a_(k-j) y_j over 0 <= j < k
                 //                    = p k a_k y_0 + p k sum a_(k-j) y_j - (1+p) sum a_(k-j) j y_j over 0 < j < k
-                let (a, weighted) = (self.newest(a), one.sums[1].of(k));
-                let weighted = weighted.scale(DoubleDouble::of_finite(1.0, p));
-                let rest = older.scale(DoubleDouble::from(p)) - weighted.scale(self.one_over);
+                let (a, [older, weighted]) = (self.newest(a), self.of_both(one));
+                let weighted = (weighted * second).scale(self.one_over);
+                let rest = older.scale(p) - weighted;
                 let new = a.mul_add(first, rest) * one.inverse;
                 self.put(result, new);
                 let slope = new.scale(self.order);
                 self.put(spare, slope);
-                one.sums[0].add(k, [a, new]);
-                one.sums[1].add(k, [a, slope]);
+                self.add_both(one, a, [new, slope]);
             }
             Operation::Sign(_) => self.put(result, self.any.like(0.0)),
-            Operation::Balanced(x, g) => self.balanced(x, g, one),
+            Operation::Balanced(x, g) => self.apart().balanced(x, g, one),
             Operation::Lane(..)
             | Operation::Sum(..)
             | Operation::Difference(..)
@@ -162,6 +173,7 @@ impl<T: Element> Level<'_, T> {
             | Operation::Shifted(..)
             | Operation::Complement(..)
             | Operation::Scaled(..)
+            | Operation::Over(..)
             | Operation::Signed(..) => unreachable!("a sum of terms"),
         }
     }
@@ -169,14 +181,55 @@ impl<T: Element> Level<'_, T> {
     /// What there is to the sums of products for the next few orders.
     #[inline(always)]
     pub fn go_on(&self, one: &mut PlacedInstruction<T>) {
-        let zero = self.any.like(0.0);
+        let (k, zero) = (self.k, self.any.like(0.0));
         let older = |row: usize| self.older(row);
         match one.products {
             Products::Nothing => {}
-            Products::One(rows) => one.sums[0].go_on(self.k, rows.map(older), zero),
+            Products::One(rows) => one.sums[0].go_on(k, rows.map(older), zero),
             Products::Two(both) => {
                 for (sums, rows) in one.sums.iter_mut().zip(both) {
-                    sums.go_on(self.k, rows.map(older), zero);
+                    sums.go_on(k, rows.map(older), zero);
+                }
+            }
+            Products::Shared(row, both) => match &mut one.shared {
+                Some(shared) => shared.go_on(k, older(row), zero),
+                None => {
+                    for (sums, other) in one.sums.iter_mut().zip(both) {
+                        sums.go_on(k, [row, other].map(older), zero);
+                    }
+                }
+            },
+        }
+    }
+
+    /// What the newest coefficients of two rows add to the sums of their products.
+    #[inline(always)]
+    fn add(&self, sums: &mut Sums<T>, newest: [T; 2]) {
+        if self.begins {
+            sums.add_first(self.k, newest);
+        } else {
+            sums.add(self.phase, newest);
+        }
+    }
+
+    /// The sums of products of a row with either of two others.
+    #[inline(always)]
+    fn of_both(&self, one: &PlacedInstruction<T>) -> [T; 2] {
+        match &one.shared {
+            Some(shared) => shared.of(self.phase),
+            None => [0, 1].map(|i| one.sums[i].of(self.phase)),
+        }
+    }
+
+    /// What the newest coefficients of these add to such sums.
+    #[inline(always)]
+    fn add_both(&self, one: &mut PlacedInstruction<T>, a: T, both: [T; 2]) {
+        match &mut one.shared {
+            Some(shared) if self.begins => shared.add_first(self.k, a, both),
+            Some(shared) => shared.add((self.k, self.phase), a, both),
+            None => {
+                for (sums, x) in one.sums.iter_mut().zip(both) {
+                    self.add(sums, [a, x]);
                 }
             }
         }
@@ -192,10 +245,10 @@ impl<T: Element> Level<'_, T> {
 
     /// y + g(y) = x, as the recurrence of [`super::tape`]'s rows has it.
     fn balanced(&mut self, x: Source, g: Balance<Source>, one: &mut PlacedInstruction<T>) {
-        let (y, k) = (one.result, self.k);
+        let y = one.result;
         let [e, f, steepness, of_a, of_b, of_y] = self.of_balance(y);
         let newest = self.of(x);
-        let [of_e, of_f] = [0, 1].map(|i| one.sums[i].of(k).scale(self.one_over));
+        let [of_e, of_f] = self.of_both(one).map(|sum| sum.scale(self.one_over));
         // what is known of the newest coefficient of a product
         let known = |a: Source, of: usize, newest: T, first: T| match a {
             Source::Row(row) => {
@@ -228,7 +281,6 @@ impl<T: Element> Level<'_, T> {
         self.put(f, new_f);
         let slope = new.scale(self.order);
         self.put(one.spare, slope);
-        one.sums[0].add(k, [slope, new_e]);
-        one.sums[1].add(k, [slope, new_f]);
+        self.add_both(one, slope, [new_e, new_f]);
     }
 }

@@ -65,7 +65,7 @@ impl<X: Element> ColumnChunks<X> {
 }
 
 /// The series of the columns from that of the entries, to be compiled for the processor.
-struct ExpandColumns<'a, T, X> {
+struct ExpandColumns<'a, T: Element, X> {
     columns: &'a mut ColumnChunks<X>,
     jacobian: &'a [JacobianEntry],
     forcing: &'a [JacobianEntry],
@@ -188,7 +188,7 @@ pub fn longest_of_terms(order: usize, [before, last]: [f64; 2]) -> f64 {
 ///
 /// A step may err by `atol + rtol |x_i|` in x_i. In a column of derivatives it may err by `rtol` of the largest of its
 /// components, each counted in units of 1 + |x_i|.
-pub(super) struct Linearised<'a, T, X> {
+pub(super) struct Linearised<'a, T: Element, X> {
     solution: Interpreted<'a, T>,
     columns: ColumnChunks<X>,
     parameters: usize,

@@ -11,6 +11,7 @@
 //! Jorba, A. and Zou, M. (2005). A software package for the numerical integration of ODEs by means of high-order Taylor
 //! methods. Experimental Mathematics 14, 99-117.
 
+mod assembly;
 mod columns;
 mod cubic;
 mod dual;

@@ -3,13 +3,13 @@
 
 use super::element::Element;
 use super::later::{Later, LaterOrders, Multiple, Term};
-use super::products::Sums;
+use super::products::{SharedSums, Sums};
 use super::program::{Instruction, Operation};
 use crate::number::DoubleDouble;
 
 /// An operation whose rows are where they begin among the coefficients, at all orders but the first.
 #[derive(Debug, Clone)]
-pub(super) struct PlacedInstruction<T> {
+pub(super) struct PlacedInstruction<T: Element> {
     pub operation: Operation,
     pub result: usize,
     pub spare: usize,
@@ -21,6 +21,8 @@ pub(super) struct PlacedInstruction<T> {
     /// The rows of whose older coefficients it needs sums of products, and these sums.
     pub products: Products,
     pub sums: [Sums<T>; 2],
+    /// Instead of these where both share a row and the element has them side by side.
+    pub shared: Option<SharedSums<T>>,
 }
 
 /// Rows of which products are needed.
@@ -29,24 +31,27 @@ pub(super) enum Products {
     Nothing,
     One([usize; 2]),
     Two([[usize; 2]; 2]),
+    /// Of the first of these with both of the others.
+    Shared(usize, [usize; 2]),
 }
 
 impl Products {
     fn of(operation: Operation, result: usize, spare: usize, room: usize) -> Self {
-        use Products::{Nothing, One, Two};
+        use Products::{Nothing, One, Shared, Two};
         match operation {
             Operation::Product(a, b) => One([a, b]),
             Operation::Quotient(_, b) => One([result, b]),
             Operation::Exponential(_) => One([spare, result]),
+            Operation::Exponentials(_, falling) => Shared(spare, [result, falling]),
             Operation::Logarithm(u)
             | Operation::Arctangent(_, u)
             | Operation::InverseHyperbolicSine(_, u) => One([spare, u]),
             Operation::HyperbolicTangent(_, u) => Two([[spare, u], [result, result]]),
             Operation::Hyperbolic(_, other) | Operation::Circular(_, other) => {
-                Two([[spare, other], [spare, result]])
+                Shared(spare, [other, result])
             }
-            Operation::Power(a, _) => Two([[a, result], [a, spare]]),
-            Operation::Balanced(..) => Two(BALANCED.map(|before| [spare, result - before * room])),
+            Operation::Power(a, _) => Shared(a, [result, spare]),
+            Operation::Balanced(..) => Shared(spare, BALANCED.map(|before| result - before * room)),
             _ => Nothing,
         }
     }
@@ -57,12 +62,18 @@ const BALANCED: [usize; 2] = [6, 5];
 
 /// What is carried out at later orders.
 #[derive(Debug, Clone)]
-pub(super) enum PlacedLater<T> {
-    Sum {
-        terms: Vec<PlacedTerm<T>>,
-        result: usize,
-    },
+pub(super) enum PlacedLater<T: Element> {
+    Sum(PlacedSum<T>),
     Other(PlacedInstruction<T>),
+}
+
+/// A sum of terms, into a row.
+#[derive(Debug, Clone)]
+pub(super) struct PlacedSum<T> {
+    pub terms: Vec<PlacedTerm<T>>,
+    pub result: usize,
+    /// The variable whose rate it is, whose next coefficient is made with it.
+    pub rate_of: Option<usize>,
 }
 
 /// A term of later orders, whose row is where it begins among the coefficients.
@@ -92,10 +103,12 @@ impl<T: Element> PlacedLater<T> {
         match later {
             Later::Sum { from, to, result } => {
                 let terms = all.terms[*from..*to].iter();
-                PlacedLater::Sum {
-                    terms: terms.map(|term| PlacedTerm::new(term, room, any)).collect(),
+                let terms = terms.flat_map(|term| PlacedTerm::new(term, room, any));
+                PlacedLater::Sum(PlacedSum {
+                    terms: terms.collect(),
                     result: result * room,
-                }
+                    rate_of: None,
+                })
             }
             Later::Other(one, operand) => {
                 let Instruction {
@@ -103,6 +116,8 @@ impl<T: Element> PlacedLater<T> {
                     result,
                     spare,
                 } = placed(one, room);
+                let products = Products::of(operation, result, spare, room);
+                let shares = T::SHARES && matches!(products, Products::Shared(..));
                 PlacedLater::Other(PlacedInstruction {
                     operation,
                     result,
@@ -113,8 +128,9 @@ impl<T: Element> PlacedLater<T> {
                     },
                     counts: [any; 2],
                     inverse: any,
-                    products: Products::of(operation, result, spare, room),
+                    products,
                     sums: [Sums::new(any), Sums::new(any)],
+                    shared: shares.then(|| SharedSums::new(any, room)),
                 })
             }
         }
@@ -122,13 +138,20 @@ impl<T: Element> PlacedLater<T> {
 }
 
 impl<T: Element> PlacedTerm<T> {
-    fn new(term: &Term, room: usize, any: T) -> Self {
-        PlacedTerm {
+    /// The term, and one more with what the element's digits leave of its factor: rounded it would be another one at all orders of all
+    /// steps.
+    fn new(term: &Term, room: usize, any: T) -> impl Iterator<Item = Self> {
+        let of = |exact: DoubleDouble| PlacedTerm {
             row: term.row * room,
             lane: term.lane,
-            exact: term.factor,
-            factor: any.like_exact(term.factor),
+            exact,
+            factor: any.like_exact(exact),
             sign: term.sign.map(|row| row * room),
-        }
+        };
+        let first = of(term.factor);
+        let rest = term.factor - first.factor.to_exact();
+        // What counts least comes first in the sum.
+        let rest = (rest.hi() != 0.0).then(|| of(rest));
+        rest.into_iter().chain([first])
     }
 }

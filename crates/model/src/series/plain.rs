@@ -46,6 +46,7 @@ macro_rules! functions {
 }
 
 impl<T: Element> Element for Both<T> {
+    type Two = ();
     const LANES: usize = 2 * T::LANES;
     // Where there are vector instructions this is for the few processors without them.
     const UNROLLED: bool = T::UNROLLED && cfg!(not(target_arch = "x86_64"));

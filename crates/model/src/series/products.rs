@@ -5,7 +5,7 @@
 //! other coefficients are there before the first of the four orders is, and are added at once, in four sums that do not wait for
 //! each other.
 
-use super::element::Element;
+use super::element::{Element, Two};
 
 /// Orders side by side; the first of them is a multiple of it.
 pub(super) const ORDERS: usize = 4;
@@ -36,31 +36,27 @@ impl<T: Element> Sums<T> {
         self.sums.fill(zero);
     }
 
-    /// The sum for the k-th coefficient.
+    /// The sum for an order so many after the multiple of [`ORDERS`].
     #[inline(always)]
-    pub fn of(&self, k: usize) -> T {
-        self.sums[k % ORDERS]
+    pub fn of(&self, phase: usize) -> T {
+        self.sums[phase]
     }
 
-    /// Adds what the k-th coefficients make in the next orders.
+    /// Adds what the newest coefficients make in the next orders; so many after the multiple of [`ORDERS`].
     #[inline(always)]
-    pub fn add(&mut self, k: usize, [a, b]: [T; 2]) {
-        if k < ORDERS {
-            self.add_first(k, [a, b]);
-            return;
-        }
+    pub fn add(&mut self, phase: usize, [a, b]: [T; 2]) {
         let [of_a, of_b] = &self.first;
-        if let Some(sums) = self.sums[k % ORDERS + 1..].first_chunk_mut() {
+        if let Some(sums) = self.sums[phase + 1..].first_chunk_mut() {
             *sums = T::sums_with_newest(*sums, [a, b], [of_a, of_b]).unwrap_or_else(|| {
                 std::array::from_fn(|j| b.mul_add(of_a[j], a.mul_add(of_b[j], sums[j])))
             });
         }
     }
 
-    /// The same of the first coefficients. Apart, as it loads what was stored just before: where one instruction does so at some orders and
+    /// The same of the k-th coefficients before the first multiple of [`ORDERS`], which are kept. Apart, as it loads what was stored just before: where one instruction does so at some orders and
     /// not at others, the processor foresees it wrongly and begins anew.
     #[inline(always)]
-    fn add_first(&mut self, k: usize, [a, b]: [T; 2]) {
+    pub fn add_first(&mut self, k: usize, [a, b]: [T; 2]) {
         let [of_a, of_b] = &mut self.first;
         for j in 1..k {
             let sum = a.mul_add(of_b[j - 1], self.sums[k + j]);
@@ -77,7 +73,8 @@ impl<T: Element> Sums<T> {
         let mut sums = [a, b, c, zero];
         if k > ORDERS {
             let [a, b] = rows.map(|row| &row[ORDERS..k]);
-            sums = T::sums_of_older(sums, [a, b]).unwrap_or_else(|| sums_of_older(sums, [a, b]));
+            sums = T::sums_of_older(sums, [a, b])
+                .unwrap_or_else(|| sums_of_older(sums, a, b, |a, b, sum| a.mul_add(b, sum)));
         }
         let [a, b, c, d] = sums;
         self.sums = [a, b, c, d, zero, zero, zero];
@@ -86,23 +83,105 @@ impl<T: Element> Sums<T> {
 
 /// The sums for the orders from k, with the products of coefficients from the fourth to before the k-th, which are given.
 #[inline(always)]
-fn sums_of_older<T: Element>(mut sums: [T; ORDERS], [a, b]: [&[T]; 2]) -> [T; ORDERS] {
-    for (a, b) in a.iter().zip(b.windows(ORDERS).rev()) {
-        for i in 0..ORDERS {
-            sums[i] = a.mul_add(b[i], sums[i]);
-        }
-    }
-    // What is left are products for the later ones of these orders.
-    let (Some(newest), Some(first)) = (a.last_chunk::<{ ORDERS - 1 }>(), b.first_chunk()) else {
+fn sums_of_older<T: Copy, B: Copy>(
+    mut sums: [B; ORDERS],
+    a: &[T],
+    b: &[B],
+    times: impl Fn(T, B, B) -> B,
+) -> [B; ORDERS] {
+    let (a, b) = (a.as_chunks::<ORDERS>().0, b.as_chunks::<ORDERS>().0);
+    let (Some((newest, a)), Some(first)) = (a.split_last(), b.first()) else {
         return sums;
     };
-    let first: &[T; ORDERS - 1] = first;
-    for (j, a) in newest.iter().enumerate() {
-        for i in j + 1..ORDERS {
-            sums[i] = a.mul_add(first[i - 1 - j], sums[i]);
+    for (a, b) in a.iter().zip(b.windows(2).rev()) {
+        let b = b.as_flattened();
+        for j in 0..ORDERS {
+            for i in 0..ORDERS {
+                sums[i] = times(a[j], b[ORDERS + i - j], sums[i]);
+            }
+        }
+    }
+    // The newest make products for the later ones of these orders only.
+    for j in 0..ORDERS {
+        for i in j..ORDERS {
+            sums[i] = times(newest[j], first[i - j], sums[i]);
         }
     }
     sums
+}
+
+/// The sums for a row and either of two others, side by side.
+#[derive(Debug, Clone)]
+pub(super) struct SharedSums<T: Element> {
+    /// As in [`Sums`].
+    sums: [T::Two; 2 * ORDERS - 1],
+    first: ([T; ORDERS - 1], [T::Two; ORDERS - 1]),
+    /// The coefficients of both of the others.
+    both: Vec<T::Two>,
+}
+
+impl<T: Element> SharedSums<T> {
+    /// Before there are coefficients, with room for so many.
+    pub fn new(any: T, room: usize) -> Self {
+        let zero = any.like(0.0);
+        let zeros = T::Two::of([zero; 2]);
+        SharedSums {
+            sums: [zeros; 2 * ORDERS - 1],
+            first: ([zero; ORDERS - 1], [zeros; ORDERS - 1]),
+            both: vec![zeros; room],
+        }
+    }
+
+    /// As [`Sums::clear`].
+    #[inline(always)]
+    pub fn clear(&mut self, zero: T) {
+        self.sums.fill(T::Two::of([zero; 2]));
+    }
+
+    /// As [`Sums::of`].
+    #[inline(always)]
+    pub fn of(&self, phase: usize) -> [T; 2] {
+        self.sums[phase].both()
+    }
+
+    /// As [`Sums::add`], of the k-th coefficients.
+    #[inline(always)]
+    pub fn add(&mut self, (k, phase): (usize, usize), a: T, both: [T; 2]) {
+        let both = T::Two::of(both);
+        self.both[k] = both;
+        let (of_a, of_both) = &self.first;
+        if let Some(sums) = self.sums[phase + 1..].first_chunk_mut::<{ ORDERS - 1 }>() {
+            *sums = std::array::from_fn(|j| both.times(of_a[j], of_both[j].times(a, sums[j])));
+        }
+    }
+
+    /// As [`Sums::add_first`].
+    #[inline(always)]
+    pub fn add_first(&mut self, k: usize, a: T, both: [T; 2]) {
+        let both = T::Two::of(both);
+        self.both[k] = both;
+        let (of_a, of_both) = &mut self.first;
+        for j in 1..k {
+            let sum = of_both[j - 1].times(a, self.sums[k + j]);
+            self.sums[k + j] = both.times(of_a[j - 1], sum);
+        }
+        self.sums[2 * k] = both.times(a, self.sums[2 * k]);
+        (of_a[k - 1], of_both[k - 1]) = (a, both);
+    }
+
+    /// As [`Sums::go_on`], of the row that they share.
+    #[inline(always)]
+    pub fn go_on(&mut self, k: usize, row: &[T], zero: T) {
+        let [.., a, b, c] = self.sums;
+        let zero = T::Two::of([zero; 2]);
+        let mut sums = [a, b, c, zero];
+        if k > ORDERS {
+            let times = |a: T, both: T::Two, sum: T::Two| both.times(a, sum);
+            sums = sums_of_older(sums, &row[ORDERS..k], &self.both[ORDERS..k], times);
+        }
+        let [a, b, c, d] = sums;
+        self.sums = [a, b, c, d, zero, zero, zero];
+    }
 }
 
 /// sum of a_j b_(n-1-j) over j < n, n being the length of both

@@ -1,14 +1,14 @@
 //! The rows of a [`Program`], and how its operations fill them: the recurrences of [`super::tape`], in loops.
 
 use super::element::Element;
-use super::placed::{PlacedLater, PlacedTerm, placed};
+use super::placed::{PlacedLater, PlacedSum, PlacedTerm, placed};
 use super::products::ORDERS;
 use super::program::{Instruction, Program, Source};
 use crate::number::DoubleDouble;
 
 /// The rows of a program: the coefficients of each, one after the other.
 #[derive(Debug, Clone)]
-pub(super) struct ProgramRows<T> {
+pub(super) struct ProgramRows<T: Element> {
     coefficients: Vec<T>,
     /// Coefficients that a row has room for.
     room: usize,
@@ -17,9 +17,36 @@ pub(super) struct ProgramRows<T> {
     /// The operations of the first order and of all later ones; rows are where they begin among the coefficients.
     first: Vec<Instruction>,
     later: Vec<PlacedLater<T>>,
-    /// The rates of the variables.
-    rates: Vec<Source>,
+    /// The rates of the variables, and those that are no sums at later orders.
+    rates: Vec<Rate>,
+    rates_apart: Vec<Rate>,
     any: T,
+}
+
+/// The rate of a variable.
+#[derive(Debug, Clone, Copy)]
+struct Rate {
+    variable: usize,
+    of: Source,
+}
+
+impl Rate {
+    /// Whether it is one of these sums, which then makes the next coefficient of the variable too.
+    fn joined_to<T: Element>(self, later: &mut [PlacedLater<T>], room: usize) -> bool {
+        let Source::Row(row) = self.of else {
+            return false;
+        };
+        let sums = later.iter_mut().filter_map(|one| match one {
+            PlacedLater::Sum(sum) => Some(sum),
+            PlacedLater::Other(_) => None,
+        });
+        let mut free = sums.filter(|sum| sum.rate_of.is_none());
+        let sum = free.find(|sum| sum.result == row * room);
+        sum.is_some_and(|sum| {
+            sum.rate_of = Some(self.variable * room);
+            true
+        })
+    }
 }
 
 impl<T: Element> ProgramRows<T> {
@@ -27,11 +54,19 @@ impl<T: Element> ProgramRows<T> {
     pub fn new(program: &Program, room: usize, any: T) -> Self {
         let first = program.instructions().iter();
         let later = program.later.all.iter();
-        let rates = program.outputs[..program.variables()].iter();
-        let rates = rates.map(|rate| match *rate {
-            Source::Row(row) => Source::Row(row * room),
-            number => number,
-        });
+        let mut later: Vec<_> = later
+            .map(|one| PlacedLater::new(one, &program.later, room, any))
+            .collect();
+        let rates = program.outputs[..program.variables()].iter().enumerate();
+        let rates: Vec<_> = rates
+            .map(|(variable, rate)| Rate {
+                variable,
+                of: *rate,
+            })
+            .collect();
+        let apart = rates
+            .iter()
+            .filter(|rate| !rate.joined_to(&mut later, room));
         ProgramRows {
             coefficients: vec![any.like(0.0); program.rows() * room],
             room,
@@ -39,10 +74,9 @@ impl<T: Element> ProgramRows<T> {
                 .map(|k| DoubleDouble::from(1.0) / k as f64)
                 .collect(),
             first: first.map(|one| placed(one, room)).collect(),
-            later: later
-                .map(|one| PlacedLater::new(one, &program.later, room, any))
-                .collect(),
-            rates: rates.collect(),
+            rates_apart: apart.copied().collect(),
+            later,
+            rates,
             any,
         }
     }
@@ -70,11 +104,20 @@ impl<T: Element> ProgramRows<T> {
             coefficients: &mut self.coefficients,
             room: self.room,
             k,
+            phase: k % ORDERS,
+            begins: k < ORDERS,
             one_over: self.inverses[k],
+            share: DoubleDouble::ZERO,
             order: DoubleDouble::from(k as f64),
             any: self.any,
         };
         (level, &self.first, &mut self.later)
+    }
+
+    /// What the k-th coefficient of a rate counts in the next one of its variable; the unit of time is a power of two.
+    #[inline(always)]
+    fn share(&self, k: usize, unit: f64) -> DoubleDouble {
+        self.inverses[k + 1].times_power_of_two(unit)
     }
 
     /// The first coefficients at this state.
@@ -107,44 +150,48 @@ impl<T: Element> ProgramRows<T> {
         let (level, _, later) = self.order(0);
         for one in later {
             match one {
-                PlacedLater::Sum { terms, .. } => level.set_signs(terms),
+                PlacedLater::Sum(sum) => level.set_signs(&mut sum.terms),
                 PlacedLater::Other(one) => level.prepare(one),
             }
         }
     }
 
-    /// The k-th coefficients of all rows but those of the variables, from those up to the k-th of these; k > 0, and orders follow each
-    /// other.
+    /// The coefficients of the variables after the first, from the first ones of their rates.
     #[inline(always)]
-    pub fn level(&mut self, k: usize) {
-        let (mut level, _, later) = self.order(k);
-        if k.is_multiple_of(ORDERS) {
+    pub fn integrate(&mut self, unit: f64) {
+        let share = self.share(0, unit);
+        for rate in &self.rates {
+            let next = self.coefficient(rate.of, 0).scale(share);
+            self.coefficients[rate.variable * self.room + 1] = next;
+        }
+    }
+
+    /// The k-th coefficients of all rows but those of the variables, from those up to the k-th of these, whose next ones they make; k > 0,
+    /// and orders follow each other.
+    #[inline(always)]
+    pub fn level(&mut self, k: usize, unit: f64) {
+        let share = self.share(k, unit);
+        let (level, _, later) = self.order(k);
+        let mut level = Level { share, ..level };
+        if level.phase == 0 {
             for one in later.iter_mut() {
                 if let PlacedLater::Other(one) = one {
                     level.go_on(one);
                 }
             }
         }
-        for one in later {
-            match one {
-                PlacedLater::Sum { terms, result } => level.sum(terms, *result),
-                PlacedLater::Other(one) => level.carry_out(one),
-            }
+        // Compiled for either: the first ones do what no other does.
+        if level.begins {
+            level.beginning(true).carry_all_out(later);
+        } else {
+            level.beginning(false).carry_all_out(later);
         }
-    }
-
-    /// The next coefficients of the variables, whose rates the program gives first; the unit of time is a power of two.
-    #[inline(always)]
-    pub fn integrate(&mut self, k: usize, unit: f64) {
-        let inverse = self.inverses[k + 1];
-        let share = DoubleDouble::of_finite(inverse.hi() * unit, inverse.lo() * unit);
-        for (i, rate) in self.rates.iter().enumerate() {
-            let rate = match *rate {
-                Source::Row(row) => self.coefficients[row + k],
-                Source::Number(x) if k == 0 => self.any.like_exact(x),
+        for rate in &self.rates_apart {
+            let next = match rate.of {
+                Source::Row(row) => self.coefficients[row * self.room + k].scale(share),
                 Source::Number(_) => self.any.like(0.0),
             };
-            self.coefficients[i * self.room + k + 1] = rate.scale(share);
+            self.coefficients[rate.variable * self.room + k + 1] = next;
         }
     }
 }
@@ -154,14 +201,35 @@ pub(super) struct Level<'a, T> {
     coefficients: &'a mut [T],
     pub room: usize,
     pub k: usize,
+    /// How many orders it is after a multiple of [`ORDERS`].
+    pub phase: usize,
+    /// Whether it is before the first such multiple.
+    pub begins: bool,
     /// 1/k
     pub one_over: DoubleDouble,
+    /// What a rate counts in the next coefficient of its variable.
+    share: DoubleDouble,
     /// k
     pub order: DoubleDouble,
     pub any: T,
 }
 
 impl<T: Element> Level<'_, T> {
+    /// The same for what is called: that of which others know where it stands is read from there again and again.
+    #[inline(always)]
+    pub fn apart(&mut self) -> Level<'_, T> {
+        Level {
+            coefficients: self.coefficients,
+            ..*self
+        }
+    }
+
+    /// The same with that known to the compiler.
+    #[inline(always)]
+    fn beginning(self, begins: bool) -> Self {
+        Level { begins, ..self }
+    }
+
     #[inline(always)]
     pub fn put(&mut self, row: usize, x: T) {
         self.coefficients[row + self.k] = x;
@@ -194,6 +262,16 @@ impl<T: Element> Level<'_, T> {
         &self.coefficients[row..][..self.k]
     }
 
+    #[inline(always)]
+    fn carry_all_out(&mut self, later: &mut [PlacedLater<T>]) {
+        for one in later {
+            match one {
+                PlacedLater::Sum(sum) => self.sum(sum),
+                PlacedLater::Other(one) => self.carry_out(one),
+            }
+        }
+    }
+
     /// The signs that hold for all later orders.
     #[inline(always)]
     fn set_signs(&self, terms: &mut [PlacedTerm<T>]) {
@@ -205,9 +283,9 @@ impl<T: Element> Level<'_, T> {
     }
 
     #[inline(always)]
-    fn sum(&mut self, terms: &[PlacedTerm<T>], result: usize) {
-        let mut sum = self.any.like(0.0);
-        for term in terms {
+    fn sum(&mut self, sum: &PlacedSum<T>) {
+        let mut all = self.any.like(0.0);
+        for term in &sum.terms {
             let x = self.newest(term.row);
             let x = match term.lane {
                 None => x,
@@ -215,8 +293,11 @@ impl<T: Element> Level<'_, T> {
                 // Twins are two.
                 Some(_) => self.any.like(x.lane(T::LANES - 1)),
             };
-            sum = x.mul_add(term.factor, sum);
+            all = x.mul_add(term.factor, all);
         }
-        self.put(result, sum);
+        self.put(sum.result, all);
+        if let Some(variable) = sum.rate_of {
+            self.put(variable + 1, all.scale(self.share));
+        }
     }
 }
