@@ -30,6 +30,7 @@ fn run_all(lines: &[&str], place: &Path) {
             .iter()
             .map(|word| match word.strip_prefix("scenes/") {
                 Some(scene) => scenes.join(scene).display().to_string(),
+                None if word.starts_with("tests/data/") => root.join(word).display().to_string(),
                 None => (*word).to_owned(),
             });
         let ended = Command::new(env!("CARGO_BIN_EXE_twinslip"))
@@ -99,6 +100,14 @@ fn every_command_of_the_page_on_systems_runs() {
         &["twinslip integrate --system shown.toml --until 10 -o run.csv"],
         &place,
     );
+}
+
+#[test]
+fn every_command_of_the_page_on_fits_runs() {
+    let text = text_of("docs/fit.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 2, "{lines:?}");
+    run_all(&lines, &folder("fit"));
 }
 
 #[test]

@@ -9,7 +9,7 @@ use crate::error::{Error, Result};
 use crate::number::between_in_log;
 use crate::output::Place;
 use crate::output::page::{Figure, Page, Table};
-use crate::output::plot::{Axis, Drawing, Panel, PlotSeries, Stroke};
+use crate::output::plot::{Area, Axis, Drawing, Panel, PlotSeries};
 use crate::scene::FitPlan;
 use crate::views::{FitRow, parameter_label, picture_of_fit, picture_of_parameters};
 use std::path::Path;
@@ -45,13 +45,21 @@ pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
     let grid: Vec<f64> = grid.collect();
     let band = fitted.law.steady_band(plan, &fitted.fit, &grid)?;
     let of = |i: usize| band.iter().map(|three| three[i]).collect::<Vec<f64>>();
-    let line = |label: &str, i: usize| PlotSeries::new(label, grid.clone(), of(i)).colour(0);
+    let band = Area {
+        label: "95 % of the fit".into(),
+        x: grid.clone(),
+        lower: of(1),
+        upper: of(2),
+        colour: 0,
+        left_out: Vec::new(),
+    };
     let panel = Panel {
         series: vec![
-            line(&fitted.law.name, 0).wide(),
-            line("95 % of the fit", 1).stroke(Stroke::Dashed),
-            line("", 2).stroke(Stroke::Dashed),
+            PlotSeries::new(&fitted.law.name, grid.clone(), of(0))
+                .colour(0)
+                .wide(),
         ],
+        areas: vec![band],
         ..Panel::new(
             "steady-state friction",
             Axis::log("slip rate V [m/s]"),

@@ -41,7 +41,10 @@ impl EnsemblePlan {
             return Ok(None);
         };
         let file = EnsembleFile::parse(text)?;
-        if command.slab().is_some_and(|slab| slab.text.system.is_some()) {
+        if command
+            .slab()
+            .is_some_and(|slab| slab.text.system.is_some())
+        {
             return Err(Error::Input(
                 "`ensemble` is of friction, and `system` names a system of one's own".into(),
             ));
@@ -191,10 +194,9 @@ impl Command {
             Command::Branch(options) => Some(&options.ensemble),
             Command::Locus(options) => Some(&options.ensemble),
             Command::Sweep(options) => Some(&options.ensemble),
-            Command::Integrate(_)
-            | Command::Orbit(_)
-            | Command::Section(_)
-            | Command::Fit(_) => None,
+            Command::Integrate(_) | Command::Orbit(_) | Command::Section(_) | Command::Fit(_) => {
+                None
+            }
         }
     }
 
@@ -347,10 +349,7 @@ impl Command {
             Command::Branch(options) => options.ensemble = nothing(),
             Command::Locus(options) => options.ensemble = nothing(),
             Command::Sweep(options) => options.ensemble = nothing(),
-            Command::Integrate(_)
-            | Command::Orbit(_)
-            | Command::Section(_)
-            | Command::Fit(_) => {}
+            Command::Integrate(_) | Command::Orbit(_) | Command::Section(_) | Command::Fit(_) => {}
         }
     }
 
