@@ -93,7 +93,7 @@ pub fn finish(estimate: &mut Yield, items: &[Item], banded: &[Banded]) -> (Added
             }
             let part = |i: usize, part: &str| {
                 let band = bands.get(format!("eigenvalue_{i}_{part}").as_str());
-                band.map(|band| of(band))
+                band.copied().map(|band| of(&band))
             };
             let pairs = (1..).map_while(|i| Some([part(i, "re")?, part(i, "im")?]));
             let pairs: Vec<[Option<f64>; 2]> = pairs.collect();

@@ -115,6 +115,9 @@ struct Known {
 
 impl Ensemble<'_> {
     fn ended(&self, command: &Command, special_file: Option<RowFile>) -> Result<Ending> {
+        if command.output().explain {
+            self.explain(matches!(command, Command::Sweep(_)));
+        }
         let (estimate, ending) = member::run(&self.plan.estimate(), self.report.call, true)?;
         match command {
             Command::Law(_) => self.law(estimate, ending),
@@ -122,6 +125,25 @@ impl Ensemble<'_> {
             Command::Sweep(_) => self.sweep(estimate, ending),
             _ => self.curves(estimate, ending, special_file),
         }
+    }
+
+    /// Says which members there will be.
+    fn explain(&self, sweeps: bool) {
+        let (fit, draws) = (&self.plan.fit, self.plan.draws);
+        let names: Vec<&str> = fit.parameters.iter().map(|one| one.name).collect();
+        let derivatives = match sweeps {
+            true => "off: regimes have none".to_owned(),
+            false => format!(
+                "{} members, on both sides in each parameter",
+                2 * names.len()
+            ),
+        };
+        self.report.call.say(format!(
+            "plan of the ensemble\n  law               {}\n  fitted            {}\n  derivatives       {derivatives}\n  draws             {draws}, seed {}",
+            fit.law,
+            names.join(", "),
+            draws::SEED
+        ));
     }
 
     /// The members beside the estimate, of which these are the things.
