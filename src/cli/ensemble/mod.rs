@@ -18,6 +18,7 @@ mod sweep;
 mod write;
 
 use super::call::Call;
+use super::ranks::Joined;
 use super::report::Report;
 use super::words::several;
 use super::{Ending, interrupt};
@@ -47,6 +48,11 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
             plan.file.path.display(),
             plan.fit.law
         )));
+    }
+    if Joined::join()?.is_some() {
+        return Err(Error::Input(
+            "`ensemble` runs on the threads of one machine: leave out mpirun".into(),
+        ));
     }
     let plot = command.plot();
     if let Some(path) = plot {
@@ -326,6 +332,10 @@ impl Ensemble<'_> {
         let whole = !report.call.stops();
         if let (Some(path), Some(drawing)) = (self.plot, &estimate.picture) {
             report.draw(path, drawing)?;
+        }
+        if let (false, Some(path)) = (whole, report.place.path()) {
+            let kept = format!("what was computed is in {}", path.display());
+            report.call.keeps(kept);
         }
         let written = Finished {
             report,
