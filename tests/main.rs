@@ -43,6 +43,7 @@ mod durability_files;
 #[cfg(unix)]
 mod durability_kills;
 mod ensemble;
+mod ensemble_input;
 mod equilibria;
 #[cfg(not(feature = "parquet"))]
 mod equilibria_generic;

@@ -1,6 +1,7 @@
 //! What a scene file or a command line asks for.
 
 use super::continuation::{BranchOptions, LocusOptions};
+use super::ensemble::implied;
 use super::file::SceneFile;
 use super::fit::FitOptions;
 use super::options::{
@@ -103,19 +104,6 @@ impl Command {
         };
         parsed.map_err(|error| sentence(&error))
     }
-}
-
-/// What the words of a command line imply: fits are in SI.
-pub(crate) fn implied<S: AsRef<str>>(words: &[S]) -> Option<&'static str> {
-    const SI: &str = "--si";
-    let has = |flag: &str| {
-        let mut words = words.iter().map(AsRef::as_ref);
-        words.any(|word| {
-            let rest = word.strip_prefix(flag);
-            rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('='))
-        })
-    };
-    (has("--ensemble") && !has(SI) && !has("--system")).then_some(SI)
 }
 
 /// The options of one command, from a command line whose second word is its name.

@@ -85,17 +85,20 @@ pub fn finish(estimate: &mut Yield, items: &[Item], banded: &[Banded]) -> (Added
         if let Some(band) = bands.get("stress") {
             put_band(object, "stress", band);
         }
+        // A steady state of several interfaces may have fewer clusters than there are columns.
+        let length = |list: &str| object[list].as_array().map_or(0, Vec::len);
+        let (states, eigenvalues) = (length("state"), length("eigenvalues"));
         for (end, of) in ENDS {
             for base in LISTS {
-                let each = (1..).map_while(|i| bands.get(format!("{base}_{i}").as_str()));
+                let each = (1..=states).map_while(|i| bands.get(format!("{base}_{i}").as_str()));
                 let each: Vec<Value> = each.map(|band| json!(of(band))).collect();
                 object.insert(format!("{base}_{end}"), json!(each));
             }
             let part = |i: usize, part: &str| {
                 let band = bands.get(format!("eigenvalue_{i}_{part}").as_str());
-                band.map(|band| of(band))
+                band.copied().map(|band| of(&band))
             };
-            let pairs = (1..).map_while(|i| Some([part(i, "re")?, part(i, "im")?]));
+            let pairs = (1..=eigenvalues).map_while(|i| Some([part(i, "re")?, part(i, "im")?]));
             let pairs: Vec<[Option<f64>; 2]> = pairs.collect();
             if stability {
                 object.insert(format!("eigenvalues_{end}"), json!(pairs));

@@ -18,6 +18,7 @@ mod sweep;
 mod write;
 
 use super::call::Call;
+use super::ranks::Joined;
 use super::report::Report;
 use super::words::several;
 use super::{Ending, interrupt};
@@ -47,6 +48,11 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
             plan.file.path.display(),
             plan.fit.law
         )));
+    }
+    if Joined::join()?.is_some() {
+        return Err(Error::Input(
+            "`ensemble` runs on the threads of one machine: leave out mpirun".into(),
+        ));
     }
     let plot = command.plot();
     if let Some(path) = plot {
@@ -115,6 +121,9 @@ struct Known {
 
 impl Ensemble<'_> {
     fn ended(&self, command: &Command, special_file: Option<RowFile>) -> Result<Ending> {
+        if command.output().explain {
+            self.explain(matches!(command, Command::Sweep(_)));
+        }
         let (estimate, ending) = member::run(&self.plan.estimate(), self.report.call, true)?;
         match command {
             Command::Law(_) => self.law(estimate, ending),
@@ -122,6 +131,25 @@ impl Ensemble<'_> {
             Command::Sweep(_) => self.sweep(estimate, ending),
             _ => self.curves(estimate, ending, special_file),
         }
+    }
+
+    /// Says which members there will be.
+    fn explain(&self, sweeps: bool) {
+        let (fit, draws) = (&self.plan.fit, self.plan.draws);
+        let names: Vec<&str> = fit.parameters.iter().map(|one| one.name).collect();
+        let derivatives = match sweeps {
+            true => "off: regimes have none".to_owned(),
+            false => format!(
+                "{} members, on both sides in each parameter",
+                2 * names.len()
+            ),
+        };
+        self.report.call.say(format!(
+            "plan of the ensemble\n  law               {}\n  fitted            {}\n  derivatives       {derivatives}\n  draws             {draws}, seed {}",
+            fit.law,
+            names.join(", "),
+            draws::SEED
+        ));
     }
 
     /// The members beside the estimate, of which these are the things.
@@ -304,6 +332,10 @@ impl Ensemble<'_> {
         let whole = !report.call.stops();
         if let (Some(path), Some(drawing)) = (self.plot, &estimate.picture) {
             report.draw(path, drawing)?;
+        }
+        if let (false, Some(path)) = (whole, report.place.path()) {
+            let kept = format!("what was computed is in {}", path.display());
+            report.call.keeps(kept);
         }
         let written = Finished {
             report,

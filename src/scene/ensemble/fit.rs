@@ -106,7 +106,7 @@ impl FrictionFit {
         let wrong = |what: String| Error::Input(format!("`ensemble` {}: {what}", path.display()));
         let object: Envelope = serde_json::from_str(&text).map_err(|error| {
             wrong(format!(
-                "it is not what twinslip fit --format json writes: {error}"
+                "it is not what twinslip fit writes as JSON: {error}"
             ))
         })?;
         Self::of(object.result.fit).map_err(wrong)

@@ -2,10 +2,13 @@
 
 mod file;
 mod fit;
+mod implied;
 mod plan;
+mod prepare;
 
 pub use file::EnsembleFile;
 pub use fit::{FittedParameter, FrictionFit};
+pub(crate) use implied::implied;
 pub use plan::EnsemblePlan;
 
 /// What a user can set about the parameters of a fit.
