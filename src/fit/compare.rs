@@ -49,7 +49,7 @@ pub fn cross_validation<const N: usize>(
             ..*problem
         };
         let minimum = without.minimum(&fit.variables, &without.bounds(), MAX_ITERATIONS)?;
-        let Ok((friction, _)) = without.response(&minimum.variables) else {
+        let Ok(friction) = without.friction(&minimum.variables) else {
             return Ok(None);
         };
         squares += held

@@ -180,7 +180,7 @@ fn best_start<const N: usize>(
         ..*problem
     };
     let cost = |x: &[f64]| -> Option<f64> {
-        let (friction, _) = thin.response(x).ok()?;
+        let friction = thin.friction(x).ok()?;
         let pairs = friction.iter().zip(&record.friction).zip(&record.weights);
         Some(pairs.map(|((c, m), w)| w * (c - m).powi(2)).sum())
     };
@@ -228,7 +228,7 @@ impl Errors {
     fn of<const N: usize>(problem: &Problem<'_, N>, minimum: &Minimum) -> Result<Self> {
         let jacobian = &minimum.residuals.jacobian;
         let (count, free) = jacobian.shape();
-        let (fitted, _) = problem.response(&minimum.variables)?;
+        let fitted = problem.friction(&minimum.variables)?;
         let pairs = || problem.record.friction.iter().zip(&fitted);
         let squares: f64 = pairs()
             .map(|(measured, made)| (measured - made).powi(2))

@@ -183,6 +183,22 @@ impl<const N: usize> Problem<'_, N> {
         Ok((friction, all))
     }
 
+    /// The friction at these variables.
+    ///
+    /// # Errors
+    /// Those of [`Response::of`].
+    pub fn friction(&self, variables: &[f64]) -> Result<Vec<f64>> {
+        let (parameters, drift) = self.parameters_at(variables);
+        let Record {
+            times,
+            displacement,
+            ..
+        } = self.record;
+        let response = Response::of(self.sliders, self.motion, times, (&parameters, &[]))?;
+        let with_drift = response.friction.iter().zip(displacement);
+        Ok(with_drift.map(|(mu, x)| mu + drift * x).collect())
+    }
+
     /// The friction at these variables, and its derivatives in them.
     ///
     /// # Errors

@@ -58,13 +58,14 @@ impl<X: Element> ColumnChunks<X> {
     }
 
     /// The k-th coefficients.
+    #[inline(always)]
     fn level(&self, k: usize) -> &[X] {
         let width = self.variables * self.chunks;
         &self.series[k * width..][..width]
     }
 }
 
-/// The series of the columns from that of the entries, to be compiled for the processor.
+/// The series of the columns from that of the entries.
 struct ExpandColumns<'a, T: Element, X> {
     columns: &'a mut ColumnChunks<X>,
     jacobian: &'a [JacobianEntry],
@@ -74,10 +75,9 @@ struct ExpandColumns<'a, T: Element, X> {
     order: usize,
 }
 
-impl<T: Element, X: Element> NullaryFnOnce for ExpandColumns<'_, T, X> {
-    type Output = ();
+impl<T: Element, X: Element> ExpandColumns<'_, T, X> {
     #[inline(always)]
-    fn call(self) {
+    fn expand(self) {
         let ColumnChunks {
             variables,
             chunks,
@@ -234,6 +234,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     }
 
     /// The step of the columns, in units of the series and at most `most`.
+    #[inline(always)]
     fn longest(&self, accuracy: &Accuracy, most: f64) -> f64 {
         let (n, chunks) = (self.columns.variables, self.columns.chunks);
         let any = self.columns.x[0];
@@ -254,6 +255,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     }
 
     /// Goes on by h units.
+    #[inline(always)]
     fn advance_columns(&mut self, order: usize, h: DoubleDouble) {
         let any = self.columns.x[0];
         let h = any.like_exact(h);
@@ -273,27 +275,9 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         }
     }
 
-    /// The mean over the last step, of h units, of a diagonal entry of the Jacobian.
-    fn mean(&self, of: Source, order: usize, h: DoubleDouble) -> DoubleDouble {
-        let (_, rows) = self.solution.made();
-        let any = rows.row(0)[0];
-        let (mut mean, h) = (any.like(0.0), any.like_exact(h));
-        for k in (0..order).rev() {
-            mean = mean.mul_add(h, rows.coefficient(of, k) / any.like((k + 1) as f64));
-        }
-        mean.to_exact()
-    }
-}
-
-impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
-    fn start(&mut self, y: &[f64]) {
-        self.solution.start(y);
-        self.columns.start();
-        self.log_determinant = DoubleDouble::ZERO;
-        self.log_transverse = DoubleDouble::ZERO;
-    }
-
-    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+    /// A step, in the instructions that the processor has.
+    #[inline(always)]
+    fn advance_here(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let (n, order) = (self.columns.variables, accuracy.order);
         self.solution.expand(order);
         let (program, rows) = self.solution.made();
@@ -301,14 +285,15 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
         let jacobian = Self::entries(program, from, (n, n));
         let forcing = Self::entries(program, from + n * n, (n, self.parameters));
         let unit = self.solution.unit();
-        self.columns.x[0].run(ExpandColumns {
+        ExpandColumns {
             columns: &mut self.columns,
             jacobian: &jacobian,
             forcing: &forcing,
             rows,
             unit,
             order,
-        });
+        }
+        .expand();
         let in_units = (limit.hi() / unit).abs();
         let most = f64::min(self.solution.longest(accuracy), in_units);
         let h = self.longest(accuracy, most);
@@ -329,6 +314,51 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
             }
         }
         taken
+    }
+
+    /// The mean over the last step, of h units, of a diagonal entry of the Jacobian.
+    #[inline(always)]
+    fn mean(&self, of: Source, order: usize, h: DoubleDouble) -> DoubleDouble {
+        let (_, rows) = self.solution.made();
+        let any = rows.row(0)[0];
+        let (mut mean, h) = (any.like(0.0), any.like_exact(h));
+        for k in (0..order).rev() {
+            mean = mean.mul_add(h, rows.coefficient(of, k) / any.like((k + 1) as f64));
+        }
+        mean.to_exact()
+    }
+}
+
+/// A step of a solution with its derivatives, to be compiled for the processor.
+struct AdvanceLinearised<'s, 'a, T: Element, X> {
+    solution: &'s mut Linearised<'a, T, X>,
+    accuracy: &'s Accuracy,
+    limit: DoubleDouble,
+}
+
+impl<T: Element, X: Element> NullaryFnOnce for AdvanceLinearised<'_, '_, T, X> {
+    type Output = DoubleDouble;
+
+    #[inline(always)]
+    fn call(self) -> DoubleDouble {
+        self.solution.advance_here(self.accuracy, self.limit)
+    }
+}
+
+impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
+    fn start(&mut self, y: &[f64]) {
+        self.solution.start(y);
+        self.columns.start();
+        self.log_determinant = DoubleDouble::ZERO;
+        self.log_transverse = DoubleDouble::ZERO;
+    }
+
+    fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
+        self.columns.x[0].run(AdvanceLinearised {
+            accuracy,
+            limit,
+            solution: self,
+        })
     }
 
     fn state(&self, i: usize) -> f64 {
