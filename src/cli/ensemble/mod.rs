@@ -5,12 +5,12 @@
 //! it is what may be so or not.
 
 mod added;
-mod bands;
+pub(crate) mod bands;
 mod curves;
-mod draws;
+pub(crate) mod draws;
 mod equilibria;
 mod gather;
-mod item;
+pub(crate) mod item;
 mod law;
 mod member;
 mod picture;
