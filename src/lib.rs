@@ -100,6 +100,11 @@ pub mod internals {
 
     #[cfg(feature = "cli")]
     mod command {
+        pub use crate::cli::ensemble::bands::{
+            Band, Banded, Check, DEVIATIONS, Ends, Sample, Sides, bands,
+        };
+        pub use crate::cli::ensemble::draws::normal;
+        pub use crate::cli::ensemble::item::{Item, Measured, matched};
         pub use crate::cli::program;
         #[cfg(feature = "mpi")]
         pub use crate::cli::sweep::wire::{pack, unpack};

@@ -4,6 +4,7 @@ use crate::command::{folder, number, object, refused_in_one_line, twinslip};
 use serde_json::{Value, json};
 use std::fs;
 use std::path::{Path, PathBuf};
+use twinslip::scene::EnsembleFile;
 
 fn data() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/fit.json")
@@ -160,4 +161,18 @@ fn members_that_fail_are_counted() {
     assert!((failed / 100.0 - 0.159).abs() < 4.0 * 0.0366, "{failed}");
     let told = format!("{failed} members failed, the first one as");
     assert!(ended.err.contains(&told), "{}", ended.err);
+}
+
+#[test]
+fn a_number_of_draws_stands_behind_the_file() {
+    let read = |text: &str| EnsembleFile::parse(text).expect("readable");
+    let file = read("a/fit.json:50");
+    assert_eq!(file.path, Path::new("a/fit.json"));
+    assert_eq!(file.draws, Some(50));
+    assert_eq!(read("fit.json:0").draws, Some(0));
+    assert_eq!(read("fit.json").draws, None);
+    assert_eq!(read("C:\\fit.json").path, Path::new("C:\\fit.json"));
+    for wrong in ["fit.json:", "fit.json:-1", "fit.json:many", "fit.json:1e7"] {
+        assert!(EnsembleFile::parse(wrong).is_err(), "{wrong}");
+    }
 }

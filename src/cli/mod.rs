@@ -5,7 +5,7 @@ mod call;
 mod catalogue;
 mod checkpoint;
 mod continuation;
-mod ensemble;
+pub(crate) mod ensemble;
 mod equilibria;
 mod examples;
 mod fit;

@@ -5,6 +5,7 @@ mod branch;
 mod clock;
 mod control;
 mod cyclic;
+mod ensembles;
 mod exact_products;
 mod factors;
 mod floquet;

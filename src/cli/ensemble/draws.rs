@@ -20,20 +20,3 @@ pub fn normal(draw: usize, count: usize) -> DVector<f64> {
     };
     DVector::from_fn(count, |_, _| one())
 }
-
-#[cfg(test)]
-mod test {
-    use super::*;
-
-    #[test]
-    fn they_have_the_moments_of_a_normal_distribution() {
-        let all: Vec<f64> = (0..20_000).map(|draw| normal(draw, 2)[1]).collect();
-        let mean = |power: i32| all.iter().map(|x| x.powi(power)).sum::<f64>() / all.len() as f64;
-        // Five standard errors of each: of x, x^2, x^3 and x^4, whose variances are 1, 2, 15 and 96.
-        let bound = |variance: f64| 5.0 * (variance / all.len() as f64).sqrt();
-        assert!(mean(1).abs() < bound(1.0));
-        assert!((mean(2) - 1.0).abs() < bound(2.0));
-        assert!(mean(3).abs() < bound(15.0));
-        assert!((mean(4) - 3.0).abs() < bound(96.0));
-    }
-}

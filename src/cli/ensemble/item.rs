@@ -118,34 +118,3 @@ fn distance(one: &[f64], other: &[f64]) -> f64 {
     // What one of both does not have tells nothing.
     squares.filter(|x| x.is_finite()).sum()
 }
-
-#[cfg(test)]
-mod test {
-    use super::*;
-
-    fn items(all: &[(&str, f64)]) -> Vec<Item> {
-        let item = |&(class, place): &(&str, f64)| Item {
-            class: class.into(),
-            place: vec![place],
-            numbers: vec![],
-            holds: false,
-        };
-        all.iter().map(item).collect()
-    }
-
-    #[test]
-    fn equally_many_are_the_same_in_their_order() {
-        let these = items(&[("HB", 2.0), ("BP", 5.0), ("HB", 1.0)]);
-        let others = items(&[("HB", 7.0), ("HB", 9.0), ("LP", 5.0)]);
-        assert_eq!(matched(&these, &others), [Some(1), None, Some(0)]);
-    }
-
-    #[test]
-    fn else_those_are_the_same_that_are_nearest_to_each_other() {
-        let these = items(&[("HB", 1.0), ("HB", 2.0)]);
-        assert_eq!(matched(&these, &items(&[("HB", 2.2)])), [None, Some(0)]);
-        let more = items(&[("HB", 0.9), ("HB", 1.8), ("HB", 40.0)]);
-        assert_eq!(matched(&these, &more), [Some(0), Some(1)]);
-        assert_eq!(matched(&these, &[]), [None, None]);
-    }
-}

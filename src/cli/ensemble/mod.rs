@@ -5,12 +5,12 @@
 //! it is what may be so or not.
 
 mod added;
-mod bands;
+pub(crate) mod bands;
 mod curves;
-mod draws;
+pub(crate) mod draws;
 mod equilibria;
 mod gather;
-mod item;
+pub(crate) mod item;
 mod law;
 mod member;
 mod picture;
@@ -31,7 +31,7 @@ use gather::{Gathered, Items, Members};
 use item::Item;
 use member::Yield;
 use serde_json::{Value, json};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use sweep::Tally;
 use write::{Finished, Parts};
 
@@ -52,6 +52,13 @@ pub fn run(plan: &EnsemblePlan, command: &Command, call: &Call) -> Result<Ending
     if Joined::join()?.is_some() {
         return Err(Error::Input(
             "`ensemble` runs on the threads of one machine: leave out mpirun".into(),
+        ));
+    }
+    let output = command.output();
+    let parquet = |path: &PathBuf| path.extension().is_some_and(|ending| ending == "parquet");
+    if output.format.as_deref() == Some("parquet") || output.output.as_ref().is_some_and(parquet) {
+        return Err(Error::Input(
+            "`ensemble` is written as CSV or JSON, not as Parquet".into(),
         ));
     }
     let plot = command.plot();

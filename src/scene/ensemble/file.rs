@@ -44,22 +44,3 @@ impl EnsembleFile {
         }
     }
 }
-
-#[cfg(test)]
-mod test {
-    use super::*;
-
-    #[test]
-    fn a_number_of_draws_stands_behind_the_file() {
-        let read = |text: &str| EnsembleFile::parse(text).expect("readable");
-        let file = read("a/fit.json:50");
-        assert_eq!(file.path, Path::new("a/fit.json"));
-        assert_eq!(file.draws, Some(50));
-        assert_eq!(read("fit.json:0").draws, Some(0));
-        assert_eq!(read("fit.json").draws, None);
-        assert_eq!(read("C:\\fit.json").path, Path::new("C:\\fit.json"));
-        for wrong in ["fit.json:", "fit.json:-1", "fit.json:many", "fit.json:1e7"] {
-            assert!(EnsembleFile::parse(wrong).is_err(), "{wrong}");
-        }
-    }
-}

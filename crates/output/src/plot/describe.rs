@@ -289,6 +289,19 @@ mod test {
                 .iter()
                 .any(|x| x != 0.0)
         );
+        // The area breaks where a side is no number; of what is beyond it a point alone has no breadth.
+        let area = &panel["areas"][0];
+        assert_eq!(
+            (&area["label"], &area["colour"]),
+            (&json!("likely"), &json!("#D55E00"))
+        );
+        let first = &area["pieces"][0];
+        assert_eq!(first["y"].as_array().unwrap().len(), 4);
+        assert_eq!(first["y"][0], json!(-0.5));
+        assert_eq!(first["y"][3], json!(0.5));
+        let ends = panel["marks"][0]["bars"]["x"].as_array().unwrap();
+        assert_eq!(ends, &[json!(5.0), json!(20.0)]);
+        assert!(panel["marks"][0]["bars"]["y"].is_null());
         assert_eq!(panel["notes"][0]["text"], "words");
         assert_eq!(panel["keys"][0]["label"], "squares");
         assert_eq!(panel["strokes"][0]["stroke"], "dotted");
