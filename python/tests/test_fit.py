@@ -29,10 +29,10 @@ def step() -> dict[str, np.ndarray]:
 def test_columns_are_fitted() -> None:
     slider = twinslip.System(law="slip")
     fit = slider.fit(
-        step(), stiffness="100/um", free=["direct_effect", "evolution_effect", "slip_length"]
+        step(), stiffness="0.5/um", free=["direct_effect", "evolution_effect", "slip_length"]
     )
     for name, truth in TRUTH.items():
-        assert fit[name].value == pytest.approx(truth, rel=2e-3)
+        assert fit[name].value == pytest.approx(truth, rel=6e-3)
     assert fit.verdict == "converged"
     assert len(fit.time) == 400
     assert np.max(np.abs(fit["observed"] - fit["fitted"] - fit["residual"])) < 1e-15
@@ -42,7 +42,7 @@ def test_columns_are_fitted() -> None:
 def test_a_frame_is_fitted_as_its_columns_are() -> None:
     pandas = pytest.importorskip("pandas")
     slider = twinslip.System(law="slip", slip_length=1e-5, si=True)
-    given = {"stiffness": "100/um", "intervals": "linear"}
+    given = {"stiffness": "0.5/um", "intervals": "linear"}
     by_columns = slider.fit(step(), **given)
     by_frame = slider.fit(pandas.DataFrame(step()), **given)
     assert by_frame["direct_effect"] == by_columns["direct_effect"]

@@ -186,6 +186,12 @@ fn best_start<const N: usize>(
     };
     let variables = starts.iter().map(|values| thin.variables(values));
     let mut ranked: Vec<(f64, Vec<f64>)> = variables.filter_map(|x| Some((cost(&x)?, x))).collect();
+    if ranked.is_empty() {
+        // What is in the way of the first says most.
+        for start in starts {
+            thin.friction(&thin.variables(start))?;
+        }
+    }
     let mut evaluations = starts.len();
     ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut best: Option<(f64, Vec<f64>)> = None;

@@ -159,6 +159,13 @@ impl<'a, T: Element> Interpreted<'a, T> {
         }
     }
 
+    /// Makes the unit of the next series no longer than a step may be. At a steady state nothing says how long that is, and series of
+    /// derivatives would overflow.
+    #[inline(always)]
+    pub(super) fn stay_within(&mut self, limit: DoubleDouble) {
+        self.next_unit = self.next_unit.min(power_of_two(limit.hi().abs()));
+    }
+
     /// The state reached.
     pub(super) fn reached(&self) -> &[T] {
         &self.reached.x
@@ -352,6 +359,7 @@ impl<T: Element> NullaryFnOnce for Advance<'_, '_, T> {
             accuracy,
             limit,
         } = self;
+        solution.stay_within(limit);
         solution.expand(accuracy.order);
         let h = solution.longest(accuracy);
         solution.advance_by(accuracy.order, h, limit)

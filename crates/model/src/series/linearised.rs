@@ -279,6 +279,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
     #[inline(always)]
     fn advance_here(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble {
         let (n, order) = (self.columns.variables, accuracy.order);
+        self.solution.stay_within(limit);
         self.solution.expand(order);
         let (program, rows) = self.solution.made();
         let from = program.outputs.len() - n * (n + self.parameters);
