@@ -5,7 +5,7 @@ use super::placed::{PlacedInstruction, Products};
 use super::products::{Sums, sum_of_products};
 use super::program::{Operation, Source};
 use super::program_rows::Level;
-use crate::number::{Balance, DoubleDouble};
+use crate::number::Balance;
 
 impl<T: Element> Level<'_, T> {
     /// What holds for all orders, from the first coefficients.

@@ -172,7 +172,7 @@ impl<T: Element> ProgramRows<T> {
     pub fn level(&mut self, k: usize, unit: f64) {
         let share = self.share(k, unit);
         let (level, _, later) = self.order(k);
-        let mut level = Level { share, ..level };
+        let level = Level { share, ..level };
         if level.phase == 0 {
             for one in later.iter_mut() {
                 if let PlacedLater::Other(one) = one {
