@@ -166,7 +166,7 @@ fn on_a_stiff_spring_friction_is_a_closed_form() {
             found.expect("a run").friction
         };
         // The spring gives way by mu/k: its effect goes as 1/k, and by two stiffnesses is taken away.
-        let (soft, stiff) = (on(5e5), on(1e6));
+        let (soft, stiff) = (on(1e6), on(2e6));
         let ratio = FAST / SLOW;
         for (i, &t) in times.iter().enumerate() {
             let mu = 2.0 * stiff[i] - soft[i];
@@ -178,7 +178,7 @@ fn on_a_stiff_spring_friction_is_a_closed_form() {
             };
             let expected = 0.6 + a * ratio.ln() + b * log_state;
             assert!((stiff[i] - expected).abs() < 1e-4, "{law} {t}");
-            assert!((mu - expected).abs() < 2e-7, "{law} {t}: {mu} {expected}");
+            assert!((mu - expected).abs() < 1e-6, "{law} {t}: {mu} {expected}");
         }
     }
 }

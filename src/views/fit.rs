@@ -39,6 +39,10 @@ const MICRO: f64 = 1e6;
 const AROUND: usize = 128;
 /// The square of the radius that holds 95 % of a normal distribution in two variables.
 const TWO_OF_95: f64 = 5.991;
+/// And 68 %.
+const TWO_OF_68: f64 = 2.279;
+/// Standard errors on each side of 95 %.
+const NORMAL_95: f64 = 1.96;
 
 /// Friction and residuals against the displacement.
 pub fn picture_of_fit(rows: &[FitRow], law: &str) -> Drawing {
@@ -124,7 +128,7 @@ fn profile(fit: &Fit, i: usize, stress: Option<f64>) -> Panel {
     let straight = PlotSeries::new(
         if i == 0 { "by the standard error" } else { "" },
         steps.iter().map(|s| moved(parameter, *s) * by).collect(),
-        steps.iter().map(|s| s.abs()).collect(),
+        steps,
     )
     .stroke(Stroke::Dashed)
     .colour(6);
@@ -133,7 +137,7 @@ fn profile(fit: &Fit, i: usize, stress: Option<f64>) -> Panel {
     let shown = PlotSeries::new(
         if i == 0 { "profile" } else { "" },
         points.iter().map(x).collect(),
-        points.iter().map(|at| at.deviation.abs()).collect(),
+        points.iter().map(|at| at.deviation).collect(),
     )
     .colour(0);
     let ends = [parameter.interval.0, parameter.interval.1];
@@ -155,7 +159,7 @@ fn profile(fit: &Fit, i: usize, stress: Option<f64>) -> Panel {
                 rounded(parameter.uncertainty * by)
             ),
             Axis::linear(label),
-            Axis::linear("standard errors").within(0.0, 3.0),
+            Axis::linear("standard errors").within(-3.0, 3.0),
         )
     }
 }
@@ -180,7 +184,7 @@ fn ellipses(fit: &Fit, (i, j): (usize, usize), stress: Option<f64>) -> Panel {
     Panel {
         series: vec![
             ellipse(TWO_OF_95, Stroke::Solid),
-            ellipse(2.279, Stroke::Dashed),
+            ellipse(TWO_OF_68, Stroke::Dashed),
         ],
         marks: vec![Mark::new(one.value * x_by, other.value * y_by, "").colour(1)],
         ..Panel::new(
