@@ -40,7 +40,7 @@ fn fits(criterion: &mut Criterion) {
     };
     let times = (0..SAMPLES).map(|i| 80.0 * i as f64 / (SAMPLES - 1) as f64);
     let times: Vec<f64> = times.collect();
-    let mut record = Record {
+    let quiet = Record {
         displacement: motion.displacement(&times),
         friction: vec![0.0; SAMPLES],
         weights: vec![1.0; SAMPLES],
@@ -68,12 +68,16 @@ fn fits(criterion: &mut Criterion) {
         loss: Loss::Linear,
     };
     let clean = {
-        let problem = problem(&record);
+        let problem = problem(&quiet);
         let truth = problem.variables(&TRUTH[..FREE.len()]);
         problem.friction(&truth).expect("a friction")
     };
     let mut noise = noise();
-    record.friction = clean.into_iter().map(|mu| mu + 2e-4 * noise()).collect();
+    let friction = clean.into_iter().map(|mu| mu + 2e-4 * noise());
+    let record = Record {
+        friction: friction.collect(),
+        ..quiet.clone()
+    };
     let problem = problem(&record);
     let shown = guess(&record, &motion, 3e-6).expect("a step");
     let start = vec![

@@ -108,21 +108,24 @@ pub enum Loss {
 impl Loss {
     /// The z with z^2 = scale^2 rho and the sign of r, and dz/dr.
     fn apply(self, r: f64) -> (f64, f64) {
-        let (scale, of): (f64, fn(f64) -> (f64, f64)) = match self {
+        let scale = match self {
             Loss::Linear => return (r, 1.0),
-            Loss::SoftL1 { scale } => (scale, |u| {
-                let root = (1.0 + u).sqrt();
-                (2.0 * u / (root + 1.0), 1.0 / root)
-            }),
             Loss::Huber { scale } if r.abs() <= scale => return (r, 1.0),
-            Loss::Huber { scale } => (scale, |u| (2.0 * u.sqrt() - 1.0, 1.0 / u.sqrt())),
-            Loss::Cauchy { scale } => (scale, |u| (u.ln_1p(), 1.0 / (1.0 + u))),
+            Loss::SoftL1 { scale } | Loss::Huber { scale } | Loss::Cauchy { scale } => scale,
         };
         let u = (r / scale).powi(2);
-        let (rho, slope) = of(u);
         if u == 0.0 {
             return (r, 1.0);
         }
+        let (rho, slope) = match self {
+            Loss::Linear => (u, 1.0),
+            Loss::SoftL1 { .. } => {
+                let root = (1.0 + u).sqrt();
+                (2.0 * u / (root + 1.0), 1.0 / root)
+            }
+            Loss::Huber { .. } => (2.0 * u.sqrt() - 1.0, 1.0 / u.sqrt()),
+            Loss::Cauchy { .. } => (u.ln_1p(), 1.0 / (1.0 + u)),
+        };
         let z = (scale * rho.sqrt()).copysign(r);
         (z, slope * r / z)
     }

@@ -43,7 +43,7 @@ pub fn guess(record: &Record, motion: &Motion, reference_rate: f64) -> Option<Gu
         })
         .collect();
     let ratio = (after / before).ln();
-    let earlier = step - (step / 2).min(200).max(1);
+    let earlier = step - (step / 2).clamp(1, 200);
     let level = mean(&record.friction[earlier..step]);
     let last = end - ((end - step) / 4).max(1);
     let settled = mean(&record.friction[last..end]);

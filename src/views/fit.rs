@@ -140,18 +140,14 @@ fn profile(fit: &Fit, i: usize, stress: Option<f64>) -> Panel {
         points.iter().map(|at| at.deviation).collect(),
     )
     .colour(0);
-    let ends = [parameter.interval.0, parameter.interval.1];
-    let ends = ends
-        .into_iter()
-        .filter(|end| end.is_finite() && *end != 0.0);
-    let marks = ends.map(|end| {
-        Mark::new(end * by, 1.96, "")
-            .symbol(Symbol::Diamond)
-            .colour(1)
-    });
+    let (low, high) = parameter.interval;
+    let ends = [(low, -NORMAL_95), (high, NORMAL_95)];
+    let there = ends.into_iter().filter(|(x, _)| x.is_finite() && *x != 0.0);
+    let mark = |(x, y): (f64, f64)| Mark::new(x * by, y, "").symbol(Symbol::Diamond).colour(1);
     Panel {
         series: vec![straight, shown],
-        marks: marks.collect(),
+        marks: there.map(mark).collect(),
+        zero_line: true,
         ..Panel::new(
             format!(
                 "{} ± {}",
