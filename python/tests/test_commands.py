@@ -206,14 +206,14 @@ def test_every_command_has_its_arguments() -> None:
 
     left_out = {
         "output", "format", "force", "quiet", "explain", "plot", "plot_events", "resume",
-        "checkpoint", "checkpoint_steps", "shard",
+        "checkpoint", "checkpoint_steps", "shard", "plot_parameters", "plot_law", "report",
     }  # fmt: skip
     for command, _ in _core.commands():
         taken = set(inspect.signature(getattr(System, command)).parameters) - {"self", "progress"}
         known = set(_words.options(command)) - left_out
-        known -= set(_words.model_options()) - (
-            {"driving", "stiffness"} if command in ("sweep", "locus") else set()
-        )
+        own = {"sweep": {"driving", "stiffness"}, "locus": {"driving", "stiffness"}}
+        own["fit"] = {"stiffness"}
+        known -= set(_words.model_options()) - own.get(command, set())
         if command in ("branch", "law"):
             known = known - {"from_", "to"} | {"range"}
         if command == "locus":

@@ -21,7 +21,9 @@ def step() -> dict[str, np.ndarray]:
     x = np.where(slides, 2e-5 + 1e-5 * since, 1e-6 * t)
     jump = np.log(10.0)
     log_state = np.exp(-1e-5 * since / TRUTH["slip_length"]) * jump - jump
-    mu = 0.6 + np.where(slides, TRUTH["direct_effect"] * jump + TRUTH["evolution_effect"] * log_state, 0.0)
+    mu = 0.6 + np.where(
+        slides, TRUTH["direct_effect"] * jump + TRUTH["evolution_effect"] * log_state, 0.0
+    )
     noise = 1e-5 * np.sin(12.9898 * np.arange(400)) * np.cos(78.233 * np.arange(400))
     return {"time": t, "displacement": x, "friction": mu + noise}
 

@@ -13,7 +13,7 @@ from typing import Any, Optional, SupportsFloat, SupportsIndex, Union
 import numpy as np
 import numpy.typing as npt
 
-from .results import Branch, Equilibria, LawCurve, Locus, Orbit, Section, Sweep, Trajectory
+from .results import Branch, Equilibria, Fit, LawCurve, Locus, Orbit, Section, Sweep, Trajectory
 
 #: A number.
 Number = Optional[SupportsFloat]
@@ -752,3 +752,112 @@ class Commands:
             If the computation failed; its ``result`` is what was computed so far.
         """
         return Sweep(*self._call("sweep", _own(locals())))
+
+    def fit(
+        self,
+        data: Any,
+        *,
+        states: Count = None,
+        free: Text = None,
+        evolution_effect_2: Number = None,
+        slip_length_2: Number = None,
+        stiffness: Text = None,
+        drift: Number = None,
+        program: Text = None,
+        load_point: Text = None,
+        time: Text = None,
+        displacement: Text = None,
+        friction: Text = None,
+        normal_stress_column: Text = None,
+        weights: Text = None,
+        from_: Number = None,
+        to: Number = None,
+        decimate: Count = None,
+        bounds: Text = None,
+        loss: Text = None,
+        loss_scale: Number = None,
+        intervals: Text = None,
+        crosscheck: bool = False,
+        each_step: bool = False,
+        progress: Optional[bool] = None,
+    ) -> Fit:
+        """Friction parameters from laboratory data: velocity steps fitted by least squares, with errors and 95 % intervals.
+
+        Parameters
+        ----------
+        data : path, mapping of columns or DataFrame, optional
+            The record: CSV, TSV or columns of text, with or without a header; units in its
+            parentheses, such as Displ(um)
+        states : int, optional
+            State variables: 1 or 2 [default: 1]
+        free : str or sequence of str, optional
+            Parameters that are fitted, comma-separated; also healing_time, residual_strength,
+            evolution_effect_2, slip_length_2, drift (a straight line, friction per metre), and
+            those of a law from a file. Those that have neither a value nor a default are fitted
+            too [default: direct_effect,evolution_effect,slip_length,stiffness,reference_friction,
+            with ``states`` 2 also evolution_effect_2,slip_length_2]
+        evolution_effect_2 : float, optional
+            b of the second state variable
+        slip_length_2 : float, optional
+            L of the second state variable, in m
+        stiffness : str, number or sequence, optional
+            Stiffness of the apparatus, in Pa/m, or as friction per length: 0.003/um
+        drift : float, optional
+            Slope of a straight line that is added, friction per metre of load-point displacement
+            [default: 0]
+        program : str or sequence of (time, V_H) and ((begin, end), V_H), optional
+            Velocity of the load point: T:V,T:V,... in s and m/s, T1-T2:V for a ramp, or FILE.csv;
+            times as in the record [default: the steps that its displacement shows]
+        load_point : str, number or sequence, optional
+            What moves the load point: steps, or its displacement as it was recorded [default:
+            steps]
+        time : str or int, optional
+            Column of the time, by name or number from 1 on; so the others
+        displacement : str or int, optional
+            Column of the displacement of the load point
+        friction : str or int, optional
+            Column of the friction coefficient, or of the shear stress where its unit is one of
+            stress
+        normal_stress_column : str or int, optional
+            Column of the normal stress
+        weights : str or int, optional
+            Column by which the squares of residuals are multiplied
+        from_ : float, optional
+            First time of the window in s, as in the record
+        to : float, optional
+            Last time of the window in s
+        decimate : int, optional
+            Take one sample of so many [default: 1]
+        bounds : dict of (A, B) or (A, B, "log"), optional
+            Range of a parameter, NAME=A:B
+        loss : str, optional
+            How residuals count: linear (least squares), or soft-l1, huber or cauchy, which let
+            outliers count less [default: linear]
+        loss_scale : float, optional
+            Residuals that are large for such a loss, in friction [default: 3 times the scatter
+            from sample to sample]
+        intervals : str, number or sequence, optional
+            95 % intervals: by profile, or linear from the standard errors, which is quicker
+            [default: profile]
+        crosscheck : bool, optional
+            Compute the derivatives at the minimum once more by sensitivities of CVODES, and report
+            the largest difference
+        each_step : bool, optional
+            Fit each step of velocity by itself, too
+        progress : bool, optional
+            Whether a long computation shows a bar, by tqdm [default: in a notebook and on a
+            terminal].
+
+        Returns
+        -------
+        Fit
+            The parameters with errors and 95 % intervals, their correlation, and the fitted friction as arrays.
+
+        Raises
+        ------
+        ValueError
+            If the input is to blame; its ``field`` is the argument.
+        NumericalError
+            If the computation failed; its ``result`` is what was computed so far.
+        """
+        return Fit(*self._call("fit", _own(locals())))

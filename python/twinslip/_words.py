@@ -113,7 +113,8 @@ def _columns(field: str, value: Any) -> str:
         columns = [np.asarray(value[name], dtype=float).ravel().tolist() for name in value]
     except (TypeError, ValueError, KeyError):
         raise InputError(
-            f"{field} is a {type(value).__name__}, but must be a file, a mapping of columns or a DataFrame", field
+            f"{field} is a {type(value).__name__}, but must be a file, a mapping of columns or a DataFrame",
+            field,
         ) from None
     if len({len(column) for column in columns}) > 1:
         raise InputError(f"{field} has columns of different lengths", field)

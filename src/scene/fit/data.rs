@@ -123,13 +123,15 @@ impl Measured {
         };
         let friction_values = if is_stress(friction) {
             let shear = cut(column(friction, "shear stress", Measure::Stress)?);
-            let by = |i: usize| match (given, &normal_stress) {
+            let by = |i: usize| {
+                match (given, &normal_stress) {
                 (Some(sigma), _) => Ok(sigma),
                 (None, Some(column)) => Ok(column[i]),
                 (None, None) => Err(Error::Input(
-                    "`friction` is a stress: give the normal_stress, or the normal_stress_column"
+                    "`friction` is a stress: give the `normal_stress`, or the `normal_stress_column`"
                         .into(),
                 )),
+            }
             };
             let ratios = shear.iter().enumerate();
             ratios

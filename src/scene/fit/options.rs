@@ -104,10 +104,10 @@ pub struct FitOptions {
     /// Column by which the squares of residuals are multiplied
     #[arg(long, value_name = "COLUMN", help_heading = "Data")]
     pub weights: Option<String>,
-    /// First time of the window, as in the record [s]
+    /// First time of the window in s, as in the record
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Data")]
     pub from: Option<f64>,
-    /// Last time of the window [s]
+    /// Last time of the window in s
     #[arg(long, value_name = "T", value_parser = number, allow_negative_numbers = true, help_heading = "Data")]
     pub to: Option<f64>,
     /// Take one sample of so many

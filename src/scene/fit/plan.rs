@@ -574,7 +574,7 @@ impl Given {
                 (GivenStiffness::OfStress(k), Some(sigma)) => k / sigma,
                 (GivenStiffness::OfStress(_), None) => {
                     return Err(Error::Input(
-                        "`stiffness` in Pa/m needs the normal_stress; or give it as friction per length, such as 0.003/um".into(),
+                        "`stiffness` in Pa/m needs the `normal_stress`; or give it as friction per length, such as 0.003/um".into(),
                     ));
                 }
             }),
