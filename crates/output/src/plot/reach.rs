@@ -12,6 +12,9 @@ const MARKED_MARGIN: f64 = 0.26;
 /// The same where the names stand where there is room.
 const FREE_MARGIN: f64 = 0.1;
 
+/// How far a band may widen the range on either side, in lengths of that of all else.
+const BAND: f64 = 2.0;
+
 /// The ranges of both axes.
 ///
 /// # Errors
@@ -27,10 +30,7 @@ pub fn scales(panel: &Panel) -> Result<(Scale, Scale)> {
         Some(Side::Free) => FREE_MARGIN,
         Some(_) => MARKED_MARGIN,
     };
-    let (xs, mut ys) = reaches(panel);
-    if panel.zero_line {
-        ys.take(coordinate(panel.y.log, 0.0));
-    }
+    let (xs, ys) = reaches(panel);
     let x = Scale::new(&panel.x, xs, if tight { 0.0 } else { MARGIN });
     let y = Scale::new(&panel.y, ys, margin);
     x.zip(y)
@@ -95,17 +95,56 @@ fn reaches(panel: &Panel) -> (Reach, Reach) {
     let places = panel.marks.iter().map(|mark| (mark.x, mark.y));
     let notes = panel.notes.iter().map(|note| (note.x, note.y));
     places.chain(notes).for_each(|(x, y)| take(at(x, y)));
+    if panel.zero_line {
+        ys.take(coordinate(panel.y.log, 0.0));
+    }
     // What is likely of a curve may go far beyond all: the frame then cuts it.
-    let room = ys.widened(1.0);
+    let room = ys.widened(BAND);
     for area in &panel.areas {
         let sides = [&area.lower, &area.upper];
         let points = sides.iter().flat_map(|side| area.x.iter().zip(*side));
         for (&x, &y) in points {
             let (x, y) = at(x, y);
-            if !outside(x, window.x) && room.holds(y) {
-                ys.take(y);
+            if !outside(x, window.x) {
+                ys.take(room.nearest(y));
             }
         }
     }
     (xs, ys)
+}
+
+#[cfg(test)]
+mod test {
+    use super::super::{Area, Axis};
+    use super::*;
+
+    /// A level line at -1 below a line at zero, with a band around it.
+    fn range_with_band(side: f64) -> (f64, f64) {
+        let x = vec![0.0, 1.0];
+        let panel = Panel {
+            series: vec![PlotSeries::new("", x.clone(), vec![-1.0; 2])],
+            areas: vec![Area {
+                label: String::new(),
+                x,
+                lower: vec![-1.0 - side; 2],
+                upper: vec![-1.0 + side; 2],
+                colour: 0,
+                left_out: Vec::new(),
+            }],
+            zero_line: true,
+            ..Panel::new("", Axis::linear("x"), Axis::linear("y"))
+        };
+        let (_, y) = scales(&panel).expect("points");
+        (y.lo, y.hi)
+    }
+
+    #[test]
+    fn a_band_is_seen_whole_unless_it_goes_far_beyond_all_else() {
+        let (low, high) = range_with_band(0.5);
+        assert!((-1.7..=-1.5).contains(&low) && (0.0..0.2).contains(&high));
+        let (low, high) = range_with_band(1.9);
+        assert!((-3.2..=-2.9).contains(&low) && (0.9..1.1).contains(&high));
+        let (low, high) = range_with_band(1e6);
+        assert!((-3.4..=-3.0).contains(&low) && (2.0..2.4).contains(&high));
+    }
 }

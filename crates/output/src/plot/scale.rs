@@ -53,9 +53,13 @@ impl Reach {
         }
     }
 
-    /// Whether a coordinate lies in it.
-    pub fn holds(&self, x: f64) -> bool {
-        (self.lo..=self.hi).contains(&x)
+    /// The coordinate in it that is nearest; not a number for one that is none.
+    pub fn nearest(&self, x: f64) -> f64 {
+        if x.is_nan() {
+            x
+        } else {
+            x.max(self.lo).min(self.hi)
+        }
     }
 }
 
