@@ -115,7 +115,13 @@ impl Two<Pair> for Four {
         let Four { lanes, simd } = self;
         let first = simd.avx._mm256_castpd256_pd128(lanes);
         let second = simd.avx._mm256_extractf128_pd::<1>(lanes);
-        [first, second].map(|lanes| Pair { lanes, simd })
+        [
+            Pair { lanes: first, simd },
+            Pair {
+                lanes: second,
+                simd,
+            },
+        ]
     }
     #[inline(always)]
     fn times(self, a: Pair, sums: Self) -> Self {

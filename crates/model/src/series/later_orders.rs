@@ -217,7 +217,7 @@ impl<T: Element> Level<'_, T> {
     fn of_both(&self, one: &PlacedInstruction<T>) -> [T; 2] {
         match &one.shared {
             Some(shared) => shared.of(self.phase),
-            None => [0, 1].map(|i| one.sums[i].of(self.phase)),
+            None => [one.sums[0].of(self.phase), one.sums[1].of(self.phase)],
         }
     }
 
