@@ -8,8 +8,10 @@ array is masked. What is not in rows is an attribute by the name that JSON has. 
 
 from __future__ import annotations
 
+import json
+import os
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any, Optional
+from typing import TYPE_CHECKING, Any, Optional, Union
 
 import numpy as np
 
@@ -36,6 +38,13 @@ __all__ = [
     "Trajectory",
     "Uncertain",
 ]
+
+
+def _plain(value: Any) -> Any:
+    """What JSON has for a value that is none of its own."""
+    if isinstance(value, Uncertain):
+        return {"value": value.value, "uncertainty": value.uncertainty}
+    return np.asarray(value).tolist()
 
 
 class Trajectory(Result):
@@ -262,6 +271,17 @@ class Fit(Result):
             if one["name"] == name:
                 return Uncertain(one["value"], one["uncertainty"])
         return super().__getitem__(name)
+
+    def save(self, path: Union[str, os.PathLike[str]]) -> None:
+        """Writes what ``ensemble`` reads: the law, the parameters and their correlation.
+
+        Parameters
+        ----------
+        path : path or str
+            The file, which is replaced.
+        """
+        with open(path, "w", encoding="utf-8") as file:
+            json.dump({"result": {"fit": self.result["fit"]}}, file, default=_plain)
 
     def _short(self) -> str:
         found = self.result.get("fit", {})

@@ -41,16 +41,18 @@ pub fn undecided<const N: usize>(
     if !minimum.converged {
         sentences.push("the search ended before a minimum of the sum of squares".to_owned());
     }
+    let bounds = problem.bounds();
     let mut told = vec![false; parameters.len()];
     for (i, one) in parameters.iter().enumerate() {
-        let (low, high) = problem.free[i].bounds;
+        let (low, high) = bounds[i];
+        let variable = minimum.variables[i];
         let zero = if one.scale == Scale::Logarithmic {
             0.0
         } else {
             f64::NEG_INFINITY
         };
         let wide = one.scale == Scale::Logarithmic && one.uncertainty > UNDETERMINED * one.value;
-        let why = if one.value <= low || one.value >= high {
+        let why = if variable <= low || variable >= high {
             "it stands at its bound"
         } else if one.interval.0 <= zero && one.interval.1.is_infinite() {
             "its 95 % interval has no ends"

@@ -18,6 +18,7 @@ pub(super) fn motion_in_steps(times: &[f64], displacement: &[f64]) -> Motion {
     let mut cuts = Vec::new();
     let sums = Sums::of(times, displacement);
     sums.cut(0, times.len(), &mut cuts);
+    sums.join(times.len(), &mut cuts);
     let mut edges = vec![0];
     edges.extend(&cuts);
     edges.push(times.len());
@@ -80,6 +81,14 @@ struct Line {
     squares: f64,
 }
 
+impl Line {
+    /// Whether these are two velocities.
+    fn differs(&self, other: &Line) -> bool {
+        let (slow, fast) = (self.slope.min(other.slope), self.slope.max(other.slope));
+        fast > STEP * slow.max(0.0) && fast > 0.0
+    }
+}
+
 /// Sums over the first samples, of t, x, t^2, t x and x^2, from the first sample on.
 struct Sums(Vec<[f64; 5]>);
 
@@ -108,6 +117,23 @@ impl Sums {
         }
     }
 
+    /// Takes cuts away on both sides of which the velocity is the same: where two lines fit a record of several steps best need not be a
+    /// step.
+    fn join(&self, count: usize, cuts: &mut Vec<usize>) {
+        let mut at = 0;
+        while at < cuts.len() {
+            let from = if at == 0 { 0 } else { cuts[at - 1] };
+            let to = cuts.get(at + 1).copied().unwrap_or(count);
+            if self.line(from, cuts[at]).differs(&self.line(cuts[at], to)) {
+                at += 1;
+            } else {
+                cuts.remove(at);
+                // What is before it has a longer neighbour now.
+                at = at.saturating_sub(1);
+            }
+        }
+    }
+
     fn cut(&self, from: usize, to: usize, cuts: &mut Vec<usize>) {
         if to < from + 2 * LEAST {
             return;
@@ -120,13 +146,7 @@ impl Sums {
         let (one, other) = (self.line(from, at), self.line(at, to));
         let whole = self.line(from, to).squares;
         let variance = (one.squares + other.squares) / (to - from) as f64;
-        let (slow, fast) = if one.slope < other.slope {
-            (one.slope, other.slope)
-        } else {
-            (other.slope, one.slope)
-        };
-        let is_step = fast > STEP * slow.max(0.0) && fast > 0.0;
-        if is_step && whole - both(at) > DECIDED * variance {
+        if one.differs(&other) && whole - both(at) > DECIDED * variance {
             self.cut(from, at, cuts);
             cuts.push(at);
             self.cut(at, to, cuts);
