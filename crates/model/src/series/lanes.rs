@@ -115,13 +115,14 @@ impl Two<Pair> for Four {
         let Four { lanes, simd } = self;
         let first = simd.avx._mm256_castpd256_pd128(lanes);
         let second = simd.avx._mm256_extractf128_pd::<1>(lanes);
-        [
+        let (first, second) = (
             Pair { lanes: first, simd },
             Pair {
                 lanes: second,
                 simd,
             },
-        ]
+        );
+        [first, second]
     }
     #[inline(always)]
     fn times(self, a: Pair, sums: Self) -> Self {

@@ -20,7 +20,10 @@ impl<T: Element> Level<'_, T> {
             Products::One(_) => one.sums[0].clear(zero),
             Products::Two(_) | Products::Shared(..) => match &mut one.shared {
                 Some(shared) => shared.clear(zero),
-                None => one.sums.iter_mut().for_each(|sums| sums.clear(zero)),
+                None => {
+                    one.sums[0].clear(zero);
+                    one.sums[1].clear(zero);
+                }
             },
         }
         match one.operation {
@@ -217,7 +220,10 @@ impl<T: Element> Level<'_, T> {
     fn of_both(&self, one: &PlacedInstruction<T>) -> [T; 2] {
         match &one.shared {
             Some(shared) => shared.of(self.phase),
-            None => [one.sums[0].of(self.phase), one.sums[1].of(self.phase)],
+            None => {
+                let [first, second] = &one.sums;
+                [first.of(self.phase), second.of(self.phase)]
+            }
         }
     }
 
@@ -228,9 +234,9 @@ impl<T: Element> Level<'_, T> {
             Some(shared) if self.begins => shared.add_first(self.k, a, both),
             Some(shared) => shared.add((self.k, self.phase), a, both),
             None => {
-                for (sums, x) in one.sums.iter_mut().zip(both) {
-                    self.add(sums, [a, x]);
-                }
+                let [first, second] = &mut one.sums;
+                self.add(first, [a, both[0]]);
+                self.add(second, [a, both[1]]);
             }
         }
     }

@@ -10,34 +10,6 @@ use super::element::{Element, Two};
 /// Orders side by side; the first of them is a multiple of it.
 pub(super) const ORDERS: usize = 4;
 
-/// Adds to the sums for the orders from k the products of coefficients from the fourth to before the k-th, which are given.
-///
-/// A macro, and loops in what follows: a closure may be compiled apart, for any processor, and then each product is a call.
-macro_rules! sums_of_older {
-    ($sums:ident, $rows:expr, |$x:ident, $y:ident, $sum:ident| $times:expr) => {{
-        let (a, b) = $rows;
-        let (a, b) = (a.as_chunks::<ORDERS>().0, b.as_chunks::<ORDERS>().0);
-        if let (Some((newest, a)), Some(first)) = (a.split_last(), b.first()) {
-            for (a, b) in a.iter().zip(b.windows(2).rev()) {
-                let b = b.as_flattened();
-                for j in 0..ORDERS {
-                    for i in 0..ORDERS {
-                        let ($x, $y, $sum) = (a[j], b[ORDERS + i - j], $sums[i]);
-                        $sums[i] = $times;
-                    }
-                }
-            }
-            // The newest make products for the later ones of these orders only.
-            for j in 0..ORDERS {
-                for i in j..ORDERS {
-                    let ($x, $y, $sum) = (newest[j], first[i - j], $sums[i]);
-                    $sums[i] = $times;
-                }
-            }
-        }
-    }};
-}
-
 /// The sums for two rows.
 #[derive(Debug, Clone)]
 pub(super) struct Sums<T> {
@@ -75,13 +47,12 @@ impl<T: Element> Sums<T> {
     pub fn add(&mut self, phase: usize, [a, b]: [T; 2]) {
         let [of_a, of_b] = &self.first;
         if let Some(sums) = self.sums[phase + 1..].first_chunk_mut() {
-            match T::sums_with_newest(*sums, [a, b], [of_a, of_b]) {
-                Some(made) => *sums = made,
-                None => {
-                    for j in 0..ORDERS - 1 {
-                        sums[j] = b.mul_add(of_a[j], a.mul_add(of_b[j], sums[j]));
-                    }
-                }
+            if let Some(faster) = T::sums_with_newest(*sums, [a, b], [of_a, of_b]) {
+                *sums = faster;
+                return;
+            }
+            for j in 0..ORDERS - 1 {
+                sums[j] = b.mul_add(of_a[j], a.mul_add(of_b[j], sums[j]));
             }
         }
     }
@@ -106,14 +77,47 @@ impl<T: Element> Sums<T> {
         let mut sums = [a, b, c, zero];
         if k > ORDERS {
             let [a, b] = rows.map(|row| &row[ORDERS..k]);
-            match T::sums_of_older(sums, [a, b]) {
-                Some(made) => sums = made,
-                None => sums_of_older!(sums, (a, b), |a, b, sum| a.mul_add(b, sum)),
-            }
+            sums = match T::sums_of_older(sums, [a, b]) {
+                Some(faster) => faster,
+                None => sums_of_older(
+                    sums,
+                    (a, b),
+                    #[inline(always)]
+                    |a, b, sum| a.mul_add(b, sum),
+                ),
+            };
         }
         let [a, b, c, d] = sums;
         self.sums = [a, b, c, d, zero, zero, zero];
     }
+}
+
+/// The sums for the orders from k, with the products of coefficients from the fourth to before the k-th, which are given.
+#[inline(always)]
+fn sums_of_older<T: Copy, B: Copy>(
+    mut sums: [B; ORDERS],
+    (a, b): (&[T], &[B]),
+    times: impl Fn(T, B, B) -> B,
+) -> [B; ORDERS] {
+    let (a, b) = (a.as_chunks::<ORDERS>().0, b.as_chunks::<ORDERS>().0);
+    let (Some((newest, a)), Some(first)) = (a.split_last(), b.first()) else {
+        return sums;
+    };
+    for (a, b) in a.iter().zip(b.windows(2).rev()) {
+        let b = b.as_flattened();
+        for j in 0..ORDERS {
+            for i in 0..ORDERS {
+                sums[i] = times(a[j], b[ORDERS + i - j], sums[i]);
+            }
+        }
+    }
+    // The newest make products for the later ones of these orders only.
+    for j in 0..ORDERS {
+        for i in j..ORDERS {
+            sums[i] = times(newest[j], first[i - j], sums[i]);
+        }
+    }
+    sums
 }
 
 /// The sums for a row and either of two others, side by side.
@@ -157,6 +161,7 @@ impl<T: Element> SharedSums<T> {
         self.both[k] = both;
         let (of_a, of_both) = &self.first;
         if let Some(sums) = self.sums[phase + 1..].first_chunk_mut::<{ ORDERS - 1 }>() {
+            // A loop: a closure might not be compiled for the processor.
             for j in 0..ORDERS - 1 {
                 sums[j] = both.times(of_a[j], of_both[j].times(a, sums[j]));
             }
@@ -184,8 +189,12 @@ impl<T: Element> SharedSums<T> {
         let zero = T::Two::of([zero; 2]);
         let mut sums = [a, b, c, zero];
         if k > ORDERS {
-            let rows = (&row[ORDERS..k], &self.both[ORDERS..k]);
-            sums_of_older!(sums, rows, |a, both, sum| both.times(a, sum));
+            sums = sums_of_older(
+                sums,
+                (&row[ORDERS..k], &self.both[ORDERS..k]),
+                #[inline(always)]
+                |a, both, sum| both.times(a, sum),
+            );
         }
         let [a, b, c, d] = sums;
         self.sums = [a, b, c, d, zero, zero, zero];
@@ -195,9 +204,6 @@ impl<T: Element> SharedSums<T> {
 /// sum of a_j b_(n-1-j) over j < n, n being the length of both
 #[inline(always)]
 pub(super) fn sum_of_products<T: Element>(a: &[T], b: &[T], zero: T) -> T {
-    let mut sum = zero;
-    for (a, b) in a.iter().zip(b.iter().rev()) {
-        sum = a.mul_add(*b, sum);
-    }
-    sum
+    let all = a.iter().zip(b.iter().rev());
+    all.fold(zero, |sum, (a, b)| a.mul_add(*b, sum))
 }
