@@ -4,7 +4,7 @@ use super::common::synthetic::{Chance, FAST, Making, SLOW, Synthetic};
 use rayon::prelude::*;
 use twinslip::fit::{
     Autoregression, DRIFT, Fit, Intervals, Loss, Motion, Problem, Record, Response, Sliders,
-    Stretch, by_sensitivities, fit, guess,
+    Stretch, fit, guess,
 };
 use twinslip::model::Slider;
 
@@ -112,7 +112,8 @@ fn sensitivities_of_cvodes_say_the_same() {
         let synthetic = Synthetic::new(&making(law), &mut Chance::new(seed as u64));
         let problem = synthetic.problem(&ALL);
         let truth = ALL.map(|name| synthetic.value(name));
-        let difference = by_sensitivities(&problem, &problem.variables(&truth)).expect("a run");
+        let difference =
+            twinslip::fit::by_sensitivities(&problem, &problem.variables(&truth)).expect("a run");
         assert!(difference < 1e-7, "{law}: {difference:e}");
     }
 }
