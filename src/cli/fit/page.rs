@@ -118,8 +118,10 @@ pub fn write(
         "The steady-state friction that follows, with its 95 % band.",
         &law_picture(plan, best)?,
     )?);
+    let file = Path::new(&plan.measured.file);
+    let name = file.file_name().unwrap_or(file.as_os_str());
     let page = Page {
-        title: format!("Fit of {}", plan.measured.file),
+        title: format!("Fit of {}", name.to_string_lossy()),
         lead: object::lines(plan, found, steps),
         facts: vec![
             ("verdict".into(), best.fit.verdict.name().into()),

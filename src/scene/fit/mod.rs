@@ -1,6 +1,8 @@
 //! Fits of laboratory data from options: the record, the motion of the load point, the laws.
 
 mod data;
+mod given;
+mod law;
 mod motion;
 mod options;
 mod plan;
@@ -9,5 +11,6 @@ mod table;
 mod unit;
 
 pub use data::Measured;
+pub use law::LawToFit;
 pub use options::FitOptions;
-pub use plan::{FitPlan, LawToFit, WithProblem};
+pub use plan::{FitPlan, WithProblem};
