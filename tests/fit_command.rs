@@ -352,7 +352,7 @@ fn wrong_input_is_told_in_one_sentence() {
             "one or the other",
         ),
         (format!("fit {good} --report page.txt"), ".html"),
-        ("fit".into(), "DATA"),
+        ("fit".into(), "the file of the record is missing"),
         ("fit nowhere.csv".into(), "nowhere.csv"),
     ] {
         refused_in_one_line(&words, says);
