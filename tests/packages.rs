@@ -84,6 +84,7 @@ fn the_command_has_these_packages() {
 /// Where a feature of the project turns a feature on in a package that the models need, their kernels, which take the compiler longest,
 /// are compiled once more for it.
 #[test]
+#[ignore = "needs the packages of all features, which `cargo fetch --locked` downloads"]
 fn all_features_share_one_build_of_the_models() {
     const EDGES: &[&str] = &["--edges", "normal,build"];
     let version = |line: &str| {
@@ -110,6 +111,7 @@ fn all_features_share_one_build_of_the_models() {
 
 /// Else whoever builds both compiles all twice.
 #[test]
+#[ignore = "needs the packages of the Python package, which `cargo fetch --locked` downloads"]
 fn the_python_package_shares_the_build_of_the_command() {
     const EDGES: &[&str] = &["--edges", "normal,build"];
     let of = |package: &str| tree("{p} [{f}]", &[EDGES, &["--package", package]].concat());
