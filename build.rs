@@ -104,7 +104,10 @@ mod sundials {
                     "the SUNDIALS headers can't be read ({first}): {REMEDY}"
                 ))
             }
-            Ok(Ok(bindings)) => Ok(bindings.to_string()),
+            // As Rust of 2024 has it, which the bindgen that sundials-sys brings does not know.
+            Ok(Ok(bindings)) => Ok(bindings
+                .to_string()
+                .replace("extern \"C\" {", "unsafe extern \"C\" {")),
         }
     }
 

@@ -422,6 +422,46 @@ fn the_field_has_derivatives_in_the_damping() {
     }
 }
 
+/// The derivatives of laws are written out for the series of tangents; the references take them from the recorded formulas.
+#[test]
+fn tangents_of_every_law_are_those_in_31_digits() {
+    let loading = Loading::new(1.0, 0.14).expect("positive");
+    let mut taylor =
+        Taylor::new(Tolerances::equal(1e-15).expect("positive"), MAX_STEPS).expect("a method");
+    let mut reference = Taylor::reference(MAX_STEPS).expect("a method");
+    for name in AnyLaw::NAMES {
+        for eta in [0.0, 1e-4, 1e-2, 1.0] {
+            let law = law(name, eta);
+            let sliding = law.stress(2.0, 0.4);
+            // Slip rates of laws with an exponential alone are positive.
+            let one_sign = ["dieterich-ruina", "slip"].contains(&name);
+            for tau in [sliding, 0.2, -sliding] {
+                if one_sign && tau != sliding {
+                    continue;
+                }
+                let field = two_interfaces(law, loading);
+                let y = State::<3>::new(tau, 0.4_f64.ln(), 0.3_f64.ln());
+                let span = (0.0, 0.2);
+                let of = |taylor: &mut Taylor| {
+                    let made = taylor.derivatives(&*field, span, &y, &[0, 1]);
+                    made.unwrap_or_else(|e| panic!("{name} {eta} {tau}: {e}")).1
+                };
+                let (mine, exact) = (of(&mut taylor), of(&mut reference));
+                let columns = mine.start.iter().chain(&mine.parameters);
+                let others = exact.start.iter().chain(&exact.parameters);
+                for (column, other) in columns.zip(others) {
+                    let size = State::from(*other).amax();
+                    let off = (State::from(*column) - State::from(*other)).amax();
+                    assert!(
+                        off < 1e-13 * size,
+                        "{name} {eta} {tau}: {off:e} of {size:e}"
+                    );
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn cycles_run_over_twelve_decades_of_slip_rate() {
     for name in ["regularised-ageing", "dieterich-ruina", "slip"] {

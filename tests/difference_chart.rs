@@ -23,8 +23,8 @@ fn law() -> Spinodal {
     Parameters::heslot_1994().spinodal()
 }
 
-fn field(driving: f64, stiffness: f64) -> Smooth<DifferenceChart<Spinodal>, 3, 2> {
-    DifferenceChart { law: law() }.at(&Loading::new(driving, stiffness).unwrap())
+fn field(driving: f64, stiffness: f64) -> Smooth<DifferenceChart, 3, 2> {
+    DifferenceChart::new(&law().into()).at(&Loading::new(driving, stiffness).unwrap())
 }
 
 #[test]
@@ -51,9 +51,9 @@ fn the_charts_lead_to_each_other() {
 fn end_states_are_met() {
     let mut met = 0;
     for run in Run::all() {
-        let AnyLaw::Spinodal(law) = run.law else {
+        if !matches!(run.law, AnyLaw::Spinodal(_)) {
             continue;
-        };
+        }
         let Run { start, loading, .. } = &run;
         let swapped = start[1] < start[2];
         let sorted = State::<3>::new(start[0], start[1].max(start[2]), start[1].min(start[2]));
@@ -64,7 +64,7 @@ fn end_states_are_met() {
         if run.name == "C_K0.01_VH0.2, t = 15000" {
             continue;
         }
-        let field = DifferenceChart { law }.at(loading);
+        let field = DifferenceChart::new(&run.law).at(loading);
         let x = taylor(1e-15)
             .flow(&field, (0.0, run.end_time), &x, None)
             .unwrap();

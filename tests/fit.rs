@@ -185,8 +185,18 @@ fn on_a_stiff_spring_friction_is_a_closed_form() {
 }
 
 #[test]
-fn a_clean_record_gives_its_parameters_back_from_starts_off_by_five() {
-    let count = 100;
+fn a_clean_record_gives_its_parameters_back_from_a_start_off_by_five() {
+    clean_records_give_their_parameters_back(20, 1);
+}
+
+#[test]
+#[ignore = "takes minutes"]
+fn clean_records_give_their_parameters_back_in_98_of_100() {
+    clean_records_give_their_parameters_back(100, 2);
+}
+
+/// So many records, of which this many may fail.
+fn clean_records_give_their_parameters_back(count: u64, may_fail: usize) {
     let failed: Vec<String> = (0..count)
         .into_par_iter()
         .filter_map(|seed| {
@@ -223,7 +233,7 @@ fn a_clean_record_gives_its_parameters_back_from_starts_off_by_five() {
         })
         .collect();
     assert!(
-        failed.len() <= 2,
+        failed.len() <= may_fail,
         "{} of {count}:\n{}",
         failed.len(),
         failed.join("\n")
@@ -246,8 +256,22 @@ fn judged(making: &Making, free: &[&str], seed: u64) -> Vec<(bool, f64)> {
     each.collect()
 }
 
+/// In fifty fits, whose coverage is known to some 2 per cent and each mean error to 0.14.
 #[test]
+fn intervals_hold_the_truth_as_often_as_they_say() {
+    intervals_hold_the_truth(10, (0.90, 0.99), 0.45);
+}
+
+#[test]
+#[ignore = "takes minutes"]
 fn intervals_hold_the_truth_in_93_to_97_of_100() {
+    // A mean of 500 is known to 0.045.
+    intervals_hold_the_truth(100, (0.93, 0.97), 0.1);
+}
+
+/// So many fits of each kind of record: the part of the intervals that hold the truth is between these, and the mean error of each
+/// parameter, in standard errors, below this.
+fn intervals_hold_the_truth(each: u64, coverage: (f64, f64), bias: f64) {
     let white = |law| Making {
         noise: 0.03,
         ..making(law)
@@ -287,7 +311,6 @@ fn intervals_hold_the_truth_in_93_to_97_of_100() {
             ],
         ),
     ];
-    let each = 100;
     let cases: Vec<(usize, u64)> = (0..kinds.len())
         .flat_map(|kind| (0..each).map(move |seed| (kind, 1000 * (kind as u64 + 1) + seed)))
         .collect();
@@ -310,13 +333,12 @@ fn intervals_hold_the_truth_in_93_to_97_of_100() {
     let flat = || all.iter().flat_map(|(_, each)| each);
     let count = flat().count() as f64;
     let held = flat().filter(|(held, _)| *held).count() as f64 / count;
-    assert!((0.93..=0.97).contains(&held), "{held}");
-    // In standard errors, of each parameter: a mean of 500 is known to 0.045.
+    assert!((coverage.0..=coverage.1).contains(&held), "{held}");
     for (place, name) in ALL.iter().enumerate() {
         let of = || all.iter().map(|(_, each)| each[place].1);
-        let bias = of().sum::<f64>() / all.len() as f64;
-        println!("{name}: bias {bias}");
-        assert!(bias.abs() < 0.1, "{name}: {bias}");
+        let mean = of().sum::<f64>() / all.len() as f64;
+        println!("{name}: bias {mean}");
+        assert!(mean.abs() < bias, "{name}: {mean}");
     }
 }
 

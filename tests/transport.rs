@@ -150,7 +150,7 @@ fn two_interfaces_are_transported() {
     check_flow(&*field, [y[0], y[1], y[2]], 20.0, 1e-2);
     let x = to_difference_chart(&y).unwrap();
     check_flow(
-        &DifferenceChart { law }.at(&loading),
+        &DifferenceChart::new(&law.into()).at(&loading),
         [x[0], x[1], x[2]],
         20.0,
         1e-2,

@@ -1,7 +1,7 @@
 //! What interfaces are made of, eight side by side: the constants of their laws, and which formulas these are.
 
 use crate::error::{Error, Result};
-use crate::friction::{AnyLaw, Law, positive};
+use crate::friction::{AgeingForm, AnyLaw, Law, positive};
 
 /// Interfaces in a block.
 pub(super) const LANES: usize = 8;
@@ -94,32 +94,28 @@ impl Single {
         if !(one.damping >= 0.0 && one.damping.is_finite()) {
             return Err(Error::parameter("damping", one.damping, "0 or more"));
         }
-        let common = |exponential: bool, beta: f64, gamma0: f64| Single {
-            exponential,
-            slip: false,
-            beta,
-            factor: if exponential { 0.5 * gamma0 } else { gamma0 },
-            strength: [0.0, 1.0],
-            healing: [0.0; 2],
-            per_length: 1.0 / one.slip_length,
-            stress_factor,
-            damping: stress_factor * one.damping,
-        };
-        if let Some(law) = one.law.slip_form() {
-            return Ok(Single {
-                slip: true,
-                ..common(true, law.beta, law.gamma0)
-            });
-        }
-        let form = one.law.ageing_form().filter(|_| one.law.damping() == 0.0);
+        let form = one.law.form().filter(|form| form.damping == 0.0);
         let form = form.ok_or_else(|| {
             let what = "spinodal, bounded, regularised-ageing, dieterich-ruina or slip, with its damping beside it";
             Error::parameter("the law of many interfaces", one.law.name(), what)
         })?;
+        let AgeingForm {
+            strength,
+            healing,
+            beta,
+            gamma0,
+            exponential,
+        } = form.ageing;
         Ok(Single {
-            strength: form.strength,
-            healing: form.healing,
-            ..common(form.exponential, form.beta, form.gamma0)
+            exponential,
+            slip: form.slip_law,
+            beta,
+            factor: if exponential { 0.5 * gamma0 } else { gamma0 },
+            strength,
+            healing: if form.slip_law { [0.0; 2] } else { healing },
+            per_length: 1.0 / one.slip_length,
+            stress_factor,
+            damping: stress_factor * one.damping,
         })
     }
 

@@ -1,7 +1,7 @@
 //! The paper's first proposal, equations (6) and (9): healing saturates after the time t**, so the state stays in (0, 1] and
 //! a steady maximum of friction appears at V_M (7). It is the limit of the spinodal law (35) for c = 0, whose formulas serve.
 
-use super::{AgeingForm, Formulas, Law, Parameters, Spinodal};
+use super::{Formulas, Law, LawForm, Parameters, Spinodal};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v [(1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -81,12 +81,7 @@ impl<C: Constant> Formulas<C> for Bounded<C> {
 }
 
 impl Law for Bounded {
-    type Core = Spinodal;
     type Freed<T: Real> = Bounded<Free<T>>;
-
-    fn core(&self) -> Spinodal {
-        self.as_limit()
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Bounded<Free<T>> {
         constants.bounded()
@@ -106,8 +101,8 @@ impl Law for Bounded {
         ]
     }
 
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        self.as_limit().ageing_form()
+    fn form(&self) -> Option<LawForm> {
+        self.as_limit().form()
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

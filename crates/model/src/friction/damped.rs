@@ -6,7 +6,7 @@
 //!
 //! Rice, J. R. (1993). Spatio-temporal complexity of slip on a fault. J. Geophys. Res. 98, 9885-9907.
 
-use super::{Formulas, Law, Parameters, Undamped, steady_log_slope, with_undamped};
+use super::{Formulas, Law, LawForm, Parameters, Undamped, steady_log_slope, with_undamped};
 use crate::number::{Balance, Constant, Free, Jet, Real, With, bracketed_root};
 
 /// tau = F(v, psi) + eta v, dpsi/dt = -G(v, psi), with F and G of another law.
@@ -83,12 +83,7 @@ impl<C: Constant> Formulas<C> for Damped<C> {
 }
 
 impl Law for Damped {
-    type Core = Damped;
     type Freed<T: Real> = Damped<Free<T>>;
-
-    fn core(&self) -> Damped {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Damped<Free<T>> {
         self.of_kind(constants)
@@ -167,6 +162,14 @@ impl Law for Damped {
     // The slip rate keeps the sign of the stress.
     fn lasts(&self) -> bool {
         with_undamped!(self.law, self.constants, law => law.lasts())
+    }
+
+    fn form(&self) -> Option<LawForm> {
+        let form = with_undamped!(self.law, self.constants, law => law.form())?;
+        Some(LawForm {
+            damping: self.constants.damping,
+            ..form
+        })
     }
 
     fn transition_rate(&self) -> Option<f64> {

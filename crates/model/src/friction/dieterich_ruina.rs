@@ -1,6 +1,6 @@
 //! The Dieterich-Ruina law with the ageing evolution, equations (4) and (8). Velocity weakening throughout for beta > 1.
 
-use super::{AgeingForm, Formulas, Law, Parameters};
+use super::{AgeingForm, Formulas, Law, LawForm, Parameters};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = 1 - v psi, with psi in L/V*.
@@ -69,13 +69,7 @@ impl<C: Constant> Formulas<C> for DieterichRuina<C> {
 }
 
 impl Law for DieterichRuina {
-    type Core = DieterichRuina;
     type Freed<T: Real> = DieterichRuina<Free<T>>;
-    const UNROLLED: bool = true;
-
-    fn core(&self) -> DieterichRuina {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> DieterichRuina<Free<T>> {
         constants.dieterich_ruina()
@@ -95,11 +89,12 @@ impl Law for DieterichRuina {
         ]
     }
 
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        Some(AgeingForm {
+    fn form(&self) -> Option<LawForm> {
+        let form = AgeingForm {
             exponential: true,
             ..AgeingForm::of_ageing(self.beta, self.gamma0)
-        })
+        };
+        Some(form.into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

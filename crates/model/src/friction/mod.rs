@@ -11,6 +11,7 @@ mod bounded;
 mod damped;
 mod dieterich_ruina;
 mod direct;
+mod form;
 mod regularised_ageing;
 mod rounding;
 mod scaled;
@@ -20,6 +21,8 @@ mod steady;
 mod unequal;
 
 pub use damped::Damped;
+pub(crate) use form::Slopes;
+pub use form::{AgeingForm, LawForm};
 #[doc(hidden)]
 pub use rounding::{Rounded, effects, rounding};
 pub use scaled::ScaledLaw;
@@ -65,18 +68,8 @@ pub trait Formulas<C = f64> {
 
 /// A friction law: its formulas, and what is known of it.
 pub trait Law: Formulas + Copy + Debug + Send + Sync {
-    /// The law whose formulas this one's are: itself, or that of which it is a special case. Machine code is made for each of
-    /// these only.
-    type Core: Law;
-
     /// The law with constants that are numbers, in which its formulas then have derivatives.
     type Freed<T: Real>: Formulas<Free<T>>;
-
-    /// Whether its power series are compiled order by order: those of the laws that the paper computes with are.
-    const UNROLLED: bool = false;
-
-    /// This law as one of those.
-    fn core(&self) -> Self::Core;
 
     /// A law of this kind with these constants, as far as it has them.
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Self::Freed<T>;
@@ -115,81 +108,14 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
         false
     }
 
-    /// The law as a power of a linear strength whose state ages, where it is that.
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        None
-    }
-
-    /// The constants of a law whose state obeys the slip law; `None` where another one.
-    fn slip_form(&self) -> Option<SlipForm> {
+    /// The law in the constants that its power series are made from; `None` where these are recorded from its formulas.
+    fn form(&self) -> Option<LawForm> {
         None
     }
 
     /// V_T = V*/c, where high-velocity strengthening sets in (Weeks 1993).
     fn transition_rate(&self) -> Option<f64> {
         None
-    }
-}
-
-/// v = (gamma0/2) e^tau psi^(-beta), dpsi/dt = -v psi ln(v psi).
-#[derive(Debug, Clone, Copy)]
-pub struct SlipForm {
-    /// beta
-    pub beta: f64,
-    /// gamma0
-    pub gamma0: f64,
-}
-
-/// v = s(tau) (a_0 + a_1 psi)^(-beta), dpsi/dt = g_0 + g_1 psi - |v| psi.
-#[derive(Debug, Clone, Copy)]
-pub struct AgeingForm {
-    /// a_0 and a_1.
-    pub strength: [f64; 2],
-    /// g_0 and g_1.
-    pub healing: [f64; 2],
-    /// beta
-    pub beta: f64,
-    /// gamma0: s = gamma0 e^tau / 2, and the same less gamma0 e^(-tau) / 2.
-    pub gamma0: f64,
-    /// Whether s is the exponential alone.
-    pub exponential: bool,
-}
-
-impl AgeingForm {
-    /// v = gamma0 sinh(tau) psi^(-beta), dpsi/dt = 1 - |v| psi.
-    fn of_ageing(beta: f64, gamma0: f64) -> Self {
-        AgeingForm {
-            strength: [0.0, 1.0],
-            healing: [1.0, 0.0],
-            beta,
-            gamma0,
-            exponential: false,
-        }
-    }
-}
-
-#[cfg(target_arch = "x86_64")]
-impl AgeingForm {
-    /// s(tau)
-    #[inline(always)]
-    pub(crate) fn activation<T: Real>(&self, tau: T) -> T {
-        if self.exponential {
-            tau.exp() * (0.5 * self.gamma0)
-        } else {
-            tau.sinh() * self.gamma0
-        }
-    }
-
-    /// v
-    #[inline(always)]
-    pub(crate) fn slip_rate<T: Real>(&self, activation: T, psi: T) -> T {
-        activation * (psi * self.strength[1] + self.strength[0]).powf(-self.beta)
-    }
-
-    /// dpsi/dt
-    #[inline(always)]
-    pub(crate) fn evolution<T: Real>(&self, v: T, psi: T) -> T {
-        psi * self.healing[1] + self.healing[0] - v.abs() * psi
     }
 }
 
@@ -327,6 +253,12 @@ macro_rules! laws {
             Damped(Damped<C>),
         }
 
+        $(impl From<$law> for AnyLaw {
+            fn from(law: $law) -> Self {
+                AnyLaw::$law(law)
+            }
+        })+
+
         /// A law without damping, by its name alone.
         #[derive(Debug, Clone, Copy, PartialEq)]
         enum Undamped {
@@ -402,6 +334,12 @@ laws! { $
 pub(crate) use with_law;
 use with_undamped;
 
+impl From<Damped> for AnyLaw {
+    fn from(law: Damped) -> Self {
+        AnyLaw::Damped(law)
+    }
+}
+
 impl AnyLaw {
     /// The name by which the command line knows this law.
     pub fn name(&self) -> &'static str {
@@ -434,11 +372,7 @@ impl<C: Constant> Formulas<C> for AnyLaw<C> {
 }
 
 impl Law for AnyLaw {
-    type Core = AnyLaw;
     type Freed<T: Real> = AnyLaw<Free<T>>;
-    fn core(&self) -> AnyLaw {
-        *self
-    }
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> AnyLaw<Free<T>> {
         self.of_kind(constants)
     }
@@ -466,11 +400,8 @@ impl Law for AnyLaw {
     fn lasts(&self) -> bool {
         with_law!(self, law => law.lasts())
     }
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        with_law!(self, law => law.ageing_form())
-    }
-    fn slip_form(&self) -> Option<SlipForm> {
-        with_law!(self, law => law.slip_form())
+    fn form(&self) -> Option<LawForm> {
+        with_law!(self, law => law.form())
     }
     fn transition_rate(&self) -> Option<f64> {
         with_law!(self, law => law.transition_rate())

@@ -1,6 +1,6 @@
 //! The regularised Dieterich-Ruina law, equation (5) (Lapusta et al. 2000), with the ageing evolution of (4).
 
-use super::{AgeingForm, Formulas, Law, Parameters, direct};
+use super::{AgeingForm, Formulas, Law, LawForm, Parameters, direct};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v psi^beta / gamma0), dpsi/dt = 1 - |v| psi, with psi in L/V*.
@@ -64,12 +64,7 @@ impl<C: Constant> Formulas<C> for RegularisedAgeing<C> {
 }
 
 impl Law for RegularisedAgeing {
-    type Core = RegularisedAgeing;
     type Freed<T: Real> = RegularisedAgeing<Free<T>>;
-
-    fn core(&self) -> RegularisedAgeing {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> RegularisedAgeing<Free<T>> {
         constants.regularised_ageing()
@@ -89,8 +84,8 @@ impl Law for RegularisedAgeing {
         ]
     }
 
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        Some(AgeingForm::of_ageing(self.beta, self.gamma0))
+    fn form(&self) -> Option<LawForm> {
+        Some(AgeingForm::of_ageing(self.beta, self.gamma0).into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -103,12 +103,7 @@ impl<C: Constant> Formulas<C> for ScaledLaw<C> {
 }
 
 impl Law for ScaledLaw {
-    type Core = ScaledLaw;
     type Freed<T: Real> = ScaledLaw<Free<T>>;
-
-    fn core(&self) -> ScaledLaw {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> ScaledLaw<Free<T>> {
         ScaledLaw {

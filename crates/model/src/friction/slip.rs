@@ -2,7 +2,7 @@
 //!
 //! Ruina, A. (1983). Slip instability and state variable friction laws. J. Geophys. Res. 88, 10359-10370.
 
-use super::{DieterichRuina, Formulas, Law, Parameters, SlipForm};
+use super::{DieterichRuina, Formulas, Law, LawForm, Parameters};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = a_v/a + ln v + beta ln psi, dpsi/dt = -v psi ln(v psi), with psi in L/V*.
@@ -77,12 +77,7 @@ impl<C: Constant> Formulas<C> for Slip<C> {
 }
 
 impl Law for Slip {
-    type Core = Slip;
     type Freed<T: Real> = Slip<Free<T>>;
-
-    fn core(&self) -> Slip {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Slip<Free<T>> {
         constants.slip()
@@ -102,10 +97,10 @@ impl Law for Slip {
         ]
     }
 
-    fn slip_form(&self) -> Option<SlipForm> {
-        Some(SlipForm {
-            beta: self.beta,
-            gamma0: self.gamma0,
+    fn form(&self) -> Option<LawForm> {
+        self.direct_effect().form().map(|form| LawForm {
+            slip_law: true,
+            ..form
         })
     }
 

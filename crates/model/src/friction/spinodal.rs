@@ -1,7 +1,7 @@
 //! The spinodal law, equation (35): the bounded law with a residual strength c that makes friction strengthen again at high
 //! slip rates. Its steady stress (36) rises to V_M, falls to V_m and rises again.
 
-use super::{AgeingForm, Formulas, Law, Parameters, direct};
+use super::{AgeingForm, Formulas, Law, LawForm, Parameters, direct};
 use crate::number::{Constant, Free, Real, With};
 
 /// tau = asinh(v [c + (1+R) psi]^beta / gamma0), dpsi/dt = (1 - psi)/R - |v| psi.
@@ -81,13 +81,7 @@ impl<C: Constant> Formulas<C> for Spinodal<C> {
 }
 
 impl Law for Spinodal {
-    type Core = Spinodal;
     type Freed<T: Real> = Spinodal<Free<T>>;
-    const UNROLLED: bool = true;
-
-    fn core(&self) -> Spinodal {
-        *self
-    }
 
     fn freed<T: Real>(&self, constants: Parameters<Free<T>>) -> Spinodal<Free<T>> {
         constants.spinodal()
@@ -107,14 +101,15 @@ impl Law for Spinodal {
         ]
     }
 
-    fn ageing_form(&self) -> Option<AgeingForm> {
-        Some(AgeingForm {
+    fn form(&self) -> Option<LawForm> {
+        let form = AgeingForm {
             strength: [self.c, 1.0 + self.r],
             healing: [1.0 / self.r, -1.0 / self.r],
             beta: self.beta,
             gamma0: self.gamma0,
             exponential: false,
-        })
+        };
+        Some(form.into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

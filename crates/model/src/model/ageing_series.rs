@@ -21,10 +21,9 @@
 //! memory is what limits them.
 
 use super::Loading;
-use super::series::{Interfaces, Motion, PairStep, stepper};
+use super::series::{Interfaces, PairStep, stepper};
 use super::tangent::{Linearised, LinearisedInterfaces, jacobian_of_rows};
 use crate::friction::AgeingForm;
-use crate::number::Real;
 use crate::series::{
     Accuracy, ByFormula, Element, Four, JacobianTerm, MAX_ORDER, ONE_OVER, Pair, ROOM, Recurrences,
     Stepper, WATCHED, avx512,
@@ -41,21 +40,6 @@ const BLOCK: usize = 4;
 const TAU: usize = 0;
 const PSI: usize = 1;
 const SLIP_RATE: usize = 2;
-
-impl Motion for AgeingForm {
-    const UNROLLED: bool = false;
-
-    #[inline(always)]
-    fn activation<T: Real>(&self, tau: T) -> T {
-        AgeingForm::activation(self, tau)
-    }
-
-    #[inline(always)]
-    fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T) {
-        let v = self.slip_rate(activation, psi);
-        (v, self.evolution(v, psi))
-    }
-}
 
 /// Two interfaces of such a law.
 type AgeingInterfaces = Interfaces<Pair, AgeingForm>;

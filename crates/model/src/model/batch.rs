@@ -7,7 +7,7 @@ use crate::series::{Accuracy, Expansion};
 use {
     super::ageing_lanes::AgeingLanes,
     super::lanes::{Lanes, Wide},
-    crate::friction::{AgeingForm, Law, with_law},
+    crate::friction::{AgeingForm, Law, LawForm},
     crate::series::{ByFormula, Eight, Four},
 };
 
@@ -34,18 +34,18 @@ pub trait BatchSolution: Send {
     fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>);
 }
 
-/// As many lanes as this processor has, compiled for this law; `None` where it has none.
+/// As many lanes as this processor has, in which this law has series; `None` where there are none.
 #[doc(hidden)]
 pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = crate::series::avx512() {
             let zero = Eight::new(simd, [0.0; 8]);
-            return Some(with_law!(law, law => lanes(simd, law.core(), zero)));
+            return Some(lanes(simd, law.form()?, zero));
         }
         if let Some(simd) = crate::series::avx2() {
             let zero = Four::new(simd, [0.0; 4]);
-            return Some(with_law!(law, law => lanes(simd, law.core(), zero)));
+            return Some(lanes(simd, law.form()?, zero));
         }
     }
     let _ = law;
@@ -54,13 +54,13 @@ pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
 
 /// By the recurrences that the law has of its own, or by its formula.
 #[cfg(target_arch = "x86_64")]
-fn lanes<S, E: Wide, L: Law>(simd: S, law: L, zero: E) -> Box<dyn BatchSolution>
+fn lanes<S, E: Wide>(simd: S, form: LawForm, zero: E) -> Box<dyn BatchSolution>
 where
     Lanes<S, E, AgeingForm, AgeingLanes<E>>: BatchSolution + 'static,
-    Lanes<S, E, L, ByFormula>: BatchSolution + 'static,
+    Lanes<S, E, LawForm, ByFormula>: BatchSolution + 'static,
 {
-    match law.ageing_form() {
+    match form.undamped_ageing() {
         Some(form) => Box::new(Lanes::new(simd, form, zero, AgeingLanes::new(zero))),
-        None => Box::new(Lanes::new(simd, law, zero, ByFormula)),
+        None => Box::new(Lanes::new(simd, form, zero, ByFormula)),
     }
 }

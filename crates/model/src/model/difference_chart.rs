@@ -9,7 +9,7 @@
 
 use super::{Driven, Loading, Parameter, Smooth, stress_rate};
 use crate::field::State;
-use crate::friction::Law;
+use crate::friction::{AnyLaw, Law, LawForm};
 use crate::number::{Difference, Real};
 use crate::series::Equations;
 #[cfg(target_arch = "x86_64")]
@@ -21,12 +21,21 @@ use crate::series::Tangent;
 /// For tau of one sign: series take the sign of the slip rates at the beginning of a step. With the slip law, whose evolution
 /// takes the logarithm of v psi, digits are lost where v_1 psi_1 is far below v_2 psi_2; with the others nowhere.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct DifferenceChart<L> {
+pub struct DifferenceChart {
     /// The law of both interfaces.
-    pub law: L,
+    form: LawForm,
+    lasting: Option<&'static str>,
 }
 
-impl<L: Law> DifferenceChart<L> {
+impl DifferenceChart {
+    /// With this law for both interfaces.
+    pub fn new(law: &AnyLaw) -> Self {
+        DifferenceChart {
+            form: law.form().expect("every law alone has a form"),
+            lasting: law.lasts().then(|| law.name()),
+        }
+    }
+
     /// The field at a loading.
     pub fn at(self, loading: &Loading) -> Smooth<Self, 3, 2> {
         Smooth {
@@ -36,7 +45,7 @@ impl<L: Law> DifferenceChart<L> {
     }
 }
 
-impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
+impl Equations<3, 2> for DifferenceChart {
     const PARAMETERS: [&'static str; 2] = Parameter::LOADING;
 
     #[inline(always)]
@@ -47,11 +56,11 @@ impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
     ) -> [T; 3] {
         let (second, gap) = (log_second.exp(), log_gap.exp());
         let psi = Difference::ordered(second + gap, second, gap);
-        let activation = self.law.activation(tau);
+        let activation = self.form.activation(tau);
         // The stress is the same in both.
         let activation = Difference::ordered(activation, activation, T::constant(0.0));
-        let v = self.law.slip_rate(activation, psi);
-        let rate = self.law.evolution(v, psi);
+        let v = self.form.slip_rate(activation, psi);
+        let rate = self.form.evolution(v, psi);
         [
             stress_rate((driving, stiffness), v.first + v.second),
             rate.second / second,
@@ -66,11 +75,11 @@ impl<L: Law> Equations<3, 2> for DifferenceChart<L> {
         free: &[usize],
     ) -> Option<Box<dyn Tangent<3>>> {
         let loading = Loading { driving, stiffness };
-        super::difference_tangent::tangent(self.law.ageing_form()?, loading, free)
+        super::difference_tangent::tangent(self.form.undamped_ageing()?, loading, free)
     }
 
     fn lasting(&self) -> Option<&'static str> {
-        self.law.lasts().then(|| self.law.name())
+        self.lasting
     }
 }
 
@@ -95,10 +104,10 @@ pub fn from_difference_chart(x: &State<3>) -> State<3> {
     State::<3>::new(x[0], x[1] + ratio, x[1])
 }
 
-impl<L: Law> Driven<3> for Smooth<DifferenceChart<L>, 3, 2> {
+impl Driven<3> for Smooth<DifferenceChart, 3, 2> {
     fn slip_rates(&self, x: &State<3>) -> [f64; 2] {
-        let law = &self.equations.law;
+        let form = &self.equations.form;
         let (second, gap) = (x[1].exp(), x[2].exp());
-        [second + gap, second].map(|psi| law.slip_rate(law.activation(x[0]), psi))
+        [second + gap, second].map(|psi| form.slip_rate(form.activation(x[0]), psi))
     }
 }

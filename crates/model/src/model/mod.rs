@@ -160,7 +160,7 @@ pub fn two_interfaces(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
 
 /// Two interfaces (19) in (tau, ln psi_2, ln(psi_1 - psi_2)) with a law chosen at run time.
 pub fn interfaces_in_difference_chart(law: AnyLaw, loading: Loading) -> Box<dyn Driven<3>> {
-    with_law!(law, law => Box::new(DifferenceChart { law: law.core() }.at(&loading)))
+    Box::new(DifferenceChart::new(&law).at(&loading))
 }
 
 /// The symmetric subspace of (19) with a law chosen at run time.

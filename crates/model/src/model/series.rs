@@ -4,7 +4,7 @@
 //! subspace, and one interface is two equal ones driven twice as fast by a spring half as stiff, so one code serves all.
 
 use super::{Loading, stress_rate};
-use crate::friction::{Formulas, Law};
+use crate::friction::{AgeingForm, LawForm, Slopes};
 use crate::number::{DoubleDouble, Real};
 use crate::series::{
     Accuracy, Both, Element, Expansion, Formula, ONE_OVER, Order, Rates, Series, Solution, Stepper,
@@ -19,28 +19,42 @@ use {
 
 /// What an interface does under a stress: all that series take of a law.
 pub(super) trait Motion: Copy {
-    /// As [`Law::UNROLLED`].
-    const UNROLLED: bool;
+    /// Whether series are compiled order by order, and not made in loops.
+    const UNROLLED: bool = false;
     /// s(tau), which all interfaces under this stress share.
     fn activation<T: Real>(&self, tau: T) -> T;
     /// v and dpsi/dt.
     fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T);
+    /// These at tau and psi with their derivatives.
+    fn slopes<T: Real>(&self, tau: T, psi: T) -> Slopes<T>;
 }
 
-impl<L: Law> Motion for L {
-    const UNROLLED: bool = L::UNROLLED;
+macro_rules! motion_of_form {
+    ($form:ident, $unrolled:expr) => {
+        impl Motion for $form {
+            const UNROLLED: bool = $unrolled;
 
-    #[inline(always)]
-    fn activation<T: Real>(&self, tau: T) -> T {
-        Formulas::activation(self, tau)
-    }
+            #[inline(always)]
+            fn activation<T: Real>(&self, tau: T) -> T {
+                $form::activation(self, tau)
+            }
 
-    #[inline(always)]
-    fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T) {
-        let v = self.slip_rate(activation, psi);
-        (v, self.evolution(v, psi))
-    }
+            #[inline(always)]
+            fn motion<T: Real>(&self, activation: T, psi: T) -> (T, T) {
+                let v = self.slip_rate(activation, psi);
+                (v, self.evolution(v, psi))
+            }
+
+            #[inline(always)]
+            fn slopes<T: Real>(&self, tau: T, psi: T) -> Slopes<T> {
+                LawForm::from(*self).slopes(tau, psi)
+            }
+        }
+    };
 }
+motion_of_form!(LawForm, false);
+// Where there are vector instructions it has recurrences of its own.
+motion_of_form!(AgeingForm, cfg!(not(target_arch = "x86_64")));
 
 /// Both interfaces in the lanes of E, variables (tau, psi).
 #[derive(Debug, Clone, Copy)]
@@ -51,7 +65,7 @@ pub(super) struct Interfaces<E, L> {
 }
 
 impl<E: Element, L: Motion> Formula<E, 2> for Interfaces<E, L> {
-    const UNROLLED: bool = E::UNROLLED && L::UNROLLED && cfg!(not(target_arch = "x86_64"));
+    const UNROLLED: bool = E::UNROLLED && L::UNROLLED;
     // |v| has a kink where v = 0, which is where tau = 0.
     const KINK: Option<usize> = Some(0);
 
@@ -78,17 +92,16 @@ impl<E: Element, L: Motion> Formula<E, 2> for Interfaces<E, L> {
     }
 }
 
-#[cfg(target_arch = "x86_64")]
-type PairStepper<L> = Stepper<Pair, Interfaces<Pair, L>, 2>;
-type PlainStepper<L> = Stepper<Both<f64>, Interfaces<Both<f64>, L>, 2>;
-
 /// A solution in N = 2 or 3 dimensions, in the best arithmetic of this processor.
-pub(super) enum SeriesSolution<L> {
+pub(super) enum SeriesSolution {
     #[cfg(target_arch = "x86_64")]
-    Pair(V3, PairStepper<L>),
+    Pair(V3, Stepper<Pair, Interfaces<Pair, LawForm>, 2>),
     #[cfg(target_arch = "x86_64")]
     Ageing(AgeingSolution),
-    Plain(PlainStepper<L>),
+    /// Compiled order by order.
+    #[cfg(not(target_arch = "x86_64"))]
+    Unrolled(Stepper<Both<f64>, Interfaces<Both<f64>, AgeingForm>, 2>),
+    Plain(Stepper<Both<f64>, Interfaces<Both<f64>, LawForm>, 2>),
 }
 
 /// The same expression for every variant, `$s` its stepper.
@@ -99,22 +112,29 @@ macro_rules! each {
             SeriesSolution::Pair(_, $s) => $body,
             #[cfg(target_arch = "x86_64")]
             SeriesSolution::Ageing(AgeingSolution { stepper: $s, .. }) => $body,
+            #[cfg(not(target_arch = "x86_64"))]
+            SeriesSolution::Unrolled($s) => $body,
             SeriesSolution::Plain($s) => $body,
         }
     };
 }
 
-impl<L: Law> SeriesSolution<L> {
-    pub fn new(law: L, loading: &Loading) -> Self {
+impl SeriesSolution {
+    pub fn new(form: LawForm, loading: &Loading) -> Self {
         #[cfg(target_arch = "x86_64")]
         if let Some(simd) = crate::series::avx2() {
-            if let Some(form) = law.ageing_form() {
+            if let Some(form) = form.undamped_ageing() {
                 return SeriesSolution::Ageing(AgeingSolution::new(form, loading, simd));
             }
             let zero = Pair::new(simd, [0.0; 2]);
-            return SeriesSolution::Pair(simd, stepper(law, loading, zero));
+            return SeriesSolution::Pair(simd, stepper(form, loading, zero));
         }
-        SeriesSolution::Plain(stepper(law, loading, Both([0.0; 2])))
+        let zero = Both([0.0; 2]);
+        #[cfg(not(target_arch = "x86_64"))]
+        if let Some(form) = form.undamped_ageing() {
+            return SeriesSolution::Unrolled(stepper(form, loading, zero));
+        }
+        SeriesSolution::Plain(stepper(form, loading, zero))
     }
 }
 
@@ -161,7 +181,7 @@ where
     }
 }
 
-impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
+impl<const N: usize> Solution<N> for SeriesSolution {
     fn order(&self, rtol: f64) -> usize {
         match self {
             #[cfg(target_arch = "x86_64")]
@@ -182,6 +202,10 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
             SeriesSolution::Ageing(AgeingSolution { simd, stepper, .. }) => {
                 let tau = Pair::new(*simd, [y[0]; 2]);
                 stepper.start([tau, Pair::new(*simd, log_states.map(f64::exp))]);
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            SeriesSolution::Unrolled(stepper) => {
+                stepper.start([Both([y[0]; 2]), Both(log_states.map(f64::exp))]);
             }
             SeriesSolution::Plain(stepper) => {
                 stepper.start([Both([y[0]; 2]), Both(log_states.map(f64::exp))]);
@@ -205,6 +229,10 @@ impl<L: Law, const N: usize> Solution<N> for SeriesSolution<L> {
             #[cfg(target_arch = "x86_64")]
             SeriesSolution::Ageing(solution) => {
                 DoubleDouble::from(solution.advance(accuracy, limit.hi()))
+            }
+            #[cfg(not(target_arch = "x86_64"))]
+            SeriesSolution::Unrolled(stepper) => {
+                DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())
             }
             SeriesSolution::Plain(stepper) => {
                 DoubleDouble::from(stepper.advance(accuracy, Both([limit.hi(); 2])).first())

@@ -1,10 +1,11 @@
 //! One interface, equation (11).
 
+use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::slab::Slab;
 use super::{Driven, Loading};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
-use crate::friction::Law;
+use crate::friction::{AnyLaw, Law};
 use crate::series::Equations;
 
 /// dtau/dt = K (V_H - v), dw/dt = g(v, w)  (11), in the state (tau, w), w = ln psi.
@@ -24,10 +25,14 @@ impl<L: Law> SingleInterface<L> {
     }
 }
 
-impl<L: Law> VectorField<2> for SingleInterface<L> {
+impl<L: Law + Into<AnyLaw>> VectorField<2> for SingleInterface<L> {
     fn f(&self, y: &State<2>) -> State<2> {
         let Loading { driving, stiffness } = self.loading;
-        State::from(self.equations().rates(y.data.0[0], [driving, stiffness]))
+        let equations = Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        };
+        State::from(equations.rates(y.data.0[0], [driving, stiffness]))
     }
 
     fn jacobian(&self, y: &State<2>) -> Jacobian<2> {
@@ -64,11 +69,9 @@ impl<L: Law> VectorField<2> for SingleInterface<L> {
     }
 }
 
-impl<L: Law> Slab<2> for SingleInterface<L> {
-    type Law = L;
-
-    fn law(&self) -> L {
-        self.law
+impl<L: Law + Into<AnyLaw>> Slab<2> for SingleInterface<L> {
+    fn law(&self) -> AnyLaw {
+        self.law.into()
     }
 
     fn loading(&self) -> Loading {
@@ -81,7 +84,7 @@ impl<L: Law> Slab<2> for SingleInterface<L> {
     }
 }
 
-impl<L: Law> Driven<2> for SingleInterface<L> {
+impl<L: Law + Into<AnyLaw>> Driven<2> for SingleInterface<L> {
     fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
         [self.law.slip_rate(self.law.activation(y[0]), y[1].exp()); 2]
     }

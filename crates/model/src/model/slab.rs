@@ -5,24 +5,21 @@ use super::series::SeriesSolution;
 use super::tangent::tangent;
 use super::{Loading, Parameter, Smooth};
 use crate::field::{Analytic, Jacobian, Parametrised, State};
-use crate::friction::Law;
+use crate::friction::{AnyLaw, Law};
 use crate::series::{ByRecording, Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
 /// A system of interfaces under one stress.
 pub trait Slab<const N: usize> {
     /// The law of all of them.
-    type Law: Law;
-
-    /// That law.
-    fn law(&self) -> Self::Law;
+    fn law(&self) -> AnyLaw;
 
     /// How many interfaces move alike.
     fn alike(&self) -> f64 {
         1.0
     }
 
-    /// (11) or (19).
-    fn equations(&self) -> Logarithmic<Self::Law> {
+    /// (11) or (19), with any law: what is recorded, and that is done once in a run.
+    fn equations(&self) -> Logarithmic<AnyLaw> {
         Logarithmic {
             law: self.law(),
             alike: self.alike(),
@@ -49,7 +46,7 @@ fn pair<const N: usize>(slab: &impl Slab<N>) -> Loading {
 }
 
 /// The formula in V_H and K alone, which serves where no constant of the law is free.
-fn in_loading<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<S::Law>, N, LOADING> {
+fn in_loading<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<AnyLaw>, N, LOADING> {
     recorded(slab.equations(), slab.loading().into())
 }
 
@@ -69,7 +66,7 @@ fn all_among<S: Slab<N>, const N: usize>(slab: &S, places: &[usize]) -> Vec<usiz
 }
 
 /// The formula in all parameters.
-fn in_all<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<S::Law>, N, ALL> {
+fn in_all<S: Slab<N>, const N: usize>(slab: &S) -> Recorded<Logarithmic<AnyLaw>, N, ALL> {
     let equations = slab.equations();
     recorded(equations, equations.parameters(slab.loading()))
 }
@@ -124,7 +121,10 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
 
 impl<S: Slab<N>, const N: usize> Analytic<N> for S {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        Box::new(SeriesSolution::new(self.law().core(), &pair(self)))
+        match self.law().form() {
+            Some(form) => Box::new(SeriesSolution::new(form, &pair(self))),
+            None => in_loading(self).solution(),
+        }
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {
@@ -136,8 +136,8 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
         if !free.iter().copied().all(is_loading) {
             return in_all(self).tangent(&all_among(self, free));
         }
-        let law = self.law().core();
-        let compiled = tangent(law, pair(self), self.weights(), free);
+        let form = self.law().form();
+        let compiled = form.and_then(|form| tangent(form, pair(self), self.weights(), free));
         compiled.unwrap_or_else(|| in_loading(self).tangent(free))
     }
 

@@ -7,7 +7,7 @@
 use super::slab::Slab;
 use super::{Driven, Loading, SingleInterface};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
-use crate::friction::Law;
+use crate::friction::{AnyLaw, Law};
 
 /// dtau/dt = K (V_H - 2 v), dw/dt = g(v, w): (19) with w_1 = w_2, in the state (tau, w).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ impl<L: Law> Symmetric<L> {
     }
 }
 
-impl<L: Law> VectorField<2> for Symmetric<L> {
+impl<L: Law + Into<AnyLaw>> VectorField<2> for Symmetric<L> {
     fn f(&self, y: &State<2>) -> State<2> {
         self.equivalent.f(y)
     }
@@ -57,11 +57,9 @@ impl<L: Law> VectorField<2> for Symmetric<L> {
     }
 }
 
-impl<L: Law> Slab<2> for Symmetric<L> {
-    type Law = L;
-
-    fn law(&self) -> L {
-        self.equivalent.law
+impl<L: Law + Into<AnyLaw>> Slab<2> for Symmetric<L> {
+    fn law(&self) -> AnyLaw {
+        self.equivalent.law.into()
     }
 
     fn alike(&self) -> f64 {
@@ -77,7 +75,7 @@ impl<L: Law> Slab<2> for Symmetric<L> {
     }
 }
 
-impl<L: Law> Driven<2> for Symmetric<L> {
+impl<L: Law + Into<AnyLaw>> Driven<2> for Symmetric<L> {
     fn slip_rates(&self, y: &State<2>) -> [f64; 2] {
         self.equivalent.slip_rates(y)
     }

@@ -1,7 +1,7 @@
 //! The interfaces with their tangents in power series.
 //!
 //! The Jacobian's entries along the solution come with its series, for both interfaces at once: by the recurrences that laws have of
-//! their own, or by the laws' formulas on jets of series. The linearised equations of all columns are then sums of products with them,
+//! their own, or by the law's derivatives written out. The linearised equations of all columns are then sums of products with them,
 //! see [`VariationalEquations`].
 
 #[cfg(target_arch = "x86_64")]
@@ -10,8 +10,8 @@ use super::ageing_series::{AgeingRecurrences, Best};
 use super::series::stepper;
 use super::series::{Interfaces, Motion, chart, copy, interfaces};
 use super::{Loading, stress_rate};
-use crate::friction::Law;
-use crate::number::{DoubleDouble, Jet};
+use crate::friction::{LawForm, Slopes};
+use crate::number::DoubleDouble;
 #[cfg(not(target_arch = "x86_64"))]
 use crate::series::Both;
 use crate::series::{
@@ -41,18 +41,18 @@ impl<E: Element, L: Motion> Formula<E, 2> for LinearisedInterfaces<E, L> {
             driving,
             stiffness,
         } = &self.0;
-        let (tau, psi) = (Jet::<_, 2>::variable(tau, 0), Jet::variable(psi, 1));
-        let (v, g) = law.motion(law.activation(tau), psi);
+        let Slopes {
+            v,
+            v_tau,
+            v_psi,
+            g,
+            g_tau,
+            g_psi,
+        } = law.slopes(tau, psi);
         let loading = (value(*driving), value(*stiffness));
         Rates {
-            variables: [stress_rate(loading, v.value.over_interfaces()), g.value],
-            watched: [
-                v.value,
-                v.gradient[0],
-                v.gradient[1],
-                g.gradient[0],
-                g.gradient[1],
-            ],
+            variables: [stress_rate(loading, v.over_interfaces()), g],
+            watched: [v, v_tau, v_psi, g_tau, g_psi],
         }
     }
 
@@ -76,11 +76,11 @@ pub(super) trait Linearised<E: Element, F: Formula<E, 2>>: Recurrences<E, F, 2> 
 }
 
 /// By the formula with its derivatives.
-struct ByJets {
+struct BySlopes {
     jacobian: [JacobianTerm; ROOM],
 }
 
-impl<E: Element, L: Motion> Linearised<E, LinearisedInterfaces<E, L>> for ByJets {
+impl<E: Element, L: Motion> Linearised<E, LinearisedInterfaces<E, L>> for BySlopes {
     fn order(rtol: f64) -> usize {
         usual_order(rtol)
     }
@@ -90,7 +90,7 @@ impl<E: Element, L: Motion> Linearised<E, LinearisedInterfaces<E, L>> for ByJets
     }
 }
 
-impl<E: Element, L: Motion> Recurrences<E, LinearisedInterfaces<E, L>, 2> for ByJets {
+impl<E: Element, L: Motion> Recurrences<E, LinearisedInterfaces<E, L>, 2> for BySlopes {
     #[inline(always)]
     fn make(
         &mut self,
@@ -197,12 +197,12 @@ struct TangentSolution<S, E, F, R, X> {
 
 /// A solution with its derivatives in its start and in the parameters of these places, compiled for this processor. `None` on an x86-64
 /// without AVX2, of which there are few.
-pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
-    law: L,
+pub(super) fn tangent<const N: usize>(
+    form: LawForm,
     loading: Loading,
     weights: [f64; 2],
     free: &[usize],
-) -> Option<Box<dyn Tangent<N> + 'a>> {
+) -> Option<Box<dyn Tangent<N>>> {
     let asked = Asked {
         loading,
         weights,
@@ -212,7 +212,7 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     let (shell, zero, any) = {
         let simd = crate::series::avx2()?;
         let (zero, any) = (Pair::new(simd, [0.0; 2]), Four::new(simd, [0.0; 4]));
-        if let Some(form) = law.ageing_form() {
+        if let Some(form) = form.undamped_ageing() {
             let stepper = stepper(form, &loading, zero);
             let recurrences = AgeingRecurrences::<true>::new(simd);
             let best = Best::new(simd);
@@ -228,13 +228,13 @@ pub(super) fn tangent<'a, L: Law + 'a, const N: usize>(
     };
     #[cfg(not(target_arch = "x86_64"))]
     let (shell, zero, any) = (AnyProcessor, Both([0.0; 2]), Both([Both([0.0; 2]); 2]));
-    let formula = LinearisedInterfaces(interfaces(law, &loading, zero));
+    let formula = LinearisedInterfaces(interfaces(form, &loading, zero));
     let jacobian = [JacobianTerm::ZERO; ROOM];
     let stepper = Stepper::new(formula, zero);
     Some(Box::new(asked.solution::<_, _, _, _, _, N>(
         shell,
         stepper,
-        ByJets { jacobian },
+        BySlopes { jacobian },
         any,
     )))
 }

@@ -1,10 +1,11 @@
 //! Two interfaces under one stress, equation (19).
 
+use super::logarithmic::Logarithmic;
 use super::response::{Response, bilinear, curvature_variables, slope_variables};
 use super::slab::Slab;
 use super::{Driven, Loading};
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
-use crate::friction::Law;
+use crate::friction::{AnyLaw, Law};
 use crate::series::Equations;
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_i/dt = g(v_i, w_i)  (19), in the state (tau, w_1, w_2), w = ln psi.
@@ -16,10 +17,14 @@ pub struct TwoInterfaces<L> {
     pub loading: Loading,
 }
 
-impl<L: Law> VectorField<3> for TwoInterfaces<L> {
+impl<L: Law + Into<AnyLaw>> VectorField<3> for TwoInterfaces<L> {
     fn f(&self, y: &State<3>) -> State<3> {
         let Loading { driving, stiffness } = self.loading;
-        State::from(self.equations().rates(y.data.0[0], [driving, stiffness]))
+        let equations = Logarithmic {
+            law: self.law,
+            alike: 1.0,
+        };
+        State::from(equations.rates(y.data.0[0], [driving, stiffness]))
     }
 
     fn jacobian(&self, y: &State<3>) -> Jacobian<3> {
@@ -75,11 +80,9 @@ impl<L: Law> TwoInterfaces<L> {
     }
 }
 
-impl<L: Law> Slab<3> for TwoInterfaces<L> {
-    type Law = L;
-
-    fn law(&self) -> L {
-        self.law
+impl<L: Law + Into<AnyLaw>> Slab<3> for TwoInterfaces<L> {
+    fn law(&self) -> AnyLaw {
+        self.law.into()
     }
 
     fn loading(&self) -> Loading {
@@ -87,7 +90,7 @@ impl<L: Law> Slab<3> for TwoInterfaces<L> {
     }
 }
 
-impl<L: Law> Driven<3> for TwoInterfaces<L> {
+impl<L: Law + Into<AnyLaw>> Driven<3> for TwoInterfaces<L> {
     fn slip_rates(&self, y: &State<3>) -> [f64; 2] {
         let s = self.law.activation(y[0]);
         [1, 2].map(|i| self.law.slip_rate(s, y[i].exp()))
