@@ -23,7 +23,10 @@ fn parameters_are_set_by_flags_and_by_name() {
     ] {
         near(end(&format!("--law {file} {options}")), known, 1e-12);
     }
-    let scene = std::path::Path::new(&file).with_file_name("scene.toml");
+    // A scene names its law from where it stands. Not in `scenes`, which is compiled into the program: all would be built anew.
+    let place = folder("law_beside_a_scene");
+    fs::copy(&file, place.join("spinodal.toml")).expect("a copy");
+    let scene = place.join("scene.toml");
     let text = "command = \"integrate\"\nlaw = \"spinodal.toml\"\ndriving = 1\nset = { stiffness = 0.5 }\nuntil = 1\nfinal-only = true\nformat = \"json\"\n";
     fs::write(&scene, text).expect("a file");
     let ended = run(&["run", scene.to_str().unwrap(), "-q"]);
