@@ -1,7 +1,7 @@
 //! What interfaces are made of, eight side by side: the constants of their laws, and which formulas these are.
 
 use crate::error::{Error, Result};
-use crate::friction::{AgeingForm, AnyLaw, Law, positive};
+use crate::friction::{AgeingForm, AnyLaw, positive};
 
 /// Interfaces in a block.
 pub(super) const LANES: usize = 8;
@@ -94,11 +94,15 @@ impl Single {
         if !(one.damping >= 0.0 && one.damping.is_finite()) {
             return Err(Error::parameter("damping", one.damping, "0 or more"));
         }
-        let form = one.law.form().filter(|form| form.damping == 0.0);
-        let form = form.ok_or_else(|| {
+        let form = one.law.form();
+        if form.damping != 0.0 {
             let what = "spinodal, bounded, regularised-ageing, dieterich-ruina or slip, with its damping beside it";
-            Error::parameter("the law of many interfaces", one.law.name(), what)
-        })?;
+            return Err(Error::parameter(
+                "the law of many interfaces",
+                one.law.name(),
+                what,
+            ));
+        }
         let AgeingForm {
             strength,
             healing,

@@ -80,6 +80,13 @@ impl<C: Constant> Formulas<C> for Bounded<C> {
     }
 }
 
+impl Bounded {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        self.as_limit().form()
+    }
+}
+
 impl Law for Bounded {
     type Freed<T: Real> = Bounded<Free<T>>;
 
@@ -99,10 +106,6 @@ impl Law for Bounded {
             None,
             None,
         ]
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        self.as_limit().form()
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -82,6 +82,17 @@ impl<C: Constant> Formulas<C> for Damped<C> {
     }
 }
 
+impl Damped {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        let form = with_undamped!(self.law, self.constants, law => law.form());
+        LawForm {
+            damping: self.constants.damping,
+            ..form
+        }
+    }
+}
+
 impl Law for Damped {
     type Freed<T: Real> = Damped<Free<T>>;
 
@@ -162,14 +173,6 @@ impl Law for Damped {
     // The slip rate keeps the sign of the stress.
     fn lasts(&self) -> bool {
         with_undamped!(self.law, self.constants, law => law.lasts())
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        let form = with_undamped!(self.law, self.constants, law => law.form())?;
-        Some(LawForm {
-            damping: self.constants.damping,
-            ..form
-        })
     }
 
     fn transition_rate(&self) -> Option<f64> {

@@ -68,6 +68,17 @@ impl<C: Constant> Formulas<C> for DieterichRuina<C> {
     }
 }
 
+impl DieterichRuina {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        let form = AgeingForm {
+            exponential: true,
+            ..AgeingForm::of_ageing(self.beta, self.gamma0)
+        };
+        form.into()
+    }
+}
+
 impl Law for DieterichRuina {
     type Freed<T: Real> = DieterichRuina<Free<T>>;
 
@@ -87,14 +98,6 @@ impl Law for DieterichRuina {
             None,
             None,
         ]
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        let form = AgeingForm {
-            exponential: true,
-            ..AgeingForm::of_ageing(self.beta, self.gamma0)
-        };
-        Some(form.into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -108,11 +108,6 @@ pub trait Law: Formulas + Copy + Debug + Send + Sync {
         false
     }
 
-    /// The law in the constants that its power series are made from; `None` where these are recorded from its formulas.
-    fn form(&self) -> Option<LawForm> {
-        None
-    }
-
     /// V_T = V*/c, where high-velocity strengthening sets in (Weeks 1993).
     fn transition_rate(&self) -> Option<f64> {
         None
@@ -345,6 +340,11 @@ impl AnyLaw {
     pub fn name(&self) -> &'static str {
         Law::name(self)
     }
+
+    /// The law in the constants that its power series are made from.
+    pub fn form(&self) -> LawForm {
+        with_law!(self, law => law.form())
+    }
 }
 
 impl<C: Constant> Formulas<C> for AnyLaw<C> {
@@ -399,9 +399,6 @@ impl Law for AnyLaw {
     }
     fn lasts(&self) -> bool {
         with_law!(self, law => law.lasts())
-    }
-    fn form(&self) -> Option<LawForm> {
-        with_law!(self, law => law.form())
     }
     fn transition_rate(&self) -> Option<f64> {
         with_law!(self, law => law.transition_rate())

@@ -63,6 +63,13 @@ impl<C: Constant> Formulas<C> for RegularisedAgeing<C> {
     }
 }
 
+impl RegularisedAgeing {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        AgeingForm::of_ageing(self.beta, self.gamma0).into()
+    }
+}
+
 impl Law for RegularisedAgeing {
     type Freed<T: Real> = RegularisedAgeing<Free<T>>;
 
@@ -82,10 +89,6 @@ impl Law for RegularisedAgeing {
             None,
             None,
         ]
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        Some(AgeingForm::of_ageing(self.beta, self.gamma0).into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -76,6 +76,16 @@ impl<C: Constant> Formulas<C> for Slip<C> {
     }
 }
 
+impl Slip {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        LawForm {
+            slip_law: true,
+            ..self.direct_effect().form()
+        }
+    }
+}
+
 impl Law for Slip {
     type Freed<T: Real> = Slip<Free<T>>;
 
@@ -95,13 +105,6 @@ impl Law for Slip {
             None,
             None,
         ]
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        self.direct_effect().form().map(|form| LawForm {
-            slip_law: true,
-            ..form
-        })
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

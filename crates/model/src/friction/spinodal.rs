@@ -80,6 +80,20 @@ impl<C: Constant> Formulas<C> for Spinodal<C> {
     }
 }
 
+impl Spinodal {
+    /// The law in the constants that its power series are made from.
+    pub(super) fn form(&self) -> LawForm {
+        let form = AgeingForm {
+            strength: [self.c, 1.0 + self.r],
+            healing: [1.0 / self.r, -1.0 / self.r],
+            beta: self.beta,
+            gamma0: self.gamma0,
+            exponential: false,
+        };
+        form.into()
+    }
+}
+
 impl Law for Spinodal {
     type Freed<T: Real> = Spinodal<Free<T>>;
 
@@ -99,17 +113,6 @@ impl Law for Spinodal {
             Some(&mut self.c),
             None,
         ]
-    }
-
-    fn form(&self) -> Option<LawForm> {
-        let form = AgeingForm {
-            strength: [self.c, 1.0 + self.r],
-            healing: [1.0 / self.r, -1.0 / self.r],
-            beta: self.beta,
-            gamma0: self.gamma0,
-            exponential: false,
-        };
-        Some(form.into())
     }
 
     fn log_activation(&self, tau: f64) -> f64 {

@@ -7,7 +7,7 @@ use crate::series::{Accuracy, Expansion};
 use {
     super::ageing_lanes::AgeingLanes,
     super::lanes::{Lanes, Wide},
-    crate::friction::{AgeingForm, Law, LawForm},
+    crate::friction::{AgeingForm, LawForm},
     crate::series::{ByFormula, Eight, Four},
 };
 
@@ -34,18 +34,18 @@ pub trait BatchSolution: Send {
     fn expansion(&self, lane: usize, order: usize, into: &mut Expansion<3>);
 }
 
-/// As many lanes as this processor has, in which this law has series; `None` where there are none.
+/// As many lanes as this processor has, in which runs with this law go; `None` where it has none.
 #[doc(hidden)]
 pub fn batch_solution(law: AnyLaw) -> Option<Box<dyn BatchSolution>> {
     #[cfg(target_arch = "x86_64")]
     {
         if let Some(simd) = crate::series::avx512() {
             let zero = Eight::new(simd, [0.0; 8]);
-            return Some(lanes(simd, law.form()?, zero));
+            return Some(lanes(simd, law.form(), zero));
         }
         if let Some(simd) = crate::series::avx2() {
             let zero = Four::new(simd, [0.0; 4]);
-            return Some(lanes(simd, law.form()?, zero));
+            return Some(lanes(simd, law.form(), zero));
         }
     }
     let _ = law;

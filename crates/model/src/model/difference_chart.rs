@@ -31,7 +31,7 @@ impl DifferenceChart {
     /// With this law for both interfaces.
     pub fn new(law: &AnyLaw) -> Self {
         DifferenceChart {
-            form: law.form().expect("every law alone has a form"),
+            form: law.form(),
             lasting: law.lasts().then(|| law.name()),
         }
     }

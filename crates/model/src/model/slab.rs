@@ -5,7 +5,7 @@ use super::series::SeriesSolution;
 use super::tangent::tangent;
 use super::{Loading, Parameter, Smooth};
 use crate::field::{Analytic, Jacobian, Parametrised, State};
-use crate::friction::{AnyLaw, Law};
+use crate::friction::AnyLaw;
 use crate::series::{ByRecording, Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
 /// A system of interfaces under one stress.
@@ -121,10 +121,7 @@ impl<S: Slab<N>, const N: usize> Parametrised<N> for S {
 
 impl<S: Slab<N>, const N: usize> Analytic<N> for S {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        match self.law().form() {
-            Some(form) => Box::new(SeriesSolution::new(form, &pair(self))),
-            None => in_loading(self).solution(),
-        }
+        Box::new(SeriesSolution::new(self.law().form(), &pair(self)))
     }
 
     fn reference(&self) -> Box<dyn Solution<N> + '_> {
@@ -136,8 +133,7 @@ impl<S: Slab<N>, const N: usize> Analytic<N> for S {
         if !free.iter().copied().all(is_loading) {
             return in_all(self).tangent(&all_among(self, free));
         }
-        let form = self.law().form();
-        let compiled = form.and_then(|form| tangent(form, pair(self), self.weights(), free));
+        let compiled = tangent(self.law().form(), pair(self), self.weights(), free);
         compiled.unwrap_or_else(|| in_loading(self).tangent(free))
     }
 
