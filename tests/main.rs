@@ -33,6 +33,7 @@ mod curves_orbits;
 #[cfg(feature = "sundials")]
 mod cvode_integrator;
 mod damping;
+mod damping_derivatives;
 mod derivatives;
 mod difference_chart;
 #[cfg(not(feature = "parquet"))]

@@ -75,6 +75,16 @@ fn the_library_alone_is_without_the_packages_of_the_command() {
     }
 }
 
+/// Two versions of one of these would both be compiled, for seconds each, in every build from nothing.
+#[test]
+fn the_program_is_built_with_one_bindgen_and_one_syn() {
+    let lines = tree("{p}", &["--edges", "normal,build"]);
+    for package in ["bindgen", "syn"] {
+        let versions = lines.iter().filter(|line| name(line) == package);
+        assert_eq!(versions.count(), 1, "of {package}");
+    }
+}
+
 /// A name that no package has would be looked for in vain.
 #[test]
 fn the_command_has_these_packages() {

@@ -79,18 +79,48 @@ impl RosenbrockMethod {
     }
 }
 
+#[derive(Clone, Copy)]
 struct Rodas5P;
+#[derive(Clone, Copy)]
 struct Rodas4;
+#[derive(Clone, Copy)]
 struct Ros23;
 
 impl Scheme for Rodas5P {
-    const TABLEAU: Tableau = RODAS5P;
+    const WRITTEN_OUT: bool = true;
+    #[inline(always)]
+    fn tableau(self) -> &'static Tableau {
+        &RODAS5P
+    }
 }
+
 impl Scheme for Rodas4 {
-    const TABLEAU: Tableau = RODAS4;
+    const WRITTEN_OUT: bool = true;
+    #[inline(always)]
+    fn tableau(self) -> &'static Tableau {
+        &RODAS4
+    }
 }
+
 impl Scheme for Ros23 {
-    const TABLEAU: Tableau = ROS23;
+    const WRITTEN_OUT: bool = true;
+    #[inline(always)]
+    fn tableau(self) -> &'static Tableau {
+        &ROS23
+    }
+}
+
+impl Scheme for RosenbrockMethod {
+    const WRITTEN_OUT: bool = false;
+    fn tableau(self) -> &'static Tableau {
+        RosenbrockMethod::tableau(self)
+    }
+}
+
+/// Whether the steps in so many dimensions are compiled for each method: those of two interfaces and of their symmetric plane, of which
+/// sweeps and figures make millions.
+const fn written_out(dimension: usize) -> bool {
+    matches!(dimension, 2 | 3)
 }
 
 /// An integrator that steps by a Rosenbrock method.
@@ -197,6 +227,7 @@ impl<const N: usize> Rosenbrock<N> {
     #[inline(never)]
     fn flow_by<S: Scheme>(
         &mut self,
+        scheme: S,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
@@ -204,7 +235,7 @@ impl<const N: usize> Rosenbrock<N> {
     ) -> Result<State<N>> {
         let (here, h) = self.start(field, t, y0)?;
         let mut trajectory =
-            StepState::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here);
+            StepState::new(scheme, field, self.tolerances, &mut self.work, *y0, here);
         drive(
             &mut trajectory,
             t,
@@ -221,12 +252,13 @@ impl<const N: usize> Rosenbrock<N> {
     #[inline(never)]
     fn tangent_flow_by<S: Scheme>(
         &mut self,
+        scheme: S,
         field: &dyn VectorField<N>,
         t: (f64, f64),
         y0: &State<N>,
     ) -> Result<(State<N>, Jacobian<N>)> {
         let (here, h) = self.start(field, t, y0)?;
-        let mut bundle = Bundle::<S, N>::new(field, self.tolerances, &mut self.work, *y0, here)
+        let mut bundle = Bundle::new(scheme, field, self.tolerances, &mut self.work, *y0, here)
             .ok_or(Error::NonFinite {
                 what: "the second derivative of the right-hand side",
                 t: t.0,
@@ -252,10 +284,14 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
     ) -> Result<State<N>> {
         self.work = Work::default();
         check_times(t)?;
-        match self.method {
-            RosenbrockMethod::Rodas5P => self.flow_by::<Rodas5P>(field, t, y0, observer),
-            RosenbrockMethod::Rodas4 => self.flow_by::<Rodas4>(field, t, y0, observer),
-            RosenbrockMethod::Ros23 => self.flow_by::<Ros23>(field, t, y0, observer),
+        if const { written_out(N) } {
+            match self.method {
+                RosenbrockMethod::Rodas5P => self.flow_by(Rodas5P, field, t, y0, observer),
+                RosenbrockMethod::Rodas4 => self.flow_by(Rodas4, field, t, y0, observer),
+                RosenbrockMethod::Ros23 => self.flow_by(Ros23, field, t, y0, observer),
+            }
+        } else {
+            self.flow_by(self.method, field, t, y0, observer)
         }
     }
 
@@ -274,10 +310,14 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
                 "at most 24 for the tangent flow of a Rosenbrock method, whose second derivatives stand on the stack",
             ));
         }
-        match self.method {
-            RosenbrockMethod::Rodas5P => self.tangent_flow_by::<Rodas5P>(field, t, y0),
-            RosenbrockMethod::Rodas4 => self.tangent_flow_by::<Rodas4>(field, t, y0),
-            RosenbrockMethod::Ros23 => self.tangent_flow_by::<Ros23>(field, t, y0),
+        if const { written_out(N) } {
+            match self.method {
+                RosenbrockMethod::Rodas5P => self.tangent_flow_by(Rodas5P, field, t, y0),
+                RosenbrockMethod::Rodas4 => self.tangent_flow_by(Rodas4, field, t, y0),
+                RosenbrockMethod::Ros23 => self.tangent_flow_by(Ros23, field, t, y0),
+            }
+        } else {
+            self.tangent_flow_by(self.method, field, t, y0)
         }
     }
 

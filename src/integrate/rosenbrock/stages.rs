@@ -1,34 +1,44 @@
-//! What every step is made of: the method as a type, the stages in order, sums of them, and the field at one state.
+//! What every step is made of: the method, the stages in order, sums of them, and the field at one state.
 
 use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use nalgebra::SMatrix;
 
-/// A method as a type, so that every step is compiled for its coefficients.
-pub(super) trait Scheme {
-    const TABLEAU: Tableau;
+/// A method in the making of steps. Where it is a type of its own, every step is compiled for its coefficients.
+pub(super) trait Scheme: Copy {
+    /// Whether it is: the stages then are written out, so that in each all coefficients are constants and the zeros among them no
+    /// work, as loops of this size are not unrolled. In many dimensions the stages are what takes the time, and a loop over them is as
+    /// fast.
+    const WRITTEN_OUT: bool;
+    fn tableau(self) -> &'static Tableau;
 }
 
 /// Something that has stages.
 pub(super) trait Staged {
-    /// Computes stage I from those before it.
-    fn stage<S: Scheme, const I: usize>(&mut self);
+    /// Computes stage i from those before it.
+    fn stage(&mut self, tableau: &Tableau, i: usize);
 
-    /// All stages of the method. Written out, so that in each all coefficients are constants and the zeros among them no
-    /// work: loops of this size are not unrolled.
+    /// All stages of the method.
     #[inline(always)]
-    fn all_stages<S: Scheme>(&mut self) {
-        self.stage::<S, 0>();
-        self.stage::<S, 1>();
-        self.stage::<S, 2>();
-        if S::TABLEAU.stages > 3 {
-            self.stage::<S, 3>();
-            self.stage::<S, 4>();
-            self.stage::<S, 5>();
+    fn all_stages<S: Scheme>(&mut self, scheme: S) {
+        let tableau = scheme.tableau();
+        if !S::WRITTEN_OUT {
+            for i in 0..tableau.stages {
+                self.stage(tableau, i);
+            }
+            return;
         }
-        if S::TABLEAU.stages > 6 {
-            self.stage::<S, 6>();
-            self.stage::<S, 7>();
+        self.stage(tableau, 0);
+        self.stage(tableau, 1);
+        self.stage(tableau, 2);
+        if tableau.stages > 3 {
+            self.stage(tableau, 3);
+            self.stage(tableau, 4);
+            self.stage(tableau, 5);
+        }
+        if tableau.stages > 6 {
+            self.stage(tableau, 6);
+            self.stage(tableau, 7);
         }
     }
 }

@@ -14,9 +14,8 @@ use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
 use crate::error::Error;
 use crate::field::{Jacobian, State, VectorField};
-use crate::integrate::tableau::MAX_STAGES;
+use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use crate::integrate::{Tolerances, Work, step_underflow};
-use std::marker::PhantomData;
 
 /// f, J, and D2f(y)[e_b, .] for every b at one state.
 #[derive(Debug, Clone, Copy)]
@@ -75,24 +74,23 @@ struct TangentStepping<'a, const N: usize> {
 
 impl<const N: usize> Staged for TangentStepping<'_, N> {
     #[inline(always)]
-    fn stage<S: Scheme, const I: usize>(&mut self) {
-        let tableau = const { &S::TABLEAU };
-        let (mut slope, rate) = if I == 0 {
+    fn stage(&mut self, tableau: &Tableau, i: usize) {
+        let (mut slope, rate) = if i == 0 {
             let linear = &self.here.linear;
             (linear.f, linear.jacobian * self.tangent)
         } else {
-            let at = combination(*self.y, &tableau.a[I], I, self.u);
-            let columns = combination(*self.tangent, &tableau.a[I], I, self.v);
+            let at = combination(*self.y, &tableau.a[i], i, self.u);
+            let columns = combination(*self.tangent, &tableau.a[i], i, self.v);
             (self.field.f(&at), self.field.jacobian(&at) * columns)
         };
         self.newest = slope;
-        slope += combination(State::zeros(), &tableau.c[I], I, self.u) * self.per_h;
-        self.u[I] = self.factors.solve(&slope);
-        let coupling = combination(Jacobian::zeros(), &tableau.c[I], I, self.v);
-        let right = rate + self.here.along(&self.u[I]) * self.tangent + coupling * self.per_h;
+        slope += combination(State::zeros(), &tableau.c[i], i, self.u) * self.per_h;
+        self.u[i] = self.factors.solve(&slope);
+        let coupling = combination(Jacobian::zeros(), &tableau.c[i], i, self.v);
+        let right = rate + self.here.along(&self.u[i]) * self.tangent + coupling * self.per_h;
         for column in 0..N {
             let solved = self.factors.solve(&right.column(column).into_owned());
-            self.v[I].set_column(column, &solved);
+            self.v[i].set_column(column, &solved);
         }
     }
 }
@@ -111,12 +109,13 @@ pub(super) struct Bundle<'a, S, const N: usize> {
     v: Stages<N, N>,
     last_f: State<N>,
     ahead: SecondDerivatives<N>,
-    scheme: PhantomData<S>,
+    scheme: S,
 }
 
 impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
     /// At y with the identity; `None` if the second derivative is not finite there.
     pub fn new(
+        scheme: S,
         field: &'a dyn VectorField<N>,
         tolerances: Tolerances,
         work: &'a mut Work,
@@ -137,7 +136,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
             v: [Jacobian::zeros(); MAX_STAGES],
             last_f: here.linear.f,
             ahead: here,
-            scheme: PhantomData,
+            scheme,
         })
     }
 
@@ -148,7 +147,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
 
 impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
     fn error_order(&self) -> u32 {
-        const { error_order(&S::TABLEAU) }
+        error_order(self.scheme.tableau())
     }
 
     fn work(&mut self) -> &mut Work {
@@ -161,7 +160,7 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
 
     #[inline]
     fn attempt(&mut self, h: f64) -> Option<f64> {
-        let tableau = const { &S::TABLEAU };
+        let tableau = self.scheme.tableau();
         let count = tableau.stages;
         self.work.factorisations += 1;
         let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.linear.jacobian)?;
@@ -178,7 +177,7 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
             v: &mut self.v,
             newest: self.here.linear.f,
         };
-        stepping.all_stages::<S>();
+        stepping.all_stages(self.scheme);
         self.last_f = stepping.newest;
         self.next = (
             combination(self.y, &tableau.m, count, &self.u),
@@ -203,7 +202,7 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
     #[inline]
     fn look_ahead(&mut self) -> bool {
         let y = &self.next.0;
-        let f = if S::TABLEAU.ends_at_last_stage {
+        let f = if self.scheme.tableau().ends_at_last_stage {
             self.last_f
         } else {
             self.work.rhs += 1;

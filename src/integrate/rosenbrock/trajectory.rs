@@ -8,7 +8,6 @@ use crate::error::Error;
 use crate::field::{State, VectorField};
 use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use crate::integrate::{Step, Tolerances, Work, step_underflow};
-use std::marker::PhantomData;
 
 /// A step in the making.
 struct Stepping<'a, const N: usize> {
@@ -24,16 +23,15 @@ struct Stepping<'a, const N: usize> {
 
 impl<const N: usize> Staged for Stepping<'_, N> {
     #[inline(always)]
-    fn stage<S: Scheme, const I: usize>(&mut self) {
-        if I == 0 {
+    fn stage(&mut self, tableau: &Tableau, i: usize) {
+        if i == 0 {
             self.u[0] = self.factors.solve(self.f);
             return;
         }
-        let tableau = const { &S::TABLEAU };
-        let at = combination(*self.y, &tableau.a[I], I, self.u);
+        let at = combination(*self.y, &tableau.a[i], i, self.u);
         self.newest = self.field.f(&at);
-        let coupling = combination(State::zeros(), &tableau.c[I], I, self.u);
-        self.u[I] = self.factors.solve(&(self.newest + coupling * self.per_h));
+        let coupling = combination(State::zeros(), &tableau.c[i], i, self.u);
+        self.u[i] = self.factors.solve(&(self.newest + coupling * self.per_h));
     }
 }
 
@@ -49,11 +47,12 @@ pub(super) struct StepState<'a, S, const N: usize> {
     stages: Stages<N, 1>,
     last_f: State<N>,
     ahead: Linearisation<N>,
-    scheme: PhantomData<S>,
+    scheme: S,
 }
 
 impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
     pub fn new(
+        scheme: S,
         field: &'a dyn VectorField<N>,
         tolerances: Tolerances,
         work: &'a mut Work,
@@ -70,7 +69,7 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
             stages: [State::zeros(); MAX_STAGES],
             last_f: here.f,
             ahead: here,
-            scheme: PhantomData,
+            scheme,
         }
     }
 
@@ -82,7 +81,13 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
     pub fn show<R>(&self, t0: f64, t1: f64, observer: impl FnOnce(&Step<'_, N>) -> R) -> R {
         let dense = |t: f64| {
             let theta = (t - t0) / (t1 - t0);
-            interpolate(&S::TABLEAU, theta, &self.y, &self.next, &self.stages)
+            interpolate(
+                self.scheme.tableau(),
+                theta,
+                &self.y,
+                &self.next,
+                &self.stages,
+            )
         };
         observer(&Step {
             t0,
@@ -99,7 +104,7 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
 
 impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
     fn error_order(&self) -> u32 {
-        const { error_order(&S::TABLEAU) }
+        error_order(self.scheme.tableau())
     }
 
     fn work(&mut self) -> &mut Work {
@@ -112,7 +117,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
 
     #[inline]
     fn attempt(&mut self, h: f64) -> Option<f64> {
-        let tableau = const { &S::TABLEAU };
+        let tableau = self.scheme.tableau();
         self.work.factorisations += 1;
         let factors = Factors::shifted(1.0 / (h * tableau.gamma), &self.here.jacobian)?;
         self.work.rhs += tableau.stages - 1;
@@ -125,7 +130,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
             u: &mut self.stages,
             newest: self.here.f,
         };
-        stepping.all_stages::<S>();
+        stepping.all_stages(self.scheme);
         self.last_f = stepping.newest;
         self.next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
         let error = combination(State::zeros(), &tableau.e, tableau.stages, &self.stages);
@@ -138,7 +143,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
 
     #[inline]
     fn look_ahead(&mut self) -> bool {
-        let f = if S::TABLEAU.ends_at_last_stage {
+        let f = if self.scheme.tableau().ends_at_last_stage {
             self.last_f
         } else {
             self.work.rhs += 1;
