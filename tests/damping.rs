@@ -6,10 +6,10 @@ use common::{assert_close, data, number, relative};
 use proptest::prelude::*;
 use serde_json::Value;
 use twinslip::equilibrium::{Solver, Symmetry, steady_states};
-use twinslip::field::{State, place};
+use twinslip::field::State;
 use twinslip::friction::{
-    AnyLaw, Extremum, ExtremumKind, Formulas, Law, Parameters, critical_stiffness,
-    steady_log_slope, steady_stress,
+    AnyLaw, Extremum, ExtremumKind, Formulas, Parameters, critical_stiffness, steady_log_slope,
+    steady_stress,
 };
 use twinslip::integrate::{Choice, Control, Integrator, MAX_STEPS, Step, Taylor, Tolerances};
 use twinslip::model::{

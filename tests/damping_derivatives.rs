@@ -1,7 +1,7 @@
 //! Derivatives under radiation damping: of the field, along runs, and in the damping itself, of every law.
 
-use twinslip::field::{State, VectorField, place};
-use twinslip::friction::{AnyLaw, Law, Parameters};
+use twinslip::field::{State, place};
+use twinslip::friction::{AnyLaw, Formulas, Law, Parameters};
 use twinslip::integrate::{Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Loading, two_interfaces};
 
