@@ -15,7 +15,6 @@ struct Ring;
 
 impl<const N: usize> Equations<N, 1> for Ring {
     const PARAMETERS: [&'static str; 1] = ["force"];
-    const KERNELS: bool = false;
     fn rates<T: Real>(&self, x: [T; N], [force]: [T; 1]) -> [T; N] {
         let at = |i: usize| x[i % N];
         std::array::from_fn(|i| (at(i + 1) - at(i + N - 2)) * at(i + N - 1) - x[i] + force)
@@ -28,7 +27,6 @@ struct Oscillators;
 
 impl<const N: usize> Equations<N, 2> for Oscillators {
     const PARAMETERS: [&'static str; 2] = ["mu", "k"];
-    const KERNELS: bool = false;
     fn rates<T: Real>(&self, z: [T; N], [mu, k]: [T; 2]) -> [T; N] {
         let one = T::constant(1.0);
         let x = |i: usize| z[(2 * i) % N];

@@ -140,7 +140,6 @@ struct Long;
 
 impl Equations<3, 2> for Long {
     const PARAMETERS: [&'static str; 2] = ["a", "b"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, x: [T; 3], [a, b]: [T; 2]) -> [T; 3] {
         let one = x[0] / (x[0] + 0.0);

@@ -302,7 +302,6 @@ struct Cusp;
 
 impl Equations<1, 2> for Cusp {
     const PARAMETERS: [&'static str; 2] = ["p", "q"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [y]: [T; 1], [p, q]: [T; 2]) -> [T; 1] {
         [p + q * y - y * y * y]

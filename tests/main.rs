@@ -111,6 +111,7 @@ mod sections_of_systems;
 mod series_of_interfaces;
 mod slip_events;
 mod solution_curves;
+mod step_ends;
 mod stress;
 mod strong_resonance;
 #[cfg(feature = "sundials")]

@@ -449,7 +449,6 @@ struct Atmosphere;
 
 impl Equations<3, 2> for Atmosphere {
     const PARAMETERS: [&'static str; 2] = ["f", "g"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [f, g]: [T; 2]) -> [T; 3] {
         let (a, b) = (0.25, 4.0);

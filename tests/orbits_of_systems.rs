@@ -342,7 +342,6 @@ struct Reaction;
 
 impl Equations<3, 2> for Reaction {
     const PARAMETERS: [&'static str; 2] = ["p1", "p3"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [u, v, w]: [T; 3], [p1, p3]: [T; 2]) -> [T; 3] {
         let one = T::constant(1.0);
@@ -363,7 +362,6 @@ struct FitzHughNagumo;
 
 impl Equations<2, 2> for FitzHughNagumo {
     const PARAMETERS: [&'static str; 2] = ["v", "w"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [v, w]: [T; 2], [current, eps]: [T; 2]) -> [T; 2] {
         [v - v * v * v / 3.0 - w + current, eps * (v - w * 0.8 + 0.7)]

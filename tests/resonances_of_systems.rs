@@ -20,7 +20,6 @@ struct Turning {
 
 impl Equations<3, 2> for Turning {
     const PARAMETERS: [&'static str; 2] = ["rho", "omega"];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [rho, omega]: [T; 2]) -> [T; 3] {
         let one = T::constant(1.0);

@@ -13,6 +13,9 @@ use crate::model::Driven;
 
 /// How much tighter the second run is: its own error then hardly counts.
 const TIGHTER: f64 = 100.0;
+/// How much smaller its absolute tolerance is. A value that sinks below that of the run and grows again is lost there by any method;
+/// the second run follows it.
+const FOLLOWED: f64 = 1e-30;
 /// A tolerance below this gains nothing: rounding rules.
 const TIGHTEST: f64 = 1e-14;
 /// The second run's error, of which little is known but that it is small, is allowed for by this factor; with the reference it
@@ -30,7 +33,7 @@ pub(super) const PIECES: usize = 64;
 /// The second run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Companion {
-    /// By `auto`, with tighter tolerances.
+    /// By `auto`, with a tighter relative tolerance and next to no absolute one.
     Tighter(Tolerances),
     /// In double-double arithmetic.
     Reference,
@@ -45,7 +48,7 @@ impl Companion {
         } else {
             Companion::Tighter(Tolerances {
                 rtol: rtol / TIGHTER,
-                atol: atol / TIGHTER,
+                atol: atol * FOLLOWED,
             })
         }
     }

@@ -25,7 +25,6 @@ fn reflect<T: Real>(x: &mut [T]) {
 
 impl<S: Equations<3, 2>, const N: usize> Equations<N, 2> for Among<S> {
     const PARAMETERS: [&'static str; 2] = S::PARAMETERS;
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, y: [T; N], parameters: [T; 2]) -> [T; N] {
         let mut x = y;

@@ -417,7 +417,10 @@ fn known(t: f64, uncertainty: Option<f64>, (factor, name): (f64, &str)) -> Strin
 
 fn step_too_small(units: &MessageUnits, t: f64, h: f64) -> String {
     let (t, h) = (measured(t, units.time), measured(h, units.time));
-    format!("the step fell to {h} at t = {t}, below what can be added to t; try a larger tolerance")
+    format!(
+        "the step fell to {h} at t = {t}, below what can be added to t: just beyond it the right-hand side is not smooth or not defined, \
+         so that the solution may end there, or the tolerance is too small"
+    )
 }
 
 fn blow_up(units: &MessageUnits, t: f64, uncertainty: Option<f64>) -> String {

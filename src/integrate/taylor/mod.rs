@@ -314,6 +314,7 @@ impl Taylor {
             self.work.steps += 1;
             // One evaluation of the law for each coefficient.
             self.work.rhs += accuracy.order;
+            self.work.rejected = solution.rejected();
             let halted = halt(accuracy.order, h.hi(), &|| State::from(solution.state()));
             if let Some(observer) = observer {
                 let last = halted || clock.remaining().is_none();

@@ -56,7 +56,6 @@ pub struct AlikeInTargets<const P: usize> {
 
 impl<const P: usize> Equations<2, P> for AlikeInTargets<P> {
     const PARAMETERS: [&'static str; P] = ["parameter"; P];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [tau, w]: [T; 2], parameters: [T; P]) -> [T; 2] {
         let one = self.whole.response(tau, w, &parameters);

@@ -47,6 +47,8 @@ impl DifferenceChart {
 
 impl Equations<3, 2> for DifferenceChart {
     const PARAMETERS: [&'static str; 2] = Parameter::LOADING;
+    // No polynomial, but what it has beside these are exponentials of the stress, which no step loses sight of.
+    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(

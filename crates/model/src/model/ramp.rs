@@ -23,7 +23,6 @@ macro_rules! equations {
     ($variables:literal, $interfaces:literal) => {
         impl<E: Equations<$interfaces, LOADING>> Equations<$variables, LOADING> for Ramp<E> {
             const PARAMETERS: [&'static str; LOADING] = PARAMETERS;
-            const KERNELS: bool = false;
 
             #[inline(always)]
             fn rates<T: Real>(

@@ -134,7 +134,6 @@ fn slip_rate<T: Real, const S: usize>(laws: &[StateLaw<T>; S], tau: T, states: [
 
 impl Equations<3, COUNT> for Slider {
     const PARAMETERS: [&'static str; COUNT] = Slider::NAMES;
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, [mu, w, velocity]: [T; 3], parameters: [T; COUNT]) -> [T; 3] {
         let (mu, [w], velocity) = self.rates_of((mu, [w], velocity), parameters);
@@ -144,7 +143,6 @@ impl Equations<3, COUNT> for Slider {
 
 impl Equations<4, COUNT> for Slider {
     const PARAMETERS: [&'static str; COUNT] = Slider::NAMES;
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(
         &self,

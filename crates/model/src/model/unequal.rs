@@ -306,7 +306,6 @@ fn of_law<C, T: With<C>>(law: &impl Formulas<C>, tau: T, w: T) -> Response<T> {
 
 impl<const P: usize> Equations<3, P> for InTargets<P> {
     const PARAMETERS: [&'static str; P] = ["parameter"; P];
-    const KERNELS: bool = false;
 
     fn rates<T: Real>(&self, x: [T; 3], parameters: [T; P]) -> [T; 3] {
         let [first, second] = self.responses(x, &parameters);

@@ -278,6 +278,16 @@ impl Assembly<'_> {
                 _ => unreachable!("of a balance"),
             },
         };
-        Row(self.made(operation, spare))
+        let made = self.made(operation, spare);
+        if matches!(operation, Op::Power(_, p) if is_of_root(p)) {
+            self.program.branch_points.push(made);
+        }
+        Row(made)
     }
+}
+
+/// Whether a^p is an odd power of the square root of a.
+fn is_of_root(p: DoubleDouble) -> bool {
+    let twice = 2.0 * p.hi();
+    p.lo() == 0.0 && twice > 0.0 && twice % 2.0 == 1.0
 }

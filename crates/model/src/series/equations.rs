@@ -11,16 +11,15 @@ use std::fmt::Debug;
 
 /// dx/dt = f(x; p) in N variables with P named parameters: the right-hand side, written once for every number.
 ///
-/// Jets make derivatives of it, and series its solutions. It must be smooth along the solutions: of |x| they take the sign at
-/// the beginning of a step. Formulas of up to three variables and some fifty
-/// series are compiled (one for each variable and product, two for a quotient, three for an exponential, four for a power); larger
-/// ones run in loops over their operations.
+/// Jets make derivatives of it, and series its solutions. The series run in loops over the recorded operations, and every step is
+/// checked where it ends: against the rates there, and for zeros of quantities whose sign the formula takes.
 pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync {
     /// The names of the parameters, in the order in which `rates` takes them. Derivatives are had in any of them.
     const PARAMETERS: [&'static str; P];
 
-    /// Whether series of short formulas are compiled for them, which are without slip rates. What is seldom run goes in loops.
-    const KERNELS: bool = true;
+    /// Whether their series are compiled for them, which takes half the time a step and minutes to compile. Only for polynomials of a
+    /// few terms in up to three variables, without slip rates: the ends of these steps are not checked.
+    const KERNELS: bool = false;
 
     /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
     fn rates<T: Real>(&self, x: [T; N], parameters: [T; P]) -> [T; N];

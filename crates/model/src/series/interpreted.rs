@@ -1,16 +1,19 @@
 //! Solutions of a recorded formula: any system in any number of variables, in numbers of any kind.
 //!
-//! Steps as [`super::Stepper`] makes them, for one trajectory; the series come from a [`Program`]. Where the formula takes the
-//! sign of a quantity, no step leads further than just behind a zero of that.
+//! Steps as [`super::Stepper`] makes them, for one trajectory; the series come from a [`Program`]. How far a series is followed, its end
+//! decides: [`advance`].
+
+mod advance;
 
 use super::cubic::Jet3;
 use super::element::{Element, rough_exp2, rough_log2};
 use super::linearised::longest_of_columns;
 use super::program::Program;
 use super::program_rows::ProgramRows;
-use super::stepper::{BISECTIONS, HALVINGS, LEAST, SAFETY, SHORTER, SHORTER_UNITS};
+use super::stepper::{LEAST, SAFETY, SHORTER, SHORTER_UNITS};
 use super::{Accuracy, usual_order};
 use crate::number::DoubleDouble;
+use crate::number::polynomial::Root;
 use pulp::NullaryFnOnce;
 
 /// Records the formula at a state.
@@ -26,6 +29,8 @@ pub(super) trait Trajectory {
     fn start(&mut self, y: &[f64]);
     /// As [`super::Solution::advance`].
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
+    /// How many steps, or parts of them, were tried and not taken since the start.
+    fn rejected(&self) -> usize;
     /// The i-th variable of the state reached.
     fn state(&self, i: usize) -> f64;
     /// The unit of time of the last step's series.
@@ -74,6 +79,11 @@ pub struct Interpreted<'a, T: Element> {
     /// step.
     unit: f64,
     next_unit: f64,
+    /// Steps, or parts of them, that were not taken.
+    rejected: usize,
+    zeros: Vec<Root>,
+    /// What the rates are off without a reason, where that has been measured.
+    noise: Vec<T>,
 }
 
 /// A state, and what rounding took from it.
@@ -106,7 +116,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
         let zeros = vec![any.like(0.0); program.variables()];
         let reached = Reached {
             x: zeros.clone(),
-            lost: zeros,
+            lost: zeros.clone(),
         };
         Interpreted {
             rows: ProgramRows::new(&program, room, any),
@@ -121,6 +131,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
             watched,
             unit: 1.0,
             next_unit: 1.0,
+            rejected: 0,
+            zeros: Vec::new(),
+            noise: zeros,
         }
     }
 
@@ -129,6 +142,7 @@ impl<'a, T: Element> Interpreted<'a, T> {
         self.reached.x.copy_from_slice(x);
         self.reached.lost.fill(self.any.like(0.0));
         self.probed = false;
+        self.rejected = 0;
         self.record_here();
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
         let sizes = || self.reached.x.iter().map(|x| x.abs());
@@ -247,99 +261,6 @@ impl<'a, T: Element> Interpreted<'a, T> {
             log
         }
     }
-
-    /// Goes on by h > 0, counted in units of the series, at most `limit`, and returns the time that this took: not a number if
-    /// there is no step.
-    #[inline(always)]
-    pub(super) fn advance_by(&mut self, order: usize, h: f64, limit: DoubleDouble) -> DoubleDouble {
-        let in_units = limit / self.unit;
-        let whole = h >= in_units.hi().abs();
-        let mut step = if whole {
-            in_units
-        } else {
-            DoubleDouble::from(h.copysign(limit.hi()))
-        };
-        let mut time = if whole { limit } else { step * self.unit };
-        self.evaluate(order, step);
-        if !finite(&self.next.x) || self.passes_kink() {
-            step = self.shortened(order, step);
-            if !step.is_finite() {
-                return step;
-            }
-            time = step * self.unit;
-            self.evaluate(order, step);
-            self.probed = false;
-        }
-        std::mem::swap(&mut self.reached, &mut self.next);
-        self.next_unit = power_of_two(time.hi().abs());
-        time
-    }
-
-    /// A part of the step h that leads where all is finite, and no further than just behind a kink; not a number where there is
-    /// none.
-    #[cold]
-    #[inline(never)]
-    fn shortened(&mut self, order: usize, mut h: DoubleDouble) -> DoubleDouble {
-        let mut halvings = 0;
-        self.evaluate(order, h);
-        while !finite(&self.next.x) {
-            if halvings == HALVINGS {
-                return DoubleDouble::from(f64::NAN);
-            }
-            h = h * 0.5;
-            halvings += 1;
-            self.evaluate(order, h);
-        }
-        if !self.passes_kink() {
-            return h;
-        }
-        // By bisection: a series does not reach beyond, and it happens once in a run.
-        let (mut near, mut far) = (DoubleDouble::ZERO, h);
-        for _ in 0..BISECTIONS {
-            let middle = (near + far) * 0.5;
-            self.evaluate(order, middle);
-            if self.passes_kink() {
-                far = middle;
-            } else {
-                near = middle;
-            }
-        }
-        far
-    }
-
-    /// Whether a quantity whose sign the formula takes has another one there.
-    #[inline(always)]
-    fn passes_kink(&mut self) -> bool {
-        if self.program.kinks.is_empty() {
-            return false;
-        }
-        self.probe.begin(&self.next.x);
-        self.probed = true;
-        // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
-        let changes = |&row: &usize| {
-            let signs = self.rows.row(row)[0].sign() * self.probe.row(row)[0];
-            (0..T::LANES).any(|lane| signs.lane(lane) < 0.0)
-        };
-        self.program.kinks.iter().any(changes)
-    }
-
-    /// The state after h units, and what rounding took from it.
-    #[inline(always)]
-    fn evaluate(&mut self, order: usize, h: DoubleDouble) {
-        let h = self.any.like_exact(h);
-        let Reached { x, lost } = &self.reached;
-        for (i, (x, lost)) in x.iter().zip(lost).enumerate() {
-            let series = self.rows.row(i);
-            let mut sum = series[order];
-            for c in series[1..order].iter().rev() {
-                sum = sum.mul_add(h, *c);
-            }
-            let change = sum.mul_add(h, *lost);
-            let reached = *x + change;
-            self.next.x[i] = reached;
-            self.next.lost[i] = change - (reached - *x);
-        }
-    }
 }
 
 /// A step.
@@ -362,7 +283,7 @@ impl<T: Element> NullaryFnOnce for Advance<'_, '_, T> {
         solution.stay_within(limit);
         solution.expand(accuracy.order);
         let h = solution.longest(accuracy);
-        solution.advance_by(accuracy.order, h, limit)
+        solution.advance_by(accuracy, h, limit)
     }
 }
 
@@ -409,6 +330,10 @@ impl<T: Element> Trajectory for Interpreted<'_, T> {
             limit,
             solution: self,
         })
+    }
+
+    fn rejected(&self) -> usize {
+        self.rejected
     }
 
     fn state(&self, i: usize) -> f64 {
@@ -514,7 +439,11 @@ impl Trajectory for Transported<'_> {
         let in_units = (limit.hi() / self.solution.unit).abs();
         let most = f64::min(self.solution.longest(accuracy), in_units);
         let h = self.longest(accuracy, most);
-        self.solution.advance_by(accuracy.order, h, limit)
+        self.solution.advance_by(accuracy, h, limit)
+    }
+
+    fn rejected(&self) -> usize {
+        self.solution.rejected
     }
 
     fn state(&self, i: usize) -> f64 {

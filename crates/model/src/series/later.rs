@@ -89,6 +89,10 @@ impl LaterOrders {
                 needed[*row] = true;
             }
         }
+        // Steps end at the zeros of these.
+        for row in program.kinks.iter().chain(&program.branch_points) {
+            needed[*row] = true;
+        }
         let multiples = multiples(program, sums);
         let mut kept = Vec::new();
         for instruction in program.instructions().iter().rev() {

@@ -298,7 +298,7 @@ impl<'a, T: Element, X: Element> Linearised<'a, T, X> {
         let in_units = (limit.hi() / unit).abs();
         let most = f64::min(self.solution.longest(accuracy), in_units);
         let h = self.longest(accuracy, most);
-        let taken = self.solution.advance_by(order, h, limit);
+        let taken = self.solution.advance_by(accuracy, h, limit);
         if !taken.is_finite() {
             return taken;
         }
@@ -360,6 +360,10 @@ impl<T: Element, X: Element> Trajectory for Linearised<'_, T, X> {
             limit,
             solution: self,
         })
+    }
+
+    fn rejected(&self) -> usize {
+        self.solution.rejected()
     }
 
     fn state(&self, i: usize) -> f64 {

@@ -127,6 +127,10 @@ pub trait Solution<const N: usize> {
     /// Goes on by the step that the accuracy asks for, at most `limit` (negative: back in time), and returns it. Not a number
     /// if there is no step; the state then stays.
     fn advance(&mut self, accuracy: &Accuracy, limit: DoubleDouble) -> DoubleDouble;
+    /// How many steps, or parts of them, were tried and not taken since the start: their ends were not on the solution.
+    fn rejected(&self) -> usize {
+        0
+    }
     /// The state reached.
     fn state(&self) -> [f64; N];
     /// The slips of both interfaces in the last step, of this length, where they are had without all of the series.

@@ -218,6 +218,8 @@ pub(super) struct Program {
     pub later: LaterOrders,
     /// The rows whose signs it takes.
     pub kinks: Vec<usize>,
+    /// The rows of square roots: where one is 0 its series goes on with the other sign.
+    pub branch_points: Vec<usize>,
     /// Whether it holds only where it was recorded, as the formula asks for values.
     pub branches: bool,
 }
@@ -234,6 +236,7 @@ impl Program {
             places: (0..variables).map(|i| (i, 0)).collect(),
             later: LaterOrders::default(),
             kinks: Vec::new(),
+            branch_points: Vec::new(),
             branches: false,
         }
     }

@@ -107,6 +107,10 @@ impl<T: Deref<Target: Trajectory> + DerefMut, const N: usize> Solution<N> for Kn
         self.0.advance(accuracy, limit)
     }
 
+    fn rejected(&self) -> usize {
+        self.0.rejected()
+    }
+
     fn state(&self) -> [f64; N] {
         std::array::from_fn(|i| self.0.state(i))
     }

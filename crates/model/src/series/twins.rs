@@ -256,14 +256,19 @@ impl Folding {
         let at = |row: &usize| match self.place(*row) {
             At::Both(row) | At::Lane(row, _) => row,
         };
-        let mut kinks: Vec<usize> = program.kinks.iter().map(at).collect();
-        kinks.dedup();
+        let rows = |of: &[usize]| {
+            let mut rows: Vec<usize> = of.iter().map(at).collect();
+            rows.dedup();
+            rows
+        };
+        let (kinks, branch_points) = (rows(&program.kinks), rows(&program.branch_points));
         let places = (0..n).map(|variable| match self.place(variable) {
             At::Both(row) => (row, 0),
             At::Lane(row, lane) => (row, lane),
         });
         self.made.places = places.collect();
         self.made.kinks = kinks;
+        self.made.branch_points = branch_points;
         self.made.outputs = outputs;
         self.made.lanes = lanes;
         self.made.order();

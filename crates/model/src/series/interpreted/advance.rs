@@ -1,0 +1,275 @@
+//! The end of a step: a series is followed only as far as it is the solution.
+//!
+//! A series knows its formula from one point. It does not see a switch whose trace at that point is below rounding, nor what lies
+//! beyond a branch point of a root; and behind a zero of a quantity whose sign the formula takes it is the solution of another formula.
+//! So the rates where a step ends, which the next step begins with, are compared with the derivative of the series there, and the zeros
+//! of these quantities within the step are found.
+
+use super::{Interpreted, Reached, finite, power_of_two};
+use crate::number::DoubleDouble;
+use crate::number::polynomial::{Crossing, roots};
+use crate::series::element::Element;
+use crate::series::stepper::{BISECTIONS, HALVINGS};
+use crate::series::{Accuracy, REFERENCE_ORDER};
+
+/// How far the rates at the end of a step may be off the derivative of the series: times the length of the step, in units of what the
+/// state may err. The terms that a series of order p leaves out are p times as large in its derivative, and a solution that decays
+/// within the step makes as much of them again.
+const EXPLAINED: f64 = 3000.0;
+/// Rounding of the rates, in units of themselves.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// A part of a step in which nothing happens: what the rates there are off the series is the noise of a formula that cancels.
+const NEXT_TO_NOTHING: f64 = 1.0 / (1 << 20) as f64;
+/// How much more noise there may be elsewhere.
+const NOISIER: f64 = 16.0;
+/// The least and the most noise, in units of the largest number that the formula makes on its way.
+const NOISE: [f64; 2] = [4.0 * f64::EPSILON, 1024.0 * f64::EPSILON];
+/// Where a series is compared with the rates before the branch point of a root.
+const BEFORE: f64 = 0.999;
+/// What leads behind a branch point.
+const BEHIND: f64 = 1.0 + 4.0 * f64::EPSILON;
+
+impl<T: Element> Interpreted<'_, T> {
+    /// Goes on by h > 0, counted in units of the series, at most `limit`, and returns the time that this took: not a number if
+    /// there is no step.
+    #[inline(always)]
+    pub(in crate::series) fn advance_by(
+        &mut self,
+        accuracy: &Accuracy,
+        h: f64,
+        limit: DoubleDouble,
+    ) -> DoubleDouble {
+        let in_units = limit / self.unit;
+        let whole = h >= in_units.hi().abs();
+        let mut step = if whole {
+            in_units
+        } else {
+            DoubleDouble::from(h.copysign(limit.hi()))
+        };
+        let mut time = if whole { limit } else { step * self.unit };
+        self.look_at(accuracy.order, step);
+        if !self.is_solution(accuracy, step) || self.meets_kink(accuracy.order, step) {
+            step = self.shortened(accuracy, step);
+            if !step.is_finite() {
+                return step;
+            }
+            time = step * self.unit;
+            self.look_at(accuracy.order, step);
+        }
+        self.probed = true;
+        std::mem::swap(&mut self.reached, &mut self.next);
+        self.next_unit = power_of_two(time.hi().abs());
+        time
+    }
+
+    /// A part of the step h at whose end the series is the solution, and which leads no further than just behind a kink; not a number
+    /// where there is none.
+    #[cold]
+    #[inline(never)]
+    fn shortened(&mut self, accuracy: &Accuracy, h: DoubleDouble) -> DoubleDouble {
+        self.measure_noise(accuracy.order, h * NEXT_TO_NOTHING);
+        let shortened = self.without_noise(accuracy, h);
+        self.noise.fill(self.any.like(0.0));
+        shortened
+    }
+
+    /// The same, but for the noise of the rates.
+    fn without_noise(&mut self, accuracy: &Accuracy, mut h: DoubleDouble) -> DoubleDouble {
+        let order = accuracy.order;
+        for _ in 0..HALVINGS {
+            self.look_at(order, h);
+            let end = if !finite(&self.next.x) {
+                None
+            } else if let Some(behind) = self.behind_kink(order, h) {
+                self.cut(order, behind)
+            } else if let Some(branch) = self.first_zero(order, h, Watched::Branches) {
+                let at = DoubleDouble::from(branch.at);
+                Some((at * BEFORE, at * BEHIND))
+            } else {
+                Some((h, h))
+            };
+            if let Some((before, behind)) = end {
+                self.look_at(order, before);
+                if self.is_solution(accuracy, before) {
+                    return behind;
+                }
+                h = before;
+            }
+            self.rejected += 1;
+            h = h * 0.5;
+        }
+        DoubleDouble::from(f64::NAN)
+    }
+
+    /// The ends of the interval, of next to no length, in which a kink is first passed on the way to this step, behind it. By bisection:
+    /// it happens once in a run.
+    fn cut(&mut self, order: usize, behind: f64) -> Option<(DoubleDouble, DoubleDouble)> {
+        let (mut near, mut far) = (DoubleDouble::ZERO, DoubleDouble::from(behind));
+        for _ in 0..BISECTIONS {
+            let middle = (near + far) * 0.5;
+            self.look_at(order, middle);
+            if self.passes_kink() {
+                far = middle;
+            } else {
+                near = middle;
+            }
+        }
+        Some((near, far))
+    }
+
+    /// The state at the end of this step, and all that the formula makes of it.
+    #[inline(always)]
+    fn look_at(&mut self, order: usize, h: DoubleDouble) {
+        self.evaluate(order, h);
+        self.probe.begin(&self.next.x);
+    }
+
+    /// Whether the rates at the end of the step, which has been looked at, are those of the series.
+    #[inline(always)]
+    fn is_solution(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
+        let (rtol, atol) = accuracy.tolerances;
+        let step = self.any.like(h.hi().abs());
+        let mut explained = finite(&self.next.x);
+        for (i, x) in self.next.x.iter().enumerate() {
+            let [slope, rate] = self.slope_and_rate(i, accuracy.order, h);
+            let largest = Element::max(x.abs(), self.reached.x[i].abs());
+            let may_err = largest.mul_add(x.like(rtol), x.like(atol));
+            let rounding =
+                Element::max(slope.abs(), rate.abs()).mul_add(x.like(ROUNDING), self.noise[i]);
+            let allowed = may_err.mul_add(x.like(EXPLAINED), rounding * step);
+            // A number that is none is not explained.
+            explained &= ((slope - rate).abs() * step / allowed).largest_lane() <= 1.0;
+        }
+        explained
+    }
+
+    /// The derivative of the series of a variable at the end of the step, and the rate there, in units of the series.
+    #[inline(always)]
+    fn slope_and_rate(&self, i: usize, order: usize, h: DoubleDouble) -> [T; 2] {
+        let (series, h) = (self.rows.row(i), self.any.like_exact(h));
+        let mut slope = self.any.like(0.0);
+        let mut k = order;
+        while k > 0 {
+            slope = slope.mul_add(h, series[k] * self.any.like(k as f64));
+            k -= 1;
+        }
+        let rate = self.probe.coefficient(self.program.outputs[i], 0);
+        [slope, rate * self.any.like(self.unit)]
+    }
+
+    /// Measures how far rates are off without a reason.
+    fn measure_noise(&mut self, order: usize, h: DoubleDouble) {
+        self.look_at(order, h);
+        let sizes = (0..self.program.rows()).map(|row| self.probe.row(row)[0].abs().largest_lane());
+        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
+        let [least, most] = NOISE.map(|noise| self.any.like(noise * largest * self.unit));
+        for i in 0..self.noise.len() {
+            let [slope, rate] = self.slope_and_rate(i, order, h);
+            let noise = (slope - rate).abs() * self.any.like(NOISIER);
+            self.noise[i] = Element::max(Element::min(noise, most), least);
+        }
+    }
+
+    /// Whether there is a zero, within the step or at its end, behind which the series is not the solution.
+    #[inline(always)]
+    fn meets_kink(&mut self, order: usize, h: DoubleDouble) -> bool {
+        if self.program.kinks.is_empty() && self.program.branch_points.is_empty() {
+            return false;
+        }
+        self.passes_kink()
+            || self.first_zero(order, h, Watched::Kinks).is_some()
+            || self.first_zero(order, h, Watched::Branches).is_some()
+    }
+
+    /// A part of the step at which a quantity whose sign the formula takes has another one.
+    fn behind_kink(&mut self, order: usize, h: DoubleDouble) -> Option<f64> {
+        if let Some(zero) = self.first_zero(order, h, Watched::Kinks) {
+            let middle = 0.5 * (zero.at + zero.next);
+            self.look_at(order, DoubleDouble::from(middle));
+            // Two zeros that only rounding parts are none.
+            if self.passes_kink() {
+                return Some(middle);
+            }
+            self.look_at(order, h);
+        }
+        self.passes_kink().then(|| h.hi())
+    }
+
+    /// Whether a quantity whose sign the formula takes has another one at the end that was looked at.
+    #[inline(always)]
+    fn passes_kink(&self) -> bool {
+        // A zero counts as positive, as where the formula takes its sign: what begins on a kink leaves it to either side.
+        let changes = |&row: &usize| {
+            let signs = self.rows.row(row)[0].sign() * self.probe.row(row)[0];
+            (0..T::LANES).any(|lane| signs.lane(lane) < 0.0)
+        };
+        self.program.kinks.iter().any(changes)
+    }
+
+    /// The first zero of what is watched within the step, by its own series.
+    fn first_zero(&mut self, order: usize, h: DoubleDouble, watched: Watched) -> Option<Zero> {
+        let h = h.hi();
+        let rows = match watched {
+            Watched::Kinks => &self.program.kinks,
+            Watched::Branches => &self.program.branch_points,
+        };
+        let mut first: Option<Zero> = None;
+        for &row in rows {
+            for lane in 0..T::LANES {
+                let mut series = [0.0; REFERENCE_ORDER + 1];
+                let known = &mut series[..order];
+                for (to, c) in known.iter_mut().zip(self.rows.row(row)) {
+                    *to = c.lane(lane);
+                }
+                self.zeros.clear();
+                roots(known, h, &mut self.zeros);
+                let mut crossed = self
+                    .zeros
+                    .iter()
+                    .filter(|zero| zero.crossing != Crossing::Touching);
+                let Some(zero) = crossed.next() else { continue };
+                if first.is_none_or(|first| zero.at.abs() < first.at.abs()) {
+                    first = Some(Zero {
+                        at: zero.at,
+                        next: crossed.next().map_or(h, |next| next.at),
+                    });
+                }
+            }
+        }
+        first
+    }
+
+    /// The state after h units, and what rounding took from it.
+    #[inline(always)]
+    fn evaluate(&mut self, order: usize, h: DoubleDouble) {
+        let h = self.any.like_exact(h);
+        let Reached { x, lost } = &self.reached;
+        for (i, (x, lost)) in x.iter().zip(lost).enumerate() {
+            let series = self.rows.row(i);
+            let mut sum = series[order];
+            for c in series[1..order].iter().rev() {
+                sum = sum.mul_add(h, *c);
+            }
+            let change = sum.mul_add(h, *lost);
+            let reached = *x + change;
+            self.next.x[i] = reached;
+            self.next.lost[i] = change - (reached - *x);
+        }
+    }
+}
+
+/// Rows whose zeros end a step.
+#[derive(Clone, Copy)]
+enum Watched {
+    /// Those whose signs the formula takes.
+    Kinks,
+    /// Roots: a series goes on to the other branch of them.
+    Branches,
+}
+
+/// A zero within a step, and where the sign changes again or the step ends.
+#[derive(Clone, Copy)]
+struct Zero {
+    at: f64,
+    next: f64,
+}

@@ -1,0 +1,252 @@
+//! The ends of steps: what a series does not see from its beginning, zeros of kinks within a step, values that sink below the absolute
+//! tolerance and grow again.
+//!
+//! Values of systems in `tests/data/cases` are from event-wise integration in 30 digits (mpmath), of the tank in closed form.
+
+use crate::command;
+use command::{number, object, twinslip};
+use proptest::prelude::*;
+use twinslip::field::{State, VectorField};
+use twinslip::friction::{AnyLaw, Parameters};
+use twinslip::integrate::{Choice, Integrator, MAX_STEPS, RosenbrockMethod, Taylor, Tolerances};
+use twinslip::model::{Loading, Smooth, two_interfaces};
+use twinslip::number::Real;
+use twinslip::series::Equations;
+
+/// The end of a run, each value within its uncertainty of the truth, and this near.
+#[track_caller]
+fn ends_at(arguments: &str, truths: &[(&str, f64)], near: f64) -> serde_json::Value {
+    let made = object(&format!(
+        "integrate --system tests/data/cases/{arguments} --final-only --estimate-error"
+    ));
+    for (name, truth) in truths {
+        let value = number(&made, &format!("/result/final/{name}"));
+        let uncertainty = number(&made, &format!("/result/final/{name}_uncertainty"));
+        // The truth has as many digits as are written here.
+        let off = (value - truth).abs();
+        assert!(
+            off <= uncertainty + 1e-8 * truth.abs() && off <= near,
+            "{arguments}: {name} = {value} ± {uncertainty} for {truth}"
+        );
+    }
+    made
+}
+
+#[test]
+fn a_switch_beyond_the_sight_of_a_series_is_met() {
+    for (k, truth) in [
+        (10, 0.972339625143258),
+        (20, 0.972879498358905),
+        (40, 0.973006498369836),
+        (1000, 0.973048145502),
+    ] {
+        for method in ["auto", "taylor", "rodas5p"] {
+            let run = format!("tanh-switch.toml --set k={k} --until 5 --method {method}");
+            ends_at(&run, &[("x", truth)], 1e-5);
+        }
+        let run = format!("tanh-switch.toml --set k={k} --until 5 --rtol 1e-12 --atol 1e-12");
+        ends_at(&run, &[("x", truth)], 1e-11);
+    }
+}
+
+#[test]
+fn steps_that_leave_the_solution_are_counted() {
+    let made = ends_at(
+        "diode.toml --until 0.002",
+        &[("x", 0.574147339189913)],
+        1e-9,
+    );
+    assert!(number(&made, "/work/rejected") > 0.0);
+    ends_at("diode.toml --until 1", &[("x", 0.574147339189913)], 1e-9);
+}
+
+/// h' = -sqrt(h) from 1 is (1 - t/2)^2 and ends at t = 2, where a series goes on with the other sign of the root.
+#[test]
+fn a_root_ends_the_run_at_its_branch_point() {
+    for options in [
+        "",
+        "--method taylor",
+        "--rtol 1e-12 --atol 1e-12",
+        "--rtol 1e-4 --atol 1e-4",
+    ] {
+        let ended = twinslip(&format!(
+            "integrate --system tests/data/cases/torricelli.toml --until 3 {options}"
+        ));
+        assert_eq!(ended.code, 1, "{options}: {}", ended.err);
+        let at = ended.err.split("at t = ").nth(1).expect("a time");
+        let at: f64 = at
+            .split([',', ' '])
+            .next()
+            .and_then(|t| t.parse().ok())
+            .expect("a number");
+        assert!((at - 2.0).abs() < 1e-3, "{options}: {}", ended.err);
+        assert!(
+            ended.err.contains("not smooth or not defined"),
+            "{}",
+            ended.err
+        );
+    }
+    ends_at("torricelli.toml --until 1.5", &[("h", 0.0625)], 1e-9);
+}
+
+#[test]
+fn kinks_that_a_step_passes_twice_are_met() {
+    for method in ["auto", "taylor"] {
+        let sprott = [("x", 0.24148201), ("y", -0.85685317), ("z", -0.88978798)];
+        ends_at(
+            &format!("sprott-abs.toml --until 60 --method {method}"),
+            &sprott,
+            1e-7,
+        );
+        let chua = [("x", 1.08871811), ("y", -0.19004961), ("z", -1.10380692)];
+        ends_at(
+            &format!("chua-pw.toml --until 20 --method {method}"),
+            &chua,
+            1e-6,
+        );
+        ends_at(
+            &format!("soft-stop.toml --until 20 --method {method}"),
+            &[("x", 1.21410274)],
+            1e-6,
+        );
+    }
+    ends_at(
+        "soft-stop.toml --until 20 --reference",
+        &[("x", 1.21410274)],
+        1e-6,
+    );
+    ends_at("pulse-parabola.toml --until 2", &[("u", 0.3315455)], 1e-7);
+}
+
+#[test]
+fn the_orbit_of_a_piecewise_linear_net_is_found() {
+    // Its second method does not cross the corners well enough to say more.
+    let ended = twinslip("orbit --system tests/data/cases/relu-net.toml --format json -q");
+    assert_eq!(ended.code, 3, "{}", ended.err);
+    let made: serde_json::Value = serde_json::from_str(&ended.out).expect("JSON");
+    let period = number(&made, "/result/orbit/period/value");
+    assert!((period - 3.62759873).abs() < 1e-8, "{period}");
+}
+
+/// A slow passage through a Hopf point: the oscillation sinks to e^-90 and comes back. What a run loses below its absolute tolerance,
+/// its estimate must say.
+#[test]
+fn an_estimate_holds_where_values_sink_below_the_tolerance() {
+    for method in [
+        "auto",
+        "taylor",
+        "rodas5p",
+        "rodas4",
+        "cvode-bdf",
+        "cvode-adams",
+    ] {
+        if !cfg!(feature = "sundials") && method.starts_with("cvode") {
+            continue;
+        }
+        let run =
+            format!("delayed-hopf.toml --until 200 --rtol 1e-10 --atol 1e-12 --method {method}");
+        ends_at(&run, &[("x", 0.0482363670825)], 1.0);
+    }
+    // Followed all the way it is had.
+    let run = "delayed-hopf.toml --until 200 --rtol 1e-12 --atol 1e-40 --method taylor";
+    ends_at(run, &[("x", 0.0482363670825)], 1e-8);
+}
+
+/// The formulas that are written by hand for the laws have no such check: what is hidden there are exponentials of a stress that a step
+/// changes by little.
+#[test]
+fn laws_are_loaded_from_far_below() {
+    for name in AnyLaw::NAMES {
+        for stress in [-300.0, -100.0, -40.0] {
+            let law = AnyLaw::named(name, Parameters::heslot_1994()).expect("a law");
+            let field = two_interfaces(law, Loading::new(1000.0, 10.0).expect("positive"));
+            let start = State::<3>::new(stress, 0.5_f64.ln(), 0.45_f64.ln());
+            let tolerances = Tolerances::equal(1e-12).expect("positive");
+            let mut taylor = Taylor::new(tolerances, MAX_STEPS).expect("a method");
+            let implicit = Choice::Rosenbrock(RosenbrockMethod::Rodas5P);
+            let mut rodas = implicit
+                .integrator::<3>(tolerances, MAX_STEPS)
+                .expect("a method");
+            let end = |by: &mut dyn Integrator<3>| {
+                by.flow(&*field, (0.0, 0.2), &start, None)
+                    .unwrap_or_else(|e| panic!("{name} {stress}: {e}"))
+            };
+            let off = (end(&mut taylor) - end(&mut *rodas)).amax();
+            assert!(off < 1e-8, "{name} from {stress}: {off:e}");
+        }
+    }
+}
+
+/// An oscillator with a soft stop, x'' = -x - K max(x - c, 0).
+#[derive(Debug, Clone, Copy)]
+struct SoftStop;
+
+impl Equations<2, 2> for SoftStop {
+    const PARAMETERS: [&'static str; 2] = ["stiffness", "gap"];
+
+    fn rates<T: Real>(&self, [x, v]: [T; 2], [stiffness, gap]: [T; 2]) -> [T; 2] {
+        let into = x - gap;
+        let force = stiffness * (into + into.abs()) / 2.0;
+        [v, -x - force]
+    }
+}
+
+/// Its solution from rest at -A by a sine in each region, from one passage of the stop to the next.
+fn soft_stop([stiffness, gap]: [f64; 2], amplitude: f64, until: f64) -> [f64; 2] {
+    let (mut t, mut x, mut v) = (0.0, -amplitude, 0.0_f64);
+    let mut inside = false;
+    loop {
+        // x = centre + r cos(w s - phase)
+        let squared = if inside { 1.0 + stiffness } else { 1.0 };
+        let centre = if inside {
+            stiffness * gap / squared
+        } else {
+            0.0
+        };
+        let w = squared.sqrt();
+        let r = (x - centre).hypot(v / w);
+        let phase = (v / w).atan2(x - centre);
+        let after = |s: f64| {
+            let angle = w * s - phase;
+            [centre + r * angle.cos(), -r * w * angle.sin()]
+        };
+        let level = (gap - centre) / r;
+        let next = if level.abs() < 1.0 {
+            // Outside it is met going up, inside going down.
+            let angle = if inside { level.acos() } else { -level.acos() };
+            let turn = std::f64::consts::TAU;
+            (angle + phase).rem_euclid(turn) / w
+        } else {
+            f64::INFINITY
+        };
+        if t + next >= until {
+            return after(until - t);
+        }
+        t += next;
+        [x, v] = [gap, after(next)[1]];
+        inside = !inside;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(1000))]
+
+    #[test]
+    fn soft_stops_are_those_of_the_closed_form(
+        stiffness in 0.1..30.0_f64,
+        gap in 0.05..0.999_f64,
+        until in 1.0..40.0_f64,
+        digits in 6..14_i32,
+    ) {
+        let tolerances = Tolerances::equal(10_f64.powi(-digits)).expect("positive");
+        let field = Smooth { equations: SoftStop, parameters: [stiffness, gap] };
+        let start = State::<2>::new(-1.0, 0.0);
+        let exact = soft_stop([stiffness, gap], 1.0, until);
+        let mut taylor = Taylor::new(tolerances, MAX_STEPS).expect("a method");
+        let end = taylor.flow(&field as &dyn VectorField<2>, (0.0, until), &start, None).expect("a run");
+        let off = (end - State::from(exact)).amax();
+        // Each passage of the stop, of which there are two a turn, may shift the phase by what a step may err.
+        let allowed = 1e3 * tolerances.rtol * (1.0 + until) + 1e-12 * (1.0 + until);
+        prop_assert!(off < allowed, "{off:e} of {allowed:e} for {stiffness} {gap} {until} {digits}");
+    }
+}
