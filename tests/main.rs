@@ -43,6 +43,7 @@ mod double_double;
 mod durability_files;
 #[cfg(unix)]
 mod durability_kills;
+mod eigenvalues;
 mod ensemble;
 mod ensemble_input;
 mod equilibria;

@@ -432,3 +432,33 @@ fn equal_blocks_slip_as_one_that_falls_from_static_to_sliding_friction() {
     // Both start alike.
     assert!(first.iter().zip(&second).all(|(a, b)| (a - b).abs() < 1e-3));
 }
+
+#[test]
+fn logarithms_and_exponentials_have_the_names_of_other_languages() {
+    let path = file(
+        "names_of_functions",
+        r#"
+        name = "names"
+        states = ["x", "y", "z", "s"]
+        [rates]
+        x = "expm1(-x) + 1"
+        y = "exp(-log1p(s))"
+        z = "log(1 + s) - ln(1 + s) + 1e12*expm1(1e-12)"
+        s = "1"
+        [start]
+        x = 0.0
+        y = 0.0
+        z = 0.0
+        s = 0.0
+        "#,
+    );
+    for method in ["taylor", "rodas5p"] {
+        let made = object(&format!(
+            "integrate --system {path} --until 2 --final-only --method {method} --rtol 1e-12 --atol 1e-12"
+        ));
+        let at = |name: &str| number(&made, &format!("/result/final/{name}"));
+        near(at("x"), 3.0_f64.ln(), 1e-11);
+        near(at("y"), 3.0_f64.ln(), 1e-11);
+        near(at("z"), 2.0 * (1.0 + 0.5e-12), 1e-14);
+    }
+}

@@ -4,7 +4,7 @@
 //! in interval arithmetic, with what the basis is off.
 
 use super::eigenvalues::{Stability, Verdict};
-use crate::number::Interval;
+use crate::number::{Interval, eigenvalues};
 use nalgebra::{Complex, DMatrix, DVector};
 
 type Cell = [Interval; 2];
@@ -18,7 +18,10 @@ pub fn spectrum_within(bounds: &[Interval]) -> Stability {
     if n == 0 || middle.iter().any(|x| !x.is_finite()) {
         return unknown(Vec::new());
     }
-    let mut found: Vec<Complex<f64>> = middle.complex_eigenvalues().iter().copied().collect();
+    let mut found = eigenvalues(&middle);
+    if found.iter().any(|z| z.re.is_nan()) {
+        return unknown(Vec::new());
+    }
     found.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
     let Some(discs) = discs(bounds, &middle, &found) else {
         return unknown(found);

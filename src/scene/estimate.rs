@@ -252,7 +252,7 @@ fn rounding_of_start(
 
 /// The time of a singularity, or of a burst too fast for doubles, with its uncertainty by a second run.
 pub(super) fn timed(
-    mut error: Error,
+    error: Error,
     plan: &Plan,
     outcome: &mut RunOutcome,
     sink: &mut dyn Sink,
@@ -260,19 +260,39 @@ pub(super) fn timed(
     let companion = Companion::of(plan.tolerances, false);
     let mut run = Second::new(companion, plan, sink, true);
     let second = go(plan, &mut run);
+    let run_stopped = run.stopped;
     outcome.work += run.work;
     if let Err(error @ Error::Parameter { .. }) = second {
         return Err(error);
     }
-    let (Error::BlowUp { t, uncertainty, .. } | Error::TooFast { t, uncertainty, .. }) = &mut error
-    else {
+    if run_stopped {
         return Ok(error);
-    };
-    if let Err(Error::BlowUp { t: again, .. } | Error::TooFast { t: again, .. }) = second {
-        let rounding = TIME_SPACINGS * f64::EPSILON * again.abs();
-        *uncertainty = Some(MARGIN * (again - *t).abs() + rounding);
     }
-    Ok(error)
+    Ok(confirmed(error, second.err()))
+}
+
+/// A singularity with the uncertainty of its time, by what a second run ended with, if not with the end of the run. One that is not
+/// confirmed is undecided.
+pub(super) fn confirmed(mut error: Error, second: Option<Error>) -> Error {
+    /// The uncertainty of its time, in units of that time, from which on there is none to tell.
+    const VAGUE: f64 = 0.1;
+    let again = match second {
+        Some(Error::BlowUp { t, .. } | Error::TooFast { t, .. }) => Some(t),
+        Some(Error::Interrupted) => return error,
+        _ => None,
+    };
+    let singular = matches!(error, Error::BlowUp { .. });
+    if let Error::BlowUp { t, uncertainty, .. } | Error::TooFast { t, uncertainty, .. } = &mut error
+    {
+        let t = *t;
+        let bound = again
+            .map(|again| MARGIN * (again - t).abs() + TIME_SPACINGS * f64::EPSILON * again.abs());
+        if singular && bound.is_none_or(|bound| bound > VAGUE * t.abs()) {
+            return Error::UndecidedEnd { t, again };
+        }
+        *uncertainty = bound;
+    }
+    error
 }
 
 /// Largest relative difference in stress and states: the states by their logarithms.

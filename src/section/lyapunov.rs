@@ -20,7 +20,7 @@ use crate::integrate::{
     AnyField, AnyIntegrator, Choice, Control, DerivativesAlongArcs, MAX_STEPS, Tolerances,
     of_dimension,
 };
-use crate::number::Uncertain;
+use crate::number::{self, Uncertain};
 use nalgebra::{Complex, DMatrix};
 
 /// The tolerance of the tangents, and of the run that they are taken along.
@@ -185,7 +185,7 @@ pub fn at_equilibrium(field: &AnyField<'_>, equilibrium: &Vector) -> Vec<Uncerta
 
 /// The eigenvalues, those with the largest real part first.
 fn eigenvalues(matrix: &Matrix) -> Vec<Complex<f64>> {
-    let mut values: Vec<Complex<f64>> = matrix.complex_eigenvalues().iter().copied().collect();
+    let mut values = number::eigenvalues(matrix);
     values.sort_by(|a, b| b.re.total_cmp(&a.re));
     values
 }

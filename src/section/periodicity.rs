@@ -10,7 +10,7 @@ use super::surface::{Landing, Surface, return_map};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances, of_dimension};
-use crate::number::Uncertain;
+use crate::number::{Uncertain, eigenvalues};
 
 /// The longest period that is looked for.
 pub const LONGEST_PERIOD: usize = 64;
@@ -197,8 +197,8 @@ impl<'a> PeriodicSearch<'a> {
             time, derivative, ..
         } = &along[q - 1];
         let reduced = reduce(derivative, &self.surface.directions(point.as_slice()));
-        let moduli = reduced.complex_eigenvalues().map(|z| z.norm());
-        let multiplier = moduli.iter().copied().fold(0.0, f64::max);
+        let moduli = eigenvalues(&reduced).into_iter().map(|z| z.norm());
+        let multiplier = moduli.fold(0.0, f64::max);
         let n = self.returns.len();
         let phase = |i: &usize| (n - 1 - i).is_multiple_of(self.q);
         let distance = |i: usize| (&self.returns[i].state - &point).amax();

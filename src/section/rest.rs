@@ -2,6 +2,7 @@
 
 use crate::field::Vector;
 use crate::integrate::AnyField;
+use crate::number::eigenvalues;
 
 /// Newton's method from a spiral ends at this step, or fails.
 const CONVERGED: f64 = 1e-10;
@@ -50,6 +51,6 @@ pub(super) fn spirals_into(
 /// The largest real part of the eigenvalues.
 pub(crate) fn growth(field: &AnyField<'_>, y: &[f64]) -> f64 {
     let jacobian = field.jacobian(&Vector::from_column_slice(y));
-    let parts = jacobian.complex_eigenvalues().map(|z| z.re);
-    parts.iter().copied().fold(f64::NEG_INFINITY, f64::max)
+    let parts = eigenvalues(&jacobian).into_iter().map(|z| z.re);
+    parts.fold(f64::NEG_INFINITY, f64::max)
 }

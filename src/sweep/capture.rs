@@ -8,6 +8,7 @@
 
 use crate::field::{Jacobian, State, Vector, state, vector};
 use crate::integrate::AnyField;
+use crate::number::eigenvalues;
 use crate::section::growth;
 use nalgebra::{Complex, Matrix3, Vector3};
 
@@ -121,8 +122,8 @@ impl Neighbourhood {
 impl Modes {
     fn of(field: &AnyField<'_>, equilibrium: &State<3>) -> Option<Self> {
         let jacobian = field.jacobian(&vector(equilibrium));
+        let values = eigenvalues(&jacobian);
         let jacobian = Jacobian::<3>::from_column_slice(jacobian.as_slice());
-        let values = jacobian.complex_eigenvalues();
         let vectors = Matrix3::from_columns(&[0, 1, 2].map(|i| eigenvector(&jacobian, values[i])));
         let inverse = vectors.try_inverse()?;
         let mut curvature = [[[0.0_f64; 3]; 3]; 3];

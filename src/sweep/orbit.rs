@@ -4,7 +4,7 @@ use super::watch::{see, turn};
 use crate::error::Error;
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Control};
-use crate::number::{DoubleDouble, Uncertain};
+use crate::number::{DoubleDouble, Uncertain, eigenvalues};
 use crate::section::{Periodic, STEPS_OF_PIECE, Surface, derivative_along, reduce};
 
 /// The tolerance with which an orbit is gone round once, for its period and what is seen.
@@ -126,7 +126,7 @@ fn largest_multiplier(
     const LEAST: f64 = 1e-6;
     let inside = surface.directions(point.as_slice());
     let reduced = reduce(derivative, &inside);
-    let values = reduced.complex_eigenvalues();
+    let values = eigenvalues(&reduced);
     let norms = values.iter().map(|z| z.norm());
     let (place, mu) = norms.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
     if !(mu > LEAST && mu.is_finite()) {

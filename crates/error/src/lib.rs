@@ -73,6 +73,15 @@ pub enum Error {
         /// Largest component of |dy/dt| where the run ended.
         rate: f64,
     },
+    /// A run leaves every bound in finite time, but a second one with smaller tolerances does not, or at quite another time: whether the
+    /// solution ends is undecided.
+    #[error("{}", undecided_end(&MessageUnits::NONE, *t, *again))]
+    UndecidedEnd {
+        /// Time at which the run left every bound.
+        t: f64,
+        /// The time at which the second run did, if it did.
+        again: Option<f64>,
+    },
     /// The solution goes on, but for a while it changes faster than doubles can follow: within less than the spacing of the
     /// numbers around t, or beyond the largest of them.
     #[error("{}", too_fast(&MessageUnits::NONE, (*t, *uncertainty), *overflows, *lasting))]
@@ -262,6 +271,7 @@ impl Error {
         let words = match &self {
             Error::StepTooSmall { t, h } => step_too_small(units, *t, *h),
             Error::BlowUp { t, uncertainty, .. } => blow_up(units, *t, *uncertainty),
+            Error::UndecidedEnd { t, again } => undecided_end(units, *t, *again),
             Error::TooFast {
                 t,
                 uncertainty,
@@ -427,6 +437,18 @@ fn blow_up(units: &MessageUnits, t: f64, uncertainty: Option<f64>) -> String {
     let t = known(t, uncertainty, units.time);
     format!(
         "the solution blows up in finite time: at t = {t} it leaves every bound; there is no solution beyond"
+    )
+}
+
+fn undecided_end(units: &MessageUnits, t: f64, again: Option<f64>) -> String {
+    let second = match again {
+        Some(again) => format!("does so at t = {}", measured(again, units.time)),
+        None => "does not".to_owned(),
+    };
+    let t = measured(t, units.time);
+    format!(
+        "the run leaves every bound at t = {t}, but a second one with smaller tolerances {second}: whether the solution ends there is \
+         undecided; try a smaller absolute tolerance"
     )
 }
 

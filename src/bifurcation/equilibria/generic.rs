@@ -17,6 +17,7 @@ use crate::continuation::{
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, place};
 use crate::integrate::{AnyField, of_dimension};
+use crate::number;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -128,8 +129,7 @@ impl<'a> FieldEquilibria<'a> {
     }
 
     fn eigenvalues(&self, y: &Vector, p: f64) -> Vec<Complex<f64>> {
-        let all = self.jacobian(y, p).complex_eigenvalues();
-        let mut all: Vec<_> = all.iter().copied().collect();
+        let mut all = number::eigenvalues(&self.jacobian(y, p));
         all.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
         all
     }

@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, AnyStep, Choice, Control, Tolerances, Work};
 use crate::model::TextSystem;
-use crate::scene::estimate::{Companion, GROWTH, MARGIN, PIECES, ROUNDING, TIME_SPACINGS};
+use crate::scene::estimate::{Companion, GROWTH, MARGIN, PIECES, ROUNDING, confirmed};
 use crate::scene::program::Stretch;
 use crate::scene::run::{RunOutcome, Sink};
 use std::borrow::Cow;
@@ -64,7 +64,7 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
         (Err(error @ (Error::BlowUp { .. } | Error::TooFast { .. })), _) => {
             let companion = Companion::of(plan.tolerances, false);
             let second = second_run(companion, plan, &mut outcome, sink);
-            outcome.failure = Some(timed(error, second.err()));
+            outcome.failure = Some(confirmed(error, second.err()));
         }
         _ => {}
     }
@@ -201,15 +201,4 @@ fn errors(
     let error =
         |i: usize| MARGIN * (end[i] - second[i]).abs() + moved[i] + ROUNDING * (1.0 + end[i].abs());
     Ok((0..count).map(error).collect())
-}
-
-/// A singularity with the uncertainty of its time, by that of a second run.
-fn timed(mut error: Error, second: Option<Error>) -> Error {
-    if let Error::BlowUp { t, uncertainty, .. } | Error::TooFast { t, uncertainty, .. } = &mut error
-        && let Some(Error::BlowUp { t: again, .. } | Error::TooFast { t: again, .. }) = second
-    {
-        let rounding = TIME_SPACINGS * f64::EPSILON * again.abs();
-        *uncertainty = Some(MARGIN * (again - *t).abs() + rounding);
-    }
-    error
 }

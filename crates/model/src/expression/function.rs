@@ -7,8 +7,12 @@ use crate::number::Real;
 pub enum Function {
     /// e^x
     Exp,
+    /// e^x - 1, accurate near 0
+    Expm1,
     /// natural logarithm
     Ln,
+    /// ln(1 + x), accurate near 0
+    Log1p,
     /// logarithm to base 10
     Log10,
     /// square root
@@ -42,10 +46,13 @@ pub enum Function {
 use Function::*;
 
 impl Function {
-    /// All, by their names.
-    const ALL: [(&'static str, Function); 16] = [
+    /// All, by their names; the natural logarithm has both of its own.
+    const ALL: [(&'static str, Function); 19] = [
         ("exp", Exp),
+        ("expm1", Expm1),
         ("ln", Ln),
+        ("log", Ln),
+        ("log1p", Log1p),
         ("log10", Log10),
         ("sqrt", Sqrt),
         ("sin", Sin),
@@ -63,8 +70,8 @@ impl Function {
     ];
 
     /// Their names.
-    pub const NAMES: [&'static str; 16] = {
-        let mut names = [""; 16];
+    pub const NAMES: [&'static str; 19] = {
+        let mut names = [""; 19];
         let mut i = 0;
         while i < names.len() {
             names[i] = Self::ALL[i].0;
@@ -91,7 +98,9 @@ impl Function {
     pub(super) fn of<T: Real>(self, x: T) -> T {
         match self {
             Exp => x.exp(),
+            Expm1 => x.exp_m1(),
             Ln => x.ln(),
+            Log1p => x.ln_1p(),
             Log10 => x.log10(),
             Sqrt => x.sqrt(),
             Sin => x.sin(),

@@ -8,6 +8,7 @@ mod balance;
 mod constant;
 mod difference;
 mod double_double;
+mod eigenvalues;
 mod interval;
 mod jet;
 mod logarithm;
@@ -21,6 +22,7 @@ pub use difference::Difference;
 pub use double_double::DoubleDouble;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use double_double::two_sum;
+pub use eigenvalues::eigenvalues;
 pub use interval::Interval;
 pub use jet::Jet;
 pub use logarithm::{between_in_log, log_ratio};

@@ -24,7 +24,7 @@ const NEXT_TO_NOTHING: f64 = 1.0 / (1 << 20) as f64;
 const NOISIER: f64 = 16.0;
 /// The least and the most noise, in units of the largest number that the formula makes on its way.
 const NOISE: [f64; 2] = [4.0 * f64::EPSILON, 1024.0 * f64::EPSILON];
-/// Where a series is compared with the rates before the branch point of a root.
+/// Where a series is compared with the rates before a kink or a branch point: at that itself a formula may have no value.
 const BEFORE: f64 = 0.999;
 /// What leads behind a branch point.
 const BEHIND: f64 = 1.0 + 4.0 * f64::EPSILON;
@@ -101,7 +101,7 @@ impl<T: Element> Interpreted<'_, T> {
         DoubleDouble::from(f64::NAN)
     }
 
-    /// The ends of the interval, of next to no length, in which a kink is first passed on the way to this step, behind it. By bisection:
+    /// The ends of a step before and just behind the kink that is first passed on the way to this step, which is behind it. By bisection:
     /// it happens once in a run.
     fn cut(&mut self, order: usize, behind: f64) -> Option<(DoubleDouble, DoubleDouble)> {
         let (mut near, mut far) = (DoubleDouble::ZERO, DoubleDouble::from(behind));
@@ -114,7 +114,7 @@ impl<T: Element> Interpreted<'_, T> {
                 near = middle;
             }
         }
-        Some((near, far))
+        Some((near * BEFORE, far))
     }
 
     /// The state at the end of this step, and all that the formula makes of it.
