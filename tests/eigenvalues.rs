@@ -87,8 +87,8 @@ fn companions_defective_and_other_matrices_have_their_own() {
 fn the_equilibrium_of_a_ring_has_its_stability() {
     let made = object("equilibria --system tests/data/cases/ring.toml");
     let first = &made["result"]["equilibria"][0];
-    assert_eq!(first["stability"], "stable", "{first}");
-    let leading = number(first, "/eigenvalues/0/re");
+    assert_eq!(first["verdict"], "stable", "{first}");
+    let leading = number(first, "/eigenvalues/0/0");
     assert!((leading + 0.5).abs() < 1e-14, "{leading}");
     // At c = 1 it is not alone: x = y = z.
     let run =

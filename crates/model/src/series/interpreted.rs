@@ -84,6 +84,8 @@ pub struct Interpreted<'a, T: Element> {
     zeros: Vec<Root>,
     /// What the rates are off without a reason, where that has been measured.
     noise: Vec<T>,
+    /// The derivatives of the series where a step may lead.
+    slopes: Vec<T>,
 }
 
 /// A state, and what rounding took from it.
@@ -133,7 +135,8 @@ impl<'a, T: Element> Interpreted<'a, T> {
             next_unit: 1.0,
             rejected: 0,
             zeros: Vec::new(),
-            noise: zeros,
+            noise: zeros.clone(),
+            slopes: zeros,
         }
     }
 

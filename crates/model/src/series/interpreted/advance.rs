@@ -131,30 +131,23 @@ impl<T: Element> Interpreted<'_, T> {
         let step = self.any.like(h.hi().abs());
         let mut explained = finite(&self.next.x);
         for (i, x) in self.next.x.iter().enumerate() {
-            let [slope, rate] = self.slope_and_rate(i, accuracy.order, h);
+            let [slope, rate] = self.slope_and_rate(i);
             let largest = Element::max(x.abs(), self.reached.x[i].abs());
             let may_err = largest.mul_add(x.like(rtol), x.like(atol));
             let rounding =
                 Element::max(slope.abs(), rate.abs()).mul_add(x.like(ROUNDING), self.noise[i]);
             let allowed = may_err.mul_add(x.like(EXPLAINED), rounding * step);
             // A number that is none is not explained.
-            explained &= ((slope - rate).abs() * step / allowed).largest_lane() <= 1.0;
+            explained &= (allowed - (slope - rate).abs() * step).all_positive();
         }
         explained
     }
 
-    /// The derivative of the series of a variable at the end of the step, and the rate there, in units of the series.
+    /// The derivative of the series of a variable at the end that was looked at, and the rate there, in units of the series.
     #[inline(always)]
-    fn slope_and_rate(&self, i: usize, order: usize, h: DoubleDouble) -> [T; 2] {
-        let (series, h) = (self.rows.row(i), self.any.like_exact(h));
-        let mut slope = self.any.like(0.0);
-        let mut k = order;
-        while k > 0 {
-            slope = slope.mul_add(h, series[k] * self.any.like(k as f64));
-            k -= 1;
-        }
+    fn slope_and_rate(&self, i: usize) -> [T; 2] {
         let rate = self.probe.coefficient(self.program.outputs[i], 0);
-        [slope, rate * self.any.like(self.unit)]
+        [self.slopes[i], rate * self.any.like(self.unit)]
     }
 
     /// Measures how far rates are off without a reason.
@@ -164,7 +157,7 @@ impl<T: Element> Interpreted<'_, T> {
         let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
         let [least, most] = NOISE.map(|noise| self.any.like(noise * largest * self.unit));
         for i in 0..self.noise.len() {
-            let [slope, rate] = self.slope_and_rate(i, order, h);
+            let [slope, rate] = self.slope_and_rate(i);
             let noise = (slope - rate).abs() * self.any.like(NOISIER);
             self.noise[i] = Element::max(Element::min(noise, most), least);
         }
@@ -239,7 +232,7 @@ impl<T: Element> Interpreted<'_, T> {
         first
     }
 
-    /// The state after h units, and what rounding took from it.
+    /// The state after h units, and what rounding took from it; and the derivatives of the series there.
     #[inline(always)]
     fn evaluate(&mut self, order: usize, h: DoubleDouble) {
         let h = self.any.like_exact(h);
@@ -247,9 +240,12 @@ impl<T: Element> Interpreted<'_, T> {
         for (i, (x, lost)) in x.iter().zip(lost).enumerate() {
             let series = self.rows.row(i);
             let mut sum = series[order];
+            let mut slope = self.any.like(0.0);
             for c in series[1..order].iter().rev() {
+                slope = slope.mul_add(h, sum);
                 sum = sum.mul_add(h, *c);
             }
+            self.slopes[i] = slope.mul_add(h, sum);
             let change = sum.mul_add(h, *lost);
             let reached = *x + change;
             self.next.x[i] = reached;
