@@ -86,7 +86,7 @@ impl IvpRun {
 }
 
 /// A solution as a function of time.
-#[pyclass(frozen, module = "twinslip._core")]
+#[pyclass(frozen, module = "twinslip._core", skip_from_py_object)]
 #[derive(Clone)]
 pub struct Solution(IvpSolution);
 
