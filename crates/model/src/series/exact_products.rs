@@ -57,6 +57,12 @@ impl Numbers {
         let first = Self::normalised(sum, error + low_sum);
         Self::normalised(first.hi, first.lo + low_error)
     }
+
+    /// With the products of one number and four. No closure does this: compiled for any processor, it would call every instruction.
+    #[inline(always)]
+    fn with_product(self, simd: V3, a: &DoubleDouble, b: [DoubleDouble; 4]) -> Self {
+        self.sum(Numbers::of(simd, &[*a; 4]).product(Numbers::of(simd, &b)))
+    }
 }
 
 /// The sums for four orders from k, with the products a_j b_(k-j) of coefficients from the fourth to before the k-th; `None` where the
@@ -71,17 +77,13 @@ pub(super) fn sums_of_older(
         #[inline(always)]
         || {
             let mut sums = Numbers::of(simd, &sums);
-            let mut add = |a: &DoubleDouble, b: [DoubleDouble; 4]| {
-                sums = sums.sum(Numbers::of(simd, &[*a; 4]).product(Numbers::of(simd, &b)));
-            };
             for (a, b) in a.iter().zip(b.windows(4).rev()) {
-                add(a, [b[0], b[1], b[2], b[3]]);
+                sums = sums.with_product(simd, a, [b[0], b[1], b[2], b[3]]);
             }
             // What is left are products for the later ones of these orders.
-            add(&newest[0], [zero, b_0, b_1, b_2]);
-            add(&newest[1], [zero, zero, b_0, b_1]);
-            add(&newest[2], [zero, zero, zero, b_0]);
-            sums
+            sums = sums.with_product(simd, &newest[0], [zero, b_0, b_1, b_2]);
+            sums = sums.with_product(simd, &newest[1], [zero, zero, b_0, b_1]);
+            sums.with_product(simd, &newest[2], [zero, zero, zero, b_0])
         },
     );
     sums.exact()
