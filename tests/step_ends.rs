@@ -1,7 +1,8 @@
 //! The ends of steps: what a series does not see from its beginning, zeros of kinks within a step, values that sink below the absolute
 //! tolerance and grow again.
 //!
-//! Values of systems in `tests/data/cases` are from event-wise integration in 30 digits (mpmath), of the tank in closed form.
+//! Values of systems in `tests/data/cases` were computed independently of this code, to the digits that are written; that of the tank
+//! is a closed form.
 
 use crate::command;
 use command::{number, object, twinslip};
