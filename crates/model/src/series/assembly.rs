@@ -231,19 +231,19 @@ impl Assembly<'_> {
             },
             Node::Sign(a) => match at(a) {
                 Row(a) => {
-                    self.program.kinks.push(a);
+                    self.watch_sign_of(a);
                     (Op::Sign(a), false)
                 }
                 Number(x) => return Number(Real::sign(x)),
             },
             Node::Signed(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => {
-                    self.program.kinks.push(b);
+                    self.watch_sign_of(b);
                     (Op::Signed(a, b), false)
                 }
                 (Row(a), Number(x)) => (Op::Scaled(a, Real::sign(x)), false),
                 (Number(x), Row(b)) => {
-                    self.program.kinks.push(b);
+                    self.watch_sign_of(b);
                     (Op::Scaled(self.made(Op::Sign(b), false), x), false)
                 }
                 (Number(x), Number(y)) => return Number(x * Real::sign(y)),
@@ -283,6 +283,38 @@ impl Assembly<'_> {
             self.program.branch_points.push(made);
         }
         Row(made)
+    }
+
+    /// Adds the rows at whose zeros this row changes sign to the kinks: of a product those of its factors, of an odd function that of its
+    /// argument. Their series vary less within a step, so that most often a bound says that there is no zero.
+    fn watch_sign_of(&mut self, row: usize) {
+        use Operation::*;
+        let made = self
+            .program
+            .instructions()
+            .iter()
+            .find(|one| one.result == row);
+        match made.map(|one| one.operation) {
+            Some(Product(a, b) | Quotient(Source::Row(a), b)) => {
+                self.watch_sign_of(a);
+                self.watch_sign_of(b);
+            }
+            Some(
+                Quotient(Source::Number(_), a)
+                | Scaled(a, _)
+                | Over(a, _)
+                | Negative(a)
+                | Hyperbolic(a, _)
+                | HyperbolicTangent(a, _)
+                | Arctangent(a, _)
+                | InverseHyperbolicSine(a, _)
+                | ExponentialLessOne(a, _)
+                | LogarithmOfOneMore(a, _),
+            ) => self.watch_sign_of(a),
+            Some(Exponential(_) | Power(..)) => {}
+            _ if self.program.kinks.contains(&row) => {}
+            _ => self.program.kinks.push(row),
+        }
     }
 }
 

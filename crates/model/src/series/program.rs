@@ -216,7 +216,7 @@ pub(super) struct Program {
     pub places: Vec<(usize, usize)>,
     /// What is carried out at all orders but the first.
     pub later: LaterOrders,
-    /// The rows whose signs it takes.
+    /// The rows at whose zeros a sign that it takes changes.
     pub kinks: Vec<usize>,
     /// The rows of square roots: where one is 0 its series goes on with the other sign.
     pub branch_points: Vec<usize>,
