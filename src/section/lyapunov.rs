@@ -165,17 +165,19 @@ pub fn spectrum_watched(
 
 /// The exponents where the run is at rest: the real parts of the eigenvalues of the Jacobian, in descending order. They err by
 /// what another step of Newton's method to the equilibrium changes, and by the rounding of the eigenvalues, each as far as its
-/// condition lets it.
+/// condition lets it; without a bound where the Jacobian is not finite.
 ///
 /// # Panics
 /// Where the equilibrium has another number of components than the field has variables.
 pub fn at_equilibrium(field: &AnyField<'_>, equilibrium: &Vector) -> Vec<Uncertain> {
-    let before = eigenvalues(&field.jacobian(equilibrium));
+    let here = field.jacobian(equilibrium);
     let jacobian = match field.newton_step(equilibrium.as_slice()) {
         Some(step) => field.jacobian(&(equilibrium - step)),
-        None => field.jacobian(equilibrium),
+        None => here.clone(),
     };
-    let values = eigenvalues(&jacobian);
+    let (Some(before), Some(values)) = (eigenvalues(&here), eigenvalues(&jacobian)) else {
+        return vec![Uncertain::new(0.0, f64::INFINITY); equilibrium.len()];
+    };
     let exponent = |i: usize| {
         let moved = (values[i].re - before[i].re).abs();
         Uncertain::new(values[i].re, moved + rounding(&jacobian, &values, i))
@@ -184,10 +186,10 @@ pub fn at_equilibrium(field: &AnyField<'_>, equilibrium: &Vector) -> Vec<Uncerta
 }
 
 /// The eigenvalues, those with the largest real part first.
-fn eigenvalues(matrix: &Matrix) -> Vec<Complex<f64>> {
-    let mut values = number::eigenvalues(matrix);
+fn eigenvalues(matrix: &Matrix) -> Option<Vec<Complex<f64>>> {
+    let mut values = number::eigenvalues(matrix)?;
     values.sort_by(|a, b| b.re.total_cmp(&a.re));
-    values
+    Some(values)
 }
 
 /// What an eigenvalue errs by: the product of the other factors J - lambda_j is what the adjugate of J - lambda_i is, and over

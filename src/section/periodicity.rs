@@ -197,7 +197,7 @@ impl<'a> PeriodicSearch<'a> {
             time, derivative, ..
         } = &along[q - 1];
         let reduced = reduce(derivative, &self.surface.directions(point.as_slice()));
-        let moduli = eigenvalues(&reduced).into_iter().map(|z| z.norm());
+        let moduli = eigenvalues(&reduced)?.into_iter().map(|z| z.norm());
         let multiplier = moduli.fold(0.0, f64::max);
         let n = self.returns.len();
         let phase = |i: &usize| (n - 1 - i).is_multiple_of(self.q);

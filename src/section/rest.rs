@@ -48,9 +48,11 @@ pub(super) fn spirals_into(
     None
 }
 
-/// The largest real part of the eigenvalues.
+/// The largest real part of the eigenvalues; infinite where they are not known, which is not stable.
 pub(crate) fn growth(field: &AnyField<'_>, y: &[f64]) -> f64 {
     let jacobian = field.jacobian(&Vector::from_column_slice(y));
-    let parts = eigenvalues(&jacobian).into_iter().map(|z| z.re);
-    parts.fold(f64::NEG_INFINITY, f64::max)
+    eigenvalues(&jacobian).map_or(f64::INFINITY, |all| {
+        let parts = all.iter().map(|z| z.re);
+        parts.fold(f64::NEG_INFINITY, f64::max)
+    })
 }

@@ -122,7 +122,7 @@ impl Neighbourhood {
 impl Modes {
     fn of(field: &AnyField<'_>, equilibrium: &State<3>) -> Option<Self> {
         let jacobian = field.jacobian(&vector(equilibrium));
-        let values = eigenvalues(&jacobian);
+        let values = eigenvalues(&jacobian)?;
         let jacobian = Jacobian::<3>::from_column_slice(jacobian.as_slice());
         let vectors = Matrix3::from_columns(&[0, 1, 2].map(|i| eigenvector(&jacobian, values[i])));
         let inverse = vectors.try_inverse()?;

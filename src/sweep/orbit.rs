@@ -126,7 +126,7 @@ fn largest_multiplier(
     const LEAST: f64 = 1e-6;
     let inside = surface.directions(point.as_slice());
     let reduced = reduce(derivative, &inside);
-    let values = eigenvalues(&reduced);
+    let values = eigenvalues(&reduced)?;
     let norms = values.iter().map(|z| z.norm());
     let (place, mu) = norms.enumerate().max_by(|a, b| a.1.total_cmp(&b.1))?;
     if !(mu > LEAST && mu.is_finite()) {

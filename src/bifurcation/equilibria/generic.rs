@@ -128,16 +128,16 @@ impl<'a> FieldEquilibria<'a> {
         self.field(p).second_derivative(y, u, v)
     }
 
-    fn eigenvalues(&self, y: &Vector, p: f64) -> Vec<Complex<f64>> {
-        let mut all = number::eigenvalues(&self.jacobian(y, p));
+    fn eigenvalues(&self, y: &Vector, p: f64) -> Option<Vec<Complex<f64>>> {
+        let mut all = number::eigenvalues(&self.jacobian(y, p))?;
         all.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
-        all
+        Some(all)
     }
 
     /// omega of the pair whose real part is nearest to zero, if it is a pair: the test function vanishes for two real
     /// eigenvalues of opposite sign too.
     fn frequency(&self, y: &Vector, p: f64) -> Option<f64> {
-        let all = self.eigenvalues(y, p);
+        let all = self.eigenvalues(y, p)?;
         let pair = all.into_iter().filter(|z| z.im > 0.0);
         let nearest = pair.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()))?;
         (nearest.re.abs() < 1e-6 * nearest.im).then_some(nearest.im)
@@ -349,11 +349,15 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
         let (y, p) = crossing
             .as_ref()
             .map_or((y, p), |sharp| (&sharp.state, sharp.parameter));
+        // Without them nothing is known of its stability.
+        let Some(eigenvalues) = self.family.eigenvalues(y, p) else {
+            return ControlFlow::Continue(());
+        };
         let mut found = FoundEquilibrium {
             state: y.clone(),
             parameter: p,
             uncertainty: crossing.as_ref().map(|sharp| sharp.uncertainty),
-            eigenvalues: self.family.eigenvalues(y, p),
+            eigenvalues,
             label,
             period: None,
             coefficient: None,

@@ -82,7 +82,7 @@ impl Observer<'_, '_> {
     fn label(&self, i: usize, omega: Option<f64>, jacobian: &Matrix) -> Option<Label> {
         /// Against the matrix: of a pair that is a double zero, and so known to half of the digits.
         const DOUBLE: f64 = 1e-4;
-        let all = eigenvalues(jacobian);
+        let all = eigenvalues(jacobian)?;
         let zero = |z: &&Complex<f64>| z.norm() < DOUBLE * jacobian.amax();
         let near = all.iter().filter(zero).count();
         match (self.problem.0.kind, i) {

@@ -262,7 +262,7 @@ pub(super) fn sign(i: usize, time: usize) -> f64 {
 pub(super) fn frequency(jacobian: &Matrix) -> Option<f64> {
     /// What is left of the real part, over the imaginary one.
     const AXIS: f64 = 1e-6;
-    let all = eigenvalues(jacobian);
+    let all = eigenvalues(jacobian)?;
     let pairs = all.iter().filter(|z| z.re.abs() < AXIS * z.im);
     let nearest = pairs.min_by(|a, b| a.re.abs().total_cmp(&b.re.abs()));
     nearest.map(|z| z.im)

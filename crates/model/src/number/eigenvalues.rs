@@ -8,8 +8,8 @@ const ITERATIONS: usize = 100;
 /// Bases in which the matrix is tried.
 const BASES: usize = 8;
 
-/// The eigenvalues of a square matrix, as often as they are multiple, in no order, by the real Schur form. Not numbers where the matrix
-/// has entries that are not finite.
+/// The eigenvalues of a square matrix, as often as they are multiple, in no order, by the real Schur form. `None` where the matrix has
+/// entries that are not finite.
 ///
 /// Francis's shifts do not move some matrices whose eigenvalues all have one modulus, such as permutations and circulants: the iteration
 /// then ends after a bounded number of steps, and is done in another basis, by a reflection of the coordinates. That changes the
@@ -17,22 +17,21 @@ const BASES: usize = 8;
 ///
 /// # Panics
 /// If the matrix is not square.
-pub fn eigenvalues(matrix: &DMatrix<f64>) -> Vec<Complex<f64>> {
+pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
     let n = matrix.nrows();
     let most = ITERATIONS * n.max(1);
-    if matrix.iter().all(|x| x.is_finite()) {
-        for basis in 0..BASES {
-            let same = if basis == 0 {
-                matrix.clone()
-            } else {
-                reflected(matrix, basis)
-            };
-            if let Some(schur) = Schur::try_new(same, f64::EPSILON, most) {
-                return schur.complex_eigenvalues().iter().copied().collect();
-            }
-        }
+    if !matrix.iter().all(|x| x.is_finite()) {
+        return None;
     }
-    vec![Complex::new(f64::NAN, f64::NAN); n]
+    (0..BASES).find_map(|basis| {
+        let same = if basis == 0 {
+            matrix.clone()
+        } else {
+            reflected(matrix, basis)
+        };
+        let schur = Schur::try_new(same, f64::EPSILON, most)?;
+        Some(schur.complex_eigenvalues().iter().copied().collect())
+    })
 }
 
 /// The matrix in coordinates that are reflected at a plane, a different one for each basis.
