@@ -44,7 +44,7 @@ pub enum RosenbrockMethod {
 }
 
 impl RosenbrockMethod {
-    /// All of them.
+    /// All of them, in the order of the enumeration.
     pub const ALL: [RosenbrockMethod; 3] = [
         RosenbrockMethod::Rodas5P,
         RosenbrockMethod::Rodas4,
@@ -79,34 +79,15 @@ impl RosenbrockMethod {
     }
 }
 
+/// The method at this place among all, for which steps are compiled.
 #[derive(Clone, Copy)]
-struct Rodas5P;
-#[derive(Clone, Copy)]
-struct Rodas4;
-#[derive(Clone, Copy)]
-struct Ros23;
+struct Compiled<const METHOD: usize>;
 
-impl Scheme for Rodas5P {
+impl<const METHOD: usize> Scheme for Compiled<METHOD> {
     const WRITTEN_OUT: bool = true;
     #[inline(always)]
     fn tableau(self) -> &'static Tableau {
-        &RODAS5P
-    }
-}
-
-impl Scheme for Rodas4 {
-    const WRITTEN_OUT: bool = true;
-    #[inline(always)]
-    fn tableau(self) -> &'static Tableau {
-        &RODAS4
-    }
-}
-
-impl Scheme for Ros23 {
-    const WRITTEN_OUT: bool = true;
-    #[inline(always)]
-    fn tableau(self) -> &'static Tableau {
-        &ROS23
+        const { RosenbrockMethod::ALL[METHOD].tableau() }
     }
 }
 
@@ -286,9 +267,9 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         check_times(t)?;
         if const { written_out(N) } {
             match self.method {
-                RosenbrockMethod::Rodas5P => self.flow_by(Rodas5P, field, t, y0, observer),
-                RosenbrockMethod::Rodas4 => self.flow_by(Rodas4, field, t, y0, observer),
-                RosenbrockMethod::Ros23 => self.flow_by(Ros23, field, t, y0, observer),
+                RosenbrockMethod::Rodas5P => self.flow_by(Compiled::<0>, field, t, y0, observer),
+                RosenbrockMethod::Rodas4 => self.flow_by(Compiled::<1>, field, t, y0, observer),
+                RosenbrockMethod::Ros23 => self.flow_by(Compiled::<2>, field, t, y0, observer),
             }
         } else {
             self.flow_by(self.method, field, t, y0, observer)
@@ -312,9 +293,9 @@ impl<const N: usize> Integrator<N> for Rosenbrock<N> {
         }
         if const { written_out(N) } {
             match self.method {
-                RosenbrockMethod::Rodas5P => self.tangent_flow_by(Rodas5P, field, t, y0),
-                RosenbrockMethod::Rodas4 => self.tangent_flow_by(Rodas4, field, t, y0),
-                RosenbrockMethod::Ros23 => self.tangent_flow_by(Ros23, field, t, y0),
+                RosenbrockMethod::Rodas5P => self.tangent_flow_by(Compiled::<0>, field, t, y0),
+                RosenbrockMethod::Rodas4 => self.tangent_flow_by(Compiled::<1>, field, t, y0),
+                RosenbrockMethod::Ros23 => self.tangent_flow_by(Compiled::<2>, field, t, y0),
             }
         } else {
             self.tangent_flow_by(self.method, field, t, y0)

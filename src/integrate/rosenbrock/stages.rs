@@ -4,12 +4,12 @@ use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::tableau::{MAX_STAGES, Tableau};
 use nalgebra::SMatrix;
 
-/// A method in the making of steps. Where it is a type of its own, every step is compiled for its coefficients.
+/// A Rosenbrock method as the steps use it.
 pub(super) trait Scheme: Copy {
-    /// Whether it is: the stages then are written out, so that in each all coefficients are constants and the zeros among them no
-    /// work, as loops of this size are not unrolled. In many dimensions the stages are what takes the time, and a loop over them is as
-    /// fast.
+    /// Whether the coefficients are known to the compiler. The stages then are written out, and zeros among the coefficients cost
+    /// nothing; a loop of this size is not unrolled. In other dimensions one loop serves all methods.
     const WRITTEN_OUT: bool;
+    /// The coefficients.
     fn tableau(self) -> &'static Tableau;
 }
 
