@@ -5,6 +5,7 @@
 //! is a closed form.
 
 use crate::command;
+use crate::common::text::{file, near};
 use command::{number, object, twinslip};
 use proptest::prelude::*;
 use twinslip::field::{State, VectorField};
@@ -81,6 +82,7 @@ fn a_root_ends_the_run_at_its_branch_point() {
             .and_then(|t| t.parse().ok())
             .expect("a number");
         assert!((at - 2.0).abs() < 1e-3, "{options}: {}", ended.err);
+        assert!(!ended.err.contains("(0 rejected)"), "{}", ended.err);
         assert!(
             ended.err.contains("not smooth or not defined"),
             "{}",
@@ -119,6 +121,42 @@ fn kinks_that_a_step_passes_twice_are_met() {
     ends_at("pulse-parabola.toml --until 2", &[("u", 0.3315455)], 1e-7);
 }
 
+/// The sign of a product changes where that of a factor does, that of sinh where its argument does; the root of a square has a corner.
+#[test]
+fn corners_of_products_roots_and_odd_functions_are_met() {
+    let path = file(
+        "corners",
+        r#"
+        name = "corners"
+        states = ["s", "product", "odd", "root", "quotient"]
+        [rates]
+        s = "1"
+        product = "abs(3*(s - 1)*(s - 1.2))"
+        odd = "abs(sinh(s - 1)*exp(-s)*exp(s))"
+        root = "sqrt((s - 1)^2)"
+        quotient = "abs((1 - s)/(1 + s))"
+        [start]
+        s = 0.0
+        product = 0.0
+        odd = 0.0
+        root = 0.0
+        quotient = 0.0
+        "#,
+    );
+    let made = object(&format!(
+        "integrate --system {path} --until 2 --final-only --rtol 1e-12 --atol 1e-12"
+    ));
+    let at = |name: &str| number(&made, &format!("/result/final/{name}"));
+    near(
+        at("product"),
+        3.0 * (13.0 / 15.0 + 2.0 / 3.0 - 0.864),
+        1e-11,
+    );
+    near(at("odd"), 2.0 * (1.0_f64.cosh() - 1.0), 1e-11);
+    near(at("root"), 1.0, 1e-11);
+    near(at("quotient"), 2.0 * (4.0_f64 / 3.0).ln(), 1e-11);
+}
+
 #[test]
 fn the_orbit_of_a_piecewise_linear_net_is_found() {
     // Its second method does not cross the corners well enough to say more.
@@ -148,6 +186,9 @@ fn an_estimate_holds_where_values_sink_below_the_tolerance() {
             format!("delayed-hopf.toml --until 200 --rtol 1e-10 --atol 1e-12 --method {method}");
         ends_at(&run, &[("x", 0.0482363670825)], 1.0);
     }
+    // Next to no absolute tolerance still leaves one for the second run.
+    let run = "delayed-hopf.toml --until 1 --atol 1e-300 --method taylor";
+    ends_at(run, &[], 1.0);
     // Followed all the way it is had.
     let run = "delayed-hopf.toml --until 200 --rtol 1e-12 --atol 1e-40 --method taylor";
     ends_at(run, &[("x", 0.0482363670825)], 1e-8);

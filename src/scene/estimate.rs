@@ -48,7 +48,7 @@ impl Companion {
         } else {
             Companion::Tighter(Tolerances {
                 rtol: rtol / TIGHTER,
-                atol: atol * FOLLOWED,
+                atol: f64::max(atol * FOLLOWED, f64::MIN_POSITIVE),
             })
         }
     }

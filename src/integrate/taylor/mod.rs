@@ -304,6 +304,8 @@ impl Taylor {
                 });
             }
             let h = solution.advance(accuracy, remaining);
+            // Also of what fails.
+            self.work.rejected = solution.rejected();
             let (begin, before) = (clock.now, clock.now.hi());
             if !clock.tick(h, remaining) {
                 let h = if h.is_finite() { h.hi() } else { 0.0 };
@@ -314,7 +316,6 @@ impl Taylor {
             self.work.steps += 1;
             // One evaluation of the law for each coefficient.
             self.work.rhs += accuracy.order;
-            self.work.rejected = solution.rejected();
             let halted = halt(accuracy.order, h.hi(), &|| State::from(solution.state()));
             if let Some(observer) = observer {
                 let last = halted || clock.remaining().is_none();

@@ -35,7 +35,6 @@ impl Lorenz {
 
 impl Equations<3, 2> for Lorenz {
     const PARAMETERS: [&'static str; 2] = ["rho", "beta"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [rho, beta]: [T; 2]) -> [T; 3] {
@@ -62,7 +61,6 @@ impl Roessler {
 
 impl Equations<3, 2> for Roessler {
     const PARAMETERS: [&'static str; 2] = ["a", "c"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [a, c]: [T; 2]) -> [T; 3] {
@@ -91,7 +89,6 @@ impl Brusselator {
 
 impl Equations<2, 2> for Brusselator {
     const PARAMETERS: [&'static str; 2] = ["a", "b"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y]: [T; 2], [a, b]: [T; 2]) -> [T; 2] {
@@ -118,7 +115,6 @@ impl VanDerPol {
 
 impl Equations<2, 2> for VanDerPol {
     const PARAMETERS: [&'static str; 2] = ["mu", "b"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y]: [T; 2], [mu, b]: [T; 2]) -> [T; 2] {
@@ -155,7 +151,6 @@ impl Langford {
 
 impl Equations<3, 2> for Langford {
     const PARAMETERS: [&'static str; 2] = ["rho", "eps"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [x, y, z]: [T; 3], [rho, eps]: [T; 2]) -> [T; 3] {

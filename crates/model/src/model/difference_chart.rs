@@ -11,9 +11,9 @@ use super::{Driven, Loading, Parameter, Smooth, stress_rate};
 use crate::field::State;
 use crate::friction::{AnyLaw, Law, LawForm};
 use crate::number::{Difference, Real};
-use crate::series::Equations;
 #[cfg(target_arch = "x86_64")]
 use crate::series::Tangent;
+use crate::series::{Equations, Plain, Solution};
 
 /// dtau/dt = K (V_H - v_1 - v_2), dw_2/dt = g(v_2, w_2), d(ln D)/dt = (dpsi_1/dt - dpsi_2/dt) / D, in the parameters
 /// (V_H, K), from (19).
@@ -47,8 +47,6 @@ impl DifferenceChart {
 
 impl Equations<3, 2> for DifferenceChart {
     const PARAMETERS: [&'static str; 2] = Parameter::LOADING;
-    // No polynomial, but what it has beside these are exponentials of the stress, which no step loses sight of.
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(
@@ -68,6 +66,11 @@ impl Equations<3, 2> for DifferenceChart {
             rate.second / second,
             rate.gap / gap,
         ]
+    }
+
+    // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one.
+    fn own_solution(&self, parameters: [f64; 2]) -> Option<Box<dyn Solution<3>>> {
+        Some(Box::new(Plain::new(*self, parameters)))
     }
 
     #[cfg(target_arch = "x86_64")]

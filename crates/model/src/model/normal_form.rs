@@ -16,7 +16,6 @@ pub struct StrongResonance;
 
 impl Equations<2, 2> for StrongResonance {
     const PARAMETERS: [&'static str; 2] = ["mu_1", "mu_2"];
-    const KERNELS: bool = true;
 
     #[inline(always)]
     fn rates<T: Real>(&self, [v, w]: [T; 2], [mu1, mu2]: [T; 2]) -> [T; 2] {

@@ -2,12 +2,7 @@
 
 use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
 use crate::number::Jet;
-#[cfg(target_arch = "x86_64")]
-use crate::series::Four;
-use crate::series::{
-    Both, ByRecording, COMPILED, Equations, FREE, Jet3, Plain, Recorded, Solution, Tangent,
-    TaylorMap, Variational, is_small,
-};
+use crate::series::{ByRecording, Equations, Jet3, Recorded, Solution, Tangent, TaylorMap};
 
 /// Equations at given parameters.
 ///
@@ -115,10 +110,6 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> VectorField<N> for Smoo
 }
 
 impl<S: Equations<N, P>, const N: usize, const P: usize> Smooth<S, N, P> {
-    fn is_small(&self) -> bool {
-        is_small(&self.equations, self.parameters)
-    }
-
     fn recorded(&self) -> Recorded<S, N, P> {
         Recorded {
             equations: self.equations,
@@ -130,8 +121,8 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> Smooth<S, N, P> {
 
 impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<S, N, P> {
     fn solution(&self) -> Box<dyn Solution<N> + '_> {
-        if const { N <= COMPILED && S::KERNELS } && self.is_small() {
-            return Box::new(Plain::new(self.equations, self.parameters));
+        if let Some(own) = self.equations.own_solution(self.parameters) {
+            return own;
         }
         self.recorded().solution()
     }
@@ -143,22 +134,6 @@ impl<S: Equations<N, P>, const N: usize, const P: usize> Analytic<N> for Smooth<
     fn tangent(&self, free: &[usize]) -> Box<dyn Tangent<N> + '_> {
         if let Some(own) = self.equations.own_tangent(self.parameters, free) {
             return own;
-        }
-        if const { N <= COMPILED && S::KERNELS } && free.len() <= FREE && self.is_small() {
-            #[cfg(target_arch = "x86_64")]
-            let four = crate::series::avx2().map(|simd| Four::new(simd, [0.0; 4]));
-            #[cfg(not(target_arch = "x86_64"))]
-            let four = Some(Both([Both([0.0; 2]); 2]));
-            if let Some(four) = four {
-                // Derivatives in the parameters fill lanes that there are.
-                let gradient = Both([four; 2]);
-                return Box::new(Variational::new(
-                    self.equations,
-                    self.parameters,
-                    free,
-                    gradient,
-                ));
-            }
         }
         self.recorded().tangent(free)
     }

@@ -28,11 +28,6 @@ pub trait Element:
     fn to_exact(self) -> DoubleDouble {
         DoubleDouble::from(self.first())
     }
-    /// The same without the derivatives that it may carry.
-    #[inline(always)]
-    fn plain(self) -> Self {
-        self
-    }
     /// The call, compiled for the processor that the element is made for.
     #[inline(always)]
     fn run<F: NullaryFnOnce>(self, f: F) -> F::Output {

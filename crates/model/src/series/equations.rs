@@ -3,10 +3,9 @@
 use super::formula::{Formula, Rates, WATCHED};
 use super::handle::{Series, value};
 use super::stepper::Stepper;
-use super::tape::{Counting, Order, ROOM, ROWS, Tape};
+use super::tape::Order;
 use super::{Accuracy, Expansion, Solution, Tangent};
 use crate::number::{DoubleDouble, Real};
-use std::cell::Cell;
 use std::fmt::Debug;
 
 /// dx/dt = f(x; p) in N variables with P named parameters: the right-hand side, written once for every number.
@@ -17,16 +16,17 @@ pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync 
     /// The names of the parameters, in the order in which `rates` takes them. Derivatives are had in any of them.
     const PARAMETERS: [&'static str; P];
 
-    /// Whether their series are compiled for them, which takes half the time a step and minutes to compile. Only for polynomials of a
-    /// few terms in up to three variables, without slip rates: the ends of these steps are not checked.
-    const KERNELS: bool = false;
-
     /// f(x; p). To be marked `#[inline(always)]`: what is not is compiled for any processor, and takes ten times as long.
     fn rates<T: Real>(&self, x: [T; N], parameters: [T; P]) -> [T; N];
 
     /// Slip rates along the solution, of one interface or two, for fields that have any.
     fn slip_rates<T: Real>(&self, _x: [T; N], _parameters: [T; P]) -> [Option<T>; 2] {
         [None; 2]
+    }
+
+    /// The solution, where the equations have a faster way to it than their formula, whose steps need no check at their ends.
+    fn own_solution(&self, _parameters: [f64; P]) -> Option<Box<dyn Solution<N>>> {
+        None
     }
 
     /// The solution with its derivatives in the parameters of these places, where the equations have a faster way to it than their
@@ -39,25 +39,6 @@ pub trait Equations<const N: usize, const P: usize>: Copy + Debug + Send + Sync 
     fn lasting(&self) -> Option<&'static str> {
         None
     }
-}
-
-/// So many equations have compiled kernels, if they are short; for more these are not even compiled.
-pub(crate) const COMPILED: usize = 3;
-
-/// Whether the formula is small enough for code that is compiled for it: a few variables, and rows that there is room for.
-pub(crate) fn is_small<S: Equations<N, P>, const N: usize, const P: usize>(
-    equations: &S,
-    p: [f64; P],
-) -> bool {
-    if const { N > COMPILED } {
-        return false;
-    }
-    let memory = [const { Cell::new(1.0) }; ROWS * ROOM];
-    let tape = Tape::new(&memory, Counting, N);
-    let x = std::array::from_fn(|i| tape.variable(i));
-    equations.rates(x, p.map(value));
-    // What the outputs may take, and in tangents for each rate its slope, their sum, and the rate without directions.
-    tape.rows() + 4 * N <= ROWS
 }
 
 /// The equations as a formula.

@@ -148,15 +148,6 @@ impl<'t, E: Element, O: Order> Series<'t, E, O> {
         }
     }
 
-    /// The same linear map of every coefficient, where it is no constant.
-    #[inline(always)]
-    pub(super) fn lanewise(self, map: impl Fn(E) -> E) -> Self {
-        match self.kind() {
-            SeriesKind::Row(a) => row(a.mapped(map(a.newest()))),
-            _ => self,
-        }
-    }
-
     /// The row that it stands in, if it is no constant.
     #[inline(always)]
     pub(super) fn row(self) -> Option<usize> {

@@ -14,7 +14,6 @@
 mod assembly;
 mod columns;
 mod cubic;
-mod dual;
 pub(crate) mod element;
 mod equations;
 mod event;
@@ -45,7 +44,6 @@ mod trace;
 mod transport;
 #[cfg(target_arch = "x86_64")]
 mod twins;
-mod variational;
 mod vectors;
 
 use crate::number::DoubleDouble;
@@ -54,7 +52,7 @@ pub(crate) use columns::{Along, JacobianTerm, VariationalEquations};
 pub use cubic::Jet3;
 pub(crate) use element::Element;
 pub use equations::Equations;
-pub(crate) use equations::{COMPILED, Plain, is_small};
+pub(crate) use equations::Plain;
 pub use event::{Passage, Section, Zeros};
 pub(crate) use formula::{Formula, Rates, WATCHED};
 pub(crate) use handle::{Series, value};
@@ -66,7 +64,6 @@ pub(crate) use recorded::{ByRecording, Recorded, RecordedExpressions};
 pub(crate) use stepper::{ByFormula, Recurrences, Stepper};
 pub(crate) use tape::{Order, ROOM};
 pub use transport::TaylorMap;
-pub(crate) use variational::{FREE, Variational};
 pub use vectors::{VARIABLE as VECTORS, Vectors, allowed as allowed_vectors, used as used_vectors};
 #[cfg(target_arch = "x86_64")]
 pub(crate) use vectors::{avx2, avx512};

@@ -101,13 +101,13 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
         let mut least = zero.like(LEAST);
         for c in 0..C {
-            let rounding = (self.x[c].plain() * zero.like(f64::EPSILON)).abs();
+            let rounding = (self.x[c] * zero.like(f64::EPSILON)).abs();
             least = Element::max(least, rounding.largest_over_interfaces());
         }
         let mut rate = zero;
         for c in 0..C {
-            let size = Element::max(self.x[c].plain().abs(), least);
-            rate = Element::max(rate, (self.coefficient(c, 1).plain() / size).abs());
+            let size = Element::max(self.x[c].abs(), least);
+            rate = Element::max(rate, (self.coefficient(c, 1) / size).abs());
         }
         let rate = rate.largest_over_interfaces();
         let next_unit = one / Element::max(rate, zero.like(f64::MIN_POSITIVE));
@@ -189,11 +189,6 @@ impl<E: Element, F: Formula<E, C>, const C: usize> Stepper<E, F, C> {
     }
 
     /// Makes the series at the state reached.
-    #[inline(always)]
-    pub fn expand(&mut self, accuracy: &Accuracy) {
-        self.expand_with(&mut ByFormula, accuracy);
-    }
-
     #[inline(always)]
     pub fn expand_with(
         &mut self,

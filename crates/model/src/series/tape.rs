@@ -22,11 +22,6 @@ pub trait Order: Copy {
     const UNROLLED: bool;
     /// k
     fn index(self) -> usize;
-    /// Where a row stands.
-    #[inline(always)]
-    fn place(self, row: usize) -> usize {
-        row
-    }
 }
 
 /// An order known to the compiler.
@@ -50,20 +45,6 @@ impl Order for Running {
     #[inline(always)]
     fn index(self) -> usize {
         self.0
-    }
-}
-
-/// The first order, on rows of which all share a few places: nothing comes out of it but their number.
-#[derive(Clone, Copy)]
-pub struct Counting;
-
-impl Order for Counting {
-    const UNROLLED: bool = false;
-    fn index(self) -> usize {
-        0
-    }
-    fn place(self, row: usize) -> usize {
-        row % ROWS
     }
 }
 
@@ -99,17 +80,12 @@ impl<'m, E: Element, O: Order> Tape<'m, E, O> {
 
     #[inline(always)]
     fn get(&self, row: usize, j: usize) -> E {
-        self.memory[self.order.place(row) * ROOM + j].get()
+        self.memory[row * ROOM + j].get()
     }
 
     #[inline(always)]
     pub(super) fn set(&self, row: usize, j: usize, x: E) {
-        self.memory[self.order.place(row) * ROOM + j].set(x);
-    }
-
-    /// Rows taken so far.
-    pub(super) fn rows(&self) -> usize {
-        self.next.get()
+        self.memory[row * ROOM + j].set(x);
     }
 
     #[inline(always)]
@@ -188,7 +164,7 @@ impl<'t, E: Element, O: Order> Row<'t, E, O> {
     /// The row.
     #[inline(always)]
     pub(super) fn coefficients(self) -> &'t [Cell<E>] {
-        &self.tape.memory[self.tape.order.place(self.row) * ROOM..][..ROOM]
+        &self.tape.memory[self.row * ROOM..][..ROOM]
     }
 
     /// The newest coefficient.
