@@ -68,8 +68,10 @@ impl Equations<3, 2> for DifferenceChart {
         ]
     }
 
-    // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one.
+    // Exponentials of the stress and the states hide in no series: the next step sees all that they have grown by in one. Rows
+    // for other laws, and for damping, there are none.
     fn own_solution(&self, parameters: [f64; 2]) -> Option<Box<dyn Solution<3>>> {
+        self.form.undamped_ageing()?;
         Some(Box::new(Plain::new(*self, parameters)))
     }
 
