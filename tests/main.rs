@@ -91,6 +91,7 @@ mod pictures;
 mod polynomials;
 mod programs;
 mod programs_input;
+mod ratios;
 mod reproduce;
 #[cfg(not(feature = "parquet"))]
 mod resonances_of_systems;

@@ -10,7 +10,7 @@ from ._symbols import Formulas, Operation
 
 #: The functions that formulas have.
 NAMES_OF_FUNCTIONS = frozenset(
-    "exp expm1 ln log log1p log10 sqrt sin cos tan sinh cosh tanh asinh atan abs min max pow".split()
+    "exp expm1 exprel ln log log1p log10 sqrt sin cos tan sinh cosh tanh asinh atan abs min max pow".split()
 )
 #: What is used more than once and is longer than this gets a name; longer where there would be
 #: too many names.

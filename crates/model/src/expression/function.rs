@@ -1,6 +1,6 @@
 //! The functions that an expression may call.
 
-use crate::number::Real;
+use crate::number::{Numerator, Real};
 
 /// A function by its name.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -9,6 +9,8 @@ pub enum Function {
     Exp,
     /// e^x - 1, accurate near 0
     Expm1,
+    /// (e^x - 1)/x, which is 1 at 0
+    Exprel,
     /// natural logarithm
     Ln,
     /// ln(1 + x), accurate near 0
@@ -47,9 +49,10 @@ use Function::*;
 
 impl Function {
     /// All, by their names; the natural logarithm has both of its own.
-    const ALL: [(&'static str, Function); 19] = [
+    const ALL: [(&'static str, Function); 20] = [
         ("exp", Exp),
         ("expm1", Expm1),
+        ("exprel", Exprel),
         ("ln", Ln),
         ("log", Ln),
         ("log1p", Log1p),
@@ -70,8 +73,8 @@ impl Function {
     ];
 
     /// Their names.
-    pub const NAMES: [&'static str; 19] = {
-        let mut names = [""; 19];
+    pub const NAMES: [&'static str; Self::ALL.len()] = {
+        let mut names = [""; Self::ALL.len()];
         let mut i = 0;
         while i < names.len() {
             names[i] = Self::ALL[i].0;
@@ -99,6 +102,7 @@ impl Function {
         match self {
             Exp => x.exp(),
             Expm1 => x.exp_m1(),
+            Exprel => x.ratio(Numerator::ExpM1.into()),
             Ln => x.ln(),
             Log1p => x.ln_1p(),
             Log10 => x.log10(),

@@ -5,11 +5,12 @@
 mod damped;
 mod factor;
 mod function;
+mod ratios;
 
 pub use function::Function;
 
 use crate::error::{Error, Result};
-use crate::number::{Balance, Real};
+use crate::number::{Balance, Numerator, Real};
 use std::collections::HashMap;
 
 /// Formulas have no more operations, all together.
@@ -40,6 +41,8 @@ enum Operation {
     /// To any power, of what is positive.
     Power(Place, Place),
     Call(Function, Place),
+    /// N(x)/x.
+    Ratio(Numerator, Place),
     Lesser(Place, Place),
     Greater(Place, Place),
     /// g(y) of the y with y + g(y) = the first operand, g being the second one times this function.
@@ -77,6 +80,7 @@ impl Operation {
             Whole(a, n) => Whole(at(a), n),
             Power(a, b) => Power(at(a), at(b)),
             Call(function, a) => Call(function, at(a)),
+            Ratio(numerator, a) => Ratio(numerator, at(a)),
             Lesser(a, b) => Lesser(at(a), at(b)),
             Greater(a, b) => Greater(at(a), at(b)),
             Balanced(a, b, activation) => Balanced(at(a), at(b), activation),
@@ -136,6 +140,7 @@ impl Expressions {
                     _ => at(a).pow(at(b)),
                 },
                 Operation::Call(function, a) => function.of(at(a)),
+                Operation::Ratio(numerator, a) => at(a).ratio(numerator.into()),
                 Operation::Lesser(a, b) => at(a).lesser(at(b)),
                 Operation::Greater(a, b) => at(a).greater(at(b)),
                 Operation::Balanced(a, b, Activation::Sinh) => {
@@ -207,6 +212,8 @@ fn whole_power<T: Real>(x: T, n: i32) -> T {
 #[derive(Debug, Default)]
 pub struct Builder {
     operations: Vec<Operation>,
+    /// Whether a variable is part of each.
+    varies: Vec<bool>,
     places: HashMap<Operation, Place>,
 }
 
@@ -254,11 +261,17 @@ impl Builder {
         }
     }
 
-    /// What is made of two.
+    /// What is made of two. Quotients such as u/(exp(u) - 1), which are analytic where both parts are 0, are made so that they
+    /// have a value there.
     ///
     /// # Errors
     /// As of [`Builder::variable`], and for a whole exponent that is too large.
     pub fn binary(&mut self, binary: Binary, a: Place, b: Place) -> Result<Place> {
+        if matches!(binary, Binary::Product | Binary::Quotient)
+            && let Some(place) = self.with_ratio(a, b, binary)?
+        {
+            return Ok(place);
+        }
         let sorted = (a.min(b), a.max(b));
         self.place(match binary {
             Binary::Sum => Operation::Sum(sorted.0, sorted.1),
@@ -295,6 +308,7 @@ impl Builder {
             (Function::Min, &[a, b]) => self.binary(Binary::Lesser, a, b),
             (Function::Max, &[a, b]) => self.binary(Binary::Greater, a, b),
             (Function::Pow, &[a, b]) => self.binary(Binary::Power, a, b),
+            (Function::Exprel, &[a]) => self.place(Operation::Ratio(Numerator::ExpM1, a)),
             (function, &[a]) => self.place(Operation::Call(function, a)),
             _ => panic!("{function:?} of {} arguments", arguments.len()),
         }
@@ -368,8 +382,14 @@ impl Builder {
                 "the formulas have more than {LARGEST} operations, which is the most allowed"
             )));
         }
+        let mut varies = matches!(operation, Operation::Variable(_));
+        let _ = operation.moved(|operand| {
+            varies |= self.varies[operand];
+            operand
+        });
         self.places.insert(operation, self.operations.len());
         self.operations.push(operation);
+        self.varies.push(varies);
         Ok(self.operations.len() - 1)
     }
 }

@@ -4,7 +4,7 @@
 //! rates merge, and subtracting two rounded stresses leaves no digit of the answer. Here the difference is carried through
 //! the formula by the addition theorems, so it keeps its relative accuracy however close the points are.
 
-use super::{Balance, Real};
+use super::{Balance, Ratio, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `first`, `second` and `gap` = first - second.
@@ -395,5 +395,25 @@ impl<T: Real, const ORDERED: bool> Real for Difference<T, ORDERED> {
                 gap: apart + of_g,
             },
         )
+    }
+    // f(a) - f(b) = f'(b) (a - b) + f''(b) (a - b)^2 / 2 + ...
+    fn ratio(self, ratio: Ratio) -> Self {
+        /// Further apart subtraction loses little, and for others these terms are enough.
+        const NEAR: f64 = 0.1;
+        const TERMS: usize = 40;
+        let by_subtraction = self.direct(|x| x.ratio(ratio));
+        let (gap, second) = (self.gap, self.second);
+        let (apart, at) = (gap.leading().abs(), second.leading());
+        // A logarithm has no value from -1 on.
+        if !(apart <= NEAR && apart <= NEAR * (1.0 + at).abs()) {
+            return by_subtraction;
+        }
+        let of_numerator = [ratio.numerator.of(second), ratio.numerator.slope(second)];
+        let all = ratio.coefficients((second, at), of_numerator, T::constant, TERMS);
+        let terms = all[1..].iter().rev();
+        Difference {
+            gap: terms.fold(T::constant(0.0), |sum, &a| (sum + a) * gap),
+            ..by_subtraction
+        }
     }
 }

@@ -4,7 +4,7 @@
 //! Routh-Hurwitz conditions hold for the whole interval, and undecided where they don't. Endpoints that are not finite
 //! simply certify nothing.
 
-use super::{Balance, Real};
+use super::{Balance, Numerator, Ratio, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// How many units in the last place a function of the C mathematical library may be off, with a margin: glibc documents
@@ -373,5 +373,71 @@ impl Real for Interval {
     fn balanced(self, g: Balance<Self>) -> (Self, Self) {
         let y = g.enclose(self);
         (y, g.at(y).0)
+    }
+    fn ratio(self, ratio: Ratio) -> Self {
+        if ratio.derivative == 0 {
+            return self.of_ratio(ratio.numerator);
+        }
+        /// A part that is no wider than this around 0 goes by coefficients, as these are summed far beyond what is rounded.
+        const NEAR: f64 = 0.25;
+        let part = |lo: f64, hi: f64| {
+            let part = Interval {
+                lo: self.lo.max(lo),
+                hi: self.hi.min(hi),
+            };
+            (part.lo <= part.hi).then_some(part)
+        };
+        let parts = [
+            part(f64::NEG_INFINITY, -NEAR).map(|x| x.derivative_of_ratio(ratio)),
+            part(-NEAR, NEAR).map(|x| ratio.by_coefficients(x)),
+            part(NEAR, f64::INFINITY).map(|x| x.derivative_of_ratio(ratio)),
+        ];
+        let hull = |a: Self, b: Self| Interval {
+            lo: a.lo.min(b.lo),
+            hi: a.hi.max(b.hi),
+        };
+        let all = parts.into_iter().flatten().map(Self::known).reduce(hull);
+        all.unwrap_or(Self::EVERYTHING)
+    }
+}
+
+impl Interval {
+    /// N(x)/x. All but sin(x)/x rise or fall with x, or with |x|.
+    fn of_ratio(self, numerator: Numerator) -> Self {
+        /// The least of sin(x)/x, below it.
+        const LEAST: f64 = -0.217_234;
+        /// Of a quotient of a function of the library, in its last place.
+        const ULPS: usize = LIBRARY_ULPS + 1;
+        let at = |x: f64| x.ratio(numerator.into());
+        let (outer, inner) = (self.abs().hi, self.abs().lo);
+        let ends = match numerator {
+            Numerator::ExpM1 => [at(self.lo), at(self.hi)],
+            Numerator::Ln1p => [at(self.hi), at(self.lo)],
+            Numerator::Sinh => [at(inner), at(outer)],
+            Numerator::Tanh => [at(outer), at(inner)],
+            Numerator::Sin if outer <= std::f64::consts::PI => [at(outer), at(inner)],
+            Numerator::Sin => {
+                let quotient = self.sin() / self;
+                return Interval {
+                    lo: quotient.lo.max(LEAST),
+                    hi: quotient.hi.min(1.0),
+                };
+            }
+        };
+        Self::widened(ends[0], ends[1], ULPS)
+    }
+
+    /// f^(d) of f(x) = N(x)/x by x f^(d) + d f^(d-1) = N^(d), where x is not 0.
+    fn derivative_of_ratio(self, ratio: Ratio) -> Self {
+        let x = super::Jet::<_, 1>::variable(self, 0);
+        match ratio.derivative {
+            0 => self.of_ratio(ratio.numerator),
+            1 => {
+                let slope = ratio.numerator.of(x).gradient[0];
+                (slope - self.of_ratio(ratio.numerator)) / self
+            }
+            // Wider than it need be: no formula asks for it.
+            _ => Self::EVERYTHING,
+        }
     }
 }

@@ -1,7 +1,7 @@
 //! A value with its gradient in N variables: exact first derivatives. Nested (`Jet<Jet<f64, N>, N>`) it gives second
 //! derivatives, and so on.
 
-use super::{Balance, Real};
+use super::{Balance, Ratio, Real};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value and its N partial derivatives.
@@ -266,6 +266,10 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
             zip!(self, at, y, |d, e| (d - e) / whole),
             zip!(self, at, value, |d, e| (slope * d + e) / whole),
         )
+    }
+    #[inline(always)]
+    fn ratio(self, ratio: Ratio) -> Self {
+        self.chain(self.value.ratio(ratio), self.value.ratio(ratio.derived()))
     }
     // The gradient of the one that it is; where that is not known, as in intervals, of anything between both.
     #[inline(always)]

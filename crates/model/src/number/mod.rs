@@ -13,6 +13,7 @@ mod interval;
 mod jet;
 mod logarithm;
 pub mod polynomial;
+mod ratio;
 mod root;
 mod uncertain;
 
@@ -26,6 +27,7 @@ pub use eigenvalues::eigenvalues;
 pub use interval::Interval;
 pub use jet::Jet;
 pub use logarithm::{between_in_log, log_ratio};
+pub use ratio::{Numerator, Ratio};
 pub use root::{bracketed_root, enclosing_radius};
 pub use uncertain::Uncertain;
 
@@ -110,6 +112,8 @@ pub trait Real:
     }
     /// the y of y + g(y) = x, and g(y), each with its own digits
     fn balanced(self, g: Balance<Self>) -> (Self, Self);
+    /// N(x)/x of a function N with N(0) = 0, or a derivative of that, with its own digits where x is 0 or near it
+    fn ratio(self, ratio: Ratio) -> Self;
     /// the lesser of two; this one where they are equal
     #[inline(always)]
     fn lesser(self, o: Self) -> Self {
@@ -215,5 +219,14 @@ impl Real for f64 {
     fn balanced(self, g: Balance<f64>) -> (f64, f64) {
         let y = g.solve(self);
         (y, g.at(y).0)
+    }
+    fn ratio(self, ratio: Ratio) -> f64 {
+        match ratio {
+            Ratio {
+                numerator,
+                derivative: 0,
+            } if self != 0.0 => numerator.of(self) / self,
+            _ => ratio.by_coefficients(self),
+        }
     }
 }

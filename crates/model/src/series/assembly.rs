@@ -63,6 +63,7 @@ fn needed(nodes: &[Node], outputs: &[NodeIndex]) -> Vec<bool> {
             | Node::Sin(a)
             | Node::HyperbolicTangent(a)
             | Node::Power(a, _)
+            | Node::Ratio(a, _)
             | Node::OfBalanced(a)
             | Node::Sign(a) => needed[a] = true,
             Node::Balanced(a, g) => {
@@ -228,6 +229,10 @@ impl Assembly<'_> {
                     let exponent = self.made(Op::Product(p, log), false);
                     (Op::Exponential(exponent), true)
                 }
+            },
+            Node::Ratio(a, ratio) => match at(a) {
+                Row(a) => (Op::Ratio(a, ratio), false),
+                Number(x) => return Number(Real::ratio(x, ratio)),
             },
             Node::Sign(a) => match at(a) {
                 Row(a) => {

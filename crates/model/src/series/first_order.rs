@@ -1,5 +1,6 @@
 //! The first coefficients of a program's rows: what its operations make of numbers.
 
+use super::composition::ratio_coefficients;
 use super::element::Element;
 use super::program::{Instruction, Operation, Source};
 use super::program_rows::Level;
@@ -49,6 +50,9 @@ impl<T: Element> Level<'_, T> {
                 self.put(result, y);
             }
             Operation::Power(a, p) => self.put(result, first(a).power(p)),
+            Operation::Ratio(a, ratio) => {
+                self.put(result, ratio_coefficients(ratio, first(a), 1)[0]);
+            }
             Operation::Sign(a) => self.put(result, first(a).sign()),
             Operation::Signed(a, b) => self.put(result, first(a) * first(b).sign()),
             Operation::Balanced(x, g) => self.apart().begin_balanced(x, g, result),

@@ -55,6 +55,11 @@ impl<T: Element> Level<'_, T> {
                 one.counts = [first(one.result).scale(p), one_and_p];
                 one.inverse = one_over(first(one.operand.row)).scale(factor);
             }
+            Operation::Ratio(a, ratio) => {
+                if let Some(composition) = &mut one.composition {
+                    composition.begin(ratio, first(a));
+                }
+            }
             Operation::Balanced(..) => {
                 let [_, _, steepness, ..] = self.of_balance(one.result);
                 one.inverse = one_over(self.any.like(1.0) + first(steepness));
@@ -166,6 +171,12 @@ impl<T: Element> Level<'_, T> {
                 let slope = new.scale(self.order);
                 self.put(spare, slope);
                 self.add_both(one, a, [new, slope]);
+            }
+            Operation::Ratio(a, _) => {
+                if let Some(composition) = &mut one.composition {
+                    let new = composition.next(self.older(a), self.newest(a));
+                    self.put(result, new);
+                }
             }
             Operation::Sign(_) => self.put(result, self.any.like(0.0)),
             Operation::Balanced(x, g) => self.apart().balanced(x, g, one),

@@ -13,6 +13,7 @@
 
 mod assembly;
 mod columns;
+mod composition;
 mod cubic;
 pub(crate) mod element;
 mod equations;

@@ -1,6 +1,7 @@
 //! The operations of a [`super::program::Program`] with rows where they begin among the coefficients of all: so that no place is
 //! computed at every order.
 
+use super::composition::Composition;
 use super::element::Element;
 use super::later::{Later, LaterOrders, Multiple, Term};
 use super::products::{SharedSums, Sums};
@@ -23,6 +24,8 @@ pub(super) struct PlacedInstruction<T: Element> {
     pub sums: [Sums<T>; 2],
     /// Instead of these where both share a row and the element has them side by side.
     pub shared: Option<SharedSums<T>>,
+    /// Of a ratio.
+    pub composition: Option<Box<Composition<T>>>,
 }
 
 /// Rows of which products are needed.
@@ -131,6 +134,8 @@ impl<T: Element> PlacedLater<T> {
                     products,
                     sums: [Sums::new(any), Sums::new(any)],
                     shared: shares.then(|| SharedSums::new(any, room)),
+                    composition: matches!(operation, Operation::Ratio(..))
+                        .then(|| Box::new(Composition::new(any, room))),
                 })
             }
         }

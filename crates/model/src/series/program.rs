@@ -5,7 +5,7 @@
 //! code for each formula.
 
 use super::later::LaterOrders;
-use crate::number::{Balance, DoubleDouble};
+use crate::number::{Balance, DoubleDouble, Ratio};
 
 /// A quantity: a number, or the row of its coefficients.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,6 +55,8 @@ pub(super) enum Operation {
     HyperbolicTangent(usize, usize),
     /// a^p; the spare row holds 1 / a_0, then j y_j
     Power(usize, DoubleDouble),
+    /// N(a)/a, or a derivative of it
+    Ratio(usize, Ratio),
     Sign(usize),
     Signed(usize, usize),
     /// The y of y + g(y) = a. Before it stand exp y and exp(-y), or sinh y and cosh y, g'(y_0), what the newest coefficients of g count, and g(y); the spare row
@@ -96,6 +98,7 @@ impl Operation {
             | Operation::Circular(a, _)
             | Operation::HyperbolicTangent(a, _)
             | Operation::Power(a, _)
+            | Operation::Ratio(a, _)
             | Operation::Sign(a)
             | Operation::Lane(a, _) => [Some(a), None, None],
         }
@@ -157,6 +160,7 @@ impl Operation {
             Exponential(a) => Exponential(at(a)),
             Logarithm(a) => Logarithm(at(a)),
             Power(a, p) => Power(at(a), p),
+            Ratio(a, ratio) => Ratio(at(a), ratio),
             Sign(a) => Sign(at(a)),
             Lane(a, lane) => Lane(at(a), lane),
             Balanced(..) | Quotient(..) => unreachable!("moved above"),

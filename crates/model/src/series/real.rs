@@ -1,9 +1,10 @@
 //! The arithmetic of [`Series`], so that any formula can be evaluated in them.
 
+use super::composition::ratio_coefficients;
 use super::element::Element;
 use super::handle::{Series, SeriesKind, exact, literal, row, value};
 use super::tape::{self, Order};
-use crate::number::{Balance, DoubleDouble, Real};
+use crate::number::{Balance, DoubleDouble, Ratio, Real};
 use SeriesKind::{Exact, Literal, Row, Value};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -270,6 +271,16 @@ impl<E: Element, O: Order> Real for Series<'_, E, O> {
         match self.kind() {
             Row(a) => value(a.stored().get(0).sign()),
             _ => literal(1_f64.copysign(self.leading())),
+        }
+    }
+
+    #[inline(always)]
+    fn ratio(self, ratio: Ratio) -> Self {
+        match self.kind().released() {
+            Exact(x) => exact(Real::ratio(x, ratio)),
+            Value(x) => value(ratio_coefficients(ratio, x, 1)[0]),
+            Row(a) => row(a.ratio(ratio)),
+            Literal(_) => unreachable!("released"),
         }
     }
 

@@ -1,8 +1,9 @@
 //! The recurrences of series: the newest coefficient of a product, a quotient or a function, from those of its arguments.
 
+use super::composition::ratio_coefficients;
 use super::element::Element;
-use super::tape::{Order, Row};
-use crate::number::{Balance, DoubleDouble};
+use super::tape::{Order, ROOM, Row};
+use crate::number::{Balance, DoubleDouble, Ratio};
 use pulp::NullaryFnOnce;
 use std::cell::Cell;
 
@@ -354,6 +355,39 @@ impl<E: Element, O: Order> Row<'_, E, O> {
         let new = self.mul_add(factors.get(2), rest);
         slopes.put(new * new.like(k as f64));
         y.put(new)
+    }
+
+    /// A ratio at a: with d = a - a_0 the sum of its coefficients there times d^m, of which each has a row.
+    #[inline(always)]
+    pub(super) fn ratio(self, ratio: Ratio) -> Self {
+        let (k, this) = (self.order(), self.stored());
+        let (y, coefficients) = (this.another(), this.another());
+        // d^2 stands in the first of these, d^k in as many behind it as there may be orders.
+        let second = this.another();
+        for _ in 3..ROOM {
+            this.another();
+        }
+        if k == 0 {
+            let all = ratio_coefficients(ratio, this.get(0), ROOM);
+            for (m, c) in all.into_iter().enumerate() {
+                coefficients.tape.set(coefficients.row, m, c);
+            }
+            return y.put(coefficients.get(0));
+        }
+        let power = |m: usize| Row {
+            row: second.row + m - 2,
+            ..second
+        };
+        let mut sum = coefficients.get(1) * this.get(k);
+        for m in 2..=k {
+            let below = if m == 2 { this } else { power(m - 1) };
+            let mut new = sum.like(0.0);
+            for j in 1..=k + 1 - m {
+                new = this.get(j).mul_add(below.get(k - j), new);
+            }
+            sum = coefficients.get(m).mul_add(power(m).put(new).get(k), sum);
+        }
+        y.put(sum)
     }
 
     /// y and g = g(y) with y + g = x. As e = exp y has k e_k = k y_k e_0 + sum of j y_j e_(k-j) over 0 < j < k, and the other functions

@@ -6,7 +6,7 @@
 //!
 //! Griewank, A. and Walther, A. (2008). Evaluating Derivatives, 2nd edition, chapters 2 and 6. SIAM.
 
-use crate::number::{Balance, DoubleDouble, Real};
+use crate::number::{Balance, DoubleDouble, Ratio, Real};
 use std::cell::{Cell, RefCell};
 use std::collections::HashMap;
 use std::hash::{BuildHasherDefault, Hasher};
@@ -48,6 +48,8 @@ pub(super) enum Node {
     Power(NodeIndex, u64),
     /// a to the power of b.
     VariablePower(NodeIndex, NodeIndex),
+    /// A ratio at a.
+    Ratio(NodeIndex, Ratio),
     /// 1 with the sign of a.
     Sign(NodeIndex),
     /// a with the sign of b.
@@ -180,6 +182,7 @@ impl Graph {
                 Node::VariablePower(a, p) => {
                     slope(a) * (this / at(a) * at(p)) + slope(p) * (this * at(a).ln())
                 }
+                Node::Ratio(a, ratio) => slope(a) * at(a).ratio(ratio.derived()),
                 Node::Signed(a, b) => slope(a) * at(b).sign(),
                 Node::Balanced(a, g) => {
                     // g with its coefficients' slopes, at the y that is held
@@ -487,6 +490,17 @@ impl Real for Traced<'_> {
             |x| 1_f64.copysign(x),
             Node::Sign,
         )
+    }
+
+    #[inline(never)]
+    fn ratio(self, ratio: Ratio) -> Self {
+        match self {
+            Constant(x) => Constant(Real::ratio(x, ratio)),
+            Traced::Node(graph, a) => {
+                let value = graph.value(a).ratio(ratio);
+                Traced::Node(graph, graph.place(Node::Ratio(a, ratio), value))
+            }
+        }
     }
 
     #[inline(never)]

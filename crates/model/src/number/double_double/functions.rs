@@ -2,7 +2,7 @@
 //! from these two. Each is arranged so that nothing cancels, as relative errors near zeros have to stay small too.
 
 use super::{DoubleDouble, two_product};
-use crate::number::{Balance, Real};
+use crate::number::{Balance, Ratio, Real};
 
 /// ln 2
 const LN_2: DoubleDouble = DoubleDouble {
@@ -349,6 +349,16 @@ impl Real for DoubleDouble {
             y = g.newton(self, y);
         }
         (y, g.at(y).0)
+    }
+
+    fn ratio(self, ratio: Ratio) -> Self {
+        match ratio {
+            Ratio {
+                numerator,
+                derivative: 0,
+            } if self.hi != 0.0 => numerator.of(self) / self,
+            _ => ratio.by_coefficients(self),
+        }
     }
 }
 
