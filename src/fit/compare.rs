@@ -4,8 +4,11 @@ use super::problem::{Problem, Record};
 use super::{Autoregression, Fit, MAX_ITERATIONS};
 use crate::error::Result;
 
-/// Blocks of a record that are predicted from the others.
-const BLOCKS: usize = 5;
+/// Parts of a record that are predicted from the others.
+const PARTS: usize = 5;
+/// Blocks that a part has, spread over the record: a part that is one stretch of it would hold a whole step, of which the others know
+/// nothing.
+const BLOCKS_EACH: usize = 40;
 
 /// What a fit is compared by.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,7 +31,7 @@ pub fn akaike(record: &Record, fit: &Fit) -> f64 {
     n * noise.innovation.ln() + 2.0 * k * n / (n - k - 1.0)
 }
 
-/// The root of the mean square of prediction over blocks left out in turn; `None` where one cannot be fitted without.
+/// The root of the mean square of prediction over parts left out in turn, each of many short blocks; `None` where one cannot be fitted without.
 ///
 /// # Errors
 /// Those of the fit at the minimum.
@@ -38,10 +41,11 @@ pub fn cross_validation<const N: usize>(
 ) -> Result<Option<f64>> {
     let count = problem.record.times.len();
     let mut squares = 0.0;
-    for block in 0..BLOCKS {
-        let held = block * count / BLOCKS..(block + 1) * count / BLOCKS;
+    let length = count.div_ceil(PARTS * BLOCKS_EACH);
+    for part in 0..PARTS {
+        let held = || (0..count).filter(|i| i / length % PARTS == part);
         let mut record = problem.record.clone();
-        record.weights[held.clone()].fill(0.0);
+        held().for_each(|i| record.weights[i] = 0.0);
         let without = Problem {
             record: &record,
             parameters: problem.parameters.clone(),
@@ -52,7 +56,7 @@ pub fn cross_validation<const N: usize>(
         let Ok(friction) = without.friction(&minimum.variables) else {
             return Ok(None);
         };
-        squares += held
+        squares += held()
             .map(|i| (problem.record.friction[i] - friction[i]).powi(2))
             .sum::<f64>();
     }

@@ -137,11 +137,16 @@ pub fn fit<const N: usize>(
             None => (x - quantile * error, x + quantile * error),
         };
         let value = free.scale.outward(x);
+        let is_lost = !error.is_finite();
         FittedParameter {
             name: free.name.clone(),
             scale: free.scale,
             value,
-            uncertainty: free.scale.slope(value) * error,
+            uncertainty: if is_lost {
+                error
+            } else {
+                free.scale.slope(value) * error
+            },
             interval: (
                 free.scale.outward(interval.0),
                 free.scale.outward(interval.1),
@@ -172,7 +177,7 @@ fn best_start<const N: usize>(
     starts: &[Vec<f64>],
     bounds: &[(f64, f64)],
 ) -> Result<(Vec<f64>, usize)> {
-    let record = problem.record.thinned(THIN);
+    let record = problem.record.thinned_along(problem.motion, THIN);
     let thin = Problem {
         record: &record,
         parameters: problem.parameters.clone(),
@@ -243,10 +248,8 @@ impl Errors {
         let noise = Autoregression::of(counted);
         let variance = minimum.residuals.cost() / (count - free) as f64;
         // Columns of one length: parameters have units.
-        let sizes: Vec<f64> = jacobian
-            .column_iter()
-            .map(|column| f64::max(column.norm(), f64::MIN_POSITIVE))
-            .collect();
+        let norms = jacobian.column_iter().map(|column| column.norm());
+        let sizes: Vec<f64> = norms.map(|x| if x > 0.0 { x } else { 1.0 }).collect();
         let mut scaled = jacobian.clone();
         for (mut column, size) in scaled.column_iter_mut().zip(&sizes) {
             column /= *size;
@@ -259,8 +262,14 @@ impl Errors {
             residual: f64::INFINITY,
             tolerance: 0.0,
         })?;
-        // A direction in which nothing changes is not determined at all.
-        let inverses = values.map(|s| if s > 0.0 { 1.0 / s } else { f64::MAX.sqrt() });
+        // A direction in which nothing changes is not determined at all, and neither are the parameters that it turns.
+        let least = values.max() * free as f64 * f64::EPSILON;
+        let inverses = values.map(|s| if s > least { 1.0 / s } else { 0.0 });
+        let is_lost = |i: usize| {
+            let mut lost = (0..free).filter(|&k| inverses[k] == 0.0);
+            lost.any(|k| turned[(k, i)].abs() > f64::EPSILON.sqrt())
+        };
+        let lost: Vec<bool> = (0..free).map(is_lost).collect();
         let root = turned.transpose() * DMatrix::from_diagonal(&inverses);
         let mut inverse = &root * root.transpose();
         for ((i, j), x) in (0..free)
@@ -273,18 +282,34 @@ impl Errors {
         let sandwich = &inverse * noise.covariance_of(jacobian) * &inverse;
         // As variances of residuals go: what the parameters took from them.
         let sandwich = sandwich * (count as f64 / (count - free) as f64);
-        let standard: Vec<f64> = (0..free)
-            .map(|i| sandwich[(i, i)].max(0.0).sqrt())
-            .collect();
-        let widening = (0..free)
-            .map(|i| standard[i] / white[(i, i)].sqrt())
-            .collect();
+        let root = |x: f64| {
+            if x.is_finite() {
+                x.max(0.0).sqrt()
+            } else {
+                f64::INFINITY
+            }
+        };
+        let of = |i: usize| {
+            if lost[i] {
+                f64::INFINITY
+            } else {
+                root(sandwich[(i, i)])
+            }
+        };
+        let standard: Vec<f64> = (0..free).map(of).collect();
+        let ratio = |i: usize| standard[i] / root(white[(i, i)]);
+        let finite = |x: f64| if x.is_nan() { 1.0 } else { x };
+        let widening = (0..free).map(|i| finite(ratio(i))).collect();
         let correlation = DMatrix::from_fn(free, free, |i, j| {
             if i == j {
                 return 1.0;
             }
             let rho = sandwich[(i, j)] / (standard[i] * standard[j]);
-            rho.clamp(-1.0, 1.0)
+            if rho.is_finite() {
+                rho.clamp(-1.0, 1.0)
+            } else {
+                0.0
+            }
         });
         let spread = counted.iter().map(|x| x * x).sum::<f64>() / count as f64;
         Ok(Errors {

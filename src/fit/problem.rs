@@ -2,7 +2,7 @@
 
 use super::least_squares::{Minimum, Residuals, minimise};
 use super::response::{Response, steady_friction};
-use super::slider::{Motion, Sliders};
+use super::slider::{Motion, Sliders, Stretch};
 use crate::error::{Error, Result};
 use nalgebra::{DMatrix, DVector};
 use std::cell::{Cell, RefCell};
@@ -27,7 +27,31 @@ impl Record {
     /// Every so-manieth sample of it.
     pub fn thinned(&self, most: usize) -> Self {
         let stride = self.times.len().div_ceil(most.max(1)).max(1);
-        let of = |all: &[f64]| all.iter().step_by(stride).copied().collect();
+        self.only(&(0..self.times.len()).step_by(stride).collect::<Vec<_>>())
+    }
+
+    /// As many samples of it at most as twice `most`: half of them evenly, and half where each stretch of the motion begins, ever more
+    /// sparsely, as friction changes fast after a step of velocity and slowly later.
+    pub fn thinned_along(&self, motion: &Motion, most: usize) -> Self {
+        let count = self.times.len();
+        let stride = count.div_ceil(most.max(1)).max(1);
+        let mut rows: Vec<usize> = (0..count).step_by(stride).collect();
+        let each = most / motion.stretches.len().max(1);
+        for Stretch { span, .. } in &motion.stretches {
+            let first = self.times.partition_point(|&t| t < span.0);
+            let last = self.times.partition_point(|&t| t <= span.1);
+            let length = last.saturating_sub(first) as f64;
+            let part = |k: usize| length.powf(k as f64 / each as f64) - 1.0;
+            rows.extend((0..each).map(|k| first + part(k).max(0.0) as usize));
+        }
+        rows.retain(|&row| row < count);
+        rows.sort_unstable();
+        rows.dedup();
+        self.only(&rows)
+    }
+
+    fn only(&self, rows: &[usize]) -> Self {
+        let of = |all: &[f64]| rows.iter().map(|&row| all[row]).collect();
         Record {
             times: of(&self.times),
             displacement: of(&self.displacement),

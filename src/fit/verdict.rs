@@ -7,6 +7,8 @@ use nalgebra::DMatrix;
 
 /// A parameter whose standard error is a factor of more than this, e, is not determined.
 const UNDETERMINED: f64 = 1.0;
+/// One whose standard error is so many times itself has run away.
+const AWAY: f64 = 100.0;
 /// Beyond this correlation two parameters are known by one combination.
 const INSEPARABLE: f64 = 0.9995;
 
@@ -17,9 +19,19 @@ pub struct Verdict {
     pub is_minimum: bool,
     /// A sentence for each parameter, or pair, that the data do not determine.
     pub undecided: Vec<String>,
+    /// The parameters that are not determined.
+    pub undetermined: Vec<String>,
 }
 
 impl Verdict {
+    /// Whether a parameter is not determined to the point that its value says nothing: it has no error, or ran away.
+    pub fn has_run_away(&self, parameter: &FittedParameter) -> bool {
+        let is_told = self.undetermined.contains(&parameter.name);
+        is_told
+            && !(parameter.uncertainty.is_finite()
+                && parameter.uncertainty <= AWAY * parameter.value.abs())
+    }
+
     /// "converged" where it is a minimum that determines all parameters, else "undecided".
     pub fn name(&self) -> &'static str {
         if self.is_minimum && self.undecided.is_empty() {
@@ -52,7 +64,14 @@ pub fn undecided<const N: usize>(
             f64::NEG_INFINITY
         };
         let wide = one.scale == Scale::Logarithmic && one.uncertainty > UNDETERMINED * one.value;
-        let why = if variable <= low || variable >= high {
+        let gone = problem.record.displacement.iter();
+        let gone = gone.fold(0.0, |most: f64, x| most.max(x.abs()));
+        let is_length = one.name.starts_with("slip_length");
+        let why = if !one.uncertainty.is_finite() {
+            "the friction here does not show it, or not by itself"
+        } else if is_length && one.value > gone {
+            "it is longer than the load point moves"
+        } else if variable <= low || variable >= high {
             "it stands at its bound"
         } else if one.interval.0 <= zero && one.interval.1.is_infinite() {
             "its 95 % interval has no ends"
@@ -60,7 +79,7 @@ pub fn undecided<const N: usize>(
             "its 95 % interval has no upper end"
         } else if one.interval.0 <= zero {
             "its 95 % interval has no lower end"
-        } else if wide || !one.uncertainty.is_finite() {
+        } else if wide {
             "its standard error is larger than itself"
         } else {
             continue;
@@ -86,9 +105,15 @@ pub fn undecided<const N: usize>(
             }
         }
     }
+    let names = parameters.iter().map(|one| one.name.clone());
     Verdict {
         is_minimum: minimum.converged,
         undecided: sentences,
+        undetermined: names
+            .zip(&told)
+            .filter(|(_, told)| **told)
+            .map(|(name, _)| name)
+            .collect(),
     }
 }
 

@@ -296,6 +296,19 @@ fn scalar(value: &DeValue<'_>) -> Option<String> {
 /// # Errors
 /// [`Error::File`] if it can't be read, is no text or is longer.
 pub(super) fn read_bounded(path: &Path, most: u64) -> Result<String> {
+    let bytes = read_bytes(path, most)?;
+    String::from_utf8(bytes).map_err(|_| Error::File {
+        action: "read",
+        path: path.to_owned(),
+        reason: "it is not UTF-8".into(),
+    })
+}
+
+/// The bytes of a file that is no longer than `most`.
+///
+/// # Errors
+/// [`Error::File`].
+pub(super) fn read_bytes(path: &Path, most: u64) -> Result<Vec<u8>> {
     let wrong = |reason: String| Error::File {
         action: "read",
         path: path.to_owned(),
@@ -307,7 +320,7 @@ pub(super) fn read_bounded(path: &Path, most: u64) -> Result<String> {
     if bytes.len() as u64 > most {
         return Err(wrong(format!("it is longer than {most} bytes")));
     }
-    String::from_utf8(bytes).map_err(|_| wrong("it is not UTF-8".into()))
+    Ok(bytes)
 }
 
 /// Whether an option takes a number: its parser says what it makes.

@@ -5,6 +5,7 @@ pub mod among;
 pub mod branches;
 pub mod heard;
 pub mod ivp;
+pub mod laboratory;
 pub mod lorenz;
 pub mod pages;
 pub mod returns;

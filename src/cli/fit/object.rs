@@ -2,7 +2,7 @@
 
 use super::Fitted;
 use super::steps::FittedStep;
-use crate::fit::{DRIFT, Fit, FittedParameter};
+use crate::fit::{DRIFT, Fit, FittedParameter, Verdict};
 use crate::scene::{FitPlan, LawToFit};
 use crate::views::scale_name;
 use serde_json::{Map, Value, json};
@@ -15,6 +15,7 @@ pub fn result(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Val
     let mut result = json!({
         "fit": fit,
         "program": program(plan),
+        "notes": plan.measured.notes,
     });
     if found.len() > 1 {
         let least = best.comparison.map(|one| one.akaike);
@@ -70,7 +71,7 @@ fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
     let parameters: Vec<Value> = fit
         .parameters
         .iter()
-        .map(|parameter| of_parameter(plan, parameter))
+        .map(|parameter| of_parameter(plan, &fit.verdict, parameter))
         .collect();
     let count = fit.parameters.len();
     let correlation: Vec<Vec<f64>> = (0..count)
@@ -88,6 +89,7 @@ fn of_fit(plan: &FitPlan, law: &LawToFit, fit: &Fit) -> Value {
         "states": law.states,
         "verdict": fit.verdict.name(),
         "undecided": fit.verdict.undecided,
+        "undetermined": fit.verdict.undetermined,
         "parameters": parameters,
         "correlation": correlation,
         "fixed": fixed,
@@ -114,14 +116,14 @@ fn unit(plan: &FitPlan, name: &str) -> (f64, &'static str) {
     }
 }
 
-fn of_parameter(plan: &FitPlan, parameter: &FittedParameter) -> Value {
+fn of_parameter(plan: &FitPlan, verdict: &Verdict, parameter: &FittedParameter) -> Value {
     let (factor, unit) = unit(plan, &parameter.name);
     // An end that there is not is null.
     let number = |x: f64| Some(x * factor).filter(|x| x.is_finite());
     json!({
         "name": parameter.name,
         "unit": unit,
-        "value": number(parameter.value),
+        "value": number(parameter.value).filter(|_| !verdict.has_run_away(parameter)),
         "uncertainty": number(parameter.uncertainty),
         "interval_95": [number(parameter.interval.0), number(parameter.interval.1)],
         "scale": scale_name(parameter.scale),
@@ -132,7 +134,7 @@ fn of_parameter(plan: &FitPlan, parameter: &FittedParameter) -> Value {
 /// In words, one a line.
 pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<String> {
     let best = &found[0];
-    let mut lines = Vec::new();
+    let mut lines = plan.measured.notes.clone();
     let told = |law: &LawToFit| match law.states {
         1 => law.name.clone(),
         states => format!("{} with {states} state variables", law.name),
@@ -145,7 +147,7 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
         plan.record.times.len(),
         best.fit.effective_samples
     ));
-    lines.extend(best.fit.parameters.iter().map(|one| in_words(plan, one)));
+    lines.extend(all_in_words(plan, &best.fit));
     lines.extend(best.fit.verdict.undecided.iter().cloned());
     if let Some(difference) = best.crosscheck {
         lines.push(format!(
@@ -160,8 +162,11 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
         let blocks = predicted.map_or(String::new(), |(own, best)| {
             format!("; predicts blocks left out to {own:.3e}, the other to {best:.3e}")
         });
+        // What predicts worse is not better, whatever its likelihood is.
+        let is_against = predicted.is_some_and(|(own, best)| own < best);
         let judged = match by {
             by if by < 2.0 => "the data do not tell them apart",
+            _ if is_against => "but it predicts better: the data do not tell them apart",
             by if by < 10.0 => "some evidence for the other",
             _ => "decidedly worse",
         };
@@ -176,11 +181,7 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
     for step in steps {
         match &step.fit {
             Ok(fit) => {
-                let each: Vec<String> = fit
-                    .parameters
-                    .iter()
-                    .map(|one| in_words(plan, one))
-                    .collect();
+                let each: Vec<String> = all_in_words(plan, fit).collect();
                 lines.push(format!(
                     "step at {} s, {:e} to {:e} m/s, {}: {}",
                     step.time,
@@ -194,6 +195,16 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
         }
     }
     lines
+}
+
+fn all_in_words(plan: &FitPlan, fit: &Fit) -> impl Iterator<Item = String> {
+    let has_run_away = |one: &FittedParameter| fit.verdict.has_run_away(one);
+    fit.parameters
+        .iter()
+        .map(move |one| match has_run_away(one) {
+            true => format!("{}: not determined", one.name),
+            false => in_words(plan, one),
+        })
 }
 
 fn in_words(plan: &FitPlan, parameter: &FittedParameter) -> String {

@@ -15,7 +15,8 @@ pub struct FittedStep {
     pub fit: Result<Fit>,
 }
 
-/// All steps, each from the change before to the one after, where the load point is taken to slide steadily.
+/// All steps, each from the change before to the one after. The slider moves from the beginning of the record on, so that a window begins in the
+/// state that the steps before have left.
 ///
 /// # Errors
 /// [`crate::Error::Input`] where the load point moves as it was recorded: it has no steps then.
@@ -27,20 +28,24 @@ pub fn each(plan: &FitPlan, law: &LawToFit) -> Result<Vec<FittedStep>> {
         ));
     }
     let steady = |stretch: &Stretch| stretch.velocity.0 == stretch.velocity.1;
-    let steps = stretches.windows(2).filter(|pair| {
+    let steps = stretches.windows(2).enumerate().filter(|(_, pair)| {
         pair.iter().all(steady) && pair[0].velocity.0 > 0.0 && pair[1].velocity.0 > 0.0
     });
-    let of = |pair: &[Stretch]| {
+    let of = |(at, pair): (usize, &[Stretch])| {
         let window = (pair[0].span.0, pair[1].span.1);
-        let motion = Motion {
+        let alone = Motion {
             before: pair[0].velocity.0,
             stretches: pair.to_vec(),
+        };
+        let motion = Motion {
+            before: plan.motion.before,
+            stretches: stretches[..at + 2].to_vec(),
         };
         FittedStep {
             time: pair[1].span.0,
             window,
             driving: (pair[0].velocity.0, pair[1].velocity.0),
-            fit: plan.fit_to(law, &motion, &part(&plan.record, window)),
+            fit: plan.fit_to(law, (&motion, &alone), &part(&plan.record, window)),
         }
     };
     Ok(steps.map(of).collect())

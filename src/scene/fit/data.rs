@@ -1,6 +1,8 @@
 //! From a laboratory's file to a record: which columns, in which units, which window.
 
+use super::heading::Heading;
 use super::options::FitOptions;
+use super::sizes;
 use super::table::Table;
 use super::unit::Measure;
 use crate::error::{Error, Result};
@@ -11,8 +13,8 @@ const FEWEST: usize = 20;
 /// A sample that comes so many times later than its neighbours do is behind a gap.
 const GAP: f64 = 50.0;
 
-const TIMES: [&str; 4] = ["time", "t", "elapsed", "times"];
-const DISPLACEMENTS: [&str; 9] = [
+const TIMES: &[&str] = &["time", "t", "elapsed", "times"];
+const DISPLACEMENTS: &[&str] = &[
     "displacement",
     "displ",
     "disp",
@@ -23,22 +25,36 @@ const DISPLACEMENTS: [&str; 9] = [
     "shearslip",
     "x",
 ];
-const FRICTIONS: [&str; 7] = [
+/// In names of what moves across the fault.
+const ACROSS: &[&str] = &["normal", "vertical", "horizontal", "dilat", "compaction"];
+const FRICTIONS: &[&str] = &[
     "friction",
     "mu",
     "frictioncoefficient",
     "coefficient",
-    "µ",
+    "μ",
+    "shearnormal",
     "shearstress",
     "tau",
 ];
-const NORMAL_STRESSES: [&str; 5] = [
+const NORMAL_STRESSES: &[&str] = &[
+    "effectivenormalstress",
+    "effnormalstress",
     "normalstress",
     "normal",
     "sigman",
     "sigma",
-    "effnormalstress",
 ];
+
+/// Whether a name is one of those that columns are found by.
+pub(super) fn is_known(heading: &Heading) -> bool {
+    let all = [TIMES, DISPLACEMENTS, FRICTIONS, NORMAL_STRESSES].concat();
+    let known = |own: &String| {
+        let same = |name: &&str| own == name || name.len() > 2 && own.contains(name);
+        all.iter().any(same)
+    };
+    heading.plain_names().iter().any(known)
+}
 
 /// What was measured, in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -57,6 +73,10 @@ pub struct Measured {
     pub file: String,
     /// The names of the columns that were taken: time, displacement, friction, normal stress.
     pub columns: [Option<String>; 4],
+    /// What was made of the columns that a user may not have meant, a sentence each.
+    pub notes: Vec<String>,
+    /// The columns of the file, in words.
+    pub seen: String,
 }
 
 impl Measured {
@@ -71,36 +91,51 @@ impl Measured {
             .as_deref()
             .ok_or_else(|| Error::Input("`data`: the file of the record is missing".into()))?;
         let table = Table::read(path)?;
-        let find = |asked: &Option<String>, option: &str, names: &[&str]| match asked {
-            Some(column) => table.asked(option, column).map(Some),
-            None => Ok(table.like(names)),
-        };
-        let time = find(&options.time, "time", &TIMES)?;
-        let friction = find(&options.friction, "friction", &FRICTIONS)?;
-        let displacement = find(&options.displacement, "displacement", &DISPLACEMENTS)?;
-        let normal = find(
-            &options.normal_stress_column,
-            "normal_stress_column",
-            &NORMAL_STRESSES,
-        )?;
+        let find =
+            |asked: &Option<String>, option: &str, names: &[&str], others: &[&str]| match asked {
+                Some(column) => table.asked(option, column).map(Some),
+                None => Ok(table.like(names, others)),
+            };
+        let time = find(&options.time, "time", TIMES, &[])?;
+        let friction = find(&options.friction, "friction", FRICTIONS, &[])?;
+        let asked = &options.displacement;
+        let displacement = find(asked, "displacement", DISPLACEMENTS, ACROSS)?;
+        let asked = &options.normal_stress_column;
+        let others = ["displ", "disp", "strain"];
+        let normal = find(asked, "normal_stress_column", NORMAL_STRESSES, &others)?;
         let needed = |place: Option<usize>, option: &str| {
             place.ok_or_else(|| {
-                let there = if table.headings.is_empty() {
-                    "there is no header".to_owned()
-                } else {
-                    format!("the columns are {}", table.names().join(", "))
-                };
                 Error::Input(format!(
-                    "{}: which column is the {option}? {there}; say so by `{option}`",
-                    table.file
+                    "{}: which column is the {option}? {}; say so by `{option}`",
+                    table.file,
+                    table.seen()
                 ))
             })
         };
         let (time, friction) = (needed(time, "time")?, needed(friction, "friction")?);
-        let column = |place: usize, what: &str, measure: Measure| -> Result<Vec<f64>> {
+        // A unit that is asked for holds over that of the header.
+        let asked_unit = |place: usize| {
+            let asked = [
+                (Some(time), &options.time),
+                (displacement, &options.displacement),
+                (Some(friction), &options.friction),
+                (normal, &options.normal_stress_column),
+            ];
+            let mut own = asked.into_iter().filter(|(at, _)| *at == Some(place));
+            own.find_map(|(_, text)| Heading::of(text.as_deref()?).unit)
+        };
+        let unit = |place: usize, measure: Measure| -> Result<Option<f64>> {
             let heading = table.headings.get(place);
-            let unit = heading.and_then(|heading| heading.unit.as_deref());
-            let factor = measure.factor(unit, heading.map_or("", |one| &one.name))?;
+            let name = heading.map_or("", |one| &one.name);
+            let explicit = asked_unit(place).or(heading.and_then(|one| one.unit.clone()));
+            if explicit.is_some() {
+                return measure.factor(explicit.as_deref(), name).map(Some);
+            }
+            let suffix = heading.and_then(Heading::stated);
+            Ok(suffix.and_then(|unit| measure.factor(Some(unit), name).ok()))
+        };
+        let column = |place: usize, what: &str, measure: Measure| -> Result<Vec<f64>> {
+            let factor = unit(place, measure)?.unwrap_or(1.0);
             let numbers = table.numbers(place, what)?;
             Ok(numbers.into_iter().map(|x| x * factor).collect())
         };
@@ -114,13 +149,7 @@ impl Measured {
         };
         let given = options.normal_stress;
         let given = given.map(|x| positive("normal-stress", x)).transpose()?;
-        let is_stress = |place: usize| {
-            let unit = table
-                .headings
-                .get(place)
-                .and_then(|one| one.unit.as_deref());
-            unit.is_some_and(|unit| Measure::Stress.factor(Some(unit), "").is_ok())
-        };
+        let is_stress = |place: usize| matches!(unit(place, Measure::Stress), Ok(Some(_)));
         let friction_values = if is_stress(friction) {
             let shear = cut(column(friction, "shear stress", Measure::Stress)?);
             let by = |i: usize| {
@@ -145,24 +174,34 @@ impl Measured {
             None => vec![1.0; rows.len()],
             Some(name) => normalised(cut(table.numbers(table.asked("weights", name)?, "weight")?))?,
         };
-        let name = |place: Option<usize>| {
-            place.map(|i| {
-                table
-                    .headings
-                    .get(i)
-                    .map_or((i + 1).to_string(), |h| h.name.clone())
-            })
+        let name = |place: usize| {
+            let heading = table.headings.get(place);
+            heading.map_or((place + 1).to_string(), |one| one.name.clone())
+        };
+        let line = |i: usize| format!("{}:{}", table.file, table.line(rows[i]));
+        sizes::friction(&friction_values, &name(friction), line)?;
+        let times = cut(times);
+        let mut notes = Vec::new();
+        let displacement_values = match displacement {
+            None => None,
+            Some(place) => {
+                let mut moved = cut(column(place, "displacement", Measure::Length)?);
+                let is_stated = unit(place, Measure::Length)?.is_some();
+                let own = format!("{}: the displacement, column {}", table.file, name(place));
+                notes.extend(sizes::displacement(&times, &mut moved, &own, is_stated)?);
+                Some(moved)
+            }
         };
         Ok(Measured {
             file: table.file.clone(),
-            displacement: displacement
-                .map(|place| column(place, "displacement", Measure::Length).map(&cut))
-                .transpose()?,
+            displacement: displacement_values,
             friction: friction_values,
             weights,
             normal_stress: given.or_else(|| normal_stress.as_ref().map(mean)),
-            columns: [Some(time), displacement, Some(friction), normal].map(name),
-            times: cut(times),
+            columns: [Some(time), displacement, Some(friction), normal].map(|one| one.map(name)),
+            times,
+            notes,
+            seen: table.seen(),
         })
     }
 }

@@ -9,12 +9,19 @@ use crate::scene::set::assignments;
 
 /// Values of parameters stay between these, and those of others between minus and plus the larger.
 const DOMAIN: (f64, f64) = (1e-30, 1e30);
+/// A slip length that is longer, in what the load point moves, does not show in the record.
+const LONGEST: f64 = 100.0;
 
 /// The values that were given, by the names of parameters; the stiffness as friction per metre.
-pub(super) struct Given(Vec<(String, f64)>);
+pub(super) struct Given {
+    values: Vec<(String, f64)>,
+    /// No slip length is looked for that is longer, in m.
+    longest: f64,
+}
 
 impl Given {
-    pub fn new(options: &FitOptions, normal_stress: Option<f64>) -> Result<Self> {
+    /// `moved` is how far the load point moves in all, in m.
+    pub fn new(options: &FitOptions, normal_stress: Option<f64>, moved: f64) -> Result<Self> {
         let stiffness = match &options.stiffness {
             None => None,
             Some(text) => Some(match (GivenStiffness::read(text)?, normal_stress) {
@@ -49,7 +56,10 @@ impl Given {
         for (name, value) in assignments(&options.set)? {
             given.push((name.replace('-', "_"), value));
         }
-        Ok(Given(given))
+        Ok(Given {
+            values: given,
+            longest: LONGEST * moved,
+        })
     }
 
     /// Those of a law's parameters.
@@ -61,7 +71,7 @@ impl Given {
     ) -> Result<Vec<(&'static str, Option<f64>)>> {
         // Of several laws one has what another has not.
         let strange = self
-            .0
+            .values
             .iter()
             .find(|(name, _)| !has.contains(&name.as_str()));
         if let Some((name, _)) = strange.filter(|_| alone) {
@@ -71,7 +81,7 @@ impl Given {
             )));
         }
         let value = |name: &str| {
-            self.0
+            self.values
                 .iter()
                 .rev()
                 .find(|(own, _)| own == name)
@@ -82,7 +92,12 @@ impl Given {
 }
 
 /// Between what a parameter is looked for.
-pub(super) fn bounds(options: &FitOptions, name: &str, scale: Scale) -> Result<(f64, f64)> {
+pub(super) fn bounds(
+    (options, given): (&FitOptions, &Given),
+    name: &str,
+    scale: Scale,
+) -> Result<(f64, f64)> {
+    let is_length = name.starts_with("slip_length");
     let (least, most) = match scale {
         Scale::Logarithmic => DOMAIN,
         Scale::Linear => (-DOMAIN.1, DOMAIN.1),
@@ -91,7 +106,8 @@ pub(super) fn bounds(options: &FitOptions, name: &str, scale: Scale) -> Result<(
         let (own, range) = text.split_once('=')?;
         (own.trim().replace('-', "_") == name).then_some((text, range))
     }) else {
-        return Ok((least, most));
+        let longest = if is_length { given.longest } else { most };
+        return Ok((least, most.min(longest)));
     };
     let wrong = || Error::Input(format!("`bounds` {text:?} must be NAME=A:B with A below B"));
     let (low, high) = own.split_once(':').ok_or_else(wrong)?;

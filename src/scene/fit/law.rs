@@ -97,6 +97,7 @@ impl LawToFit {
             Model::BuiltIn(_) => Slider::NAMES.to_vec(),
             Model::Text(_) => has.clone(),
         };
+        let all_given = given;
         let given = given.of(&has, &label, !options.law.contains(','))?;
         let usual: String = match states {
             2 => format!("{USUALLY_FREE},evolution_effect_2,slip_length_2"),
@@ -117,9 +118,10 @@ impl LawToFit {
                     known.join(", ")
                 )));
             }
-            // By default what has a value is fixed.
-            let is_fixed =
-                asked.is_none() && given.iter().any(|(own, x)| *own == name && x.is_some());
+            // By default what has a value is fixed, unless the search has nothing else to begin with.
+            let is_fixed = asked.is_none()
+                && shown.is_some()
+                && given.iter().any(|(own, x)| *own == name && x.is_some());
             if known && !is_fixed && !names.contains(&name) {
                 names.push(name);
             }
@@ -150,7 +152,7 @@ impl LawToFit {
         let mut free = Vec::with_capacity(names.len());
         for name in names {
             let scale = scale(&name, constants);
-            let bounds = bounds(options, &name, scale)?;
+            let bounds = bounds((options, all_given), &name, scale)?;
             free.push(FreeParameter {
                 name,
                 scale,

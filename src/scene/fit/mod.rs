@@ -1,11 +1,14 @@
 //! Fits of laboratory data from options: the record, the motion of the load point, the laws.
 
+mod cells;
 mod data;
 mod given;
+mod heading;
 mod law;
 mod motion;
 mod options;
 mod plan;
+mod sizes;
 mod steps;
 mod table;
 mod unit;

@@ -34,13 +34,17 @@ pub(super) fn loaded(
         }
         (Some(program), "steps") => by_program(program, options.driving, times, shown.as_ref())?,
         (None, "steps") => shown.ok_or_else(|| {
-            Error::Input("`program` is missing: the record has no column of displacement".into())
+            Error::Input(format!(
+                "`program` is missing: the record has no column that is known as displacement; {}; say which by `displacement`",
+                measured.seen
+            ))
         })?,
         (None, "recorded") => {
             let (Some(x), Some(steps)) = (displacement, &shown) else {
-                return Err(Error::Input(
-                    "`load_point` recorded: the record has no column of displacement".into(),
-                ));
+                return Err(Error::Input(format!(
+                    "`load_point` recorded: the record has no column that is known as displacement; {}; say which by `displacement`",
+                    measured.seen
+                )));
             };
             motion_as_recorded(times, x, steps.before)
         }

@@ -47,7 +47,9 @@ impl FitPlan {
             Some(rate) => positive("reference-rate", rate)?,
             None => motion.before,
         };
-        let given = Given::new(options, measured.normal_stress)?;
+        let moved = record.displacement.iter();
+        let moved = moved.fold(0.0, |most: f64, x| most.max(x.abs()));
+        let given = Given::new(options, measured.normal_stress, moved)?;
         let shown = guess(&record, &steps, reference_rate);
         let names = options.law.split(',').map(str::trim);
         let laws = names.map(|name| LawToFit::new(name, options, &given, shown, reference_rate));
@@ -108,12 +110,18 @@ impl FitPlan {
         self.fit_from(law, (&self.motion, &self.record), self.shown)
     }
 
-    /// Fits a law to another record, such as a part of the whole.
+    /// Fits a law to a part of the record, before which the load point has moved as `motion` says; the search begins with what the
+    /// motion of the part `alone` shows.
     ///
     /// # Errors
     /// Those of [`fit()`].
-    pub fn fit_to(&self, law: &LawToFit, motion: &Motion, record: &Record) -> Result<Fit> {
-        let shown = guess(record, motion, self.reference_rate);
+    pub fn fit_to(
+        &self,
+        law: &LawToFit,
+        (motion, alone): (&Motion, &Motion),
+        record: &Record,
+    ) -> Result<Fit> {
+        let shown = guess(record, alone, self.reference_rate);
         self.fit_from(law, (motion, record), shown)
     }
 

@@ -1,7 +1,9 @@
 //! The files of laboratories: columns of numbers, with a header or without, separated by whatever there is.
 
+use super::cells::{Separator, decoded, is_mark, number, numeral, with_point};
+use super::heading::{Heading, headings};
 use crate::error::{Error, Result};
-use crate::scene::file::read_bounded;
+use crate::scene::file::read_bytes;
 use crate::scene::text::given_text;
 use std::path::Path;
 
@@ -9,15 +11,8 @@ use std::path::Path;
 const LONGEST: u64 = 1 << 30;
 /// What a line of remarks begins with.
 const REMARKS: [&str; 4] = ["#", "%", "//", "!"];
-
-/// A column as its header has it.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Heading {
-    /// The name, without the unit.
-    pub name: String,
-    /// The unit in parentheses or brackets, or on a line of its own.
-    pub unit: Option<String>,
-}
+/// A number that stands for a missing one is farther from the others than this, in sizes of these.
+const FAR: f64 = 3.0;
 
 /// A file, in columns of text.
 #[derive(Debug, Clone, PartialEq)]
@@ -27,7 +22,9 @@ pub(super) struct Table {
     /// Empty where the file has no header.
     pub headings: Vec<Heading>,
     /// The rows, each with its line.
-    rows: Vec<(usize, csv::StringRecord)>,
+    rows: Vec<(usize, Vec<String>)>,
+    /// Whether numbers have a decimal comma.
+    has_comma: bool,
 }
 
 impl Table {
@@ -39,7 +36,7 @@ impl Table {
         if let Some(text) = given_text(path) {
             return Self::parse("the record", text);
         }
-        let text = read_bounded(path, LONGEST)?;
+        let text = decoded(read_bytes(path, LONGEST)?);
         Self::parse(&path.display().to_string(), &text)
     }
 
@@ -48,65 +45,42 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] for a text without rows of numbers.
     pub fn parse(file: &str, text: &str) -> Result<Self> {
-        let is_remark = |line: &str| {
-            REMARKS
+        let remark = |line: &str| {
+            let sign = REMARKS
                 .iter()
-                .any(|sign| line.trim_start().starts_with(sign))
+                .find(|sign| line.trim_start().starts_with(**sign));
+            sign.is_some()
         };
-        let told: Vec<&str> = text
-            .trim_start_matches('\u{feff}')
-            .lines()
-            .map(|line| if is_remark(line) { "" } else { line })
+        let lines: Vec<&str> = text.trim_start_matches('\u{feff}').lines().collect();
+        let told = |line: &&&str| !remark(line) && !line.trim().is_empty();
+        let is_data = |line: &&str| {
+            let cells = Separator::of(line).cells(line);
+            let numbers = cells.iter().filter(|cell| numeral(cell).is_some()).count();
+            numbers > 0 && 2 * numbers >= cells.len()
+        };
+        let first = lines.iter().position(|line| told(&line) && is_data(line));
+        let first = first.ok_or_else(|| Error::Input(format!("{file} has no rows of numbers")))?;
+        let separator = Separator::of(lines[first]);
+        let numbered = lines.iter().enumerate().skip(first);
+        let rows: Vec<(usize, Vec<String>)> = numbered
+            .filter(|(_, line)| told(line))
+            .map(|(i, line)| (i + 1, separator.cells(line)))
             .collect();
-        let is_data = |line: &&&str| {
-            line.split([',', ';', '\t', ' '])
-                .any(|x| number(x).is_some())
-        };
-        let first = told.iter().find(is_data).copied().unwrap_or_default();
-        let separator = [';', ',', '\t']
-            .into_iter()
-            .find(|&sign| first.contains(sign));
-        let lines: Vec<String> = match separator {
-            Some(_) => told.iter().map(|line| (*line).to_owned()).collect(),
-            None => told
-                .iter()
-                .map(|line| line.split_whitespace().collect::<Vec<_>>().join("\t"))
-                .collect(),
-        };
-        let joined = lines.join("\n");
-        let mut reader = csv::ReaderBuilder::new()
-            .has_headers(false)
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .delimiter(separator.map_or(b'\t', |sign| sign as u8))
-            .from_reader(joined.as_bytes());
-        let mut headings: Vec<Heading> = Vec::new();
-        let mut rows = Vec::new();
-        for record in reader.records() {
-            let record = record.map_err(|error| Error::Input(format!("{file}: {error}")))?;
-            let line = record.position().map_or(0, |place| place.line() as usize);
-            let numbers = record.iter().filter(|cell| number(cell).is_some()).count();
-            if rows.is_empty() && 2 * numbers < record.len() {
-                if headings.is_empty() {
-                    headings = record.iter().map(Heading::of).collect();
-                } else {
-                    // A second line of words are units.
-                    for (heading, unit) in headings.iter_mut().zip(&record) {
-                        let bare = unit.trim_matches(['(', ')', '[', ']']);
-                        heading.unit.get_or_insert_with(|| bare.to_owned());
-                    }
-                }
-                continue;
-            }
-            rows.push((line, record));
-        }
-        if rows.is_empty() {
-            return Err(Error::Input(format!("{file} has no rows of numbers")));
-        }
+        let words: Vec<&str> = lines[..first].iter().filter(told).copied().collect();
+        let remarks: Vec<&str> = lines[..first]
+            .iter()
+            .filter(|line| remark(line))
+            .map(|line| line.trim_start().trim_start_matches(['#', '%', '/', '!']))
+            .collect();
+        let headings = headings(&words, &remarks, (separator, rows[0].1.len()));
+        let cells = || rows.iter().flat_map(|(_, cells)| cells);
+        let has_comma = cells().any(|cell| numeral(cell).is_some() && cell.contains(','))
+            && !cells().any(|cell| cell.contains('.') && number(cell).is_some());
         Ok(Table {
             file: file.to_owned(),
             headings,
             rows,
+            has_comma,
         })
     }
 
@@ -125,7 +99,10 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] for one that is not there.
     pub fn asked(&self, option: &str, column: &str) -> Result<usize> {
-        let named = self.headings.iter().position(|heading| heading.is(column));
+        let exactly = self.headings.iter().position(|own| own.name == column);
+        let bare = Heading::of(column).name;
+        let column = bare.as_str();
+        let named = exactly.or_else(|| self.headings.iter().position(|own| own.is(column)));
         if let Some(place) = named {
             return Ok(place);
         }
@@ -153,17 +130,31 @@ impl Table {
         self.headings.iter().map(|one| one.name.as_str()).collect()
     }
 
-    /// The first column that has one of these names, or one that begins with it.
-    pub fn like(&self, names: &[&str]) -> Option<usize> {
-        let plain: Vec<String> = self.headings.iter().map(|one| plain(&one.name)).collect();
-        let same = names
-            .iter()
-            .find_map(|name| plain.iter().position(|own| own == name));
-        let begins = |name: &&str| {
-            let long = name.len() > 2;
-            plain.iter().position(|own| long && own.starts_with(*name))
+    /// What columns there are, in words.
+    pub fn seen(&self) -> String {
+        match self.headings.is_empty() {
+            true => format!("there is no header, and {} columns", self.rows[0].1.len()),
+            false => format!("the columns are {}", self.names().join(", ")),
+        }
+    }
+
+    /// The first column that has one of these names, or one that begins with it, or else the only one that has it in its name, but
+    /// for names with one of `others` in them.
+    pub fn like(&self, names: &[&str], others: &[&str]) -> Option<usize> {
+        let plain: Vec<[String; 2]> = self.headings.iter().map(Heading::plain_names).collect();
+        let place = |is: &dyn Fn(&String) -> bool| plain.iter().position(|own| own.iter().any(is));
+        let same = names.iter().find_map(|name| place(&|own| own == name));
+        let long = || names.iter().filter(|name| name.len() > 2);
+        let is_other = |own: &String| others.iter().any(|other| own.contains(other));
+        let begins =
+            || long().find_map(|name| place(&|own| own.starts_with(name) && !is_other(own)));
+        let within = || {
+            let has =
+                |[own, _]: &[String; 2]| long().any(|name| own.contains(name)) && !is_other(own);
+            let mut all = (0..plain.len()).filter(|&i| has(&plain[i]));
+            all.next().filter(|_| all.next().is_none())
         };
-        same.or_else(|| names.iter().find_map(begins))
+        same.or_else(begins).or_else(within)
     }
 
     /// The numbers of a column.
@@ -171,52 +162,33 @@ impl Table {
     /// # Errors
     /// [`Error::Input`] with file and line for what is no finite number.
     pub fn numbers(&self, column: usize, what: &str) -> Result<Vec<f64>> {
-        let of = |(line, record): &(usize, csv::StringRecord)| {
-            let cell = record.get(column);
+        let of = |(line, cells): &(usize, Vec<String>)| {
+            let cell = cells.get(column);
             let cell = cell.ok_or_else(|| {
                 Error::Input(format!("{}:{line}: the {what} is missing", self.file))
             })?;
-            number(cell).filter(|x| x.is_finite()).ok_or_else(|| {
+            let read = match self.has_comma {
+                true => number(cell).or_else(|| number(&with_point(cell)?)),
+                false => number(cell),
+            };
+            read.filter(|x| x.is_finite()).ok_or_else(|| {
                 Error::Input(format!(
                     "{}:{line}: the {what} {cell:?} is not a finite number",
                     self.file
                 ))
             })
         };
-        self.rows.iter().map(of).collect()
-    }
-}
-
-impl Heading {
-    /// `Displ(microns)`, `Time [s]`, `friction`.
-    fn of(text: &str) -> Self {
-        let (name, unit) = match text.find(['(', '[']) {
-            Some(at) if at > 0 => {
-                let unit = text[at + 1..].trim_end_matches([')', ']']).trim();
-                (&text[..at], Some(unit.to_owned()).filter(|u| !u.is_empty()))
-            }
-            _ => (text, None),
-        };
-        Heading {
-            name: name.trim().to_owned(),
-            unit,
+        let numbers: Vec<f64> = self.rows.iter().map(of).collect::<Result<_>>()?;
+        let others = numbers.iter().filter(|x| !is_mark(**x));
+        let size = others.fold(0.0, |size: f64, x| size.max(x.abs()));
+        let missing = |&(_, x): &(usize, &f64)| is_mark(*x) && x.abs() > FAR * size;
+        match numbers.iter().enumerate().find(missing) {
+            None => Ok(numbers),
+            Some((row, mark)) => Err(Error::Input(format!(
+                "{}:{}: the {what} {mark} stands for one that is missing, the others being at most {size}; leave out such rows",
+                self.file,
+                self.line(row)
+            ))),
         }
     }
-
-    fn is(&self, name: &str) -> bool {
-        self.name == name || plain(&self.name) == plain(name)
-    }
-}
-
-/// A name without case and signs.
-fn plain(name: &str) -> String {
-    let letters = name.chars().filter(|c| c.is_alphanumeric());
-    letters.flat_map(char::to_lowercase).collect()
-}
-
-/// A number, NaN and infinity among them.
-fn number(cell: &str) -> Option<f64> {
-    let begins_as_number = cell.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c));
-    let is_word = ["nan", "inf"].contains(&cell.to_lowercase().as_str());
-    (begins_as_number || is_word).then(|| cell.parse().ok())?
 }

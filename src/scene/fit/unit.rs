@@ -60,6 +60,12 @@ impl Measure {
         }
     }
 
+    /// Whether it is the unit of any measure but a ratio.
+    pub fn is_unit(unit: &str) -> bool {
+        let all = [Measure::Time, Measure::Length, Measure::Stress];
+        all.iter().any(|one| one.factor(Some(unit), "").is_ok())
+    }
+
     /// The size of a unit in SI; that of SI where a column says none.
     ///
     /// # Errors
