@@ -5,7 +5,7 @@
 //! is a closed form.
 
 use crate::command;
-use crate::common::text::{file, near};
+use crate::common::text::{ends_at, file, near};
 use command::{number, object, twinslip};
 use proptest::prelude::*;
 use twinslip::field::{State, VectorField};
@@ -14,25 +14,6 @@ use twinslip::integrate::{Choice, Integrator, MAX_STEPS, RosenbrockMethod, Taylo
 use twinslip::model::{Loading, Smooth, two_interfaces};
 use twinslip::number::Real;
 use twinslip::series::Equations;
-
-/// The end of a run, each value within its uncertainty of the truth, and this near.
-#[track_caller]
-fn ends_at(arguments: &str, truths: &[(&str, f64)], near: f64) -> serde_json::Value {
-    let made = object(&format!(
-        "integrate --system tests/data/cases/{arguments} --final-only --estimate-error"
-    ));
-    for (name, truth) in truths {
-        let value = number(&made, &format!("/result/final/{name}"));
-        let uncertainty = number(&made, &format!("/result/final/{name}_uncertainty"));
-        // The truth has as many digits as are written here.
-        let off = (value - truth).abs();
-        assert!(
-            off <= uncertainty + 1e-8 * truth.abs() && off <= near,
-            "{arguments}: {name} = {value} ± {uncertainty} for {truth}"
-        );
-    }
-    made
-}
 
 #[test]
 fn a_switch_beyond_the_sight_of_a_series_is_met() {

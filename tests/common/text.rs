@@ -1,6 +1,6 @@
 //! What tests of systems and laws from files share.
 
-use crate::command::folder;
+use crate::command::{folder, number, object};
 use serde_json::Value;
 use std::fs;
 
@@ -40,4 +40,23 @@ pub fn file(folder_name: &str, text: &str) -> String {
     let path = folder(folder_name).join("system.toml");
     fs::write(&path, text).expect("a file");
     path.display().to_string()
+}
+
+/// The end of a run, each value within its uncertainty of the truth, and this near.
+#[track_caller]
+pub fn ends_at(arguments: &str, truths: &[(&str, f64)], near: f64) -> Value {
+    let made = object(&format!(
+        "integrate --system tests/data/cases/{arguments} --final-only --estimate-error"
+    ));
+    for (name, truth) in truths {
+        let value = number(&made, &format!("/result/final/{name}"));
+        let uncertainty = number(&made, &format!("/result/final/{name}_uncertainty"));
+        // The truth has as many digits as are written here.
+        let off = (value - truth).abs();
+        assert!(
+            off <= uncertainty + 1e-8 * truth.abs() && off <= near,
+            "{arguments}: {name} = {value} ± {uncertainty} for {truth}"
+        );
+    }
+    made
 }

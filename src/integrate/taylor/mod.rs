@@ -140,7 +140,7 @@ impl Taylor {
     ) -> Result<(State<N>, Derivatives<N>)> {
         self.work = Work::default();
         let (end, _) = self.trajectory(field, t, y0, tangent, None, &mut |_, _, _| false)?;
-        Ok((end, tangent.derivatives()))
+        Ok((end, numbers(tangent.derivatives(), t.1)?))
     }
 
     /// The state at `t.1` to third order in two variations, those of `y0`.
@@ -234,7 +234,10 @@ impl Taylor {
     ) -> Result<((State<N>, f64), Jacobian<N>)> {
         let mut tangent = self.tangent(field, &[])?;
         let end = self.trajectory(field, t, y0, &mut *tangent, None, halt)?;
-        Ok((end, Jacobian::from(tangent.derivatives().start)))
+        Ok((
+            end,
+            Jacobian::from(numbers(tangent.derivatives(), t.1)?.start),
+        ))
     }
 
     /// Another bound on steps.
@@ -402,4 +405,16 @@ impl<const N: usize> Integrator<N> for Taylor {
 /// The field in power series, or the reason why this method can't.
 fn analytic<const N: usize>(field: &dyn VectorField<N>) -> Result<&dyn Analytic<N>> {
     field.analytic().ok_or(Error::NotAnalytic)
+}
+
+/// The derivatives, if all are numbers.
+fn numbers<const N: usize>(derivatives: Derivatives<N>, t: f64) -> Result<Derivatives<N>> {
+    let mut columns = derivatives.start.iter().chain(&derivatives.parameters);
+    if columns.any(|column| column.iter().any(|x| x.is_nan())) {
+        return Err(Error::NonFinite {
+            what: "a derivative of the solution",
+            t,
+        });
+    }
+    Ok(derivatives)
 }

@@ -6,6 +6,7 @@ mod damped;
 mod factor;
 mod function;
 mod ratios;
+mod signed_powers;
 
 pub use function::Function;
 
@@ -43,6 +44,8 @@ enum Operation {
     Call(Function, Place),
     /// N(x)/x.
     Ratio(Numerator, Place),
+    /// The first one with the sign of the second.
+    Signed(Place, Place),
     Lesser(Place, Place),
     Greater(Place, Place),
     /// g(y) of the y with y + g(y) = the first operand, g being the second one times this function.
@@ -81,6 +84,7 @@ impl Operation {
             Power(a, b) => Power(at(a), at(b)),
             Call(function, a) => Call(function, at(a)),
             Ratio(numerator, a) => Ratio(numerator, at(a)),
+            Signed(a, b) => Signed(at(a), at(b)),
             Lesser(a, b) => Lesser(at(a), at(b)),
             Greater(a, b) => Greater(at(a), at(b)),
             Balanced(a, b, activation) => Balanced(at(a), at(b), activation),
@@ -141,6 +145,7 @@ impl Expressions {
                 },
                 Operation::Call(function, a) => function.of(at(a)),
                 Operation::Ratio(numerator, a) => at(a).ratio(numerator.into()),
+                Operation::Signed(a, b) => at(a) * at(b).sign(),
                 Operation::Lesser(a, b) => at(a).lesser(at(b)),
                 Operation::Greater(a, b) => at(a).greater(at(b)),
                 Operation::Balanced(a, b, Activation::Sinh) => {
@@ -269,6 +274,11 @@ impl Builder {
     pub fn binary(&mut self, binary: Binary, a: Place, b: Place) -> Result<Place> {
         if matches!(binary, Binary::Product | Binary::Quotient)
             && let Some(place) = self.with_ratio(a, b, binary)?
+        {
+            return Ok(place);
+        }
+        if binary == Binary::Product
+            && let Some(place) = self.with_signed_power(a, b)?
         {
             return Ok(place);
         }

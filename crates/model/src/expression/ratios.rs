@@ -10,9 +10,9 @@ use crate::number::Numerator;
 
 /// A factor, above the fraction bar or below.
 #[derive(Debug, Clone, Copy, PartialEq)]
-struct Factor {
-    place: Place,
-    above: bool,
+pub(super) struct Factor {
+    pub place: Place,
+    pub above: bool,
 }
 
 /// The factors that are left, and the numbers, each above the fraction bar or not.
@@ -69,7 +69,7 @@ impl Builder {
     }
 
     /// The factors of what stands at a place, numbers too.
-    fn factors(&self, place: Place, above: bool, into: &mut Vec<Factor>) {
+    pub(super) fn factors(&self, place: Place, above: bool, into: &mut Vec<Factor>) {
         match self.operations[place] {
             _ if into.len() >= MOST => into.push(Factor { place, above }),
             Operation::Product(a, b) => {
@@ -158,8 +158,8 @@ impl Builder {
         any.then_some((rest, numbers))
     }
 
-    /// The product of these factors and numbers.
-    fn product(
+    /// The product of these factors, divided by those that are not above, and numbers.
+    pub(super) fn product(
         &mut self,
         factors: Vec<Factor>,
         numbers: impl Iterator<Item = (f64, bool)>,

@@ -179,9 +179,20 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
         self.value.leading()
     }
     #[inline(always)]
+    fn in_range(self) -> Self {
+        let mut gradient = self.gradient;
+        each!(i => gradient[i] = gradient[i].in_range());
+        Jet {
+            value: self.value.in_range(),
+            gradient,
+        }
+    }
+    #[inline(always)]
     fn exp(self) -> Self {
         let e = self.value.exp();
-        self.chain(e, e)
+        let mut jet = self.chain(e, e.in_range());
+        each!(i => jet.gradient[i] = jet.gradient[i].in_range());
+        jet
     }
     #[inline(always)]
     fn exp_m1(self) -> Self {
@@ -197,14 +208,22 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     }
     #[inline(always)]
     fn powf(self, p: f64) -> Self {
-        let power = self.value.powf(p);
-        self.chain(power, power / self.value * p)
+        let slope = match p {
+            0.0 => T::constant(0.0),
+            p => self.value.powf(p - 1.0) * p,
+        };
+        self.chain(self.value.powf(p), slope)
     }
-    // d x^p = x^p (p dx / x + ln x dp)
+    // d x^p = p x^(p-1) dx + x^p ln x dp; at x = 0 the last product is 0, and so is the first of p = 0
     #[inline(always)]
     fn pow(self, p: Self) -> Self {
         let power = self.value.pow(p.value);
-        let (slope, of_p) = (power / self.value * p.value, power * self.value.ln());
+        let log = self.value.greater(T::constant(f64::MIN_POSITIVE)).ln();
+        let slope = match p.value.leading() {
+            0.0 => T::constant(0.0),
+            _ => self.value.pow(p.value - 1.0) * p.value,
+        };
+        let of_p = power * log;
         zip!(self, p, power, |d, e| slope * d + of_p * e)
     }
     #[inline(always)]
@@ -215,12 +234,12 @@ impl<T: Real, const N: usize> Real for Jet<T, N> {
     #[inline(always)]
     fn sinh(self) -> Self {
         let (sinh, cosh) = self.value.sinh_cosh();
-        self.chain(sinh, cosh)
+        self.chain(sinh, cosh.in_range())
     }
     #[inline(always)]
     fn cosh(self) -> Self {
         let (sinh, cosh) = self.value.sinh_cosh();
-        self.chain(cosh, sinh)
+        self.chain(cosh, sinh.in_range())
     }
     #[inline(always)]
     fn asinh(self) -> Self {

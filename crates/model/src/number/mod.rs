@@ -54,6 +54,12 @@ pub trait Real:
     fn constant(x: f64) -> Self;
     /// An ordinary number that stands for this one in comparisons: its value, or its middle.
     fn leading(self) -> f64;
+    /// This number; 0 where it is infinite, as the slope of a function is taken to be beyond the range of numbers: so 1/(1 + e^x)
+    /// has one there.
+    #[inline(always)]
+    fn in_range(self) -> Self {
+        self
+    }
     /// e^x
     fn exp(self) -> Self;
     /// e^x - 1, accurate near 0
@@ -137,6 +143,10 @@ impl Real for f64 {
     #[inline]
     fn leading(self) -> f64 {
         self
+    }
+    #[inline]
+    fn in_range(self) -> f64 {
+        if self.is_infinite() { 0.0 } else { self }
     }
     #[inline]
     fn exp(self) -> f64 {

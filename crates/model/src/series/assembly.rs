@@ -140,6 +140,10 @@ impl Assembly<'_> {
             },
             Node::Product(a, b) => match (at(a), at(b)) {
                 (Row(a), Row(b)) => (Op::Product(a, b), false),
+                // As p x^(p-1) of p = 0, also where x is 0.
+                (Row(_), Number(x)) | (Number(x), Row(_)) if x == DoubleDouble::ZERO => {
+                    return Number(x);
+                }
                 (Row(a), Number(x)) | (Number(x), Row(a)) => (Op::Scaled(a, x), false),
                 (Number(x), Number(y)) => return Number(x * y),
             },
@@ -213,11 +217,11 @@ impl Assembly<'_> {
                 Number(x) => return Number(Real::tanh(x)),
             },
             Node::Power(a, p) => match at(a) {
-                Row(a) => (Op::Power(a, f64::from_bits(p).into()), true),
+                Row(a) => return self.power(a, f64::from_bits(p).into()),
                 Number(x) => return Number(Real::powf(x, f64::from_bits(p))),
             },
             Node::VariablePower(a, p) => match (at(a), at(p)) {
-                (Row(a), Number(p)) => (Op::Power(a, p), true),
+                (Row(a), Number(p)) => return self.power(a, p),
                 (Number(x), Number(p)) => return Number(Real::pow(x, p)),
                 // Else e^(p ln a).
                 (Number(x), Row(p)) => {
@@ -283,11 +287,40 @@ impl Assembly<'_> {
                 _ => unreachable!("of a balance"),
             },
         };
-        let made = self.made(operation, spare);
-        if matches!(operation, Op::Power(_, p) if is_of_root(p)) {
-            self.program.branch_points.push(made);
+        Row(self.made(operation, spare))
+    }
+
+    /// a^p. Whole powers are products: they have series where a is 0 or negative.
+    fn power(&mut self, a: usize, p: DoubleDouble) -> Source {
+        /// Larger ones are left as they are.
+        const MOST: f64 = 64.0;
+        if p.lo() != 0.0 || p.hi().fract() != 0.0 || p.hi().abs() > MOST {
+            let made = self.made(Operation::Power(a, p), true);
+            self.program.bases.push(a);
+            if is_of_root(p) {
+                self.program.branch_points.push(made);
+            }
+            return Source::Row(made);
         }
-        Row(made)
+        let (mut rest, mut square, mut power) = (p.hi().abs() as u32, a, None);
+        while rest > 0 {
+            if rest & 1 == 1 {
+                power = Some(match power {
+                    None => square,
+                    Some(power) => self.made(Operation::Product(power, square), false),
+                });
+            }
+            rest >>= 1;
+            if rest > 0 {
+                square = self.made(Operation::Product(square, square), false);
+            }
+        }
+        let one = Source::Number(1.0.into());
+        match power {
+            None => one,
+            Some(power) if p.hi() > 0.0 => Source::Row(power),
+            Some(power) => Source::Row(self.made(Operation::Quotient(one, power), true)),
+        }
     }
 
     /// Adds the rows at whose zeros this row changes sign to the kinks: of a product those of its factors, of an odd function that of its

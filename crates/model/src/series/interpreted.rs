@@ -198,11 +198,23 @@ impl<'a, T: Element> Interpreted<'a, T> {
     pub(super) fn expand(&mut self, order: usize) {
         self.unit = self.next_unit;
         self.record_here();
+        let powers = !self.program.bases.is_empty();
         for _ in 0..=SHORTER_UNITS {
-            self.rows.prepare();
-            self.rows.integrate(self.unit);
-            for k in 1..order {
-                self.rows.level(k, self.unit);
+            let (mut k, mut anew) = (0, powers);
+            while k < order {
+                if k == 0 {
+                    self.rows.prepare();
+                    self.rows.integrate(self.unit);
+                } else {
+                    self.rows.level(k, self.unit);
+                }
+                k += 1;
+                if k == 2 && anew {
+                    anew = false;
+                    if self.rows.hold_powers(is_next_to_zero) {
+                        k = 0;
+                    }
+                }
             }
             // Close to a steady state the state changes by its own size in no time that is near the step; in a shorter unit the
             // coefficients do not overflow.
@@ -297,6 +309,17 @@ fn power_of_two(x: f64) -> f64 {
         f64::from_bits(x.to_bits() & f64::INFINITY.to_bits()),
         f64::MIN_POSITIVE,
     )
+}
+
+/// Whether a row begins so near 0 that powers of it which are not whole have no series for more than the last digits of a step: they are
+/// held, and the step is as long as the rates at its end allow.
+fn is_next_to_zero<T: Element>(row: &[T]) -> bool {
+    /// In changes of the row in the unit of time, which is about a step.
+    const NEXT: f64 = 1.0 / (1_u64 << 44) as f64;
+    (0..T::LANES).any(|lane| {
+        let [first, change] = [0, 1].map(|k| row[k].lane(lane).abs());
+        change > 0.0 && first <= NEXT * change
+    })
 }
 
 #[inline(always)]

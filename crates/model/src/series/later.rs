@@ -89,9 +89,9 @@ impl LaterOrders {
                 needed[*row] = true;
             }
         }
-        // Steps end at the zeros of these.
-        for row in program.kinks.iter().chain(&program.branch_points) {
-            needed[*row] = true;
+        // The ends of steps are judged by these.
+        for row in [&program.kinks, &program.branch_points, &program.bases] {
+            row.iter().for_each(|&row| needed[row] = true);
         }
         let multiples = multiples(program, sums);
         let mut kept = Vec::new();

@@ -7,6 +7,24 @@ use super::program::{Operation, Source};
 use super::program_rows::Level;
 use crate::number::Balance;
 
+/// What the first coefficient of an exponential or a power counts in the later ones. Beyond the range of numbers it has none: the function stays as it is,
+/// as long as the rates at the end of the step agree.
+#[inline(always)]
+fn or_none<T: Element>(counts: T) -> T {
+    if counts.all_finite() {
+        counts
+    } else {
+        where_finite(counts, counts)
+    }
+}
+
+/// x in the lanes where the first coefficient is not infinite, else 0.
+#[cold]
+#[inline(never)]
+fn where_finite<T: Element>(first: T, x: T) -> T {
+    (x.like(1.0) / first).if_zero(x.like(0.0), x)
+}
+
 impl<T: Element> Level<'_, T> {
     /// What holds for all orders, from the first coefficients.
     #[inline(always)]
@@ -30,17 +48,24 @@ impl<T: Element> Level<'_, T> {
             Operation::Product(_, b) => {
                 one.counts = [first(b).scale(factor), first(one.operand.row)];
                 one.inverse = self.any.like_exact(factor);
+                let made = first(one.result);
+                if !made.all_finite() {
+                    one.counts = one.counts.map(|count| where_finite(made, count));
+                    one.inverse = where_finite(made, one.inverse);
+                }
             }
             Operation::Quotient(_, b) => {
                 one.counts[0] = -first(one.result);
                 one.inverse = one_over(first(b));
             }
-            Operation::Exponential(_) => one.counts[0] = first(one.result).scale(factor),
+            Operation::Exponential(_) => {
+                one.counts[0] = or_none(first(one.result).scale(factor));
+            }
             Operation::Exponentials(_, falling) => {
-                one.counts = [one.result, falling].map(|row| first(row).scale(factor));
+                one.counts = [one.result, falling].map(|row| or_none(first(row).scale(factor)));
             }
             Operation::Hyperbolic(_, other) | Operation::Circular(_, other) => {
-                one.counts = [other, one.result].map(|row| first(row).scale(factor));
+                one.counts = [other, one.result].map(|row| or_none(first(row).scale(factor)));
             }
             Operation::HyperbolicTangent(_, u) => {
                 let y = first(one.result);
@@ -52,8 +77,13 @@ impl<T: Element> Level<'_, T> {
             }
             Operation::Power(_, p) => {
                 let one_and_p = self.any.like(1.0) + self.any.like_exact(p);
-                one.counts = [first(one.result).scale(p), one_and_p];
-                one.inverse = one_over(first(one.operand.row)).scale(factor);
+                one.counts = [or_none(first(one.result).scale(p)), one_and_p];
+                let base = first(one.operand.row);
+                one.inverse = if one.held {
+                    zero
+                } else {
+                    base.if_zero(zero, one_over(base)).scale(factor)
+                };
             }
             Operation::Ratio(a, ratio) => {
                 if let Some(composition) = &mut one.composition {

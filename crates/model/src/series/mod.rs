@@ -39,6 +39,7 @@ mod program_rows;
 mod real;
 mod recorded;
 mod recurrences;
+mod rounding;
 mod stepper;
 mod tape;
 mod trace;

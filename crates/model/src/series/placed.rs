@@ -24,6 +24,8 @@ pub(super) struct PlacedInstruction<T: Element> {
     pub sums: [Sums<T>; 2],
     /// Instead of these where both share a row and the element has them side by side.
     pub shared: Option<SharedSums<T>>,
+    /// Of a power: whether it is held, as its base is next to 0.
+    pub held: bool,
     /// Of a ratio.
     pub composition: Option<Box<Composition<T>>>,
 }
@@ -131,6 +133,7 @@ impl<T: Element> PlacedLater<T> {
                     },
                     counts: [any; 2],
                     inverse: any,
+                    held: false,
                     products,
                     sums: [Sums::new(any), Sums::new(any)],
                     shared: shares.then(|| SharedSums::new(any, room)),

@@ -222,6 +222,8 @@ pub(super) struct Program {
     pub later: LaterOrders,
     /// The rows at whose zeros a sign that it takes changes.
     pub kinks: Vec<usize>,
+    /// The rows that it takes powers of that are not whole: where one is 0 these have no series.
+    pub bases: Vec<usize>,
     /// The rows of square roots: where one is 0 its series goes on with the other sign.
     pub branch_points: Vec<usize>,
     /// Whether it holds only where it was recorded, as the formula asks for values.
@@ -240,6 +242,7 @@ impl Program {
             places: (0..variables).map(|i| (i, 0)).collect(),
             later: LaterOrders::default(),
             kinks: Vec::new(),
+            bases: Vec::new(),
             branch_points: Vec::new(),
             branches: false,
         }

@@ -3,7 +3,7 @@
 use super::element::Element;
 use super::placed::{PlacedLater, PlacedSum, PlacedTerm, placed};
 use super::products::ORDERS;
-use super::program::{Instruction, Program, Source};
+use super::program::{Instruction, Operation, Program, Source};
 use crate::number::DoubleDouble;
 
 /// The rows of a program: the coefficients of each, one after the other.
@@ -142,6 +142,21 @@ impl<T: Element> ProgramRows<T> {
         for (row, other) in rows.zip(others) {
             row[0] = other[0];
         }
+    }
+
+    /// Holds powers of these rows, and of no others, in the series to come; whether that is a change.
+    pub fn hold_powers(&mut self, of: impl Fn(&[T]) -> bool) -> bool {
+        let mut changes = false;
+        for one in &mut self.later {
+            if let PlacedLater::Other(one) = one
+                && let Operation::Power(base, _) = one.operation
+            {
+                let hold = of(&self.coefficients[base..][..self.room]);
+                changes |= hold != one.held;
+                one.held = hold;
+            }
+        }
+        changes
     }
 
     /// What the first coefficients are to all later orders.

@@ -178,9 +178,13 @@ impl Graph {
                 Node::Cos(a, sin) => -(slope(a) * at(sin)),
                 Node::Arctangent(a, u) | Node::InverseHyperbolicSine(a, u) => slope(a) / at(u),
                 Node::HyperbolicTangent(a) => slope(a) * (-(this * this) + 1.0),
-                Node::Power(a, p) => slope(a) * (this / at(a) * f64::from_bits(p)),
+                Node::Power(a, p) => match f64::from_bits(p) {
+                    0.5 => slope(a) * (Traced::constant(0.5) / this),
+                    p => slope(a) * (at(a).powf(p - 1.0) * p),
+                },
                 Node::VariablePower(a, p) => {
-                    slope(a) * (this / at(a) * at(p)) + slope(p) * (this * at(a).ln())
+                    let of_base = at(a).pow(at(p) - 1.0) * at(p);
+                    slope(a) * of_base + slope(p) * (this * at(a).ln())
                 }
                 Node::Ratio(a, ratio) => slope(a) * at(a).ratio(ratio.derived()),
                 Node::Signed(a, b) => slope(a) * at(b).sign(),

@@ -261,7 +261,8 @@ impl Folding {
             rows.dedup();
             rows
         };
-        let (kinks, branch_points) = (rows(&program.kinks), rows(&program.branch_points));
+        let [kinks, branch_points, bases] =
+            [&program.kinks, &program.branch_points, &program.bases].map(|of| rows(of));
         let places = (0..n).map(|variable| match self.place(variable) {
             At::Both(row) => (row, 0),
             At::Lane(row, lane) => (row, lane),
@@ -269,6 +270,7 @@ impl Folding {
         self.made.places = places.collect();
         self.made.kinks = kinks;
         self.made.branch_points = branch_points;
+        self.made.bases = bases;
         self.made.outputs = outputs;
         self.made.lanes = lanes;
         self.made.order();

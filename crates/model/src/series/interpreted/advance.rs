@@ -5,10 +5,12 @@
 //! So the rates where a step ends, which the next step begins with, are compared with the derivative of the series there, and the zeros
 //! of these quantities within the step are found.
 
-use super::{Interpreted, Reached, finite, power_of_two};
+use super::{Interpreted, Reached, finite, is_next_to_zero, power_of_two};
 use crate::number::DoubleDouble;
 use crate::number::polynomial::{Crossing, roots};
 use crate::series::element::Element;
+use crate::series::program::Source;
+use crate::series::rounding::rounding;
 use crate::series::stepper::{BISECTIONS, HALVINGS};
 use crate::series::{Accuracy, REFERENCE_ORDER};
 
@@ -18,12 +20,8 @@ use crate::series::{Accuracy, REFERENCE_ORDER};
 const EXPLAINED: f64 = 3000.0;
 /// Rounding of the rates, in units of themselves.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// A part of a step in which nothing happens: what the rates there are off the series is the noise of a formula that cancels.
-const NEXT_TO_NOTHING: f64 = 1.0 / (1 << 20) as f64;
-/// How much more noise there may be elsewhere.
-const NOISIER: f64 = 16.0;
-/// The least and the most noise, in units of the largest number that the formula makes on its way.
-const NOISE: [f64; 2] = [4.0 * f64::EPSILON, 1024.0 * f64::EPSILON];
+/// How much more than what rounding makes of the rates at both ends it may make of the series between.
+const NOISIER: f64 = 8.0;
 /// Where a series is compared with the rates before a kink or a branch point: at that itself a formula may have no value.
 const BEFORE: f64 = 0.999;
 /// What leads behind a branch point.
@@ -67,7 +65,6 @@ impl<T: Element> Interpreted<'_, T> {
     #[cold]
     #[inline(never)]
     fn shortened(&mut self, accuracy: &Accuracy, h: DoubleDouble) -> DoubleDouble {
-        self.measure_noise(accuracy.order, h * NEXT_TO_NOTHING);
         let shortened = self.without_noise(accuracy, h);
         self.noise.fill(self.any.like(0.0));
         shortened
@@ -84,12 +81,20 @@ impl<T: Element> Interpreted<'_, T> {
                 self.cut(order, behind)
             } else if let Some(branch) = self.first_zero(order, h, Watched::Branches) {
                 let at = DoubleDouble::from(branch.at);
-                Some((at * BEFORE, at * BEHIND))
+                self.look_at(order, at * BEHIND);
+                // Where a root is 0 to all digits the solution ends: steps come closer and closer.
+                let ends = self.program.branch_points.iter().any(|&row| {
+                    let root = self.probe.row(row)[0];
+                    (0..T::LANES).any(|lane| root.lane(lane) == 0.0)
+                });
+                self.rejected += usize::from(ends);
+                Some((at * BEFORE, at * if ends { BEFORE } else { BEHIND }))
             } else {
                 Some((h, h))
             };
             if let Some((before, behind)) = end {
                 self.look_at(order, before);
+                self.measure_noise();
                 if self.is_solution(accuracy, before) {
                     return behind;
                 }
@@ -129,6 +134,11 @@ impl<T: Element> Interpreted<'_, T> {
     fn is_solution(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
         let (rtol, atol) = accuracy.tolerances;
         let step = self.any.like(h.hi().abs());
+        let by_order = if self.holds_powers(accuracy.order) {
+            1.0
+        } else {
+            EXPLAINED
+        };
         let mut explained = finite(&self.next.x);
         for (i, x) in self.next.x.iter().enumerate() {
             let [slope, rate] = self.slope_and_rate(i);
@@ -136,11 +146,25 @@ impl<T: Element> Interpreted<'_, T> {
             let may_err = largest.mul_add(x.like(rtol), x.like(atol));
             let rounding =
                 Element::max(slope.abs(), rate.abs()).mul_add(x.like(ROUNDING), self.noise[i]);
-            let allowed = may_err.mul_add(x.like(EXPLAINED), rounding * step);
+            let allowed = may_err.mul_add(x.like(by_order), rounding * step);
             // A number that is none is not explained.
             explained &= (allowed - (slope - rate).abs() * step).all_positive();
         }
         explained
+    }
+
+    /// Whether a power that is not whole is held as its base begins at 0, or next to it, and does not stay there: that is a series of order 0
+    /// and not of that of the others.
+    #[inline(always)]
+    fn holds_powers(&self, order: usize) -> bool {
+        self.program.bases.iter().any(|&row| {
+            let series = &self.rows.row(row)[..order];
+            let is_zero = |x: T, lane: usize| x.lane(lane) == 0.0;
+            is_next_to_zero(series)
+                || (0..T::LANES).any(|lane| {
+                    is_zero(series[0], lane) && !series.iter().all(|x| is_zero(*x, lane))
+                })
+        })
     }
 
     /// The derivative of the series of a variable at the end that was looked at, and the rate there, in units of the series.
@@ -150,16 +174,19 @@ impl<T: Element> Interpreted<'_, T> {
         [self.slopes[i], rate * self.any.like(self.unit)]
     }
 
-    /// Measures how far rates are off without a reason.
-    fn measure_noise(&mut self, order: usize, h: DoubleDouble) {
-        self.look_at(order, h);
-        let sizes = (0..self.program.rows()).map(|row| self.probe.row(row)[0].abs().largest_lane());
-        let largest = sizes.filter(|size| size.is_finite()).fold(0.0, f64::max);
-        let [least, most] = NOISE.map(|noise| self.any.like(noise * largest * self.unit));
-        for i in 0..self.noise.len() {
-            let [slope, rate] = self.slope_and_rate(i);
-            let noise = (slope - rate).abs() * self.any.like(NOISIER);
-            self.noise[i] = Element::max(Element::min(noise, most), least);
+    /// Measures what rounding makes of the rates of a formula that cancels, here and at the end that was looked at.
+    fn measure_noise(&mut self) {
+        self.noise.fill(self.any.like(0.0));
+        for lane in 0..T::LANES {
+            for rows in [&self.rows, &self.probe] {
+                let off = rounding(&self.program, |row| rows.row(row)[0].lane(lane));
+                for (i, noise) in self.noise.iter_mut().enumerate() {
+                    if let Source::Row(row) = self.program.outputs[i] {
+                        let off = NOISIER * self.unit * off[row];
+                        *noise = noise.with_lane(lane, noise.lane(lane).max(off));
+                    }
+                }
+            }
         }
     }
 

@@ -1,0 +1,51 @@
+//! Products such as |z|^q z, found where formulas are built: |z|^(q + 1) with the sign of z, whose derivative (q + 1) |z|^q is finite where
+//! that of |z|^q is not.
+
+use super::ratios::Factor;
+use super::{Binary, Builder, Function, Operation, Place};
+use crate::error::Result;
+
+impl Builder {
+    /// The same as a product of these two, if a power of an absolute value meets its argument in it.
+    pub(super) fn with_signed_power(&mut self, a: Place, b: Place) -> Result<Option<Place>> {
+        let mut factors = Vec::new();
+        self.factors(a, true, &mut factors);
+        self.factors(b, true, &mut factors);
+        for (i, &factor) in factors.iter().enumerate() {
+            let Some((absolute, argument, exponent)) = self.power_of_absolute(factor.place) else {
+                continue;
+            };
+            let meets = |other: &Factor| other.above && other.place == argument;
+            let (true, Some(at)) = (factor.above, factors.iter().position(meets)) else {
+                continue;
+            };
+            let exponent = match exponent {
+                None => self.number(1.5)?,
+                Some(place) => {
+                    let one = self.number(1.0)?;
+                    self.binary(Binary::Sum, place, one)?
+                }
+            };
+            let power = self.binary(Binary::Power, absolute, exponent)?;
+            let signed = self.place(Operation::Signed(power, argument))?;
+            let mut all = factors.clone();
+            all[i].place = signed;
+            all.remove(at);
+            return self.product(all, std::iter::empty()).map(Some);
+        }
+        Ok(None)
+    }
+
+    /// |z|, z and q, where |z|^q stands here; `None` for q is 1/2.
+    fn power_of_absolute(&self, place: Place) -> Option<(Place, Place, Option<Place>)> {
+        let (absolute, exponent) = match self.operations[place] {
+            Operation::Power(a, q) => (a, Some(q)),
+            Operation::Call(Function::Sqrt, a) => (a, None),
+            _ => return None,
+        };
+        match self.operations[absolute] {
+            Operation::Call(Function::Abs, argument) => Some((absolute, argument, exponent)),
+            _ => None,
+        }
+    }
+}
