@@ -6,7 +6,7 @@
 
 use super::rest::equilibrium_near;
 use super::returns::{Return, ReturnRecord};
-use super::surface::{Landing, Surface, return_map};
+use super::surface::{Landing, SeriesVariables, Surface, return_map};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyField, AnyIntegrator, Choice, MAX_STEPS, Tolerances, of_dimension};
@@ -30,8 +30,12 @@ const NEUTRAL: f64 = 1e-7;
 const CONVERGED: f64 = 1e-11;
 const ROUNDING: f64 = 1e-6;
 const ITERATIONS: usize = 12;
-/// The tolerance of the map.
-const TOLERANCE: f64 = 1e-14;
+/// The tolerances of the map, and of the one whose period shows how far that of the first may be off.
+const TOLERANCES: [f64; 2] = [1e-14, 1e-12];
+/// Absolute tolerances in these: what passes near 0 and grows again keeps its digits. Logarithms of states need no such care.
+const NEXT_TO_NOTHING: f64 = 1e-30;
+/// What rounding takes from a period, relatively.
+const ROUNDING_OF_PERIOD: f64 = 64.0 * f64::EPSILON;
 /// Returns needed for each point of a period.
 const REPEATS: usize = 3;
 
@@ -43,7 +47,8 @@ pub struct Periodic {
     pub returns: usize,
     /// The point, near the last return.
     pub point: Vector,
-    /// The time of q returns.
+    /// The time of q returns. Of the points of [`periodicity`] it is within the uncertainty, which the same by coarser steps shows; of
+    /// others only rounding and the last step are in that.
     pub period: Uncertain,
     /// The largest modulus of the multipliers; less than one where it attracts.
     pub multiplier: f64,
@@ -64,7 +69,15 @@ pub fn periodicity(
     surface: &Surface,
     record: &ReturnRecord,
 ) -> Result<Option<Periodic>> {
-    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+    let taylor = |rtol: f64| {
+        let tolerances = match surface.chart {
+            SeriesVariables::LogStates => Tolerances::equal(rtol)?,
+            SeriesVariables::Plain => Tolerances::new(rtol, NEXT_TO_NOTHING * rtol)?,
+        };
+        AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS)
+    };
+    let [fine, coarse] = TOLERANCES;
+    let (mut fine, mut coarse) = (taylor(fine)?, taylor(coarse)?);
     let returns = &record.returns[..];
     of_dimension(surface.normal.len(), field.dimension())?;
     for point in returns {
@@ -79,12 +92,20 @@ pub fn periodicity(
         // No need to ask where they neither are near nor come nearer; only the search takes time.
         let closing = near < arrived || near < SHRUNK.sqrt() * before.fold(0.0, f64::max);
         if near < NEAR && closing {
-            let found =
-                PeriodicSearch::new(field, surface, &mut taylor, returns, (record.accuracy, q))
-                    .point()
-                    .filter(Periodic::attracts);
-            if found.is_some() {
-                return Ok(found);
+            let accuracy = (record.accuracy, q);
+            let found = PeriodicSearch::new(field, surface, &mut fine, returns, accuracy)
+                .point()
+                .filter(Periodic::attracts);
+            if let Some(mut found) = found {
+                let mut again = PeriodicSearch::new(field, surface, &mut coarse, returns, accuracy);
+                again.from = found.point.clone();
+                // To where it does not come nearer.
+                again.converged = 0.0;
+                let Some(other) = again.point() else { continue };
+                let period = &mut found.period;
+                period.uncertainty =
+                    (other.period.value - period.value).abs() + ROUNDING_OF_PERIOD * period.value;
+                return Ok(Some(found));
             }
         }
     }
@@ -106,6 +127,8 @@ pub(crate) struct PeriodicSearch<'a> {
     returns: &'a [Return],
     q: usize,
     arrived: f64,
+    /// The same of the time that returns take, relatively.
+    in_time: f64,
     unit: f64,
     /// Newton's method begins here, goes no farther than `near`, and ends at a step of `converged`: the error is then about
     /// its square, and the integrator's tolerance.
@@ -132,6 +155,7 @@ impl<'a> PeriodicSearch<'a> {
             returns,
             q,
             arrived: ARRIVED.max(PER_ACCURACY * accuracy),
+            in_time: ARRIVED.max(PER_ACCURACY * accuracy),
             from: returns[returns.len() - 1].state.clone(),
             near: NEAR,
             converged: CONVERGED,
@@ -175,7 +199,7 @@ impl<'a> PeriodicSearch<'a> {
                 return None;
             }
             // Rounding ends the convergence too, where the map magnifies it.
-            if size < self.converged || (size < ROUNDING * self.unit && size > 0.5 * before) {
+            if size < self.converged || (size < ROUNDING * self.unit && size >= 0.5 * before) {
                 return self.judged(point, &along, size);
             }
         }
@@ -208,11 +232,19 @@ impl<'a> PeriodicSearch<'a> {
         if late > self.arrived && late > self.shrunk * early {
             return None;
         }
-        // The time of return is flat at the point to the order of the step, within the error of the integration.
-        let rounding = time * (error + 1e3 * TOLERANCE);
+        // They also take the time that it takes.
+        let off = |i: usize| {
+            let took = self.returns[i].time - self.returns[i - q].time;
+            (took / time - 1.0).abs()
+        };
+        let over = |range: std::ops::Range<usize>| range.filter(phase).map(off).fold(0.0, f64::max);
+        let (early, late) = (over(q..(n / 2).max(q)), off(n - 1));
+        if late > self.in_time && late > self.shrunk * early {
+            return None;
+        }
         Some(Periodic {
             returns: q,
-            period: Uncertain::new(*time, rounding),
+            period: Uncertain::new(*time, time * (error + ROUNDING_OF_PERIOD)),
             multiplier,
             distance: distance(n - 1),
             point,

@@ -117,7 +117,7 @@ pub fn verdict(
     }
     if field.dimension() < 3 {
         return Ok(RegimeVerdict::undecided(
-            "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more",
+            "the returns have not closed in on a periodic point, and in the plane there is nothing else; skip more, or lower `rtol` and `atol`",
         ));
     }
     if returns.len() < FEWEST_RETURNS {
