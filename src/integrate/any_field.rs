@@ -33,6 +33,12 @@ use std::borrow::Cow;
 /// ```
 pub struct AnyField<'a>(pub(super) Box<dyn Flows + 'a>);
 
+/// [`ExactField`](crate::field::ExactField) of any dimension.
+pub(crate) struct AnyExact {
+    pub f: [Vector; 2],
+    pub jacobian: [Matrix; 2],
+}
+
 impl std::fmt::Debug for AnyField<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.debug_struct("AnyField")
@@ -87,6 +93,11 @@ impl<'a> AnyField<'a> {
     /// J(y) = Df(y).
     pub fn jacobian(&self, y: &Vector) -> Matrix {
         self.0.jacobian(y.as_slice())
+    }
+
+    /// f(y) and J(y), from 31 digits where the field has these.
+    pub(crate) fn exact(&self, y: &Vector) -> AnyExact {
+        self.0.exact(y.as_slice())
     }
 
     /// The trace of J(y): the rate at which volumes grow.

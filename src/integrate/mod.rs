@@ -18,7 +18,7 @@ mod tableau;
 mod taylor;
 
 pub use any_field::AnyField;
-pub(crate) use any_field::of_dimension;
+pub(crate) use any_field::{AnyExact, of_dimension};
 pub use any_integrator::{AnyIntegrator, DerivativesAlongArcs, FlowDerivatives};
 pub use any_step::{AnyObserver, AnyStep, StepSeries};
 pub use auto::Auto;

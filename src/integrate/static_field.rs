@@ -1,10 +1,11 @@
 //! Fields of a dimension that the compiler knows behind those of any: where [`AnyField`](super::AnyField) meets the integrators.
 
+use super::any_field::AnyExact;
 use super::any_integrator::{AnyIntegrator, FlowDerivatives, Method};
 use super::any_step::{AnyObserver, AnyStep};
 use super::{Integrator, Observer, Step, Taylor, Work};
 use crate::error::Result;
-use crate::field::{Jacobian, Matrix, State, Vector, VectorField, state, vector};
+use crate::field::{ExactField, Jacobian, Matrix, State, Vector, VectorField, state, vector};
 use crate::series::{Jet3, Tangent};
 
 /// What a field of a dimension that the compiler knows does for one of any.
@@ -12,6 +13,7 @@ pub(super) trait Flows: Send + Sync {
     fn dimension(&self) -> usize;
     fn f(&self, y: &[f64]) -> Vector;
     fn jacobian(&self, y: &[f64]) -> Matrix;
+    fn exact(&self, y: &[f64]) -> AnyExact;
     fn trace(&self, y: &[f64]) -> f64;
     fn newton_step(&self, y: &[f64]) -> Option<Vector>;
     fn second_derivative(&self, y_u_v: [&[f64]; 3]) -> Vector;
@@ -95,6 +97,18 @@ impl<const N: usize> Flows for Static<'_, N> {
 
     fn jacobian(&self, y: &[f64]) -> Matrix {
         matrix(&self.field().jacobian(&state(y)))
+    }
+
+    fn exact(&self, y: &[f64]) -> AnyExact {
+        let (field, y) = (self.field(), state(y));
+        let exact = field.exact(&y).unwrap_or_else(|| ExactField {
+            f: [field.f(&y), State::zeros()],
+            jacobian: [field.jacobian(&y), Jacobian::zeros()],
+        });
+        AnyExact {
+            f: exact.f.map(|f| vector(&f)),
+            jacobian: exact.jacobian.map(|jacobian| matrix(&jacobian)),
+        }
     }
 
     fn trace(&self, y: &[f64]) -> f64 {

@@ -56,6 +56,8 @@ impl Closed {
             }
         }
         let steps: usize = self.arcs().iter().map(|arc| arc.steps).sum();
+        // The durations are rounded too.
+        let rounding = ROUNDING + 0.5 * f64::EPSILON * (steps as f64).sqrt();
         let factor = if one_sign {
             (steps as f64).sqrt()
         } else {
@@ -66,7 +68,7 @@ impl Closed {
         (
             Uncertain::new(
                 period,
-                claimed(of_period) + (ROUNDING + self.residual.1) * period.abs(),
+                claimed(of_period) + (rounding + self.residual.1) * period.abs(),
             ),
             claimed(of_nodes) + ROUNDING + self.residual.0,
         )

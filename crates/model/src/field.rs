@@ -54,6 +54,11 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
 
+    /// f(y) and J(y) from a computation in 31 digits, of fields that have one: where a formula cancels, doubles are farther off.
+    fn exact(&self, _y: &State<N>) -> Option<ExactField<N>> {
+        None
+    }
+
     /// The law by whose name every solution, forwards in time, is known to exist for all time; `None` where that is not known.
     /// What leaves the range of doubles is then no finite-time singularity.
     fn lasting(&self) -> Option<&'static str> {
@@ -69,6 +74,15 @@ pub trait VectorField<const N: usize>: Send + Sync {
     fn analytic(&self) -> Option<&dyn Analytic<N>> {
         None
     }
+}
+
+/// f(y) and J(y) of a field from a computation in 31 digits.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ExactField<const N: usize> {
+    /// f, and how far it may be off before it is rounded to doubles.
+    pub f: [State<N>; 2],
+    /// J likewise.
+    pub jacobian: [Jacobian<N>; 2],
 }
 
 /// A field with named parameters, in any of which it can be differentiated.

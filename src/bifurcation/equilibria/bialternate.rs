@@ -1,7 +1,7 @@
 //! The bialternate product: of a matrix the sums of any two eigenvalues; and of a field with a pair on the imaginary axis the first
 //! Lyapunov coefficient.
 
-use crate::field::Vector;
+use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
 use nalgebra::{Complex, DMatrix, DVector};
 
@@ -18,6 +18,25 @@ pub(super) fn bialternate(a: &DMatrix<f64>) -> DMatrix<f64> {
     })
 }
 
+/// What rounding of the entries of a Jacobian, to so many units in the last place, may make of a determinant that is computed from them: a sum
+/// over a few choices of signs.
+pub(super) fn rounding_of(
+    jacobian: &Matrix,
+    units: f64,
+    determinant: impl Fn(&Matrix) -> f64,
+) -> f64 {
+    /// So often, with other signs.
+    const TIMES: usize = 4;
+    let here = determinant(jacobian);
+    let moved = |time: usize| {
+        let sign = |i: usize, j: usize| ((i + 1) * (j + 1) * (7 + 2 * time) / 2) % 2;
+        let entry =
+            |i, j, x: f64| x * (1.0 + units * f64::EPSILON * (1.0 - 2.0 * sign(i, j) as f64));
+        (determinant(&jacobian.map_with_location(entry)) - here).abs()
+    };
+    (0..TIMES).map(moved).sum()
+}
+
 type CVector = DVector<Complex<f64>>;
 
 /// The real and the imaginary part.
@@ -32,9 +51,12 @@ fn bilinear(form: impl Fn(&Vector, &Vector) -> Vector, x: &CVector, y: &CVector)
     re.zip_map(&im, Complex::new)
 }
 
+/// The distance of the states of a difference, in units of 1 + |y|.
+pub(super) const CHANGE: f64 = 1e-4;
+
 /// D3f[x, y, z] as the difference of second derivatives along z.
-fn trilinear(field: &AnyField<'_>, at: &Vector, [x, y, z]: [&CVector; 3]) -> CVector {
-    let h = 1e-4 * (1.0 + at.amax());
+fn trilinear(field: &AnyField<'_>, at: &Vector, [x, y, z]: [&CVector; 3], change: f64) -> CVector {
+    let h = change * (1.0 + at.amax());
     let along = |direction: Vector| {
         let there = |step: f64| {
             let place = at + &direction * (step * h);
@@ -50,6 +72,16 @@ fn trilinear(field: &AnyField<'_>, at: &Vector, [x, y, z]: [&CVector; 3]) -> CVe
 
 /// l_1 (Kuznetsov 2004, (5.62)) with <q, q> = 1 at an equilibrium with the eigenvalues +-i omega. None if a matrix is singular.
 pub(super) fn lyapunov(field: &AnyField<'_>, at: &Vector, omega: f64) -> Option<f64> {
+    lyapunov_by(field, at, omega, CHANGE)
+}
+
+/// The same with third derivatives by differences of this distance.
+pub(super) fn lyapunov_by(
+    field: &AnyField<'_>,
+    at: &Vector,
+    omega: f64,
+    change: f64,
+) -> Option<f64> {
     let n = at.len();
     let a = field.jacobian(at).map(Complex::from);
     let i_omega = Complex::new(0.0, omega);
@@ -62,7 +94,8 @@ pub(super) fn lyapunov(field: &AnyField<'_>, at: &Vector, omega: f64) -> Option<
     let b = |x: &CVector, y: &CVector| bilinear(|u, v| field.second_derivative(at, u, v), x, y);
     let mean = a.clone().lu().solve(&b(&q, &conjugate))?;
     let double = (&one * (i_omega * 2.0) - &a).lu().solve(&b(&q, &q))?;
-    let sum = p.dotc(&trilinear(field, at, [&q, &q, &conjugate])) - p.dotc(&b(&q, &mean)) * 2.0
+    let sum = p.dotc(&trilinear(field, at, [&q, &q, &conjugate], change))
+        - p.dotc(&b(&q, &mean)) * 2.0
         + p.dotc(&b(&conjugate, &double));
     let l_1 = sum.re / (2.0 * omega);
     l_1.is_finite().then_some(l_1)

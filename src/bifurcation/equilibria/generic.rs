@@ -6,17 +6,19 @@
 //! the field has no parameter of this name a difference of fourth order, with some 11 digits of special points; third derivatives,
 //! for the first Lyapunov coefficient, are differences too.
 //!
-//! Limits: two sums of eigenvalues that vanish together, and several branches through one point, are not untangled.
+//! Limits: where several eigenvalues vanish together, or several pairs cross the imaginary axis, that is found and said, but the branches of equilibria
+//! through such a point are not untangled.
 
-use super::bialternate::{bialternate, lyapunov};
-use super::generic_crossing::branch_point;
+use super::bialternate::{bialternate, lyapunov, rounding_of};
+use super::generic_crossing::{BranchCrossing, branch_point};
+use super::unexplained::{crossings, unstable};
 use crate::bifurcation::Label;
 use crate::continuation::{
     Branch, CurveObserver, CurvePoint, PointKind, Settings, Start, Stop, ZeroProblem, follow,
 };
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, place};
-use crate::integrate::{AnyField, of_dimension};
+use crate::integrate::{AnyExact, AnyField, of_dimension};
 use crate::number;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
@@ -54,10 +56,14 @@ pub struct FoundEquilibrium {
     pub parameter: f64,
     /// It may be off by this; known of branch points.
     pub uncertainty: Option<f64>,
+    /// How branches cross at a branch point.
+    pub crossing: Option<BranchCrossing>,
     /// By real part, the largest first.
     pub eigenvalues: Vec<Complex<f64>>,
     /// `LP`, `BP`, `HB`, `UZ`, `EP`, where the point is one of these.
     pub label: Option<Label>,
+    /// Of eigenvalues that cross the imaginary axis together, more than one or one pair, how many there are; else 0.
+    pub together: usize,
     /// Of the oscillation at a Hopf point.
     pub period: Option<f64>,
     /// The first Lyapunov coefficient of a Hopf point, with <q, q> = 1: positive where the small orbits are unstable.
@@ -103,7 +109,7 @@ impl<'a> FieldEquilibria<'a> {
     }
 
     /// df/dp.
-    fn in_parameter(&self, y: &Vector, p: f64) -> Vector {
+    pub(super) fn in_parameter(&self, y: &Vector, p: f64) -> Vector {
         let here = self.field(p);
         if let Ok(place) = place(here.parameter_names(), self.along) {
             let scale = self.scale.map_or(1.0, |scale| scale(p));
@@ -118,9 +124,9 @@ impl<'a> FieldEquilibria<'a> {
         self.field(p).jacobian(y)
     }
 
-    /// f.
-    pub(super) fn rates(&self, y: &Vector, p: f64) -> Vector {
-        self.field(p).f(y)
+    /// f and J, from 31 digits where the fields have these.
+    pub(super) fn exact(&self, y: &Vector, p: f64) -> AnyExact {
+        self.field(p).exact(y)
     }
 
     /// D2f along two directions.
@@ -128,7 +134,26 @@ impl<'a> FieldEquilibria<'a> {
         self.field(p).second_derivative(y, u, v)
     }
 
-    fn eigenvalues(&self, y: &Vector, p: f64) -> Option<Vec<Complex<f64>>> {
+    /// The equilibrium near a state; `None` where Newton's method does not find it.
+    pub(super) fn corrected(&self, near: &Vector, p: f64) -> Option<Vector> {
+        /// Iterations, and a correction that is the last, in units of 1 + |y|.
+        const ITERATIONS: usize = 20;
+        const DONE: f64 = 1e-13;
+        let mut y = near.clone();
+        for _ in 0..ITERATIONS {
+            let step = self.jacobian(&y, p).lu().solve(&self.field(p).f(&y))?;
+            let size = step
+                .zip_map(&y, |d: f64, x: f64| (d / (1.0 + x.abs())).abs())
+                .max();
+            y -= step;
+            if size < DONE {
+                return Some(y);
+            }
+        }
+        None
+    }
+
+    pub(super) fn eigenvalues(&self, y: &Vector, p: f64) -> Option<Vec<Complex<f64>>> {
         let mut all = number::eigenvalues(&self.jacobian(y, p))?;
         all.sort_by(|a, b| b.re.total_cmp(&a.re).then(b.im.total_cmp(&a.im)));
         Some(all)
@@ -168,6 +193,7 @@ impl<'a> FieldEquilibria<'a> {
         let mut look = EquilibriumObserver {
             family: self,
             jumped: false,
+            last: None,
             seen,
         };
         let mut branch = follow(&problem, &start, settings, &mut look)?;
@@ -258,18 +284,10 @@ fn certain(x: f64, rounding: f64) -> f64 {
 
 /// The product of all sums of two eigenvalues.
 fn sums(jacobian: &Matrix) -> f64 {
-    /// Of the entries, relative, with which the product is computed again to see what rounding makes of it.
-    const ROUNDING: f64 = 32.0 * f64::EPSILON;
-    /// So often, with other signs.
-    const TIMES: usize = 4;
-    let product = bialternate(jacobian).determinant();
-    let moved = |time: usize| {
-        let sign = |i: usize, j: usize| ((i + 1) * (j + 1) * (7 + 2 * time) / 2) % 2;
-        let entry = |i, j, x: f64| x * (1.0 + ROUNDING * (1.0 - 2.0 * sign(i, j) as f64));
-        let other = jacobian.map_with_location(entry);
-        (bialternate(&other).determinant() - product).abs()
-    };
-    certain(product, (0..TIMES).map(moved).sum())
+    /// Units in the last place of the entries that are rounding.
+    const UNITS: f64 = 32.0;
+    let product = |jacobian: &Matrix| bialternate(jacobian).determinant();
+    certain(product(jacobian), rounding_of(jacobian, UNITS, product))
 }
 
 /// The test functions' order.
@@ -279,6 +297,8 @@ struct EquilibriumObserver<'a, 'b> {
     family: &'a FieldEquilibria<'b>,
     /// Whether a step has come onto another branch.
     jumped: bool,
+    /// The last point whose unstable eigenvalues are certain, and their number; none behind a point that changes it.
+    last: Option<(usize, FoundEquilibrium)>,
     seen: &'a mut dyn FnMut(&FoundEquilibrium) -> ControlFlow<()>,
 }
 
@@ -301,6 +321,29 @@ impl EquilibriumObserver<'_, '_> {
     fn side(&self, point: &CurvePoint) -> f64 {
         let square = self.family.bordered(&point.u, point.lambda, &point.tangent);
         square.determinant()
+    }
+}
+
+impl EquilibriumObserver<'_, '_> {
+    /// Compares the number of unstable eigenvalues with that of the point before, and reports what crosses between them without a test function that
+    /// says so.
+    fn compare(&mut self, found: &FoundEquilibrium) -> ControlFlow<()> {
+        let explains = matches!(found.label, Some(Label::Lp | Label::Bp | Label::Hb));
+        if explains {
+            self.last = None;
+            return ControlFlow::Continue(());
+        }
+        let Some(count) = unstable(&found.eigenvalues) else {
+            return ControlFlow::Continue(());
+        };
+        let last = self.last.replace((count, found.clone()));
+        let Some((_, from)) = last.filter(|(before, _)| *before != count) else {
+            return ControlFlow::Continue(());
+        };
+        for crossing in crossings(self.family, &from, found) {
+            (self.seen)(&crossing)?;
+        }
+        ControlFlow::Continue(())
     }
 }
 
@@ -357,8 +400,10 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
             state: y.clone(),
             parameter: p,
             uncertainty: crossing.as_ref().map(|sharp| sharp.uncertainty),
+            crossing: crossing.as_ref().map(|sharp| sharp.crossing),
             eigenvalues,
             label,
+            together: 0,
             period: None,
             coefficient: None,
             tangent: point.tangent.clone(),
@@ -370,6 +415,7 @@ impl CurveObserver for EquilibriumObserver<'_, '_> {
             found.period = Some(TAU / omega);
             found.coefficient = lyapunov(&self.family.field(p), y, omega);
         }
+        self.compare(&found)?;
         (self.seen)(&found)
     }
 }

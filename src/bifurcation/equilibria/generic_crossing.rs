@@ -6,6 +6,7 @@
 
 use super::generic::FieldEquilibria;
 use crate::field::{Matrix, Vector};
+use crate::integrate::AnyExact;
 
 /// Where two branches cross.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,6 +17,37 @@ pub(super) struct BranchPoint {
     pub parameter: f64,
     /// It may be off by this.
     pub uncertainty: f64,
+    /// How they cross.
+    pub crossing: BranchCrossing,
+}
+
+/// How two branches of equilibria cross.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum BranchCrossing {
+    /// One of them turns there: the quadratic coefficient psi . D2f[phi, phi] of the null vectors is zero.
+    Pitchfork,
+    /// Neither does.
+    Transcritical,
+    /// That coefficient is neither zero to rounding nor known not to be.
+    Unknown,
+}
+
+impl BranchCrossing {
+    /// All.
+    pub const ALL: [BranchCrossing; 3] = [
+        BranchCrossing::Pitchfork,
+        BranchCrossing::Transcritical,
+        BranchCrossing::Unknown,
+    ];
+
+    /// In words.
+    pub fn name(self) -> &'static str {
+        match self {
+            BranchCrossing::Pitchfork => "pitchfork",
+            BranchCrossing::Transcritical => "transcritical",
+            BranchCrossing::Unknown => "branch point",
+        }
+    }
 }
 
 /// Iterations, and a correction that is the last.
@@ -76,6 +108,7 @@ fn certain(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchPoint> {
         let left = residual(family, &moved);
         noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
     }
+    noise += rounding(family, u);
     let off = derivatives(family, u).try_inverse()?.abs() * noise * SAFETY;
     let zero = u[n + 1].abs() <= off[n + 1];
     let uncertainty = off[n] + f64::EPSILON * u[n].abs();
@@ -83,6 +116,36 @@ fn certain(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchPoint> {
         state: u.rows(0, n).into_owned(),
         parameter: u[n],
         uncertainty,
+        crossing: crossing(family, u).unwrap_or(BranchCrossing::Unknown),
+    })
+}
+
+fn crossing(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchCrossing> {
+    /// Of the terms whose sum the coefficient is: what is left of zero, and what is not zero.
+    const ZERO: f64 = 1e-9;
+    const NOT_ZERO: f64 = 1e-6;
+    let n = (u.len() - 2) / 2;
+    let (y, p, psi) = (
+        u.rows(0, n).into_owned(),
+        u[n],
+        u.rows(n + 2, n).into_owned(),
+    );
+    let decomposed = family.exact(&y, p).jacobian[0].clone().svd(false, true);
+    let least = decomposed.singular_values.imin();
+    let phi: Vector = decomposed.v_t?.row(least).transpose();
+    let part = |i: usize| Vector::from_fn(n, |k, _| if k == i { phi[i] } else { 0.0 });
+    let (mut sum, mut size) = (0.0, 0.0);
+    for i in 0..n {
+        for j in 0..n {
+            let curvature = family.second(&y, p, (&part(i), &part(j)));
+            sum += psi.dot(&curvature);
+            size += psi.abs().dot(&curvature.abs());
+        }
+    }
+    Some(match sum.abs() {
+        x if x <= ZERO * size => BranchCrossing::Pitchfork,
+        x if x > NOT_ZERO * size => BranchCrossing::Transcritical,
+        _ => BranchCrossing::Unknown,
     })
 }
 
@@ -92,11 +155,33 @@ fn residual(family: &FieldEquilibria<'_>, u: &Vector) -> Vector {
     let (y, p, beta) = (u.rows(0, n).into_owned(), u[n], u[n + 1]);
     let psi = u.rows(n + 2, n).into_owned();
     let mut all = Vector::zeros(u.len());
-    let balance = family.rates(&y, p) + &psi * beta;
+    let AnyExact { f, jacobian } = family.exact(&y, p);
+    let balance = &f[0] + &psi * beta;
     all.rows_mut(0, n).copy_from(&balance);
-    let across = family.extended(&y, p).transpose() * &psi;
-    all.rows_mut(n, n + 1).copy_from(&across);
+    let across = jacobian[0].transpose() * &psi;
+    all.rows_mut(n, n).copy_from(&across);
+    all[2 * n] = family.in_parameter(&y, p).dot(&psi);
     all[2 * n + 1] = psi.norm_squared() - 1.0;
+    all
+}
+
+/// What rounding is left in it that no change of the unknowns shows.
+fn rounding(family: &FieldEquilibria<'_>, u: &Vector) -> Vector {
+    let n = (u.len() - 2) / 2;
+    let (y, p, psi) = (
+        u.rows(0, n).into_owned(),
+        u[n],
+        u.rows(n + 2, n).into_owned(),
+    );
+    let AnyExact { f, jacobian } = family.exact(&y, p);
+    let [jacobian, off] = jacobian.map(|matrix| matrix.abs());
+    let entries = off + jacobian * f64::EPSILON;
+    let mut all = Vector::zeros(u.len());
+    all.rows_mut(0, n).copy_from(&f[1]);
+    let across = entries.transpose() * psi.abs();
+    all.rows_mut(n, n).copy_from(&across);
+    all[2 * n] = f64::EPSILON * family.in_parameter(&y, p).abs().dot(&psi.abs());
+    all[2 * n + 1] = f64::EPSILON;
     all
 }
 

@@ -7,7 +7,7 @@ use super::bialternate::bialternate;
 use super::generic_curve_observer::Observer;
 use super::generic_curve_problem::{Extended, SMALL, relative};
 use crate::bifurcation::Label;
-use crate::continuation::{Branch, Settings, Start, ZeroProblem, follow};
+use crate::continuation::{Branch, Settings, Start, follow};
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::of_dimension;
@@ -140,11 +140,10 @@ impl EquilibriumCurve<'_> {
         self.checked().ok()?;
         let (n, problem) = (self.unknowns(), Extended(self));
         let mut u = state.rows(0, n).into_owned().push(at[0]).push(at[1]);
-        let residual = |u: &Vector| problem.residual(&u.rows(0, n + 1).into_owned(), u[n + 1]);
         let mut last = f64::INFINITY;
         for _ in 0..ITERATIONS {
             let square = problem.square(&u, n + held)?;
-            let step = square.lu().solve(&residual(&u).ok()?)?;
+            let step = square.lu().solve(&problem.exactly(&u))?;
             let size = relative(&step, &u.clone().remove_row(n + held));
             if !size.is_finite() {
                 return None;

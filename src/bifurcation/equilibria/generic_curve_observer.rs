@@ -1,6 +1,6 @@
 //! What is special on a curve of bifurcations of equilibria: cusps, degenerate Hopf points, double and triple eigenvalues.
 
-use super::bialternate::{bialternate, lyapunov};
+use super::bialternate::{CHANGE, bialternate, lyapunov, lyapunov_by};
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurvePoint, FirstCoordinate};
 use super::generic_curve_problem::{Extended, alike, determinant_slope, frequency, sign};
 use crate::bifurcation::Label;
@@ -58,9 +58,11 @@ impl Observer<'_, '_> {
                 ]
             }
             EquilibriumBifurcation::Hopf => {
-                let omega = frequency(&jacobian);
+                let (omega, determinant) = (frequency(&jacobian), jacobian.determinant());
                 let coefficient = omega.and_then(|omega| lyapunov(&field, &state, omega));
-                [coefficient.unwrap_or(f64::NAN), jacobian.determinant()]
+                // The coefficient has a pole where the determinant is zero, and another sign behind it.
+                let without_pole = coefficient.map_or(f64::NAN, |l_1| l_1 * determinant);
+                [without_pole, determinant]
             }
             // The sum and the product of both eigenvalues of what moves alike.
             EquilibriumBifurcation::Pitchfork => {
@@ -68,6 +70,25 @@ impl Observer<'_, '_> {
                 [alike.trace(), alike.determinant()]
             }
         })
+    }
+
+    /// What the differences of the first Lyapunov coefficient are off, by twice their distance.
+    fn difference_error(&self, i: usize, u: &Vector) -> f64 {
+        if (self.problem.0.kind, i) != (EquilibriumBifurcation::Hopf, 0) {
+            return 0.0;
+        }
+        let n = u.len() - 2;
+        let (state, at) = (self.problem.state(u), [u[n], u[n + 1]]);
+        let field = self.problem.0.family.field(at);
+        let jacobian = field.jacobian(&state);
+        let Some(omega) = frequency(&jacobian) else {
+            return f64::INFINITY;
+        };
+        let by = |change: f64| lyapunov_by(&field, &state, omega, change);
+        match (by(CHANGE), by(2.0 * CHANGE)) {
+            (Some(near), Some(far)) => (far - near).abs() * jacobian.determinant().abs(),
+            _ => f64::INFINITY,
+        }
     }
 
     /// The function that is zero at a point, if there is one.
@@ -140,6 +161,7 @@ impl Observer<'_, '_> {
             });
             noise += (self.functions(&moved, &tangent).ok()?[i] - here).abs();
         }
+        noise += self.difference_error(i, &u);
         let off_along = noise / slope.abs();
         let bend = (self.problem.tangent(&at(s + beside)?.0, along)? - &tangent) / beside;
         let across = self.problem.budget_across(&u, &tangent)?;

@@ -1,10 +1,11 @@
 //! The equations of a curve of bifurcations of equilibria, and what rounding makes of their solutions.
 
+use super::bialternate::rounding_of;
 use super::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::continuation::ZeroProblem;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
-use crate::integrate::AnyField;
+use crate::integrate::{AnyExact, AnyField};
 use crate::number::{Uncertain, eigenvalues};
 
 /// f and the determinant as functions of the state and the first coordinate, and of the second.
@@ -83,8 +84,8 @@ impl Extended<'_> {
             let (inner, last) = (u.rows(0, n + 1).into_owned(), u[n + 1]);
             let mut square = self.jacobian(&inner, last).ok()?.insert_row(n + 1, 0.0);
             square.set_row(n + 1, &along.transpose());
-            let left = self.residual(&inner, last).ok()?;
-            let step = square.lu().solve(&left.push(along.dot(&(&u - near))))?;
+            let left = self.exactly(&u).push(along.dot(&(&u - near)));
+            let step = square.lu().solve(&left)?;
             let size = relative(&step, &u);
             u -= step;
             if size < f64::EPSILON {
@@ -117,7 +118,7 @@ impl Extended<'_> {
 
     /// What rounding makes of a solution of which one unknown is held.
     pub fn budget(&self, u: &Vector, held: usize) -> Option<Vector> {
-        let off = self.carried(&self.square(u, held)?, &self.noise(u)?)?;
+        let off = self.carried(&self.square(u, held)?, &self.noise(u))?;
         let off = off.insert_row(held, 0.0);
         let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
         budget.iter().all(|x| x.is_finite()).then_some(budget)
@@ -131,7 +132,7 @@ impl Extended<'_> {
             .ok()?;
         let mut square = rows.insert_row(n + 1, 0.0);
         square.set_row(n + 1, &along.transpose());
-        let off = self.carried(&square, &self.noise(u)?.push(0.0))?;
+        let off = self.carried(&square, &self.noise(u).push(0.0))?;
         let budget = off.zip_map(u, |off, x| off + f64::EPSILON * x.abs());
         budget.iter().all(|x| x.is_finite()).then_some(budget)
     }
@@ -143,22 +144,50 @@ impl Extended<'_> {
         Some(square.clone().try_inverse()?.abs() * residuals * SAFETY)
     }
 
-    /// The residuals that are met when the unknowns are changed in their last digit.
-    fn noise(&self, u: &Vector) -> Option<Vector> {
+    /// The equations from 31 digits, where the field has these, at unknowns and both coordinates: what a formula loses in doubles is no error of
+    /// the solution.
+    pub fn exactly(&self, u: &Vector) -> Vector {
+        self.from_exact(&self.exact(u))
+    }
+
+    fn exact(&self, u: &Vector) -> AnyExact {
+        let n = u.len() - 2;
+        self.0.family.field([u[n], u[n + 1]]).exact(&self.state(u))
+    }
+
+    fn from_exact(&self, exact: &AnyExact) -> Vector {
+        let rates = exact.f[0].rows(0, self.0.unknowns()).into_owned();
+        rates.push(self.determinant(&exact.jacobian[0]))
+    }
+
+    fn determinant(&self, jacobian: &Matrix) -> f64 {
+        self.0.singular(jacobian).determinant()
+    }
+
+    /// The residuals that are met when the unknowns are changed in their last digit, with what rounding is left in the equations.
+    fn noise(&self, u: &Vector) -> Vector {
         /// So many changes.
         const TRIED: usize = 8;
-        let n = u.len() - 2;
+        /// Units in the last place of the entries of a Jacobian.
+        const UNITS: f64 = 1.0;
+        let (n, unknowns) = (u.len() - 2, self.0.unknowns());
         let mut noise = Vector::zeros(n + 1);
         for time in 0..TRIED {
             let moved = Vector::from_fn(n + 2, |i, _| {
                 u[i] + sign(i, time) * f64::EPSILON * u[i].abs()
             });
-            let left = self
-                .residual(&moved.rows(0, n + 1).into_owned(), moved[n + 1])
-                .ok()?;
+            let left = self.exactly(&moved);
             noise = noise.zip_map(&left, |most: f64, x: f64| most.max(x.abs()));
         }
-        Some(noise)
+        let AnyExact { f, jacobian } = self.exact(u);
+        let [jacobian, off] = jacobian;
+        let mut of_determinant = rounding_of(&jacobian, UNITS, |j| self.determinant(j));
+        let here = self.determinant(&jacobian);
+        for way in [1.0, -1.0] {
+            of_determinant += (self.determinant(&(&jacobian + &off * way)) - here).abs();
+        }
+        let left = f[1].rows(0, unknowns).into_owned().push(of_determinant);
+        noise + left
     }
 
     /// The state of some unknowns, which may be followed by coordinates.

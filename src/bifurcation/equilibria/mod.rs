@@ -10,7 +10,7 @@ mod crossing;
 mod cubic;
 mod curves;
 pub mod generic;
-mod generic_crossing;
+pub mod generic_crossing;
 pub mod generic_curve;
 mod generic_curve_observer;
 mod generic_curve_problem;
@@ -23,6 +23,7 @@ mod rates;
 pub(super) mod special;
 mod stationary;
 mod trace;
+mod unexplained;
 mod vertical;
 
 use super::{BranchRequest, EventObserver, LocusKind, LocusRequest, Parameter, Special, within};

@@ -306,14 +306,17 @@ fn point(
         state: found.state.clone(),
         eigenvalues: Vec::new(),
     };
-    let coefficient = found.coefficient.filter(|_| label != Some(Label::Gh));
+    // At these points it is zero, or has a pole.
+    let coefficient = found
+        .coefficient
+        .filter(|_| !matches!(label, Some(Label::Gh | Label::Zh)));
     let point = GeneralPoint {
         label,
         period: found
             .frequency
             .map(|omega| Uncertain::new(TAU / omega, f64::INFINITY)),
         coefficient,
-        criticality: coefficient.map(criticality),
+        criticality: coefficient.map(|l_1| criticality(l_1, &[])),
         ..GeneralPoint::new(number, found.at, solution)
     };
     point.placed(family, found.uncertainty.unwrap_or([f64::INFINITY; 2]))

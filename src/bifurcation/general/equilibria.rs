@@ -9,6 +9,7 @@ use crate::continuation::{Settings, Stop};
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::Uncertain;
+use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow::{self, Continue};
 
@@ -213,7 +214,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             if matches!(found.label, Some(Label::Ep | Label::Uz)) {
                 ends.push(here.clone());
             }
-            if label == Some(Label::Bp) {
+            if label == Some(Label::Bp) && found.together == 0 {
                 crossings.push(found.clone());
             }
             // The short steps that tell a crossing from a near miss are none to show.
@@ -281,11 +282,31 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         let system = self.branch.system;
         let rough = GeneralPoint {
             label,
+            crossing: found.crossing,
             period: found.period.map(|t| Uncertain::new(t, f64::INFINITY)),
             coefficient: found.coefficient,
-            criticality: found.coefficient.map(criticality),
+            criticality: found
+                .coefficient
+                .map(|l_1| criticality(l_1, &found.eigenvalues)),
             ..GeneralPoint::new(number, [found.parameter, held], solution(&found.state))
         };
+        if found.together > 0 {
+            let note = match label {
+                Some(Label::Hb) => {
+                    format!("pairs of eigenvalues on the axis: {}", found.together / 2)
+                }
+                _ => format!(
+                    "eigenvalues that are 0: {}; other branches through this point are not followed",
+                    found.together
+                ),
+            };
+            let off = found.uncertainty.unwrap_or(f64::INFINITY);
+            let point = GeneralPoint {
+                note: Some(note),
+                ..rough
+            };
+            return point.placed(system.family, [off, 0.0]);
+        }
         let kind = match label {
             Some(Label::Lp) => EquilibriumBifurcation::Fold,
             Some(Label::Hb) => EquilibriumBifurcation::Hopf,
@@ -333,11 +354,15 @@ fn near(a: &Vector, b: &Vector) -> bool {
     pairs.all(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
 }
 
-/// Which way a Hopf bifurcation goes, by the first Lyapunov coefficient.
-pub(super) fn criticality(coefficient: f64) -> Criticality {
+/// Which way a Hopf bifurcation goes, by the first Lyapunov coefficient. Where another eigenvalue is zero that has a pole, and no sign.
+pub(super) fn criticality(coefficient: f64, eigenvalues: &[Complex<f64>]) -> Criticality {
     /// What a difference of second derivatives leaves.
     const ZERO: f64 = 1e-9;
-    if coefficient.abs() < ZERO {
+    /// An eigenvalue against the largest.
+    const NEUTRAL: f64 = 1e-6;
+    let largest = eigenvalues.iter().map(|z| z.norm()).fold(0.0, f64::max);
+    let at_pole = eigenvalues.iter().any(|z| z.norm() < NEUTRAL * largest);
+    if at_pole || coefficient.abs() < ZERO {
         Criticality::Undecided
     } else if coefficient < 0.0 {
         Criticality::Supercritical

@@ -18,6 +18,7 @@ pub use splits::WithinClusters;
 
 use super::orbits::{SpecialOrbit, second};
 use super::{Criticality, Label};
+use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::equilibrium::Verdict;
 use crate::error::{Error, Result};
@@ -147,6 +148,8 @@ pub struct GeneralPoint {
     pub period: Option<Uncertain>,
     /// The angle of the multipliers of a torus bifurcation, over pi.
     pub angle_over_pi: Option<f64>,
+    /// How branches of equilibria cross at a branch point.
+    pub crossing: Option<BranchCrossing>,
     /// To which side the bifurcation goes.
     pub criticality: Option<Criticality>,
     /// The normal form's coefficient.
@@ -197,6 +200,7 @@ impl GeneralPoint {
             solution,
             period: None,
             angle_over_pi: None,
+            crossing: None,
             criticality: None,
             coefficient: None,
             coefficient_uncertainty: None,

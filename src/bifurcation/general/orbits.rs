@@ -61,7 +61,8 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
             // Of equal parts what differs by their exchange is one.
             let equal = branch.system.alike.is_some();
             let same = |other: &GeneralHopf| {
-                (other.at[FREE] - hopf.at[FREE]).abs() < SAME
+                (other.frequency / hopf.frequency - 1.0).abs() < SAME
+                    && (other.at[FREE] - hopf.at[FREE]).abs() < SAME
                     && (near(&other.state) || equal && near(&exchanged(&other.state)))
             };
             if !found.iter().any(|(other, _)| same(other)) {

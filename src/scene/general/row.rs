@@ -1,6 +1,7 @@
 //! A row of a branch or of a curve, with its columns.
 
 use super::Subject;
+use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
 use crate::bifurcation::orbits::SpecialOrbit;
 use crate::bifurcation::{Criticality, Label};
@@ -37,6 +38,8 @@ pub struct GeneralRow {
     pub within: Vec<f64>,
     /// The angle of the multipliers of a torus bifurcation, over pi.
     pub angle_over_pi: Option<f64>,
+    /// How branches of equilibria cross at a branch point.
+    pub crossing: Option<BranchCrossing>,
     /// To which side a bifurcation goes.
     pub criticality: Option<Criticality>,
     /// The normal form's coefficient.
@@ -86,6 +89,7 @@ impl GeneralRow {
             exponents: [0, 1].map(|i| exponents.get(i).copied().filter(|x| x.is_finite())),
             within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
+            crossing: point.crossing,
             criticality: point.criticality,
             coefficient: point.coefficient,
             coefficient_uncertainty: point.coefficient_uncertainty,
@@ -100,6 +104,7 @@ impl GeneralRow {
     pub fn meaning(&self) -> Option<&'static str> {
         match self.label? {
             Label::Bp if !self.within.is_empty() => Some("branch point"),
+            Label::Bp => Some(self.crossing.map_or("branch point", BranchCrossing::name)),
             label => Some(label.meaning()),
         }
     }
@@ -228,6 +233,9 @@ impl GeneralRow {
             exponents: [None; 2],
             within: Vec::new(),
             angle_over_pi: number("angle_over_pi"),
+            crossing: BranchCrossing::ALL
+                .into_iter()
+                .find(|crossing| crossing.name() == cell("name")),
             criticality: sides
                 .into_iter()
                 .find(|side| side.name() == cell("criticality")),

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::expression::Expressions;
-use crate::field::{Analytic, Jacobian, Parametrised, State, VectorField};
+use crate::field::{Analytic, ExactField, Jacobian, Parametrised, State, VectorField};
 use crate::number::{DoubleDouble, Interval, Jet, Real};
 use crate::series::{ByRecording, Jet3, RecordedExpressions, Solution, Tangent, TaylorMap};
 use std::borrow::Cow;
@@ -250,6 +250,32 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N> {
         let made = self.0.second_derivative([y, u, v].map(|x| x.as_slice()));
         State::from_column_slice(&made)
+    }
+
+    fn exact(&self, y: &State<N>) -> Option<ExactField<N>> {
+        /// What is left of the error of doubles, which intervals bound.
+        const OF_DOUBLES: f64 = 2.0 * f64::EPSILON;
+        let x: Vec<DoubleDouble> = y.iter().map(|&y| y.into()).collect();
+        let within: Vec<Interval> = y.iter().map(|&y| Interval::constant(y)).collect();
+        let doubles =
+            |all: Vec<DoubleDouble>| -> Vec<f64> { all.into_iter().map(|x| x.to_f64()).collect() };
+        // Where a bound is infinite, as around a kink, nothing is known of rounding there.
+        let off = |all: Vec<Interval>| -> Vec<f64> {
+            let width = all.into_iter().map(|x| OF_DOUBLES * (x.hi() - x.lo()));
+            width.map(|x| if x.is_finite() { x } else { 0.0 }).collect()
+        };
+        let state = |all: Vec<f64>| State::from_column_slice(&all);
+        let matrix = |all: Vec<f64>| Jacobian::from_row_slice(&all);
+        Some(ExactField {
+            f: [
+                state(doubles(self.0.rates(&x))),
+                state(off(self.0.rates(&within))),
+            ],
+            jacobian: [
+                matrix(doubles(self.0.jacobian(&x))),
+                matrix(off(self.0.jacobian(&within))),
+            ],
+        })
     }
 
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
