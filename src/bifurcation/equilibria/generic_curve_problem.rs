@@ -147,7 +147,7 @@ impl Extended<'_> {
     /// The equations from 31 digits, where the field has these, at unknowns and both coordinates: what a formula loses in doubles is no error of
     /// the solution.
     pub fn exactly(&self, u: &Vector) -> Vector {
-        self.from_exact(&self.exact(u))
+        self.of_exact(&self.exact(u))
     }
 
     fn exact(&self, u: &Vector) -> AnyExact {
@@ -155,7 +155,7 @@ impl Extended<'_> {
         self.0.family.field([u[n], u[n + 1]]).exact(&self.state(u))
     }
 
-    fn from_exact(&self, exact: &AnyExact) -> Vector {
+    fn of_exact(&self, exact: &AnyExact) -> Vector {
         let rates = exact.f[0].rows(0, self.0.unknowns()).into_owned();
         rates.push(self.determinant(&exact.jacobian[0]))
     }
