@@ -95,7 +95,7 @@ impl<'a> AnyField<'a> {
         self.0.jacobian(y.as_slice())
     }
 
-    /// f(y) and J(y), from 31 digits where the field has these.
+    /// Computes f(y) and J(y) in 31 digits if the field supports that, else in double precision.
     pub(crate) fn exact(&self, y: &Vector) -> AnyExact {
         self.0.exact(y.as_slice())
     }

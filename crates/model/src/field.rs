@@ -54,7 +54,7 @@ pub trait VectorField<const N: usize>: Send + Sync {
     /// D2f(y)[u, v], the second derivative applied to two directions; symmetric in u and v.
     fn second_derivative(&self, y: &State<N>, u: &State<N>, v: &State<N>) -> State<N>;
 
-    /// f(y) and J(y) from a computation in 31 digits, of fields that have one: where a formula cancels, doubles are farther off.
+    /// Computes f(y) and J(y) in 31 digits, which avoids cancellation in double precision. `None` for fields without such a computation.
     fn exact(&self, _y: &State<N>) -> Option<ExactField<N>> {
         None
     }
@@ -76,10 +76,10 @@ pub trait VectorField<const N: usize>: Send + Sync {
     }
 }
 
-/// f(y) and J(y) of a field from a computation in 31 digits.
+/// The values f(y) and J(y) computed in 31 digits, with error bounds.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ExactField<const N: usize> {
-    /// f, and how far it may be off before it is rounded to doubles.
+    /// f, and a bound on its error before it is rounded to double precision.
     pub f: [State<N>; 2],
     /// J likewise.
     pub jacobian: [Jacobian<N>; 2],

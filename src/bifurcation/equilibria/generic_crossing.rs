@@ -28,7 +28,7 @@ pub enum BranchCrossing {
     Pitchfork,
     /// Neither does.
     Transcritical,
-    /// That coefficient is neither zero to rounding nor known not to be.
+    /// It is undecided whether that coefficient is zero.
     Unknown,
 }
 
@@ -165,7 +165,7 @@ fn residual(family: &FieldEquilibria<'_>, u: &Vector) -> Vector {
     all
 }
 
-/// What rounding is left in it that no change of the unknowns shows.
+/// Returns bounds on the rounding errors of the residual that perturbing the unknowns does not show.
 fn rounding(family: &FieldEquilibria<'_>, u: &Vector) -> Vector {
     let n = (u.len() - 2) / 2;
     let (y, p, psi) = (

@@ -1,8 +1,7 @@
-//! Eigenvalues that cross the imaginary axis without a change of sign of any test function, as two pairs that cross together.
+//! Bifurcations at which several eigenvalues cross the imaginary axis together, such as two complex pairs.
 //!
-//! The test functions are products: where an even number of their factors vanishes at once they have the same sign on both sides. So the
-//! numbers of unstable eigenvalues of neighbouring points are compared, and where they differ without a reason the parameter is found by
-//! bisection.
+//! The test functions are products, and keep their sign where an even number of factors vanishes at once. So the numbers of unstable
+//! eigenvalues at neighbouring points are compared. Where they differ and no test function changed sign, bisection locates the crossing.
 
 use super::generic::{FieldEquilibria, FoundEquilibrium};
 use crate::bifurcation::Label;
@@ -28,8 +27,8 @@ fn unstable_of(eigenvalues: &[Complex<f64>], size: f64) -> Option<usize> {
     certain.then(|| eigenvalues.iter().filter(|z| z.re > 0.0).count())
 }
 
-/// The points between two of a branch, without a fold between them, at which eigenvalues cross together: one for each pair of complex ones, or
-/// one for all that are real.
+/// Locates the crossing between two points of a branch without a fold between them. Returns one point for each complex pair, or one for all
+/// real eigenvalues; none where the crossing is not found.
 pub(super) fn crossings(
     family: &FieldEquilibria<'_>,
     from: &FoundEquilibrium,
@@ -69,7 +68,7 @@ fn located(
     at(family, (&near, &far), size)
 }
 
-/// What crosses between two points so near each other that real parts are straight lines.
+/// Interpolates the crossing between two points that are so close that the real parts depend linearly on the parameter.
 fn at(
     family: &FieldEquilibria<'_>,
     (near, far): (&FoundEquilibrium, &FoundEquilibrium),

@@ -1,12 +1,12 @@
-//! Products such as |z|^q z, found where formulas are built: |z|^(q + 1) with the sign of z, whose derivative (q + 1) |z|^q is finite where
-//! that of |z|^q is not.
+//! Signed powers: products such as |z|^q z are rewritten as |z|^(q + 1) with the sign of z. Its derivative (q + 1) |z|^q is finite at z = 0,
+//! where the derivative of |z|^q alone may be infinite.
 
 use super::ratios::Factor;
 use super::{Binary, Builder, Function, Operation, Place};
 use crate::error::Result;
 
 impl Builder {
-    /// The same as a product of these two, if a power of an absolute value meets its argument in it.
+    /// Returns the product of these two with a signed power in it, if a factor |z|^q meets a factor z.
     pub(super) fn with_signed_power(&mut self, a: Place, b: Place) -> Result<Option<Place>> {
         let mut factors = Vec::new();
         self.factors(a, true, &mut factors);
@@ -36,7 +36,7 @@ impl Builder {
         Ok(None)
     }
 
-    /// |z|, z and q, where |z|^q stands here; `None` for q is 1/2.
+    /// Returns |z|, z and q if the operation is |z|^q; q is `None` for a square root.
     fn power_of_absolute(&self, place: Place) -> Option<(Place, Place, Option<Place>)> {
         let (absolute, exponent) = match self.operations[place] {
             Operation::Power(a, q) => (a, Some(q)),

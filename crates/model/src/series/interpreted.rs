@@ -311,8 +311,8 @@ fn power_of_two(x: f64) -> f64 {
     )
 }
 
-/// Whether a row begins so near 0 that powers of it which are not whole have no series for more than the last digits of a step: they are
-/// held, and the step is as long as the rates at its end allow.
+/// Whether a row begins so close to 0 that the series of its non-integer powers converge only on a negligible part of a step. Such powers are
+/// held constant, and the check at the end of the step limits its length.
 fn is_next_to_zero<T: Element>(row: &[T]) -> bool {
     /// In changes of the row in the unit of time, which is about a step.
     const NEXT: f64 = 1.0 / (1_u64 << 44) as f64;

@@ -144,7 +144,8 @@ impl<T: Element> ProgramRows<T> {
         }
     }
 
-    /// Holds powers of these rows, and of no others, in the series to come; whether that is a change.
+    /// Holds non-integer powers of the rows that satisfy the condition constant in the next series, and no others. Returns whether this
+    /// differs from the series before.
     pub fn hold_powers(&mut self, of: impl Fn(&[T]) -> bool) -> bool {
         let mut changes = false;
         for one in &mut self.later {

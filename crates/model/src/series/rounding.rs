@@ -1,10 +1,10 @@
-//! What rounding makes of the values of a recorded formula: a running error analysis of first order.
+//! Running error analysis: first-order bounds on the rounding errors of a recorded formula's values.
 //!
 //! Higham, N. J. (2002). Accuracy and Stability of Numerical Algorithms, 2nd edition, section 3.3. SIAM.
 
 use super::program::{Operation, Program, Source};
 
-/// How far the value of each row may be off, in doubles, where the variables are as they are given; 0 of what is not finite.
+/// Returns a bound on the rounding error of each row's value in double precision, with exact variables. Rows that are not finite have the bound 0.
 pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f64> {
     const UNIT: f64 = f64::EPSILON;
     let mut off = vec![0.0; program.rows()];
@@ -37,7 +37,7 @@ pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f
             }
             Operation::HyperbolicTangent(a, u) => (size(u) * off[a], 2.0 * size(u) * off[a] + UNIT),
             Operation::Power(a, p) => (p.hi().abs() * size(result) / size(a) * off[a], 0.0),
-            // Its slope is no larger than this.
+            // The ratio's slope is at most this large.
             Operation::Ratio(a, _) => ((1.0 + size(result)) * off[a], 0.0),
             Operation::Sign(_) => (0.0, 0.0),
             // y and g(y) grow with x, no faster.
