@@ -12,6 +12,9 @@ pub struct Tolerances {
     pub rtol: f64,
     /// Absolute tolerance.
     pub atol: f64,
+    /// The largest step, infinite where it is the method's own choice: what rises and falls within a step and vanishes at both of its
+    /// ends, as a short pulse, is seen by no method.
+    pub max_step: f64,
 }
 
 impl Tolerances {
@@ -27,7 +30,16 @@ impl Tolerances {
         if !(atol > 0.0 && atol.is_finite()) {
             return Err(Error::parameter("atol", atol, "positive and finite"));
         }
-        Ok(Tolerances { rtol, atol })
+        Ok(Tolerances {
+            rtol,
+            atol,
+            max_step: f64::INFINITY,
+        })
+    }
+
+    /// With this largest step.
+    pub(crate) fn stepping(self, max_step: f64) -> Self {
+        Tolerances { max_step, ..self }
     }
 
     /// The same number for both: sensible where all components are of order one to ten, as here.

@@ -27,6 +27,7 @@ fn returns(
         returns,
         patience: 1e4,
         accuracy: ACCURACY,
+        max_step: f64::INFINITY,
         waypoints: true,
     };
     let tolerances = Tolerances::equal(ACCURACY).unwrap();

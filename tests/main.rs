@@ -128,6 +128,7 @@ mod sweep_basins;
 mod sweep_parts;
 mod sweep_rows;
 mod sweep_unbounded;
+mod switching;
 #[cfg(not(feature = "parquet"))]
 mod systems;
 mod tableaus;

@@ -11,9 +11,6 @@ fn a_parameter_that_is_set_is_as_one_that_has_a_flag() {
     assert_eq!(flags["result"], names["result"]);
     assert_eq!(flags["model"], names["model"]);
     assert_eq!(number(&names, "/model/damping"), 1e-3);
-    // The later one, and one that has a flag too.
-    let over = "equilibria --driving 1 --stiffness 0.14 --set driving=3 --set driving=10";
-    assert_eq!(number(&object(over), "/model/driving"), 10.0);
     for direct_effect in ["0.03", "0.04"] {
         let by_flag = object(&format!("law --points 5 --direct-effect {direct_effect}"));
         let by_name = object(&format!(
@@ -35,6 +32,19 @@ fn a_parameter_that_is_set_is_as_one_that_has_a_flag() {
 fn what_cannot_be_set_is_refused_in_one_sentence() {
     let model = "equilibria --driving 10 --stiffness 0.14";
     for (set, sentence) in [
+        ("damping=1 --set damping=2", "--set gives damping twice"),
+        (
+            "driving=10",
+            "--set driving and --driving say the same thing",
+        ),
+        (
+            "residual_strength=0.002 --residual-strength 0.003",
+            "--set residual_strength and --residual-strength say the same thing",
+        ),
+        (
+            "damping=1 --law scenes/laws/spinodal.toml --damping 2",
+            "--set damping and --damping say the same thing",
+        ),
         ("residual_strenght=1", "did you mean \"residual_strength\""),
         ("damping", "must be NAME=VALUE"),
         ("damping=much", "\"much\" is not a finite number"),

@@ -33,6 +33,7 @@ const MAY_IMPORT: &[(&str, &[&str])] = &[
     (
         "orbit",
         &[
+            "section",
             "equilibrium",
             "continuation",
             "integrate",

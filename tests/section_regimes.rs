@@ -188,6 +188,7 @@ fn made_up(accuracy: f64, at: impl Fn(f64) -> [f64; 2]) -> (Case, ReturnRecord) 
         waypoints: Vec::new(),
         ended: Ended::Complete,
         accuracy,
+        max_step: f64::INFINITY,
     };
     (case, record)
 }

@@ -46,6 +46,7 @@ fn watching(skip: usize, returns: usize) -> Watching {
         returns,
         patience: 1e3,
         accuracy: 1e-12,
+        max_step: f64::INFINITY,
         waypoints: false,
     }
 }

@@ -6,7 +6,7 @@
 
 use crate::command;
 use crate::common::text::{ends_at, file, near};
-use command::{number, object, twinslip};
+use command::{number, object, refused, twinslip};
 use proptest::prelude::*;
 use twinslip::field::{State, VectorField};
 use twinslip::friction::{AnyLaw, Parameters};
@@ -272,4 +272,49 @@ proptest! {
         let allowed = 1e3 * tolerances.rtol * (1.0 + until) + 1e-12 * (1.0 + until);
         prop_assert!(off < allowed, "{off:e} of {allowed:e} for {stiffness} {gap} {until} {digits}");
     }
+}
+
+/// A pulse shorter than a step that begins and ends smoothly is below rounding at both ends of it: no method can see it.
+#[test]
+fn pulses_that_no_method_sees_are_met_with_a_largest_step() {
+    // The integral over a turn of exp(-(pi - phi)) exp(-2 (1 - cos phi)/w^2)/w, over 1 - exp(-2 pi), by mpmath.
+    const AFTER: f64 = 0.076_738_003_602_258;
+    let path = "tests/data/cases/pulse-on-circle.toml";
+    let at = |options: &str| {
+        let run = format!("section --system {path} --surface y=0 --skip 5 --returns 5 {options}");
+        let made = object(&run);
+        let rows = made["result"]["rows"].as_array().expect("rows");
+        rows.last().expect("a row")["z"].as_f64().expect("a number")
+    };
+    assert!(at("").abs() < 1e-30);
+    for (method, within) in [
+        ("auto", 1e-10),
+        ("taylor", 1e-10),
+        ("rodas5p", 1e-9),
+        ("cvode-bdf", 1e-8),
+    ] {
+        if method == "cvode-bdf" && !cfg!(feature = "sundials") {
+            continue;
+        }
+        let z = at(&format!("--method {method} --max-step 5e-4"));
+        near(z, AFTER, within);
+    }
+    let orbit = object(&format!("orbit --system {path} --max-step 5e-4"));
+    assert_eq!(number(&orbit, "/numerics/max_step"), 5e-4);
+    let largest = &orbit["result"]["orbit"]["extremes"]["z"]["max"];
+    let [value, off] =
+        ["value", "uncertainty"].map(|part| largest[part].as_f64().expect("a number"));
+    // By mpmath too.
+    assert!(
+        (value - 1.770_977_308_208_453_7).abs() < off && off < 1e-9,
+        "{largest}"
+    );
+    refused(
+        &format!("integrate --system {path} --until 1 --max-step 0"),
+        "max-step is 0, but must be positive and finite",
+    );
+    refused(
+        "integrate --interfaces 4 --until 1 --max-step 0.1",
+        "--max-step",
+    );
 }

@@ -163,7 +163,8 @@ def solve_ivp(
         Taken as SciPy takes them, and not needed: derivatives are exact, and the first step finds
         itself.
     max_step : float
-        Must be infinite. Long steps of power series are looked at for events in half as many parts
+        The largest step in time, for what is shorter than a step: a pulse that begins and ends
+        within one is seen by no method. Long steps of power series are looked at for events in half as many parts
         as their order; two zeros within one part are missed, as by SciPy within a step.
 
     Returns
@@ -180,8 +181,6 @@ def solve_ivp(
     if not isinstance(system, System):
         hint = "; make one with System.from_function" if callable(system) else ""
         raise InputError(f"system is {system!r}, but must be a twinslip.System{hint}", "system")
-    if not (isinstance(max_step, (float, np.floating)) and max_step == np.inf):
-        raise InputError(f"max_step is {max_step!r}, but must be infinite", "max_step")
     span = _numbers("t_span", t_span)
     if len(span) != 2:
         raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
@@ -189,7 +188,7 @@ def solve_ivp(
     times = None if t_eval is None else _numbers("t_eval", t_eval)
     # A class of SciPy's is told by its name, as the names of SciPy are.
     named = method if isinstance(method, str) else getattr(method, "__name__", repr(method))
-    words = system._solver_words(named, rtol, atol, max_steps)
+    words = system._solver_words(named, rtol, atol, None if max_step == np.inf else max_step, max_steps)
     told = _events(events, args)
     run, refused, raised = _core.solve_ivp(
         words, (span[0], span[1]), start, times, told, bool(dense_output)

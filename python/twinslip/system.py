@@ -131,10 +131,13 @@ class System(Commands, Model):
         words += flags
         return words + _pictured(command, own), progress
 
-    def _solver_words(self, method: Any, rtol: Any, atol: Any, max_steps: Any) -> list[str]:
+    def _solver_words(
+        self, method: Any, rtol: Any, atol: Any, max_step: Any, max_steps: Any
+    ) -> list[str]:
         """What is integrated, and how, in the words of ``integrate``."""
         known = _words.options("integrate")
-        own = {"method": method, "rtol": rtol, "atol": atol, "max_steps": max_steps}
+        own = {"method": method, "rtol": rtol, "atol": atol}
+        own |= {"max_step": max_step, "max_steps": max_steps}
         words = ["integrate", *(word for spoken in self._spoken.values() for word in spoken)]
         for name, value in own.items():
             words += _words.words(known[name], value)

@@ -102,6 +102,7 @@ impl PlannedRun for Plan {
             "asked": self.asked_method,
             "rtol": self.tolerances.rtol,
             "atol": self.tolerances.atol,
+            "max_step": self.system.units.max_step(self.tolerances),
             "max_steps": self.max_steps,
             "dimension": self.dimension.number(),
         })

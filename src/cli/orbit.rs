@@ -137,6 +137,9 @@ fn summary(orbit: &Orbit, checked: Option<&Crosscheck>, units: &Units) -> String
         several(orbit.iterations, "iteration", "iterations"),
         several(orbit.work.steps, "step", "steps")
     );
+    if orbit.in_family {
+        text += "; one of a family of periodic orbits with these parameters: a multiplier beside the trivial one is 1";
+    }
     if let Some(Crosscheck {
         orbit: second,
         period_difference,
@@ -198,6 +201,7 @@ fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
         "method": orbit.method,
         "rtol": accuracy.tolerances.rtol,
         "atol": accuracy.tolerances.atol,
+        "max_step": plan.system().units().max_step(accuracy.tolerances),
         "max_steps": accuracy.max_steps,
         "crosscheck": second.map(|second| second.method.name()),
     })
@@ -287,6 +291,7 @@ fn object(orbit: &Orbit, system: &System) -> Value {
         "trivial_defect": orbit.floquet.trivial_defect,
         "liouville_defect": orbit.floquet.liouville_defect,
         "verdict": orbit.verdict().name(),
+        "family": orbit.in_family,
         "method": orbit.method,
     })
 }

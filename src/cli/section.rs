@@ -102,6 +102,7 @@ fn numerics(plan: &SectionPlan) -> Value {
         "asked": plan.asked_method,
         "rtol": plan.tolerances.rtol,
         "atol": plan.tolerances.atol,
+        "max_step": units.max_step(plan.tolerances),
         "max_steps": plan.max_steps,
         "dimension": plan.dimension.number(),
         "surface_stress": units.outward(Quantity::Stress, plan.stress),

@@ -64,13 +64,13 @@ impl AnyIntegrator {
         })
     }
 
-    /// Taylor's method in double-double arithmetic ([`Taylor::reference`]).
+    /// Taylor's method in double-double arithmetic ([`Taylor::reference`]), with this largest step.
     ///
     /// # Errors
     /// As there.
-    pub fn reference(max_steps: usize) -> Result<Self> {
+    pub fn reference(max_steps: usize, max_step: f64) -> Result<Self> {
         Ok(AnyIntegrator {
-            method: Method::Taylor(Taylor::reference(max_steps)?),
+            method: Method::Taylor(Taylor::reference(max_steps)?.stepping(max_step)),
             name: Choice::Taylor.name(),
             work: Work::default(),
         })

@@ -3,7 +3,8 @@
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{
-    AnyField, AnyIntegrator, AnyObserver, Choice, DerivativesAlongArcs, MAX_STEPS, Tolerances, Work,
+    AnyField, AnyIntegrator, AnyObserver, AnyStep, Choice, Control, DerivativesAlongArcs,
+    MAX_STEPS, Tolerances, Work,
 };
 
 /// A piece of a trajectory, from a start that the caller knows.
@@ -18,6 +19,8 @@ pub struct Arc {
     pub parameters: Matrix,
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
+    /// What that may be off beside what the state is.
+    pub(super) volume_error: f64,
     /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
     /// method makes it.
     pub log_transverse: Option<f64>,
@@ -55,7 +58,24 @@ impl Arc {
     /// The logarithm of the digits that the tangent's determinant loses to its rounding: of |M|^N / |det M|.
     #[doc(hidden)]
     pub fn loss(&self) -> f64 {
-        (self.end.len() as f64 * self.tangent.norm().ln() - self.volume()).max(0.0)
+        self.loss_of(self.tangent.norm())
+    }
+
+    /// The same with every variable in units of its size.
+    pub(super) fn loss_in(&self, sizes: &Vector) -> f64 {
+        let scaled = |i: usize, j: usize| self.tangent[(i, j)] * (sizes[j] / sizes[i]);
+        let count = sizes.len();
+        self.loss_of(Matrix::from_fn(count, count, scaled).norm())
+    }
+
+    fn loss_of(&self, norm: f64) -> f64 {
+        let loss = self.end.len() as f64 * norm.ln() - self.volume();
+        // Of a tangent that is 0 to all digits all are lost.
+        if loss.is_nan() {
+            f64::INFINITY
+        } else {
+            loss.max(0.0)
+        }
     }
 
     /// ln |det| of the tangent, by the tangent.
@@ -161,7 +181,20 @@ impl Tracer {
     /// # Errors
     /// As of [`Self::taylor`].
     pub(crate) fn limited(tolerance: f64, arc: usize, all: usize) -> Result<Self> {
-        let mut tracer = Self::new(Choice::Taylor, Tolerances::equal(tolerance)?, arc.min(all))?;
+        Self::limited_by(Choice::Taylor, tolerance, arc, all)
+    }
+
+    /// The same by another method.
+    ///
+    /// # Errors
+    /// As of [`Self::new`].
+    pub(super) fn limited_by(
+        method: Choice,
+        tolerance: f64,
+        arc: usize,
+        all: usize,
+    ) -> Result<Self> {
+        let mut tracer = Self::new(method, Tolerances::equal(tolerance)?, arc.min(all))?;
         tracer.bound.limit = Some(all);
         Ok(tracer)
     }
@@ -199,6 +232,45 @@ impl Tracer {
             step_error: self.step_error,
             bound: &mut self.bound,
         })
+    }
+
+    /// The integral of the trace of the Jacobian along an arc, with what its quadrature may be off, by methods that do not make it beside
+    /// the tangent: by three points of Gauss in every step, against two.
+    ///
+    /// # Errors
+    /// Those of [`AnyIntegrator::flow`].
+    pub(super) fn trace_along(
+        &mut self,
+        field: &AnyField<'_>,
+        start: &Vector,
+        duration: f64,
+    ) -> Result<(f64, f64)> {
+        /// Places and weights on (-1, 1).
+        const THREE: [(f64, f64); 3] = [
+            (-0.774_596_669_241_483_4, 5.0 / 9.0),
+            (0.0, 8.0 / 9.0),
+            (0.774_596_669_241_483_4, 5.0 / 9.0),
+        ];
+        const TWO: [(f64, f64); 2] = [
+            (-0.577_350_269_189_625_8, 1.0),
+            (0.577_350_269_189_625_8, 1.0),
+        ];
+        let (mut sum, mut off) = (0.0, 0.0);
+        let mut see = |step: &AnyStep<'_>| {
+            let (middle, half) = (0.5 * (step.t0 + step.t1), 0.5 * (step.t1 - step.t0));
+            let by = |points: &[(f64, f64)]| -> f64 {
+                let at = |(at, weight): &(f64, f64)| {
+                    weight * half * field.trace(step.dense(middle + half * at).as_slice())
+                };
+                points.iter().map(at).sum()
+            };
+            let three = by(&THREE);
+            sum += three;
+            off += (three - by(&TWO)).abs();
+            Ok(Control::Continue)
+        };
+        self.flow(field, start, duration, Some(&mut see))?;
+        Ok((sum, off))
     }
 
     /// The flow alone.
@@ -240,6 +312,7 @@ impl Arcs<'_> {
             tangent: made.start,
             parameters: made.parameters,
             log_determinant: made.log_determinant,
+            volume_error: 0.0,
             log_transverse: made.log_transverse,
             steps: work.steps,
             error: self.step_error * work.steps.max(1) as f64,

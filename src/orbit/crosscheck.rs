@@ -4,7 +4,7 @@ use super::interface_system::InterfaceSystem;
 use super::shooting_nodes::ShootingNodes;
 use super::solve::{Orbit, OrbitAccuracy, orbit};
 use super::space::{Alone, Space, space_of};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::integrate::AnyField;
 
 /// What the second method found.
@@ -21,6 +21,10 @@ pub struct Crosscheck {
 
 /// Significant digits of the nodes that the second method begins with; more where it does not find its way from fewer.
 const DIGITS: [i32; 3] = [3, 5, 7];
+/// The same where the orbit is one of a family, to be found again among its neighbours.
+const OF_A_FAMILY: [i32; 1] = [9];
+/// Steps on an arc that are always allowed.
+const LEAST_STEPS: usize = 100_000;
 
 /// Computes the orbit by another method. It begins from the first one's nodes cut to a few digits, so that it has to find the
 /// orbit by itself; and shares nothing else with it.
@@ -55,12 +59,28 @@ fn again(
     first: &Orbit,
     accuracy: &OrbitAccuracy,
 ) -> Result<Crosscheck> {
+    // On one arc no more than all that the orbit took: a method that needs more is not meant for it.
+    let accuracy = &OrbitAccuracy {
+        max_steps: accuracy.max_steps.min(first.work.steps.max(LEAST_STEPS)),
+        ..*accuracy
+    };
     let from = |digits: i32| {
         let shooting = ShootingNodes::of_digits(digits, &first.nodes, &first.durations);
         orbit(level, space, accuracy, shooting)
     };
-    let [few, more, most] = DIGITS;
-    let second = from(few).or_else(|_| from(more)).or_else(|_| from(most))?;
+    let digits: &[i32] = if first.in_family {
+        &OF_A_FAMILY
+    } else {
+        &DIGITS
+    };
+    let mut second = from(digits[0]);
+    for &more in &digits[1..] {
+        if let Ok(_) | Err(Error::TooManySteps { .. }) = second {
+            break;
+        }
+        second = from(more);
+    }
+    let second = second?;
     let pairs = second
         .floquet
         .multipliers

@@ -189,6 +189,23 @@ pub fn solve<T: Scalar>(maps: &[DMatrix<T>], right: &[DVector<T>]) -> Option<Vec
     reduced.extended(&start, &DVector::from_element(1, T::one()))
 }
 
+/// The solution of least size at the first node where the equations leave some directions free, as on one of a family of orbits; `None`
+/// where they leave none free, or it is not finite.
+pub(super) fn solve_singular(maps: &[Matrix], right: &[Vector]) -> Option<Vec<Vector>> {
+    /// Singular values below this are 0, in rows of order one: the derivatives of an orbit that is not closed yet are those beside it.
+    const FREE: f64 = 1e-6;
+    let reduced = reduce(maps, right);
+    let n = reduced.size;
+    let end = reduced.scaled_end();
+    let svd = Matrix::from_fn(n, n, |i, j| end.row(i)[j]).svd(true, true);
+    if svd.singular_values.min() > FREE {
+        return None;
+    }
+    let known = Vector::from_fn(n, |i, _| end.row(i)[n]);
+    let start = svd.solve(&known, FREE).ok()?;
+    reduced.extended(&start, &Vector::from_element(1, 1.0))
+}
+
 /// The direction in which u_{k+1} = P_k u_k, u_m = u_0 is nearest to singular, as displacements of all nodes; `None` where these
 /// are not finite.
 pub(super) fn kernel(maps: &[Matrix]) -> Option<Vec<Vector>> {

@@ -3,9 +3,11 @@
 use super::arc::Tracer;
 use super::settle::axis;
 use super::shooting_nodes::ShootingNodes;
+use super::solve::OrbitAccuracy;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, Control};
+use crate::integrate::{AnyField, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
+use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate, roots};
 use crate::series::{REFERENCE_ORDER, Section, Zeros};
 
@@ -36,10 +38,21 @@ pub(super) fn extremes(
     field: &AnyField<'_>,
     shooting: &ShootingNodes,
     level: Option<f64>,
+    accuracy: &OrbitAccuracy,
 ) -> Result<Extremes> {
     /// Tolerance of the run.
     const FINE: f64 = 1e-14;
-    extremes_by(Tracer::taylor(FINE)?, field, shooting, level)
+    let tracer = match (accuracy.method, level) {
+        // Orbits of a stiff system.
+        (method @ Choice::Rosenbrock(_), None) => {
+            Tracer::new(method, accuracy.tolerances, accuracy.max_steps)?
+        }
+        _ => {
+            let fine = Tolerances::equal(FINE)?.stepping(accuracy.tolerances.max_step);
+            Tracer::new(Choice::Taylor, fine, MAX_STEPS)?
+        }
+    };
+    extremes_by(tracer, field, shooting, level)
 }
 
 fn extremes_by(
@@ -73,10 +86,11 @@ fn extremes_by(
             duration,
             Some(&mut |step| {
                 all.see(step.y1);
+                found.clear();
                 let Some(series) = step.series() else {
+                    turns_within(field, step, &mut |turn| all.see(turn))?;
                     return Ok(Control::Continue);
                 };
-                found.clear();
                 for (normal, zeros) in axes.iter().zip(&mut turns_of) {
                     let section = Section::Extremum {
                         normal: normal.as_slice(),
@@ -113,6 +127,29 @@ fn extremes_by(
         begin += duration;
     }
     Ok(all)
+}
+
+/// The states within a step that has no series where the rate of a variable is 0.
+fn turns_within(
+    field: &AnyField<'_>,
+    step: &AnyStep<'_>,
+    see: &mut dyn FnMut(&[f64]),
+) -> Result<()> {
+    /// Parts of the step: a variable that turns twice in one is missed.
+    const PARTS: usize = 4;
+    let part = (step.t1 - step.t0) / PARTS as f64;
+    let time = |k: usize| step.t0 + part * k as f64;
+    let rates: Vec<Vector> = (0..=PARTS).map(|k| field.f(&step.dense(time(k)))).collect();
+    for (k, pair) in rates.windows(2).enumerate() {
+        for i in 0..field.dimension() {
+            if pair[0][i] * pair[1][i] < 0.0 {
+                let rate = |t: f64| (field.f(&step.dense(t))[i], f64::NAN);
+                let turn = bracketed_root("an extremum", time(k), time(k + 1), rate)?;
+                see(step.dense(turn).as_slice());
+            }
+        }
+    }
+    Ok(())
 }
 
 impl Extremes {

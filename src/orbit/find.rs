@@ -11,7 +11,7 @@ use super::{branch, no_orbit, other_orbit};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::AnyField;
+use crate::integrate::{AnyField, Choice};
 use crate::model::Loading;
 
 /// The time in which a loading alone raises the stress by some units: that of a stick-slip cycle, roughly.
@@ -56,10 +56,28 @@ pub struct FoundOrbit {
     pub others: Vec<Orbit>,
 }
 
+impl FoundOrbit {
+    /// With those of another search: a stable one first, else as they come.
+    pub(crate) fn with(self, more: FoundOrbit) -> Self {
+        let first = [self.orbit, more.orbit];
+        let all = first.into_iter().chain(self.others).chain(more.others);
+        Self::stable_first(all.collect())
+    }
+
+    fn stable_first(mut orbits: Vec<Orbit>) -> Self {
+        orbits.sort_by_key(|orbit| orbit.verdict() != Verdict::Stable);
+        let orbit = orbits.remove(0);
+        FoundOrbit {
+            orbit,
+            others: orbits,
+        }
+    }
+}
+
 /// Tolerance with which guesses are made and first closed.
 pub(super) const ROUGH: f64 = 1e-10;
 /// Tolerance with which cycles are told from ones traversed twice.
-const FINE: f64 = 1e-15;
+pub(super) const FINE: f64 = 1e-15;
 /// Steps of a search, at most: some seconds of work.
 pub(super) const SEARCH: usize = 2_000_000;
 /// Periods that differ by less, relatively, are of one orbit.
@@ -167,15 +185,21 @@ pub(super) fn no_orbit_met(guesses: Guesses<'_>, used_up: bool) -> Error {
 
 /// The orbits that closed polygons are, a stable one first. Where their period was given they are whole cycles.
 pub(super) fn completed(
-    guesses: Guesses<'_>,
+    mut guesses: Guesses<'_>,
     level: Option<f64>,
     accuracy: &OrbitAccuracy,
     whole_cycle: bool,
 ) -> Result<FoundOrbit> {
     let space = guesses.space;
-    let mut orbits = Vec::new();
-    let mut fine = Tracer::taylor(FINE)?;
-    for mut shooting in guesses.closed {
+    let mut orbits: Vec<Orbit> = Vec::new();
+    let mut fine = match accuracy.method {
+        Choice::Auto | Choice::Taylor => Tracer::taylor(FINE)?,
+        other => Tracer::new(other, accuracy.tolerances, accuracy.max_steps)?,
+    };
+    let (mut done, mut fewer) = (0, whole_cycle);
+    while done < guesses.closed.len() {
+        let mut shooting = guesses.closed[done].clone();
+        done += 1;
         if !whole_cycle {
             // Close to a period doubling only the last digits tell a cycle from one traversed twice.
             shooting = close(&mut fine, space.field(), shooting)?.shooting;
@@ -187,15 +211,19 @@ pub(super) fn completed(
         if !orbits.iter().any(known) {
             orbits.push(orbit);
         }
+        let all_unstable = || {
+            orbits
+                .iter()
+                .all(|orbit| orbit.verdict() != Verdict::Stable)
+        };
+        if done == guesses.closed.len() && !fewer && all_unstable() {
+            fewer = true;
+            guesses.of_fewer_turns(&orbits[0], accuracy)?;
+        }
     }
-    let stable = orbits
-        .iter()
-        .position(|orbit| orbit.verdict() == Verdict::Stable);
-    let orbit = orbits.remove(stable.unwrap_or(0));
-    Ok(FoundOrbit {
-        orbit,
-        others: orbits,
-    })
+    // Of unstable ones that of the fewest turns.
+    orbits.sort_by(|a, b| a.period.value.abs().total_cmp(&b.period.value.abs()));
+    Ok(FoundOrbit::stable_first(orbits))
 }
 
 /// Closed polygons on the way to an answer.
@@ -275,6 +303,37 @@ impl<'a> Guesses<'a> {
                 false
             }
         }
+    }
+
+    /// Newton's method on parts of an orbit of several turns, each from one passage of the middle of the first variable to the next.
+    fn of_fewer_turns(&mut self, orbit: &Orbit, accuracy: &OrbitAccuracy) -> Result<()> {
+        /// Turns of the longest part that is tried.
+        const TRIED: usize = 6;
+        /// Turns of an orbit that is looked at.
+        const TURNS: usize = 64;
+        let field = self.space.field();
+        let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, SEARCH)?;
+        let [low, high] = orbit.extremes[0];
+        let level = 0.5 * (low.value + high.value);
+        let (mut passed, mut begin) = (Vec::new(), 0.0);
+        for (node, &duration) in orbit.nodes.iter().zip(&orbit.durations) {
+            let node = Vector::from_column_slice(node);
+            let found = passages(&mut tracer, field, &node, duration, level, TURNS)?.found;
+            passed.extend(found.into_iter().map(|(time, y)| (begin + time, y)));
+            begin += duration;
+        }
+        // Of parts of one turn, of two, ... the most nearly closed one.
+        for turns in 1..passed.len().min(TRIED + 1) {
+            let parts = passed.iter().zip(&passed[turns..]);
+            let gap = |part: &(&(f64, Vector), &(f64, Vector))| (&part.1.1 - &part.0.1).amax();
+            let best = parts.min_by(|a, b| gap(a).total_cmp(&gap(b)));
+            if let Some(((begin, start), (end, _))) = best
+                && self.closes(&mut tracer, start, end - begin)
+            {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Newton's method from a point, on the cycles that its returns suggest; a settled run where they lead nowhere.

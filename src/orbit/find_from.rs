@@ -1,15 +1,16 @@
 //! A periodic orbit of any field, near a point or as what a run from there settles on.
 
 use super::arc::Tracer;
-use super::find::{FoundOrbit, Guesses, ROUGH, SEARCH, completed};
+use super::find::{FINE, FoundOrbit, Guesses, ROUGH, SEARCH, completed};
 use super::no_orbit;
 use super::settle::passages;
-use super::solve::OrbitAccuracy;
+use super::shooting_nodes::ShootingNodes;
+use super::solve::{OrbitAccuracy, orbit};
 use super::space::Alone;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, Control};
+use crate::integrate::{AnyField, Choice, Control, RosenbrockMethod};
 
 /// The periodic orbit at or near a start; with its period, roughly, no shorter cycle is taken for it. Without it, where the returns
 /// of the start lead to none, what a run from there settles on.
@@ -28,7 +29,29 @@ pub fn find_from(
             "a system of one state has no periodic orbit".into(),
         ));
     }
-    let mut tracer = Tracer::limited(ROUGH, accuracy.max_steps, SEARCH)?;
+    let found = find_by(field, start, period, accuracy);
+    match found {
+        // Where the explicit method gets nowhere the orbit may be that of a stiff system.
+        Err(error) if accuracy.method == Choice::Auto => {
+            let stiff = OrbitAccuracy {
+                checked: accuracy.checked,
+                max_steps: accuracy.max_steps,
+                ..OrbitAccuracy::of(Choice::Rosenbrock(RosenbrockMethod::Rodas5P))
+                    .stepping(accuracy.tolerances.max_step)
+            };
+            find_by(field, start, period, &stiff).map_err(|_| error)
+        }
+        found => found,
+    }
+}
+
+fn find_by(
+    field: &AnyField<'_>,
+    start: &Vector,
+    period: Option<f64>,
+    accuracy: &OrbitAccuracy,
+) -> Result<FoundOrbit> {
+    let mut tracer = Tracer::limited_by(accuracy.method, ROUGH, accuracy.max_steps, SEARCH)?;
     let space = Alone {
         field,
         symmetry: Symmetry::Symmetric,
@@ -49,8 +72,26 @@ pub fn find_from(
             )
         }));
     }
-    completed(guesses, None, accuracy, period.is_some())
+    let found = completed(guesses, None, accuracy, period.is_some())?;
+    if !found.orbit.in_family {
+        return Ok(found);
+    }
+    // Of a family the one through the start, where that is on one.
+    let period = found.orbit.period.value;
+    let through = Tracer::taylor(FINE)
+        .and_then(|mut fine| ShootingNodes::along(&mut fine, field, start, period))
+        .and_then(|shooting| orbit(None, &space, accuracy, shooting));
+    Ok(match through {
+        Ok(orbit) if (orbit.period.value / period - 1.0).abs() < BESIDE => FoundOrbit {
+            orbit,
+            others: found.others,
+        },
+        _ => found,
+    })
 }
+
+/// Periods that differ by less, relatively, are of neighbours in a family.
+const BESIDE: f64 = 1e-6;
 
 /// The time between passages of the middle of what the first variable does.
 fn rough_period(tracer: &mut Tracer, field: &AnyField<'_>, start: &Vector) -> Result<f64> {

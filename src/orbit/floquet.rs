@@ -130,6 +130,19 @@ impl Floquet {
         verdict
     }
 
+    /// Gives the multiplier that is next to 1 an uncertainty in which 1 is: on one of a family of orbits it is 1, and of a double one rounding
+    /// takes half of the digits.
+    pub(super) fn one_is_one(&mut self) {
+        let distance = |multiplier: &Multiplier| multiplier.ln_abs.value.abs();
+        let known = self
+            .multipliers
+            .iter_mut()
+            .filter(|one| one.kind != Kind::BelowFloor);
+        if let Some(one) = known.min_by(|a, b| distance(a).total_cmp(&distance(b))) {
+            one.ln_abs.uncertainty += 2.0 * distance(one);
+        }
+    }
+
     /// Every uncertainty so many times.
     pub(super) fn widened(&mut self, times: f64) {
         for multiplier in &mut self.multipliers {
@@ -190,8 +203,11 @@ fn volume(arcs: &[Arc]) -> (Uncertain, Option<f64>) {
         Some(volume) => {
             let scale = arcs.iter().filter_map(|arc| arc.log_determinant);
             let scale = scale.fold(1.0, |sum, x| sum + x.abs());
-            let uncertain = Uncertain::new(volume, TANGENT * noise(arcs) + f64::EPSILON * scale);
-            (uncertain, Some(by_matrix - volume))
+            let quadrature: f64 = arcs.iter().map(|arc| arc.volume_error).sum();
+            let off = TANGENT * noise(arcs) + f64::EPSILON * scale + quadrature;
+            // A tangent that has shrunk to nothing has no determinant to compare with.
+            let defect = Some(by_matrix - volume).filter(|defect| defect.is_finite());
+            (Uncertain::new(volume, off), defect)
         }
         None => {
             // The smallest direction of an arc errs by the norm over it.

@@ -183,6 +183,19 @@ impl Linear {
 
     /// The corrections of all nodes and durations that close these gaps.
     pub fn correction(&self, gaps: &[Vector]) -> Option<(Vec<Vector>, Vec<f64>)> {
+        self.correction_by(gaps, cyclic::solve)
+    }
+
+    /// The least ones where the orbit is one of a family; `None` where it is alone.
+    pub fn correction_in_family(&self, gaps: &[Vector]) -> Option<(Vec<Vector>, Vec<f64>)> {
+        self.correction_by(gaps, cyclic::solve_singular)
+    }
+
+    fn correction_by(
+        &self,
+        gaps: &[Vector],
+        solve: impl FnOnce(&[Matrix], &[Vector]) -> Option<Vec<Vector>>,
+    ) -> Option<(Vec<Vector>, Vec<f64>)> {
         let planar = self.dimension() - 1;
         let mut across = Vector::zeros(planar + 1);
         let seen: Vec<_> = (0..self.frames.len())
@@ -193,7 +206,7 @@ impl Linear {
                 seen
             })
             .collect();
-        let u = cyclic::solve(&self.maps, &seen)?;
+        let u = solve(&self.maps, &seen)?;
         Some(self.displacement(&u, |k, arrival| *arrival += &gaps[k]))
     }
 

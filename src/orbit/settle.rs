@@ -7,7 +7,8 @@ use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, Control};
 use crate::number::polynomial::Crossing;
-use crate::series::{Section, Zeros};
+use crate::section::{SeriesVariables, Surface, crossings};
+use crate::series::Zeros;
 
 /// A run's passages of a plane tau = level, downwards.
 #[derive(Debug, Clone)]
@@ -20,7 +21,7 @@ pub(super) struct Passages {
     pub end: Vector,
 }
 
-/// Follows a run over `duration`, or until `most` passages. The tracer's method must be Taylor's.
+/// Follows a run over `duration`, or until `most` passages.
 pub(super) fn passages(
     tracer: &mut Tracer,
     field: &AnyField<'_>,
@@ -29,10 +30,11 @@ pub(super) fn passages(
     level: f64,
     most: usize,
 ) -> Result<Passages> {
-    let stress = axis(start.len(), 0);
-    let section = Section::Plane {
-        normal: stress.as_slice(),
+    let surface = Surface {
+        normal: axis(start.len(), 0),
         offset: level,
+        direction: Crossing::Downwards,
+        chart: SeriesVariables::Plain,
     };
     let (mut zeros, mut here) = (Zeros::default(), Vec::new());
     let mut found = Vec::new();
@@ -43,11 +45,19 @@ pub(super) fn passages(
         duration,
         Some(&mut |step| {
             range = (range.0.min(step.y1[0]), range.1.max(step.y1[0]));
-            if let Some(series) = step.series() {
-                series.crossings(section, Some(Crossing::Downwards), &mut zeros, &mut here);
-                for passage in here.drain(..) {
-                    found.push((step.t0 + passage.time, Vector::from_vec(passage.state)));
+            let begin = match step.series() {
+                Some(series) => {
+                    let direction = Some(surface.direction);
+                    series.crossings(surface.section(), direction, &mut zeros, &mut here);
+                    step.t0
                 }
+                None => {
+                    crossings(field, &surface, step, &mut zeros, &mut here)?;
+                    0.0
+                }
+            };
+            for passage in here.drain(..) {
+                found.push((begin + passage.time, Vector::from_vec(passage.state)));
             }
             Ok(if found.len() >= most {
                 Control::Stop
@@ -75,7 +85,7 @@ fn apart(a: &Vector, b: &Vector) -> f64 {
 const MOST_PASSAGES: usize = 12;
 /// A return this near is worth a try with Newton's method.
 const NEAR: f64 = 0.3;
-/// A run whose stress varies by less is at an equilibrium.
+/// A run whose stress varies by less, against what it did before, is at an equilibrium.
 const AT_REST: f64 = 1e-6;
 /// Lengths of the stretches of a run, in rough periods; each doubles the run.
 const FIRST_STRETCH: f64 = 16.0;
@@ -95,14 +105,16 @@ pub(super) fn settle(
     accept: &mut dyn FnMut(&mut Tracer, ShootingNodes) -> bool,
 ) -> Result<()> {
     let mut y = start.clone();
+    let mut extent = 0.0_f64;
     for stretch in 0..STRETCHES {
         let length = FIRST_STRETCH * rough_period * f64::from(1u32 << stretch);
         // Some of it unseen; then how far the stress goes; then where it passes the middle of that.
         let unseen = passages(tracer, field, &y, 0.5 * length, y[0], usize::MAX)?;
         let seen = passages(tracer, field, &unseen.end, 0.5 * length, y[0], usize::MAX)?;
         let (low, high) = seen.range;
+        extent = extent.max(unseen.range.1 - unseen.range.0);
         y = seen.end;
-        if high - low < AT_REST {
+        if high - low <= AT_REST * extent {
             if stretch + 1 < STRETCHES && field.f(&y).amax() * rough_period > 1e-12 {
                 continue;
             }

@@ -21,6 +21,8 @@ pub struct Closed {
     pub(super) linear: Linear,
     /// The last correction, which was not made: of a node in units of 1 + |x|, and of the period, relative.
     residual: (f64, f64),
+    /// Whether it is one of a family of orbits of the same parameters, as those of a conservative system.
+    pub in_family: bool,
 }
 
 impl Closed {
@@ -46,7 +48,12 @@ impl Closed {
         let mut signs = Signs::new();
         for _ in 0..PROBES {
             let noisy = self.linear.noisy(&self.shooting, &mut signs);
-            let Some((nodes, durations)) = self.linear.correction(&noisy.gaps) else {
+            let correction = if self.in_family {
+                self.linear.correction_in_family(&noisy.gaps)
+            } else {
+                self.linear.correction(&noisy.gaps)
+            };
+            let Some((nodes, durations)) = correction else {
                 return (Uncertain::new(period, f64::INFINITY), f64::INFINITY);
             };
             of_period += durations.iter().sum::<f64>().powi(2);
@@ -124,6 +131,16 @@ pub fn newton_step(
 /// step avoids them.
 pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) -> Result<Closed> {
     guess.checked(field.dimension())?;
+    let alone = close_alone(tracer, field, guess.clone());
+    match alone {
+        Err(Error::NotConverged { .. } | Error::NoOrbit { .. }) => {
+            close_in_family(tracer, field, &guess).map_or(alone, Ok)
+        }
+        _ => alone,
+    }
+}
+
+fn close_alone(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) -> Result<Closed> {
     let mut shooting = guess;
     let mut linear = Linear::new(tracer, field, &shooting)?;
     let mut last = f64::INFINITY;
@@ -146,15 +163,12 @@ pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) ->
                 "give a `start` farther from the equilibrium, or a `period_guess`",
             ));
         }
-        let period = shooting.period();
-        let moved = nodes.iter().zip(&shooting.nodes);
-        let of_nodes = moved.map(|(dx, x)| relative(dx, x)).fold(0.0, f64::max);
+        let (of_nodes, of_period) = sizes(&shooting, &nodes, &durations);
         let of_durations = durations
             .iter()
             .zip(&shooting.durations)
             .map(|(dt, t)| (dt / t).abs());
         let stretch = of_durations.fold(0.0, f64::max);
-        let of_period = durations.iter().sum::<f64>().abs() / period.abs();
         let size = of_nodes.max(of_period);
         if size < CLOSED || (size < NOISE && size > 0.3 * last) {
             return Ok(Closed {
@@ -162,6 +176,7 @@ pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) ->
                 iterations,
                 linear,
                 residual: (of_nodes, of_period),
+                in_family: false,
             });
         }
         last = size;
@@ -186,4 +201,47 @@ pub fn close(tracer: &mut Tracer, field: &AnyField<'_>, guess: ShootingNodes) ->
         residual: last,
         tolerance: CLOSED,
     })
+}
+
+/// A correction of a node in units of 1 + |x|, and of the period, relative.
+fn sizes(shooting: &ShootingNodes, nodes: &[Vector], durations: &[f64]) -> (f64, f64) {
+    let moved = nodes.iter().zip(&shooting.nodes);
+    let of_nodes = moved.map(|(dx, x)| relative(dx, x)).fold(0.0, f64::max);
+    let of_period = durations.iter().sum::<f64>().abs() / shooting.period().abs();
+    (of_nodes, of_period)
+}
+
+/// Closes a shooting that is nearly closed as it is, where the orbit is one of a family and Newton's equations are singular: by the least
+/// corrections. `None` where it is alone, or does not close.
+pub(super) fn close_in_family(
+    tracer: &mut Tracer,
+    field: &AnyField<'_>,
+    guess: &ShootingNodes,
+) -> Option<Closed> {
+    /// A guess is that near, and what is left of the corrections.
+    const NEAR: f64 = 1e-4;
+    const LEFT: f64 = 1e-11;
+    let mut shooting = guess.clone();
+    let mut last = NEAR;
+    for iterations in 1..=ITERATIONS {
+        let linear = Linear::new(tracer, field, &shooting).ok()?;
+        let (nodes, durations) = linear.correction_in_family(&linear.gaps)?;
+        let (of_nodes, of_period) = sizes(&shooting, &nodes, &durations);
+        let size = of_nodes.max(of_period);
+        if size < CLOSED || (size < LEFT && size > 0.3 * last) {
+            return Some(Closed {
+                shooting,
+                iterations,
+                linear,
+                residual: (of_nodes, of_period),
+                in_family: true,
+            });
+        }
+        if size > last {
+            return None;
+        }
+        last = size;
+        shooting = shooting.moved(&nodes, &durations, 1.0);
+    }
+    None
 }

@@ -81,6 +81,10 @@ fn parts(steps: &[TracedStep]) -> Vec<f64> {
 /// The largest loss on a refined arc, some four digits, and how often one is halved for it.
 const LARGEST_LOSS: f64 = 10.0;
 const DEPTH: usize = 10;
+/// How many arcs there may be: along stiff orbits e^-10 is soon lost, and what is lost beyond is below any floor.
+pub(super) const MOST_ARCS: usize = 4096;
+/// The same of methods that begin every arc with short steps.
+pub(super) const MOST_IMPLICIT_ARCS: usize = 256;
 
 /// A number with only so many significant digits left.
 pub fn of_digits(digits: i32, x: f64) -> f64 {
@@ -213,6 +217,11 @@ impl ShootingNodes {
     /// Those of the closure.
     #[doc(hidden)]
     pub fn refined(&self, end_and_loss: EndAndLoss<'_>) -> Result<Self> {
+        self.refined_to(MOST_ARCS, end_and_loss)
+    }
+
+    /// The same with at most so many arcs.
+    pub(super) fn refined_to(&self, most: usize, end_and_loss: EndAndLoss<'_>) -> Result<Self> {
         let mut finer = ShootingNodes {
             nodes: Vec::new(),
             durations: Vec::new(),
@@ -223,7 +232,8 @@ impl ShootingNodes {
             let mut pieces = vec![(duration, 0)];
             while let Some((duration, depth)) = pieces.pop() {
                 let (end, loss) = end_and_loss(&x, duration)?;
-                if loss <= LARGEST_LOSS || depth == DEPTH {
+                let full = finer.nodes.len() + pieces.len() >= most;
+                if loss <= LARGEST_LOSS || depth == DEPTH || full {
                     finer.nodes.push(x);
                     finer.durations.push(duration);
                     x = end;
@@ -302,6 +312,24 @@ impl ShootingNodes {
     /// The time once around.
     pub fn period(&self) -> f64 {
         self.durations.iter().sum()
+    }
+
+    /// How far each variable moves; of one that does not, its value.
+    pub(super) fn sizes(&self) -> Vector {
+        let of = |i: usize| {
+            let values = || self.nodes.iter().map(|x| x[i]);
+            let extent =
+                values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+            let value = values().fold(0.0, |most: f64, x| most.max(x.abs()));
+            if extent > f64::EPSILON * value {
+                extent
+            } else if value > 0.0 {
+                value
+            } else {
+                1.0
+            }
+        };
+        Vector::from_fn(self.dimension(), |i, _| of(i))
     }
 
     /// The largest extent over the components.

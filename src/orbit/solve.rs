@@ -5,7 +5,7 @@ use super::extremes::{Extremes, extremes};
 use super::floquet::Floquet;
 use super::other_orbit;
 use super::shooting::{Closed, close, relative};
-use super::shooting_nodes::ShootingNodes;
+use super::shooting_nodes::{MOST_ARCS, MOST_IMPLICIT_ARCS, ShootingNodes};
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
@@ -37,6 +37,9 @@ pub struct Orbit {
     pub state_min: f64,
     /// Least and greatest value of every variable.
     pub extremes: Vec<[Uncertain; 2]>,
+    /// Whether it is one of a family of orbits of the same parameters, as those of a conservative system: a multiplier beside the trivial one
+    /// is 1.
+    pub in_family: bool,
     /// Its multipliers.
     pub floquet: Floquet,
     /// The method.
@@ -107,18 +110,28 @@ impl OrbitAccuracy {
             tolerances: Tolerances {
                 rtol: tolerance,
                 atol: tolerance,
+                max_step: f64::INFINITY,
             },
             max_steps: MAX_STEPS,
             checked: true,
         }
     }
 
+    /// With this largest step.
+    pub(crate) fn stepping(self, max_step: f64) -> Self {
+        OrbitAccuracy {
+            tolerances: self.tolerances.stepping(max_step),
+            ..self
+        }
+    }
+
     pub(super) fn looser(self) -> Self {
-        let Tolerances { rtol, atol } = self.tolerances;
+        let Tolerances { rtol, atol, .. } = self.tolerances;
         OrbitAccuracy {
             tolerances: Tolerances {
                 rtol: LOOSER * rtol,
                 atol: LOOSER * atol,
+                ..self.tolerances
             },
             ..self
         }
@@ -155,11 +168,20 @@ pub(super) fn solve(
             "give a shorter `period_guess`, or a `start` farther from that orbit",
         ));
     }
-    let finer = first
-        .shooting
-        .refined(&mut |x, duration| space.loss(tracers, x, duration))?;
+    let sizes = first.shooting.sizes();
+    let most = if tracers.here.differentiates() {
+        MOST_ARCS
+    } else {
+        MOST_IMPLICIT_ARCS
+    };
+    let finer = first.shooting.refined_to(most, &mut |x, duration| {
+        space.loss(tracers, (x, duration), &sizes)
+    })?;
     let closed = close(&mut tracers.here, field, finer)?;
-    let floquet = space.floquet(tracers, &closed)?;
+    let mut floquet = space.floquet(tracers, &closed)?;
+    if closed.in_family {
+        floquet.one_is_one();
+    }
     Ok(Solved {
         iterations: first.iterations + closed.iterations,
         closed,
@@ -226,7 +248,7 @@ pub(super) fn orbit(
                     floquet.widened_by(&again.floquet);
                     let shooting = &again.closed.shooting;
                     apart = apart.max((period.value - shooting.period()).abs());
-                    others.push(extremes(space.field(), shooting, level)?);
+                    others.push(extremes(space.field(), shooting, level, accuracy)?);
                 }
                 // Nothing is claimed that could not be done again.
                 Err(_) => {
@@ -238,7 +260,7 @@ pub(super) fn orbit(
         }
         period.uncertainty += SPREAD * apart;
     }
-    let extremes = extremes(space.field(), shooting, level)?;
+    let extremes = extremes(space.field(), shooting, level, accuracy)?;
     let passage = extremes.passage.as_ref();
     let (point_time, point) =
         passage.map_or((0.0, &shooting.nodes[0]), |(time, point)| (*time, point));
@@ -268,6 +290,7 @@ pub(super) fn orbit(
         slip_rate_max: extremes.slip_rate_max,
         state_min: extremes.state_min(),
         extremes: of_all,
+        in_family: closed.in_family,
         floquet,
         method: tracers.here.name(),
         nodes: shooting

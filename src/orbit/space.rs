@@ -10,13 +10,19 @@ use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::integrate::{AnyField, Work};
+use std::sync::Arc as Shared;
 
 /// A space in which orbits are found.
 pub(super) trait Space {
     /// The vector field.
     fn field(&self) -> &AnyField<'_>;
     /// A node and its arc in the space of all multipliers: the arc's end and the digits that it loses.
-    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)>;
+    fn loss(
+        &self,
+        tracers: &mut Tracers,
+        arc: (&Vector, f64),
+        sizes: &Vector,
+    ) -> Result<(Vector, f64)>;
     /// The multipliers.
     fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet>;
     /// Whether both interfaces move alike.
@@ -72,7 +78,12 @@ impl Space for Whole<'_> {
         &self.0
     }
 
-    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
+    fn loss(
+        &self,
+        tracers: &mut Tracers,
+        (x, duration): (&Vector, f64),
+        _: &Vector,
+    ) -> Result<(Vector, f64)> {
         loss_along(&self.0, tracers, x, duration)
     }
 
@@ -104,12 +115,41 @@ impl Space for Alone<'_, '_> {
         self.field
     }
 
-    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
-        loss_along(self.field, tracers, x, duration)
+    fn loss(
+        &self,
+        tracers: &mut Tracers,
+        (x, duration): (&Vector, f64),
+        sizes: &Vector,
+    ) -> Result<(Vector, f64)> {
+        let arc = tracers.here.arc(self.field, x, duration, &[])?;
+        // In the plane the trace alone says what the multiplier is.
+        let loss = if sizes.len() == 2 {
+            0.0
+        } else {
+            arc.loss_in(sizes)
+        };
+        Ok((arc.end, loss))
     }
 
-    fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
-        Ok(floquet(closed, self.field))
+    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
+        if closed
+            .arcs()
+            .iter()
+            .all(|arc| arc.log_determinant.is_some())
+        {
+            return Ok(floquet(closed, self.field));
+        }
+        let mut traced = closed.clone();
+        let shooting = &closed.shooting;
+        let arcs = shooting.nodes.iter().zip(&shooting.durations);
+        for (arc, (x, &duration)) in Shared::make_mut(&mut traced.linear.arcs)
+            .iter_mut()
+            .zip(arcs)
+        {
+            let (volume, off) = tracers.here.trace_along(self.field, x, duration)?;
+            (arc.log_determinant, arc.volume_error) = (Some(volume), off);
+        }
+        Ok(floquet(&traced, self.field))
     }
 
     fn symmetry(&self, _: &ShootingNodes) -> Symmetry {
@@ -149,7 +189,12 @@ impl Space for Plane<'_> {
         &self.plane
     }
 
-    fn loss(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<(Vector, f64)> {
+    fn loss(
+        &self,
+        tracers: &mut Tracers,
+        (x, duration): (&Vector, f64),
+        _: &Vector,
+    ) -> Result<(Vector, f64)> {
         Ok(match self.across(tracers, x, duration)? {
             Some(arc) => (arc.end.rows(0, 2).into_owned(), arc.loss()),
             None => loss_along(&self.plane, tracers, x, duration)?,

@@ -11,11 +11,18 @@ use crate::integrate::{
 };
 use crate::model::Driven;
 
-/// How much tighter the second run is: its own error then hardly counts.
-const TIGHTER: f64 = 100.0;
+/// How much tighter the second run is, so that its own error hardly counts: a run can err by a hundredth of what another of its tolerance errs by.
+const TIGHTER: f64 = 1e4;
+/// The tolerance from which on the second run is in double-double arithmetic.
+const REFERENCE: f64 = 1e-12;
 /// How much smaller its absolute tolerance is. A value that sinks below that of the run and grows again is lost there by any method;
 /// the second run follows it.
 const FOLLOWED: f64 = 1e-30;
+/// And at most this: Taylor's order is then another than that of the run. Two runs of one order whose steps all end at the same kinks
+/// would err alike.
+const LOOSEST: f64 = 1e-7;
+/// Its largest step over that of the run, where there is one, for the same reason.
+const SHORTER: f64 = 0.7;
 /// A tolerance below this gains nothing: rounding rules.
 const TIGHTEST: f64 = 1e-14;
 /// The second run's error, of which little is known but that it is small, is allowed for by this factor; with the reference it
@@ -35,20 +42,25 @@ pub(super) const PIECES: usize = 64;
 pub enum Companion {
     /// By `auto`, with a tighter relative tolerance and next to no absolute one.
     Tighter(Tolerances),
-    /// In double-double arithmetic.
-    Reference,
+    /// In double-double arithmetic, with this largest step.
+    Reference {
+        /// [`Tolerances::max_step`]
+        max_step: f64,
+    },
 }
 
 impl Companion {
     /// What goes with a run of these tolerances: the reference where it is asked for, or where doubles end.
     pub fn of(tolerances: Tolerances, reference: bool) -> Self {
-        let Tolerances { rtol, atol } = tolerances;
-        if reference || rtol < TIGHTER * TIGHTEST {
-            Companion::Reference
+        let Tolerances { rtol, atol, .. } = tolerances;
+        let max_step = tolerances.max_step * SHORTER;
+        if reference || rtol < REFERENCE {
+            Companion::Reference { max_step }
         } else {
             Companion::Tighter(Tolerances {
-                rtol: rtol / TIGHTER,
+                rtol: (rtol / TIGHTER).clamp(TIGHTEST, LOOSEST),
                 atol: f64::max(atol * FOLLOWED, f64::MIN_POSITIVE),
+                max_step,
             })
         }
     }
@@ -59,14 +71,16 @@ impl Companion {
             Companion::Tighter(tolerances) => {
                 AnyIntegrator::new(Choice::Auto, tolerances, max_steps)
             }
-            Companion::Reference => AnyIntegrator::reference(max_steps),
+            Companion::Reference { max_step } => AnyIntegrator::reference(max_steps, max_step),
         }
     }
 
     fn integrator<const N: usize>(self, max_steps: usize) -> Result<Box<dyn Integrator<N>>> {
         match self {
             Companion::Tighter(tolerances) => Choice::Auto.integrator(tolerances, max_steps),
-            Companion::Reference => Ok(Box::new(Taylor::reference(max_steps)?)),
+            Companion::Reference { max_step } => {
+                Ok(Box::new(Taylor::reference(max_steps)?.stepping(max_step)))
+            }
         }
     }
 }
@@ -137,7 +151,7 @@ pub(super) fn estimate(
     sink: &mut dyn Sink,
 ) -> Result<()> {
     // The reference takes long enough that one wants to see it move, and to stop it.
-    let watched = plan.observed() || companion == Companion::Reference;
+    let watched = plan.observed() || matches!(companion, Companion::Reference { .. });
     let mut run = Second::new(companion, plan, &mut *sink, watched);
     let second = go(plan, &mut run);
     let (work, stopped) = (run.work, run.stopped);
@@ -182,7 +196,7 @@ impl Along for Growth<'_> {
         from: &State<N>,
     ) -> Result<State<N>> {
         let (plan, (begin, end)) = (self.plan, stretch.span);
-        let tolerances = Tolerances::equal(GROWTH)?;
+        let tolerances = Tolerances::equal(GROWTH)?.stepping(plan.tolerances.max_step);
         let mut integrator = Choice::Auto.integrator::<N>(tolerances, plan.max_steps)?;
         let pieces = (PIECES as f64 * (end - begin) / plan.until).ceil();
         let time = |piece: usize| match piece as f64 {

@@ -1,7 +1,7 @@
 //! A plan in words: what is computed, how, and why the rest is not.
 
 use super::estimate::Companion;
-use super::plan::{Dimension, Plan, Sampling};
+use super::plan::{Dimension, Plan, Sampling, longest_in_words};
 use super::units::Quantity;
 use crate::error::count;
 use crate::integrate::HasSeries;
@@ -27,10 +27,11 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
     line(
         "tolerances",
         format!(
-            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps",
+            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps{}",
             plan.tolerances.rtol,
             plan.tolerances.atol,
-            count(plan.max_steps)
+            count(plan.max_steps),
+            longest_in_words(plan.tolerances, &plan.system.units)
         ),
     );
     line(
@@ -65,7 +66,7 @@ pub fn explain(plan: &Plan, keeping: Keeping) -> String {
                 "on: twice the distance to a second run by auto with rtol {:e}, atol {:e}, and the rounding of the start by a tangent flow, at the end only",
                 second.rtol, second.atol
             ),
-            Some(Companion::Reference) => {
+            Some(Companion::Reference { .. }) => {
                 "on: twice the distance to a second run in double-double arithmetic, and the rounding of the start by a tangent flow, at the end only"
                     .into()
             }

@@ -127,6 +127,9 @@ pub struct NumericsOptions {
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true)]
     pub atol: Option<f64>,
+    /// Largest step in time, for what is shorter than a step: a pulse that begins and ends within one is seen by no method
+    #[arg(long, value_name = "H", value_parser = number, allow_negative_numbers = true)]
+    pub max_step: Option<f64>,
     /// Give up after so many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS)]
     pub max_steps: usize,
@@ -259,7 +262,7 @@ pub struct IntegrateOptions {
     /// Steps between two checkpoints
     #[arg(long, value_name = "N", value_parser = count, default_value_t = 1000, requires = "checkpoint", help_heading = "Run")]
     pub checkpoint_steps: usize,
-    /// Estimate the error of the last row by a second run with 100 times tighter tolerances, below --rtol 1e-12 by the
+    /// Estimate the error of the last row by a second run with 10,000 times tighter tolerances, below --rtol 1e-12 by the
     /// reference
     #[arg(long, help_heading = "Run")]
     pub estimate_error: bool,
@@ -440,6 +443,9 @@ pub struct OrbitOptions {
     /// Absolute local error tolerance of tau and ln psi [default: as --rtol]
     #[arg(long, value_name = "X", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
     pub atol: Option<f64>,
+    /// Largest step in time, for what is shorter than a step: a pulse that begins and ends within one is seen by no method
+    #[arg(long, value_name = "H", value_parser = number, allow_negative_numbers = true, help_heading = "Numerics")]
+    pub max_step: Option<f64>,
     /// Give up an arc after so many steps
     #[arg(long, value_name = "N", value_parser = count, default_value_t = crate::integrate::MAX_STEPS, help_heading = "Numerics")]
     pub max_steps: usize,

@@ -2,10 +2,10 @@
 
 use super::instant::run_columns;
 use super::options::OrbitOptions;
-use super::plan::{Dimension, Plan, Point, Sampling, equally_spaced, start, tolerances};
+use super::plan::{Dimension, Plan, Point, Sampling, equally_spaced, start, stepping, tolerances};
 use super::system::System;
-use super::units::Quantity;
-use crate::equilibrium::Symmetry;
+use super::units::{Quantity, Units};
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::{AnyField, Choice};
@@ -24,6 +24,8 @@ pub struct OrbitPlan {
     pub slab: InterfaceSystem,
     /// Which orbit, and where the search begins.
     pub query: Query,
+    /// Whether one of the other symmetry will do as well: the one that runs settle on.
+    pub either: bool,
     /// By which method.
     pub accuracy: OrbitAccuracy,
     /// By which second method once more.
@@ -50,9 +52,12 @@ impl OrbitPlan {
             symmetry: symmetry(options.symmetry.as_deref(), &system)?,
             begin: begin(options, &system, &slab)?,
         };
-        let accuracy = accuracy(options)?;
+        let accuracy = accuracy(options, &system.units)?;
+        let anywhere = query.begin == InitialGuess::Anywhere;
+        let alike = system.interfaces == 2 && system.unequal.is_none();
         Ok(OrbitPlan {
-            second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            either: options.symmetry.is_none() && anywhere && alike,
+            second: second(options.crosscheck.as_deref(), &accuracy)?,
             rows: options.points.map(equally_spaced).transpose()?,
             picture: options.plot.is_some(),
             slab,
@@ -66,6 +71,9 @@ impl OrbitPlan {
     pub fn explain(&self) -> String {
         let dimension = match (self.query.symmetry, self.slab.interfaces) {
             _ if self.system.unequal.is_some() => "3: the interfaces differ",
+            _ if self.either => {
+                "2: both interfaces move alike; 3 where that orbit is not stable, or there is none"
+            }
             (Symmetry::Asymmetric, _) => "3",
             (Symmetry::Symmetric, 2) => {
                 "2: both interfaces move alike; the multiplier across is a quadrature"
@@ -112,7 +120,29 @@ impl OrbitPlan {
     pub fn find(&self) -> Result<FoundOrbit> {
         match self.unequal() {
             Some(interfaces) => find_unequal(&interfaces, self.query.begin, &self.accuracy),
+            None if self.either => self.of_either_symmetry(),
             None => find(&self.slab, &self.query, &self.accuracy),
+        }
+    }
+
+    /// A stable orbit, the symmetric one first.
+    fn of_either_symmetry(&self) -> Result<FoundOrbit> {
+        let of = |symmetry| {
+            let query = Query {
+                symmetry,
+                ..self.query
+            };
+            find(&self.slab, &query, &self.accuracy)
+        };
+        let symmetric = of(Symmetry::Symmetric);
+        let is_stable = |found: &FoundOrbit| found.orbit.verdict() == Verdict::Stable;
+        if symmetric.as_ref().is_ok_and(is_stable) {
+            return symmetric;
+        }
+        match (symmetric, of(Symmetry::Asymmetric)) {
+            (Ok(symmetric), Ok(asymmetric)) => Ok(symmetric.with(asymmetric)),
+            (Ok(found), Err(_)) | (Err(_), Ok(found)) => Ok(found),
+            (Err(error), Err(_)) => Err(error),
         }
     }
 
@@ -209,7 +239,7 @@ fn begin(options: &OrbitOptions, system: &System, slab: &InterfaceSystem) -> Res
 }
 
 /// The method with its tolerances, or those that are given.
-fn accuracy(options: &OrbitOptions) -> Result<OrbitAccuracy> {
+fn accuracy(options: &OrbitOptions, units: &Units) -> Result<OrbitAccuracy> {
     let usual = OrbitAccuracy::of(Choice::named(&options.method)?);
     if options.max_steps == 0 {
         return Err(Error::parameter("max-steps", 0, "at least 1"));
@@ -220,7 +250,7 @@ fn accuracy(options: &OrbitOptions) -> Result<OrbitAccuracy> {
     };
     Ok(OrbitAccuracy {
         max_steps: options.max_steps,
-        tolerances: given,
+        tolerances: stepping(given, options.max_step, units)?,
         ..usual
     })
 }
@@ -255,7 +285,8 @@ pub(crate) const SECOND_METHOD: &str = "cvode-adams";
 pub(crate) const SECOND_METHOD: &str = "rodas5p";
 
 /// The method of the crosscheck: another one than the first.
-pub(super) fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAccuracy>> {
+pub(super) fn second(name: Option<&str>, by: &OrbitAccuracy) -> Result<Option<OrbitAccuracy>> {
+    let first = by.method;
     let name = match name {
         Some("none") => return Ok(None),
         Some(name) => name,
@@ -268,8 +299,9 @@ pub(super) fn second(name: Option<&str>, first: Choice) -> Result<Option<OrbitAc
             "`crosscheck` {name} is the method of the orbit itself; choose another, or none"
         )));
     }
+    let second = OrbitAccuracy::of(method).stepping(by.tolerances.max_step);
     Ok(Some(OrbitAccuracy {
         checked: false,
-        ..OrbitAccuracy::of(method)
+        ..second
     }))
 }

@@ -173,7 +173,7 @@ impl Plan {
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
         }
-        let (method, tolerances) = numerics(&options.numerics)?;
+        let (method, tolerances) = numerics(&options.numerics, &system.units)?;
         Ok(Plan {
             loading,
             program,
@@ -263,8 +263,9 @@ pub(super) fn until(options: &IntegrateOptions) -> Result<f64> {
 }
 
 /// The method and the tolerances, checked.
-pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
+pub(super) fn numerics(options: &NumericsOptions, units: &Units) -> Result<(Choice, Tolerances)> {
     let tolerances = tolerances(options.rtol, options.atol)?;
+    let tolerances = stepping(tolerances, options.max_step, units)?;
     Ok((Choice::named(&options.method)?, tolerances))
 }
 
@@ -273,8 +274,8 @@ pub(super) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)
 /// # Errors
 /// [`Error::Parameter`] as of [`Tolerances::new`], and for an atol that is no tolerance of numbers of the order of ten.
 pub fn tolerances(rtol: f64, atol: Option<f64>) -> Result<Tolerances> {
-    let Tolerances { rtol, atol: equal } = Tolerances::equal(rtol)?;
-    let atol = atol.unwrap_or(equal);
+    let equal = Tolerances::equal(rtol)?;
+    let atol = atol.unwrap_or(rtol);
     if !(atol > 0.0 && atol < 1.0) {
         return Err(Error::parameter(
             "atol",
@@ -282,7 +283,26 @@ pub fn tolerances(rtol: f64, atol: Option<f64>) -> Result<Tolerances> {
             "greater than 0 and less than 1: an error by 1 of ln psi is a factor of e",
         ));
     }
-    Ok(Tolerances { rtol, atol })
+    Ok(Tolerances { atol, ..equal })
+}
+
+/// These tolerances with the largest step that is given in the user's time.
+pub(super) fn stepping(
+    tolerances: Tolerances,
+    max_step: Option<f64>,
+    units: &Units,
+) -> Result<Tolerances> {
+    let Some(max_step) = max_step else {
+        return Ok(tolerances);
+    };
+    let max_step = units.inward(Quantity::Time, positive("max-step", max_step)?);
+    Ok(tolerances.stepping(max_step))
+}
+
+/// The largest step in words, after those on tolerances.
+pub(super) fn longest_in_words(tolerances: Tolerances, units: &Units) -> String {
+    let longest = units.max_step(tolerances);
+    longest.map_or_else(String::new, |h| format!(", none longer than {h}"))
 }
 
 /// So many rows, both ends included.

@@ -21,9 +21,9 @@ pub(super) const NAMES: [&str; 10] = [
 /// The names and values.
 ///
 /// # Errors
-/// [`Error::Input`] for what is no NAME=VALUE with a finite number.
+/// [`Error::Input`] for what is no NAME=VALUE with a finite number, and for a name that comes twice.
 pub(super) fn assignments(set: &[String]) -> Result<Vec<(&str, f64)>> {
-    let mut all = Vec::with_capacity(set.len());
+    let mut all: Vec<(&str, f64)> = Vec::with_capacity(set.len());
     for set in set {
         let pair = set.split_once('=');
         let (name, value) =
@@ -32,7 +32,11 @@ pub(super) fn assignments(set: &[String]) -> Result<Vec<(&str, f64)>> {
         let value = number.ok_or_else(|| {
             Error::Input(format!("`set` {set:?}: {value:?} is not a finite number"))
         })?;
-        all.push((name.trim(), value));
+        let name = name.trim();
+        if all.iter().any(|(other, _)| *other == name) {
+            return Err(Error::Input(format!("`set` gives {name} twice")));
+        }
+        all.push((name, value));
     }
     Ok(all)
 }
@@ -46,8 +50,8 @@ impl ModelOptions {
         let mut model = self.clone();
         for (name, value) in assignments(&self.slab.text.set)? {
             match name {
-                "driving" => model.driving = Some(value),
-                "stiffness" => model.stiffness = Some(value),
+                "driving" => put_in(&mut model.driving, name, value)?,
+                "stiffness" => put_in(&mut model.stiffness, name, value)?,
                 _ => model.slab.put(name, value)?,
             }
         }
@@ -72,7 +76,7 @@ impl SlabOptions {
         Ok(slab)
     }
 
-    /// Another value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
+    /// The value of a parameter that is neither V_H nor K. Those of one interface are seen to where there is a system.
     fn put(&mut self, name: &str, value: f64) -> Result<()> {
         if of_one("set", name)?.is_some() {
             return Ok(());
@@ -82,19 +86,31 @@ impl SlabOptions {
             return Err(Error::Input(what));
         }
         match name {
-            "damping" => {
-                (self.shear_modulus, self.shear_wave_speed) = (None, None);
-                self.damping = Some(value);
-            }
-            "healing_time" => self.healing_time = Some(value),
-            "residual_strength" => self.residual_strength = Some(value),
-            "direct_effect" => self.direct_effect = Some(value),
-            "evolution_effect" => self.evolution_effect = Some(value),
-            "reference_friction" => self.reference_friction = Some(value),
-            "slip_length" => self.slip_length = Some(value),
-            "normal_stress" => self.normal_stress = Some(value),
-            _ => return Err(Error::unknown("set", name, &NAMES)),
+            "damping" if self.shear_modulus.is_some() => Err(twice("damping", "shear-modulus")),
+            "damping" => put_in(&mut self.damping, name, value),
+            "healing_time" => put_in(&mut self.healing_time, name, value),
+            "residual_strength" => put_in(&mut self.residual_strength, name, value),
+            "direct_effect" => put_in(&mut self.direct_effect, name, value),
+            "evolution_effect" => put_in(&mut self.evolution_effect, name, value),
+            "reference_friction" => put_in(&mut self.reference_friction, name, value),
+            "slip_length" => put_in(&mut self.slip_length, name, value),
+            "normal_stress" => put_in(&mut self.normal_stress, name, value),
+            _ => Err(Error::unknown("set", name, &NAMES)),
         }
-        Ok(())
     }
+}
+
+/// The value of a parameter that has none.
+pub(super) fn put_in(parameter: &mut Option<f64>, name: &str, value: f64) -> Result<()> {
+    if parameter.replace(value).is_some() {
+        return Err(twice(name, name));
+    }
+    Ok(())
+}
+
+pub(super) fn twice(name: &str, option: &str) -> Error {
+    Error::Input(format!(
+        "`set` {name} and `{}` say the same thing: give one of them",
+        option.replace('_', "-")
+    ))
 }

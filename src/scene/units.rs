@@ -1,6 +1,7 @@
 //! What a number on the command line is measured in: dimensionless, or SI with `--si`.
 
 use crate::error::{Error, MessageUnits, Result};
+use crate::integrate::Tolerances;
 use crate::model::scales::Scales;
 use crate::number::Uncertain;
 
@@ -169,6 +170,12 @@ impl Units {
             Quantity::LogState => x - self.factor(Quantity::State).ln(),
             _ => x / self.factor(quantity),
         }
+    }
+
+    /// The largest step in the user's time, where there is one.
+    pub fn max_step(&self, tolerances: Tolerances) -> Option<f64> {
+        let longest = Some(tolerances.max_step).filter(|h| h.is_finite());
+        longest.map(|h| self.outward(Quantity::Time, h))
     }
 
     /// A value and the bound on its error, in the user's units; conversion in and out costs a few roundings more.

@@ -13,7 +13,7 @@ const PARTS: usize = 4;
 
 /// Appends the crossings in the surface's direction within a step that has no series; `zeros` carries the sign of the height
 /// over steps of either kind.
-pub(super) fn crossings(
+pub(crate) fn crossings(
     field: &AnyField<'_>,
     surface: &Surface,
     step: &AnyStep<'_>,

@@ -122,7 +122,8 @@ pub fn record_finely(
     max_steps: usize,
     see: See<'_>,
 ) -> Result<ReturnRecord> {
-    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, max_steps)?;
+    let tolerances = Tolerances::equal(TOLERANCE)?.stepping(watching.max_step);
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, tolerances, max_steps)?;
     let watching = Watching {
         skip: 0,
         accuracy: TOLERANCE,
@@ -218,7 +219,8 @@ fn segments(
     record: &ReturnRecord,
     see: &mut dyn FnMut(f64) -> Control,
 ) -> Result<Option<Vec<GrowthSegment>>> {
-    let mut taylor = AnyIntegrator::new(Choice::Taylor, Tolerances::equal(TOLERANCE)?, MAX_STEPS)?;
+    let tolerances = Tolerances::equal(TOLERANCE)?.stepping(record.max_step);
+    let mut taylor = AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS)?;
     let mut arcs = taylor.arcs(field, &[])?;
     let start = &record.returns[0];
     let mut frame = beginning(&field.f(&start.state));

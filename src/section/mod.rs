@@ -10,6 +10,7 @@ mod returns;
 mod surface;
 
 pub use curve::{InvariantCurve, invariant_curve, regularity};
+pub(crate) use dense::crossings;
 pub(crate) use lyapunov::{ALIGNMENT, GrowthSegment, summary};
 pub use lyapunov::{
     Exponents, FEWEST_FOR_EXPONENTS, LyapunovSpectrum, at_equilibrium, record_finely, spectrum,

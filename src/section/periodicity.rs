@@ -74,7 +74,11 @@ pub fn periodicity(
             SeriesVariables::LogStates => Tolerances::equal(rtol)?,
             SeriesVariables::Plain => Tolerances::new(rtol, NEXT_TO_NOTHING * rtol)?,
         };
-        AnyIntegrator::new(Choice::Taylor, tolerances, MAX_STEPS)
+        AnyIntegrator::new(
+            Choice::Taylor,
+            tolerances.stepping(record.max_step),
+            MAX_STEPS,
+        )
     };
     let [fine, coarse] = TOLERANCES;
     let (mut fine, mut coarse) = (taylor(fine)?, taylor(coarse)?);

@@ -38,6 +38,8 @@ pub struct Watching {
     pub patience: f64,
     /// The relative tolerance of the run: what its returns are good to follows from it.
     pub accuracy: f64,
+    /// The largest step of the run, which is also that of what is computed along it.
+    pub max_step: f64,
     /// Whether waypoints are recorded too, for [`super::spectrum`].
     pub waypoints: bool,
 }
@@ -90,6 +92,8 @@ pub struct ReturnRecord {
     pub ended: Ended,
     /// The relative tolerance of the run.
     pub accuracy: f64,
+    /// Its largest step.
+    pub max_step: f64,
 }
 
 /// Follows a run from `start` at time 0 and records its returns to the surface. `see` is told of every return, with the number
@@ -111,6 +115,7 @@ pub fn record(
         waypoints: Vec::new(),
         ended,
         accuracy: watching.accuracy,
+        max_step: watching.max_step,
     };
     let variables = field.dimension();
     let fits = of_dimension(start.len(), variables)
@@ -150,6 +155,7 @@ pub fn record(
         waypoints,
         ended,
         accuracy: watching.accuracy,
+        max_step: watching.max_step,
     }
 }
 

@@ -180,6 +180,7 @@ impl<const N: usize> Cvode<N> {
         let tolerances = Tolerances {
             rtol: 1e-8,
             atol: 1e-8,
+            max_step: f64::INFINITY,
         };
         let m = memory.as_ptr();
         // SAFETY: live objects of one context, kept by the solver longer than the memory; the callbacks are of this N and of
@@ -255,6 +256,13 @@ impl<const N: usize> Cvode<N> {
                 &self.messages,
                 CVodeSStolerances(m, tolerances.rtol, tolerances.atol)
             )?;
+            // To CVODES none is 0.
+            let max_step = if tolerances.max_step.is_finite() {
+                tolerances.max_step
+            } else {
+                0.0
+            };
+            check!(CV, &self.messages, CVodeSetMaxStep(m, max_step))?;
         }
         self.tolerances = tolerances;
         Ok(())

@@ -55,7 +55,7 @@ impl<const N: usize> Cvode<N> {
         const SHORTEST: f64 = 100.0 * f64::EPSILON;
         let y = self.state();
         let f = problem.field.f(&y);
-        let Tolerances { rtol, atol } = self.tolerances;
+        let Tolerances { rtol, atol, .. } = self.tolerances;
         let shortest = SHORTEST * self.start.abs().max(to.abs());
         let too_long = (0..N).any(|i| shortest * f[i].abs() > y[i].abs() + atol / rtol);
         let h = if too_long && all_finite(f.as_slice()) {

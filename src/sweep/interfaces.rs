@@ -127,6 +127,7 @@ impl InterfaceSweeper {
             returns: settings.max_returns + 1,
             patience: 0.0,
             accuracy: settings.rtol,
+            max_step: f64::INFINITY,
             waypoints: false,
         };
         let stage = FIRST_STAGE.min(settings.max_returns);

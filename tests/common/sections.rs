@@ -53,6 +53,7 @@ impl Case {
             returns: count.1,
             patience: 2e4,
             accuracy: rtol,
+            max_step: f64::INFINITY,
             waypoints: true,
         };
         let (choice, rtol) = (Choice::named(method).unwrap(), Tolerances::equal(rtol));

@@ -23,6 +23,7 @@ impl PlannedRun for TextPlan {
             "asked": self.asked_method,
             "rtol": self.tolerances.rtol,
             "atol": self.tolerances.atol,
+            "max_step": self.model.units().max_step(self.tolerances),
             "max_steps": self.max_steps,
             "dimension": self.start.len(),
         })

@@ -78,6 +78,7 @@ fn object(orbit: &Orbit, model: &TextModel) -> Value {
         "trivial_defect": orbit.floquet.trivial_defect,
         "liouville_defect": orbit.floquet.liouville_defect,
         "verdict": orbit.verdict().name(),
+        "family": orbit.in_family,
         "method": orbit.method,
     })
 }

@@ -7,7 +7,7 @@ use crate::error::Result;
 use crate::number::polynomial::Crossing;
 use crate::output::RowList;
 use crate::scene::{
-    SectionOptions, TextModel, TextSectionPlan, run_text_section, text_section_columns,
+    Described, SectionOptions, TextModel, TextSectionPlan, run_text_section, text_section_columns,
 };
 use crate::views;
 use serde_json::{Value, json};
@@ -31,6 +31,7 @@ fn numerics(plan: &TextSectionPlan) -> Value {
         "asked": plan.asked_method,
         "rtol": plan.tolerances.rtol,
         "atol": plan.tolerances.atol,
+        "max_step": plan.model.units().max_step(plan.tolerances),
         "max_steps": plan.max_steps,
         "dimension": plan.start.len(),
         "surface": format!("{}={}", plan.model.system.states()[plan.state], plan.value),

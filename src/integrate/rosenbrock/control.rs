@@ -13,7 +13,7 @@ pub fn error_norm<const N: usize>(
     y0: &State<N>,
     y1: &State<N>,
 ) -> Option<f64> {
-    let Tolerances { rtol, atol } = tolerances;
+    let Tolerances { rtol, atol, .. } = tolerances;
     let mut norm = 0.0_f64;
     let mut finite = true;
     for i in 0..N {

@@ -8,6 +8,10 @@ use crate::integrate::{Control, Work};
 pub(crate) trait Steppable {
     /// Order of the error estimate in h, that is order of the lower of the two solutions, plus one.
     fn error_order(&self) -> u32;
+    /// The largest step.
+    fn max_step(&self) -> f64 {
+        f64::INFINITY
+    }
 
     fn work(&mut self) -> &mut Work;
     /// Why steps of about h no longer change t.
@@ -40,7 +44,8 @@ pub(crate) fn drive<M: Steppable>(
             return Err(Error::TooManySteps { t: now, end, limit });
         }
         tried += 1;
-        let next = next_time(now, end, h);
+        let longest = carried.max_step();
+        let next = next_time(now, end, h.clamp(-longest, longest));
         // As the sum of times is rounded, so is the step: no error of time builds up.
         let step = next - now;
         // Nothing, or rounded up again to what was just refused: no shorter step can be added to t.

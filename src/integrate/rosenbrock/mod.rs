@@ -156,7 +156,8 @@ impl<const N: usize> Rosenbrock<N> {
         }
         Ok(Rosenbrock {
             method,
-            tolerances: Tolerances::new(tolerances.rtol, tolerances.atol)?,
+            tolerances: Tolerances::new(tolerances.rtol, tolerances.atol)?
+                .stepping(tolerances.max_step),
             max_steps,
             work: Work::default(),
         })

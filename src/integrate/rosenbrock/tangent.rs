@@ -150,6 +150,10 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
         error_order(self.scheme.tableau())
     }
 
+    fn max_step(&self) -> f64 {
+        self.tolerances.max_step
+    }
+
     fn work(&mut self) -> &mut Work {
         self.work
     }

@@ -107,6 +107,10 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
         error_order(self.scheme.tableau())
     }
 
+    fn max_step(&self) -> f64 {
+        self.tolerances.max_step
+    }
+
     fn work(&mut self) -> &mut Work {
         self.work
     }

@@ -15,6 +15,7 @@ pub use batch::{Batch, BatchObserver, BatchRun};
 use super::{Control, Integrator, Observer, Step, Tolerances, Work, step_underflow};
 use crate::error::{Error, Result};
 use crate::field::{Analytic, Jacobian, State, VectorField, checked_places};
+use crate::number::DoubleDouble;
 use crate::series::{
     Accuracy, Derivatives, Expansion, Jet3, REFERENCE_ORDER, Solution, Tangent, TaylorMap,
     usual_order,
@@ -44,6 +45,7 @@ use way::{Clock, Unseen, Way};
 pub struct Taylor {
     arithmetic: Arithmetic,
     accuracy: Accuracy,
+    max_step: f64,
     max_steps: usize,
     work: Work,
 }
@@ -64,7 +66,7 @@ impl Taylor {
     /// # Errors
     /// [`Error::Parameter`] for tolerances outside their domain or no steps.
     pub fn new(tolerances: Tolerances, max_steps: usize) -> Result<Self> {
-        let Tolerances { rtol, atol } = Tolerances::new(tolerances.rtol, tolerances.atol)?;
+        let Tolerances { rtol, atol, .. } = Tolerances::new(tolerances.rtol, tolerances.atol)?;
         if max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
@@ -75,6 +77,7 @@ impl Taylor {
         Ok(Taylor {
             arithmetic: Arithmetic::Double,
             accuracy,
+            max_step: tolerances.max_step,
             max_steps,
             work: Work::default(),
         })
@@ -240,6 +243,11 @@ impl Taylor {
         ))
     }
 
+    /// With this largest step.
+    pub(crate) fn stepping(self, max_step: f64) -> Self {
+        Taylor { max_step, ..self }
+    }
+
     /// Another bound on steps.
     pub(super) fn set_max_steps(&mut self, max_steps: usize) {
         self.max_steps = max_steps;
@@ -306,7 +314,12 @@ impl Taylor {
                     limit: self.max_steps,
                 });
             }
-            let h = solution.advance(accuracy, remaining);
+            let limit = if remaining.hi().abs() > self.max_step {
+                DoubleDouble::from(self.max_step.copysign(remaining.hi()))
+            } else {
+                remaining
+            };
+            let h = solution.advance(accuracy, limit);
             // Also of what fails.
             self.work.rejected = solution.rejected();
             let (begin, before) = (clock.now, clock.now.hi());

@@ -142,6 +142,7 @@ fn returns(pieces: &Pieces<'_>, driving: f64, start: &Vector) -> Result<Vec<Vect
         returns: RETURNS,
         patience: 100.0 * slab.rough_period(),
         accuracy: TOLERANCE,
+        max_step: f64::INFINITY,
         waypoints: false,
     };
     let tolerances = Tolerances::equal(TOLERANCE)?;

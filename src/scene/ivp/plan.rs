@@ -59,7 +59,7 @@ impl IvpPlan {
                 let slides = text.slab.is_some();
                 let chart = Chart::new(text.system.states().len(), slides, false, text.units());
                 let from = started(&chart, start, &text_names(&text))?;
-                let numerics = (text::numerics(numerics)?, numerics.max_steps);
+                let numerics = (text::numerics(numerics, text.units())?, numerics.max_steps);
                 (Model::Text(Box::new(text)), chart, from, numerics)
             }
             None => {
@@ -74,7 +74,7 @@ impl IvpPlan {
                 from.truncate(variables);
                 let doubled = dimension == Dimension::Symmetric;
                 let chart = Chart::new(variables, true, doubled, &system.units);
-                let numerics = (plan::numerics(numerics)?, numerics.max_steps);
+                let numerics = (plan::numerics(numerics, &system.units)?, numerics.max_steps);
                 let model = Model::Slab(Box::new(system), loading, dimension);
                 (model, chart, from, numerics)
             }

@@ -255,7 +255,12 @@ impl Described for ManyPlan {
 
 /// What runs of many interfaces do not have.
 fn refused(options: &IntegrateOptions) -> Result<()> {
-    let asked: [(&str, bool, &str); 2] = [
+    let asked: [(&str, bool, &str); 3] = [
+        (
+            "max_step",
+            options.numerics.max_step.is_some(),
+            "the laws of many interfaces have no pulses that a step could miss",
+        ),
         (
             "program",
             options.program.is_some(),

@@ -1,6 +1,6 @@
 //! A return map's plan in words.
 
-use super::super::plan::Dimension;
+use super::super::plan::{Dimension, longest_in_words};
 use super::super::units::Quantity;
 use super::SectionPlan;
 use crate::error::count;
@@ -37,10 +37,11 @@ pub fn explain_section(plan: &SectionPlan) -> String {
     line(
         "tolerances",
         format!(
-            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps",
+            "rtol {:e}, atol {:e} on (tau, ln psi), at most {} steps{}",
             plan.tolerances.rtol,
             plan.tolerances.atol,
-            count(plan.max_steps)
+            count(plan.max_steps),
+            longest_in_words(plan.tolerances, &plan.system.units)
         ),
     );
     line("section", section(plan));

@@ -79,7 +79,7 @@ pub(super) fn of_orbit(
         start: (y[0], [y[1], y[y.len() - 1]]),
         period: Some(periodic.period.value),
     };
-    let accuracy = OrbitAccuracy::of(Choice::Taylor);
+    let accuracy = OrbitAccuracy::of(Choice::Taylor).stepping(plan.tolerances.max_step);
     let same = |found: Result<FoundOrbit>| {
         let orbit = found.ok()?.orbit;
         let apart = orbit.period.value / periodic.period.value - 1.0;
@@ -138,6 +138,7 @@ pub(super) fn embedded(record: &ReturnRecord) -> ReturnRecord {
         state: state(&at.state),
     };
     ReturnRecord {
+        max_step: record.max_step,
         returns: record.returns.iter().map(point).collect(),
         waypoints: record.waypoints.iter().map(point).collect(),
         ended: match &record.ended {

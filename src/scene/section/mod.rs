@@ -71,7 +71,7 @@ impl SectionPlan {
         let loading = system.loading()?;
         let text = options.start.as_deref().unwrap_or(USUAL_START);
         let start = start(text, &system, &loading)?;
-        let (method, tolerances) = numerics(&options.numerics)?;
+        let (method, tolerances) = numerics(&options.numerics, &system.units)?;
         let patience = match options.patience {
             Some(patience) => {
                 let patience = positive("patience", patience)?;

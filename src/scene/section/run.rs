@@ -84,6 +84,7 @@ pub fn run_section(plan: &SectionPlan, sink: &mut dyn Sink) -> Result<SectionOut
             returns: plan.returns + 1,
             patience: plan.patience,
             accuracy: plan.tolerances.rtol,
+            max_step: plan.tolerances.max_step,
             waypoints: false,
         },
         integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,

@@ -13,7 +13,10 @@ use crate::orbit::{
 };
 use crate::scene::options::OrbitOptions;
 use crate::scene::orbit::{dense_output, run_method, second};
-use crate::scene::plan::{Sampling, equally_spaced};
+use crate::scene::plan::{Sampling, equally_spaced, longest_in_words, stepping};
+use crate::scene::system::Described;
+#[cfg(feature = "sundials")]
+use crate::sundials::MultistepMethod;
 
 /// A periodic orbit that is asked for, checked.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,16 +48,17 @@ impl TextOrbitPlan {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
         let rtol = options.rtol.unwrap_or(usual.tolerances.rtol);
+        let tolerances = Tolerances::new(rtol, options.atol.unwrap_or(rtol))?;
         let accuracy = OrbitAccuracy {
             max_steps: options.max_steps,
-            tolerances: Tolerances::new(rtol, options.atol.unwrap_or(rtol))?,
+            tolerances: stepping(tolerances, options.max_step, model.units())?,
             ..usual
         };
         let guess = |period| positive("period-guess", period);
         Ok(TextOrbitPlan {
             start: start(options, &model)?,
             period: options.period_guess.map(guess).transpose()?,
-            second: second(options.crosscheck.as_deref(), accuracy.method)?,
+            second: second(options.crosscheck.as_deref(), &accuracy)?,
             rows: options.points.map(equally_spaced).transpose()?,
             picture: options.plot.is_some(),
             accuracy,
@@ -76,12 +80,13 @@ impl TextOrbitPlan {
             "plan of this command
   dimension         {}
   guess             {guess}
-  method            {}, tangents on, multiple shooting; rtol {:e}
+  method            {}, tangents on, multiple shooting; rtol {:e}{}
   crosscheck        {second}
   dense output      {}",
             self.start.len(),
             run_method(self.accuracy.method).name(),
             self.accuracy.tolerances.rtol,
+            longest_in_words(self.accuracy.tolerances, self.model.units()),
             dense_output(self.rows, self.picture)
         )
     }
@@ -130,7 +135,7 @@ impl TextOrbitPlan {
         }
         let vector = |y: &[f64]| Vector::from_column_slice(y);
         let nodes = orbit.nodes_since_point().into_iter();
-        let method = run_method(self.accuracy.method);
+        let method = Choice::named(orbit.method).unwrap_or(self.accuracy.method);
         Some(TextPlan {
             program: None,
             start: vector(&orbit.point),
@@ -156,6 +161,15 @@ impl TextOrbitPlan {
         let field = self.model.field()?;
         let Some(second) = &self.second else {
             return Ok(None);
+        };
+        // Of a stiff orbit that the method did not find.
+        #[cfg(feature = "sundials")]
+        let second = match orbit.method == run_method(self.accuracy.method).name() {
+            true => second,
+            false => &OrbitAccuracy {
+                checked: false,
+                ..OrbitAccuracy::of(Choice::Cvode(MultistepMethod::Bdf))
+            },
         };
         let mut again = crosscheck_of(&field, orbit, second)?;
         self.complete(&mut again.orbit, second)?;

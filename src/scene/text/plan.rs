@@ -9,10 +9,10 @@ use crate::model::TextSystem;
 use crate::scene::column::Column;
 use crate::scene::estimate::Companion;
 use crate::scene::options::{IntegrateOptions, NumericsOptions};
-use crate::scene::plan::{Sampling, sampling, until};
+use crate::scene::plan::{Sampling, longest_in_words, sampling, stepping, until};
 use crate::scene::program::{Program, Stretch};
 use crate::scene::system::Described;
-use crate::scene::units::Quantity;
+use crate::scene::units::{Quantity, Units};
 use serde_json::json;
 use std::borrow::Cow;
 
@@ -101,12 +101,16 @@ fn interface_columns(slab: &TextSlab, system: &TextSystem) -> Vec<Column<TextIns
 }
 
 /// The method and the tolerances, checked.
-pub(in crate::scene) fn numerics(options: &NumericsOptions) -> Result<(Choice, Tolerances)> {
+pub(in crate::scene) fn numerics(
+    options: &NumericsOptions,
+    units: &Units,
+) -> Result<(Choice, Tolerances)> {
     if options.max_steps == 0 {
         return Err(Error::parameter("max-steps", 0, "at least 1"));
     }
     let atol = options.atol.unwrap_or(options.rtol);
     let tolerances = Tolerances::new(options.rtol, atol)?;
+    let tolerances = stepping(tolerances, options.max_step, units)?;
     Ok((Choice::named(&options.method)?, tolerances))
 }
 
@@ -133,7 +137,7 @@ impl TextPlan {
         if let Some(names) = &options.columns {
             columns = Column::listed(&columns, names)?;
         }
-        let (method, tolerances) = numerics(&options.numerics)?;
+        let (method, tolerances) = numerics(&options.numerics, model.units())?;
         Ok(TextPlan {
             program,
             start,
@@ -207,7 +211,7 @@ impl TextPlan {
                 "on: twice the distance to a second run by auto with rtol {:e}, and the rounding of the start by a tangent flow",
                 second.rtol
             ),
-            Some(Companion::Reference) => {
+            Some(Companion::Reference { .. }) => {
                 "on: twice the distance to a second run in double-double arithmetic, and the rounding of the start by a tangent flow".into()
             }
             None => "off: `estimate_error` is not given".into(),
@@ -216,7 +220,7 @@ impl TextPlan {
             "plan of this run
   dimension         {}: {}
   method            {}: {}
-  tolerances        rtol {:e}, atol {:e} on every state, at most {} steps
+  tolerances        rtol {:e}, atol {:e} on every state, at most {} steps{}
   trajectory        {rows}
   error estimate    {estimate}",
             self.start.len(),
@@ -225,7 +229,8 @@ impl TextPlan {
             self.method.reason(),
             self.tolerances.rtol,
             self.tolerances.atol,
-            crate::error::count(self.max_steps)
+            crate::error::count(self.max_steps),
+            longest_in_words(self.tolerances, self.model.units())
         )
     }
 }

@@ -174,7 +174,7 @@ fn errors(
     second: &Vector,
     outcome: &mut RunOutcome,
 ) -> Result<Vec<f64>> {
-    let tolerances = Tolerances::equal(GROWTH)?;
+    let tolerances = Tolerances::equal(GROWTH)?.stepping(plan.tolerances.max_step);
     let mut integrator = AnyIntegrator::new(Choice::Auto, tolerances, plan.max_steps)?;
     let count = plan.start.len();
     let mut tangent = Matrix::identity(count, count);

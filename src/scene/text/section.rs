@@ -11,6 +11,7 @@ use crate::number::polynomial::Crossing;
 use crate::orbit::{OrbitAccuracy, find_from};
 use crate::scene::column::Column;
 use crate::scene::options::SectionOptions;
+use crate::scene::plan::longest_in_words;
 use crate::scene::run::Sink;
 use crate::scene::section::{
     CheckedExponents, Means, SAME_PERIOD, SectionOutcome, Settling, USUAL_SURFACE, counted,
@@ -94,7 +95,7 @@ impl TextSectionPlan {
             ));
         }
         counted(options)?;
-        let (method, tolerances) = numerics(&options.numerics)?;
+        let (method, tolerances) = numerics(&options.numerics, model.units())?;
         let (state, value) = surface(options.surface.as_deref(), &model)?;
         Ok(TextSectionPlan {
             start: model.start(options.start.as_deref())?,
@@ -132,12 +133,17 @@ impl TextSectionPlan {
             "plan of this return map
   dimension         {}
   method            {}: {}
+  tolerances        rtol {:e}, atol {:e} on every state, at most {} steps{}
   section           {} {sense} through {}
   returns           {} after {} that are skipped; a run that does not return for {} ends
   tangents          {tangents}",
             self.start.len(),
             self.method.name(),
             self.method.reason(),
+            self.tolerances.rtol,
+            self.tolerances.atol,
+            crate::error::count(self.max_steps),
+            longest_in_words(self.tolerances, self.model.units()),
             self.model.system.states()[self.state],
             self.value,
             self.returns,
@@ -203,13 +209,14 @@ pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<S
             returns: plan.returns + 1,
             patience: plan.patience,
             accuracy: plan.tolerances.rtol,
+            max_step: plan.tolerances.max_step,
             waypoints: false,
         },
         integrator: AnyIntegrator::new(plan.method, plan.tolerances, plan.max_steps)?,
         max_steps: plan.max_steps,
         lyapunov: plan.lyapunov,
         means,
-        by_orbit: &|periodic| of_orbit(field, periodic),
+        by_orbit: &|periodic| of_orbit(field, periodic, plan.tolerances.max_step),
     };
     let columns = text_section_columns(&plan.model);
     let mut made = 0;
@@ -233,9 +240,13 @@ pub fn run_text_section(plan: &TextSectionPlan, sink: &mut dyn Sink) -> Result<S
 }
 
 /// ln |mu| / T of the periodic orbit through a point, with its period.
-fn of_orbit(field: &AnyField<'_>, periodic: &Periodic) -> Option<(Uncertain, CheckedExponents)> {
+fn of_orbit(
+    field: &AnyField<'_>,
+    periodic: &Periodic,
+    max_step: f64,
+) -> Option<(Uncertain, CheckedExponents)> {
     let period = periodic.period.value;
-    let accuracy = OrbitAccuracy::of(Choice::Taylor);
+    let accuracy = OrbitAccuracy::of(Choice::Taylor).stepping(max_step);
     let orbit = find_from(field, &periodic.point, Some(period), &accuracy)
         .ok()?
         .orbit;

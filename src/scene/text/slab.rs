@@ -12,7 +12,7 @@ use crate::number::{Interval, Jet, Real, Uncertain};
 use crate::orbit::{AlongArcs, ShootingNodes, WithinCluster, within_clusters};
 use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::scene::plan::{NEAR_SYMMETRIC, USUAL_START};
-use crate::scene::set::assignments;
+use crate::scene::set::{assignments, put_in, twice};
 use crate::scene::system::damping;
 use crate::sweep::RandomStart;
 use serde_json::{Map, Value, json};
@@ -445,14 +445,15 @@ fn parameters(
     });
     let mut own: Vec<Own> = of_file.collect();
     let slab = &options.slab;
-    for (name, value) in [
+    let given = [
         ("healing_time", slab.healing_time),
         ("residual_strength", slab.residual_strength),
         ("direct_effect", slab.direct_effect),
         ("evolution_effect", slab.evolution_effect),
         ("reference_friction", slab.reference_friction),
         (DAMPING, slab.damping),
-    ] {
+    ];
+    for (name, value) in given {
         let Some(value) = value else { continue };
         let Some(own) = own.iter_mut().find(|own| own.name == name) else {
             // Without damping a law needs none.
@@ -469,8 +470,14 @@ fn parameters(
     }
     for (name, value) in assignments(&slab.text.set)? {
         match name {
-            "driving" => loading[0] = Some(value),
-            "stiffness" => loading[1] = Some(value),
+            "driving" => put_in(&mut loading[0], name, value)?,
+            "stiffness" => put_in(&mut loading[1], name, value)?,
+            _ if given
+                .iter()
+                .any(|(option, value)| *option == name && value.is_some()) =>
+            {
+                return Err(twice(name, name));
+            }
             DAMPING if law.place(DAMPING).is_none() => {}
             _ => put(&mut own, name, value, interfaces)?,
         }

@@ -93,6 +93,7 @@ impl GeneralRun {
                 returns: settings.max_returns + 1,
                 patience,
                 accuracy: settings.rtol,
+                max_step: f64::INFINITY,
                 waypoints: false,
             },
             recorder: Recorder::new(),

@@ -328,13 +328,20 @@ fn finite<T: Element>(x: &[T]) -> bool {
 }
 
 impl<T: Element> Trajectory for Interpreted<'_, T> {
-    /// Orders beyond the highest of these gain nothing, and come nearer to where a formula has no value before they are past it.
+    /// It rises within every two decades: so a run and one that checks it, of a hundredth of its tolerance, are of different orders. Where
+    /// their steps end at the same kinks, they would otherwise err alike. Higher orders gain nothing, and come nearer to where a formula has
+    /// no value before they are past it; below the last of these tolerances only rounding is left, of which longer series have more.
     fn order(&self, rtol: f64) -> usize {
-        /// Tolerances above which lower orders win.
-        const FROM: [(f64, usize); 2] = [(1e-6, 12), (1e-9, 16)];
-        const HIGHEST: usize = 20;
+        const FROM: [(f64, usize); 5] = [
+            (3e-7, 12),
+            (3e-9, 16),
+            (3e-11, 20),
+            (3e-13, 22),
+            (9e-15, 24),
+        ];
+        const FINEST: usize = 20;
         let least = FROM.iter().find(|(above, _)| rtol > *above);
-        least.map_or(HIGHEST, |(_, order)| *order)
+        least.map_or(FINEST, |(_, order)| *order)
     }
 
     fn start(&mut self, y: &[f64]) {

@@ -4,10 +4,13 @@
 
 use super::program::{Operation, Program, Source};
 
-/// Returns a bound on the rounding error of each row's value in double precision, with exact variables. Rows that are not finite have the bound 0.
+/// Returns a bound on the rounding error of each row's value in double precision, whose variables are rounded too: they are sums. Rows that are not finite have the bound 0.
 pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f64> {
     const UNIT: f64 = f64::EPSILON;
     let mut off = vec![0.0; program.rows()];
+    for (row, off) in off[..program.variables()].iter_mut().enumerate() {
+        *off = UNIT * value(row).abs();
+    }
     for one in program.instructions() {
         let (result, size) = (one.result, |row: usize| value(row).abs());
         let of = |source: Source| match source {
