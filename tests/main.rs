@@ -77,6 +77,7 @@ mod many_methods;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
+mod orbit_kinds;
 mod orbit_rows;
 mod orbits;
 #[cfg(not(feature = "parquet"))]

@@ -314,7 +314,117 @@ fn pulses_that_no_method_sees_are_met_with_a_largest_step() {
         "max-step is 0, but must be positive and finite",
     );
     refused(
-        "integrate --interfaces 4 --until 1 --max-step 0.1",
+        "integrate --interfaces 40 --driving 1 --stiffness 0.14 --until 1 --max-step 0.1",
         "--max-step",
     );
+}
+
+/// Kinks within a step of which the states know nothing, and plateaus between switches of `tanh`: the integrals by quadrature (mpmath), split
+/// where the arguments are 0.
+#[test]
+fn what_rises_and_falls_between_the_ends_of_a_step_is_seen() {
+    let along_a_line = [
+        (
+            "max(0, 0.3^2 - (sin(3*x) - 0.5)^2)/0.3^3",
+            -1.9,
+            1.800755383,
+        ),
+        ("max(0, 0.1^2 - (tanh(x) - 0.5)^2)/0.1^3", -1.9, 1.789027288),
+        (
+            "max(0, 0.001^2 - (exp(x)/3 - 1.5)^2)/0.001^3",
+            -2.0,
+            0.88888897,
+        ),
+        ("min(0, (sin(3*x) - 0.5)^2 - 0.09)", -1.9, -0.0486204),
+        ("tanh((x + 1)/0.02) - tanh((x - 1)/0.02)", -2.0, 4.0),
+    ];
+    let integral = |states: &str, rates: &str, start: &str, options: &str| {
+        let text = format!(
+            "name = \"integral\"\nstates = [{states}]\n[rates]\n{rates}\n[start]\n{start}\ny = 0.0\n"
+        );
+        let path = file("integrals", &text);
+        let made = object(&format!(
+            "integrate --system {path} --final-only --estimate-error {options}"
+        ));
+        let off = number(&made, "/result/final/y_uncertainty");
+        (number(&made, "/result/final/y"), off)
+    };
+    for (y, begin, truth) in along_a_line {
+        let rates = format!("x = \"1\"\ny = \"{y}\"");
+        let (made, off) = integral(
+            "\"x\", \"y\"",
+            &rates,
+            &format!("x = {begin:?}"),
+            "--until 4",
+        );
+        near(made, truth, off + 1e-7);
+    }
+    let along_an_oscillation = [
+        ("max(0, 0.1^2 - (sin(3*u) - 0.5)^2)/0.1^3", 6.3224881),
+        ("max(0, 0.3^2 - (tanh(3*u) - 0.5)^2)/0.3^3", 2.5880688),
+        ("tanh((u^2 - 0.25)/0.01)", 2.6705066),
+    ];
+    for (y, truth) in along_an_oscillation {
+        let rates = format!("u = \"v\"\nv = \"-u\"\ny = \"{y}\"");
+        let states = "\"u\", \"v\", \"y\"";
+        let (made, off) = integral(states, &rates, "u = 0.0\nv = 1.0", "--until 10");
+        near(made, truth, off + 1e-7);
+    }
+}
+
+/// A state that stays 0 is exact however much it would grow; one that passes 0 with all others has an estimate too.
+#[test]
+fn estimates_are_numbers_where_states_are_zero() {
+    let growing = file(
+        "growing",
+        "name = \"growing\"\nstates = [\"x\", \"y\"]\n[rates]\nx = \"-x\"\ny = \"1000*y\"\n[start]\nx = 1.0\ny = 0.0\n",
+    );
+    let made = object(&format!(
+        "integrate --system {growing} --until 3 --method rodas4 --rtol 1e-4 --atol 1e-4 --final-only --estimate-error"
+    ));
+    let [x, off] =
+        ["x", "x_uncertainty"].map(|name| number(&made, &format!("/result/final/{name}")));
+    assert!((x - (-3.0_f64).exp()).abs() <= off && off < 1e-3, "{made}");
+    assert!(number(&made, "/result/final/error_estimate") > 1e-6);
+    let clock = file(
+        "clock",
+        "name = \"clock\"\nstates = [\"x\"]\n[rates]\nx = \"1\"\n[start]\nx = -1.0\n",
+    );
+    let made = object(&format!(
+        "integrate --system {clock} --until 2 --final-only --estimate-error"
+    ));
+    assert!(number(&made, "/result/final/x_uncertainty") < 1e-14);
+}
+
+/// Two runs of unlike tolerances can err alike by chance: ends in which a run of a hundredth of the tolerance did. By quadruple precision.
+#[test]
+fn second_runs_err_much_less_than_the_first() {
+    for (run, name, truth) in [
+        (
+            "molniya-j2.toml --until 51891.1 --method taylor",
+            "z",
+            14468122.951933154,
+        ),
+        (
+            "cstr.toml --until 62.6673 --method rodas4 --rtol 1e-6",
+            "c",
+            51.326674353986535,
+        ),
+        (
+            "double-pendulum.toml --until 4.50708",
+            "wb",
+            1.335385066405342,
+        ),
+        ("jansen-rit.toml --until 0.966981", "yc", 15.602649196629087),
+    ] {
+        let made = object(&format!(
+            "integrate --system tests/data/cases/{run} --final-only --estimate-error"
+        ));
+        let [value, off] =
+            ["", "_uncertainty"].map(|part| number(&made, &format!("/result/final/{name}{part}")));
+        assert!(
+            (value - truth).abs() <= off,
+            "{run}: {name} = {value} ± {off} for {truth}"
+        );
+    }
 }

@@ -204,6 +204,7 @@ class Commands:
         method: Text = None,
         rtol: Number = None,
         atol: Number = None,
+        max_step: Number = None,
         max_steps: Count = None,
         progress: Optional[bool] = None,
     ) -> Trajectory:
@@ -254,7 +255,7 @@ class Commands:
             With ``events`` of three interfaces and more: in how many events each interface slips,
             how far, and its constants that are drawn
         estimate_error : bool, optional
-            Estimate the error of the last row by a second run with 100 times tighter tolerances,
+            Estimate the error of the last row by a second run with 10,000 times tighter tolerances,
             below ``rtol`` 1e-12 by the reference
         reference : bool, optional
             With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
@@ -266,6 +267,9 @@ class Commands:
             Relative local error tolerance [default: 1e-8]
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_step : float, optional
+            Largest step in time, for what is shorter than a step: a pulse that begins and ends
+            within one is seen by no method
         max_steps : int, optional
             Give up after so many steps [default: 10000000]
         progress : bool, optional
@@ -354,6 +358,7 @@ class Commands:
         method: Text = None,
         rtol: Number = None,
         atol: Number = None,
+        max_step: Number = None,
         max_steps: Count = None,
         progress: Optional[bool] = None,
     ) -> Orbit:
@@ -363,7 +368,8 @@ class Commands:
         ----------
         symmetry : str, optional
             symmetric (both interfaces move alike) or asymmetric; without meaning where they differ
-            [default: symmetric]
+            [default: symmetric, but without a start and where that orbit is not stable what else
+            runs settle on]
         start : str or sequence of float, optional
             TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS];
             or hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is
@@ -385,6 +391,9 @@ class Commands:
             Relative local error tolerance [default: 1e-15 of taylor, 1e-11 of the others]
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_step : float, optional
+            Largest step in time, for what is shorter than a step: a pulse that begins and ends
+            within one is seen by no method
         max_steps : int, optional
             Give up an arc after so many steps [default: 10000000]
         progress : bool, optional
@@ -418,6 +427,7 @@ class Commands:
         method: Text = None,
         rtol: Number = None,
         atol: Number = None,
+        max_step: Number = None,
         max_steps: Count = None,
         progress: Optional[bool] = None,
     ) -> Section:
@@ -457,6 +467,9 @@ class Commands:
             Relative local error tolerance [default: 1e-8]
         atol : float, optional
             Absolute local error tolerance of tau and ln psi [default: as ``rtol``]
+        max_step : float, optional
+            Largest step in time, for what is shorter than a step: a pulse that begins and ends
+            within one is seen by no method
         max_steps : int, optional
             Give up after so many steps [default: 10000000]
         progress : bool, optional

@@ -64,6 +64,14 @@ impl FoundOrbit {
         Self::stable_first(all.collect())
     }
 
+    /// A stable one first, then that of the fewest turns.
+    fn by_turns(self) -> Self {
+        let mut orbits: Vec<Orbit> = std::iter::once(self.orbit).chain(self.others).collect();
+        orbits.sort_by(|a, b| a.period.value.abs().total_cmp(&b.period.value.abs()));
+        orbits.dedup_by(|a, b| (a.period.value / b.period.value - 1.0).abs() < SAME_PERIOD);
+        Self::stable_first(orbits)
+    }
+
     fn stable_first(mut orbits: Vec<Orbit>) -> Self {
         orbits.sort_by_key(|orbit| orbit.verdict() != Verdict::Stable);
         let orbit = orbits.remove(0);
@@ -164,7 +172,24 @@ fn search(
             ..
         }
     );
-    completed(guesses, Some(slab.steady_stress()), accuracy, whole_cycle)
+    let level = Some(slab.steady_stress());
+    let found = completed(guesses, level, accuracy, whole_cycle)?;
+    if query.begin != InitialGuess::Anywhere || found.orbit.verdict() == Verdict::Stable {
+        return Ok(found);
+    }
+    // Nor is it what runs settle on: an orbit of fewer turns may be on the branch.
+    let mut branching = Guesses::new(space, query.symmetry);
+    for shooting in branch::from_hopf(slab, query.symmetry, space, &mut tracer).unwrap_or_default()
+    {
+        branching.take(shooting);
+    }
+    if branching.closed.is_empty() {
+        return Ok(found);
+    }
+    Ok(match completed(branching, level, accuracy, false) {
+        Ok(others) => found.with(others).by_turns(),
+        Err(_) => found,
+    })
 }
 
 /// Why there is no orbit.

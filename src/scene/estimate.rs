@@ -171,7 +171,8 @@ pub(super) fn estimate(
     match rounding_of_start(plan, end, outcome, sink) {
         Ok(Some(rounding)) => {
             let distance = relative_distance(end, &second);
-            outcome.error_estimate = Some(MARGIN * distance + rounding + ROUNDING);
+            let estimate = MARGIN * distance + rounding + ROUNDING;
+            outcome.error_estimate = Some(estimate).filter(|x| x.is_finite());
         }
         Ok(None) => outcome.stopped = true,
         Err(error) => outcome.estimate_failure = Some(error),
@@ -259,9 +260,17 @@ fn rounding_of_start(
     let rounded = start.map(|x| 0.5 * f64::EPSILON * (1.0 + x.abs()));
     let moved = growth.tangent.abs() * rounded;
     let stress = moved[0] / end.0.abs().max(f64::MIN_POSITIVE);
-    Ok(Some(
-        (1..plan.dimension.number()).fold(stress, |largest, i| largest.max(moved[i])),
-    ))
+    let of_all = (1..plan.dimension.number())
+        .map(|i| moved[i])
+        .chain([stress]);
+    Ok(Some(of_all.fold(0.0, |largest: f64, x| {
+        // One that is not known is no small one.
+        if x.is_nan() {
+            f64::INFINITY
+        } else {
+            largest.max(x)
+        }
+    })))
 }
 
 /// The time of a singularity, or of a burst too fast for doubles, with its uncertainty by a second run.

@@ -398,7 +398,7 @@ pub struct OrbitOptions {
     /// What slides.
     #[command(flatten)]
     pub model: ModelOptions,
-    /// symmetric (both interfaces move alike) or asymmetric; without meaning where they differ [default: symmetric]
+    /// symmetric (both interfaces move alike) or asymmetric; without meaning where they differ [default: symmetric, but without a start and where that orbit is not stable what else runs settle on]
     #[arg(
         long,
         value_name = "NAME",

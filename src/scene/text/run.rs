@@ -53,8 +53,10 @@ pub fn run_text(plan: &TextPlan, sink: &mut dyn Sink) -> Result<RunOutcome> {
                         (true, 0) => error / x.abs(),
                         (true, _) => *error,
                     };
-                    let largest = sizes.map(size).fold(0.0, f64::max);
-                    outcome.error_estimate = Some(largest).filter(|x| x.is_finite());
+                    let sizes: Vec<f64> = sizes.map(size).collect();
+                    let known = sizes.iter().all(|x| x.is_finite());
+                    outcome.error_estimate =
+                        known.then(|| sizes.iter().fold(0.0, |a: f64, x| a.max(*x)));
                     outcome.errors = Some(errors);
                 }
                 Err(Error::Interrupted) => outcome.stopped = true,
@@ -197,9 +199,14 @@ fn errors(
         Ok((y, false))
     })?;
     let rounded = plan.start.map(|x| 0.5 * f64::EPSILON * x.abs());
-    let moved = tangent.abs() * rounded;
+    // What is exact moves nothing, however much it would grow.
+    let moved = |i: usize| -> f64 {
+        let exact = |j: &usize| rounded[*j] == 0.0;
+        let inexact = (0..count).filter(|j| !exact(j));
+        inexact.map(|j| tangent[(i, j)].abs() * rounded[j]).sum()
+    };
     let error =
-        |i: usize| MARGIN * (end[i] - second[i]).abs() + moved[i] + ROUNDING * (1.0 + end[i].abs());
+        |i: usize| MARGIN * (end[i] - second[i]).abs() + moved(i) + ROUNDING * (1.0 + end[i].abs());
     Ok((0..count).map(error).collect())
 }
 
@@ -211,14 +218,15 @@ fn growth(
     span: (f64, f64),
     y: &Vector,
 ) -> Result<(Vector, Matrix)> {
-    /// The distance of the starts, in units of the largest variable: far above the tolerance.
+    /// The distance of the starts, in units of a variable, or of the largest where that is 0: far above the tolerance.
     const APART: f64 = 1e-3;
     if let Ok((next, grown)) = integrator.derivatives(field, span, y, &[]) {
         return Ok((next, grown.start));
     }
     let next = integrator.flow(field, span, y, None)?;
-    let distance = APART * if y.amax() > 0.0 { y.amax() } else { 1.0 };
     let columns = (0..y.len()).map(|i| {
+        let sizes = [y[i].abs(), y.amax(), 1.0];
+        let distance = APART * sizes.into_iter().find(|size| *size > 0.0).unwrap_or(1.0);
         let mut beside = y.clone();
         beside[i] += distance;
         let there = integrator.flow(field, span, &beside, None)?;

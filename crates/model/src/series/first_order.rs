@@ -46,7 +46,10 @@ impl<T: Element> Level<'_, T> {
             Operation::InverseHyperbolicSine(a, _) => self.put(result, first(a).asinh()),
             Operation::HyperbolicTangent(a, u) => {
                 let y = first(a).tanh();
-                self.put(u, any.like(1.0) - y * y);
+                // 1 - y^2 is 1/cosh^2, which keeps its digits where y is next to 1: from them a series knows what is ahead.
+                let e = (first(a).abs() * any.like(-2.0)).exp();
+                let whole = e + any.like(1.0);
+                self.put(u, e * any.like(4.0) / (whole * whole));
                 self.put(result, y);
             }
             Operation::Power(a, p) => self.put(result, first(a).power(p)),

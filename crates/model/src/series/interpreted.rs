@@ -150,6 +150,11 @@ impl<'a, T: Element> Interpreted<'a, T> {
         // The time in which the state would change by its own size; of a variable that is zero, by the rounding of the largest.
         let sizes = || self.reached.x.iter().map(|x| x.abs());
         let largest = sizes().map(|x| x.largest_lane()).fold(0.0, f64::max);
+        if largest == 0.0 {
+            // Nothing says in what time they change: as long as a step may be.
+            self.next_unit = power_of_two(f64::MAX);
+            return;
+        }
         let least = self.any.like(f64::max(LEAST, largest * f64::EPSILON));
         let rate = |(i, size): (usize, T)| {
             let rate = self.rows.coefficient(self.program.outputs[i], 0);

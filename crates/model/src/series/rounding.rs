@@ -38,7 +38,9 @@ pub(super) fn rounding(program: &Program, value: impl Fn(usize) -> f64) -> Vec<f
             Operation::Arctangent(a, u) | Operation::InverseHyperbolicSine(a, u) => {
                 (off[a] / size(u), 0.0)
             }
-            Operation::HyperbolicTangent(a, u) => (size(u) * off[a], 2.0 * size(u) * off[a] + UNIT),
+            Operation::HyperbolicTangent(a, u) => {
+                (size(u) * off[a], size(u) * (2.0 * off[a] + 4.0 * UNIT))
+            }
             Operation::Power(a, p) => (p.hi().abs() * size(result) / size(a) * off[a], 0.0),
             // The ratio's slope is at most this large.
             Operation::Ratio(a, _) => ((1.0 + size(result)) * off[a], 0.0),

@@ -24,6 +24,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const NOISIER: f64 = 8.0;
 /// Where a series is compared with the rates before a kink or a branch point: at that itself a formula may have no value.
 const BEFORE: f64 = 0.999;
+/// The part of a step at which the series is compared with the rates beside its end: what rises and falls again within a step is seen there.
+const MIDDLE: f64 = 0.5;
 /// What leads behind a branch point.
 const BEHIND: f64 = 1.0 + 4.0 * f64::EPSILON;
 
@@ -45,8 +47,11 @@ impl<T: Element> Interpreted<'_, T> {
             DoubleDouble::from(h.copysign(limit.hi()))
         };
         let mut time = if whole { limit } else { step * self.unit };
-        self.look_at(accuracy.order, step);
-        if !self.is_solution(accuracy, step) || self.meets_kink(accuracy.order, step) {
+        let explained = self.is_solution_at(accuracy, step * MIDDLE);
+        if !(self.is_solution_at(accuracy, step) && explained)
+            || !self.kinks_converge(accuracy, step)
+            || self.meets_kink(accuracy.order, step)
+        {
             step = self.shortened(accuracy, step);
             if !step.is_finite() {
                 return step;
@@ -75,7 +80,7 @@ impl<T: Element> Interpreted<'_, T> {
         let order = accuracy.order;
         for _ in 0..HALVINGS {
             self.look_at(order, h);
-            let end = if !finite(&self.next.x) {
+            let end = if !finite(&self.next.x) || !self.kinks_converge(accuracy, h) {
                 None
             } else if let Some(behind) = self.behind_kink(order, h) {
                 self.cut(order, behind)
@@ -93,9 +98,12 @@ impl<T: Element> Interpreted<'_, T> {
                 Some((h, h))
             };
             if let Some((before, behind)) = end {
-                self.look_at(order, before);
-                self.measure_noise();
-                if self.is_solution(accuracy, before) {
+                let explained = [MIDDLE, 1.0].iter().all(|part| {
+                    self.look_at(order, before * *part);
+                    self.measure_noise();
+                    self.is_solution(accuracy, before * *part)
+                });
+                if explained {
                     return behind;
                 }
                 h = before;
@@ -127,6 +135,33 @@ impl<T: Element> Interpreted<'_, T> {
     fn look_at(&mut self, order: usize, h: DoubleDouble) {
         self.evaluate(order, h);
         self.probe.begin(&self.next.x);
+    }
+
+    /// Whether the series is the solution at this part of a step, which is looked at.
+    #[inline(always)]
+    fn is_solution_at(&mut self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
+        self.look_at(accuracy.order, h);
+        self.is_solution(accuracy, h)
+    }
+
+    /// Whether the series of the quantities whose signs the formula takes have come to their end within a step, as their zeros are looked for
+    /// by them: those of the states, which need not show them yet, may converge much farther.
+    #[inline(always)]
+    fn kinks_converge(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
+        let mut kinks = self.program.kinks.iter();
+        kinks.all(|&row| (0..T::LANES).all(|lane| self.converges(accuracy, h.hi(), row, lane)))
+    }
+
+    /// Whether the last two terms of a row are small beside those of its first half.
+    fn converges(&self, accuracy: &Accuracy, h: f64, row: usize, lane: usize) -> bool {
+        /// In what the states may err relatively.
+        const SMALL: f64 = 10.0;
+        let order = accuracy.order;
+        let series = &self.rows.row(row)[..order];
+        let term = |j: usize| (series[j].lane(lane) * h.powi(j as i32)).abs();
+        let size = (0..order / 2).map(term).fold(0.0, f64::max);
+        let last = (order - 2..order).map(term).fold(0.0, f64::max);
+        last <= SMALL * accuracy.tolerances.0.max(f64::EPSILON) * size
     }
 
     /// Whether the rates at the end of the step, which has been looked at, are those of the series.
