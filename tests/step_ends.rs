@@ -408,7 +408,7 @@ fn second_runs_err_much_less_than_the_first() {
         (
             "cstr.toml --until 62.6673 --method rodas4 --rtol 1e-6",
             "c",
-            51.326674353986535,
+            51.326_674_353_986_54,
         ),
         (
             "double-pendulum.toml --until 4.50708",

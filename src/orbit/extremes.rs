@@ -141,8 +141,8 @@ fn turns_within(
     let time = |k: usize| step.t0 + part * k as f64;
     let rates: Vec<Vector> = (0..=PARTS).map(|k| field.f(&step.dense(time(k)))).collect();
     for (k, pair) in rates.windows(2).enumerate() {
-        for i in 0..field.dimension() {
-            if pair[0][i] * pair[1][i] < 0.0 {
+        for (i, (before, after)) in pair[0].iter().zip(&pair[1]).enumerate() {
+            if before * after < 0.0 {
                 let rate = |t: f64| (field.f(&step.dense(t))[i], f64::NAN);
                 let turn = bracketed_root("an extremum", time(k), time(k + 1), rate)?;
                 see(step.dense(turn).as_slice());

@@ -47,11 +47,10 @@ impl<T: Element> Interpreted<'_, T> {
             DoubleDouble::from(h.copysign(limit.hi()))
         };
         let mut time = if whole { limit } else { step * self.unit };
-        let explained = self.is_solution_at(accuracy, step * MIDDLE);
-        if !(self.is_solution_at(accuracy, step) && explained)
-            || !self.kinks_converge(accuracy, step)
-            || self.meets_kink(accuracy.order, step)
-        {
+        let middle = self.is_solution_at(accuracy, step * MIDDLE);
+        let both = self.is_solution_at(accuracy, step) && middle;
+        let followed = both && self.kinks_converge(accuracy, step);
+        if !followed || self.meets_kink(accuracy.order, step) {
             step = self.shortened(accuracy, step);
             if !step.is_finite() {
                 return step;
