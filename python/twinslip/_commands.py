@@ -255,8 +255,8 @@ class Commands:
             With ``events`` of three interfaces and more: in how many events each interface slips,
             how far, and its constants that are drawn
         estimate_error : bool, optional
-            Estimate the error of the last row by a second run with 10,000 times tighter tolerances,
-            below ``rtol`` 1e-12 by the reference
+            Estimate the error of the last row by a second run with 10,000 times tighter
+            tolerances, below ``rtol`` 1e-12 by the reference
         reference : bool, optional
             With ``estimate_error``: by a run in double-double arithmetic, of 31 digits, some
             hundred times slower than taylor
