@@ -563,6 +563,8 @@ def test_failures_are_told_as_by_scipy() -> None:
         assert ours.t_events is not None and abs(ours.t_events[0][0] - 0.75) < 1e-5
     theirs = integrate.solve_ivp(lambda t, y: y**2, (0, 2), [1.0], "Radau")
     assert theirs.status == ours.status and theirs.success is ours.success
+    short = solve_ivp(SLAB, (0, 20), SLAB_START, max_step=0.05)
+    assert np.diff(short.t).max() <= 0.05 * (1 + 1e-12) and len(short.t) > 400
     few = solve_ivp(SLAB, (0, 20), SLAB_START, max_steps=7, dense_output=True)
     assert few.status == -1 and len(few.t) == 8 and "max_steps" in few.message
     rows = solve_ivp(SLAB, (0, 20), SLAB_START, max_steps=7, t_eval=[0.0, 0.5, 20.0])
@@ -596,7 +598,7 @@ WRONG: list[tuple[dict[str, Any], str, str]] = [
     ({"t_eval": [np.nan]}, "t_eval", "within"),
     ({"max_step": 0.0}, "max_step", "positive"),
     ({"max_step": -np.inf}, "max_step", "positive"),
-    ({"max_step": "small"}, "max_step", "number"),
+    ({"max_step": "small"}, "max_step", "positive"),
     *[({"method": name}, "method", "auto, taylor, rodas5p") for name in ("RK23", "RK45", "DOP853", "Radau", "BDF", "LSODA")],
     ({"method": integrate.RK45}, "method", "RK45, but must be one of auto, taylor, rodas5p"),
     ({"method": None}, "method", "auto, taylor"),

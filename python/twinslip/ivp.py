@@ -181,6 +181,8 @@ def solve_ivp(
     if not isinstance(system, System):
         hint = "; make one with System.from_function" if callable(system) else ""
         raise InputError(f"system is {system!r}, but must be a twinslip.System{hint}", "system")
+    if not (isinstance(max_step, (int, float, np.number)) and max_step > 0):
+        raise InputError(f"max_step is {max_step!r}, but must be a positive number", "max_step")
     span = _numbers("t_span", t_span)
     if len(span) != 2:
         raise InputError(f"t_span is {t_span!r}, but must be two times", "t_span")
