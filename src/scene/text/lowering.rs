@@ -142,6 +142,11 @@ impl<'t, 'a> Lowering<'t, 'a> {
         if Function::named(name).is_some() {
             return format!("{name:?} is a function, whose argument must follow in parentheses");
         }
+        if ["t", "time"].contains(&name) {
+            return format!(
+                "{name:?} is no state: where time is needed, add a state whose rate is 1 and whose start is 0"
+            );
+        }
         let known = self.tables.meanings.keys().copied().chain(["pi"]);
         let hint = did_you_mean(name, known);
         format!("{name:?} is no state, no parameter and not defined in [where]{hint}")
