@@ -428,3 +428,13 @@ fn second_runs_err_much_less_than_the_first() {
         );
     }
 }
+
+/// A diode that conducts for a moment of each turn, by an exponential of which the trace between is nothing, charges a capacitor. By quadruple
+/// precision.
+#[test]
+fn a_diode_that_conducts_within_a_step_is_seen() {
+    for method in ["auto", "taylor", "rodas5p"] {
+        let run = format!("rectifier.toml --until 0.1 --method {method}");
+        ends_at(&run, &[("v", 7.624_874_019_760_679)], 1e-5);
+    }
+}

@@ -24,11 +24,8 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const NOISIER: f64 = 8.0;
 /// Where a series is compared with the rates before a kink or a branch point: at that itself a formula may have no value.
 const BEFORE: f64 = 0.999;
-/// The part of a step at which the series is compared with the rates beside its end, of the first step and of those that are much longer than
-/// the one before: what rises and falls again within it is seen there.
+/// The part of a step at which the series is compared with the rates beside its end: what rises and falls again within a step is seen there.
 const MIDDLE: f64 = 0.5;
-/// Such steps, in units of the series: more than twice as long.
-const LONGER: f64 = 4.0;
 /// What leads behind a branch point.
 const BEHIND: f64 = 1.0 + 4.0 * f64::EPSILON;
 
@@ -50,9 +47,7 @@ impl<T: Element> Interpreted<'_, T> {
             DoubleDouble::from(h.copysign(limit.hi()))
         };
         let mut time = if whole { limit } else { step * self.unit };
-        // The unit is that of the last step, a power of two.
-        let unusual = !self.probed || step.hi().abs() > LONGER;
-        let middle = !unusual || self.is_solution_at(accuracy, step * MIDDLE);
+        let middle = self.is_solution_at(accuracy, step * MIDDLE);
         let both = self.is_solution_at(accuracy, step) && middle;
         let followed = both && self.kinks_converge(accuracy, step);
         if !followed || self.meets_kink(accuracy.order, step) {
