@@ -37,6 +37,15 @@ impl Tolerances {
         })
     }
 
+    /// The same, checked as by [`Tolerances::new`], and that the largest step is positive.
+    pub(crate) fn checked(self) -> Result<Self> {
+        if self.max_step > 0.0 {
+            let checked = Self::new(self.rtol, self.atol)?;
+            return Ok(checked.stepping(self.max_step));
+        }
+        Err(Error::parameter("max-step", self.max_step, "positive"))
+    }
+
     /// With this largest step.
     pub(crate) fn stepping(self, max_step: f64) -> Self {
         Tolerances { max_step, ..self }

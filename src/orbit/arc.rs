@@ -19,7 +19,7 @@ pub struct Arc {
     pub parameters: Matrix,
     /// The integral of the trace of the Jacobian, of methods that make it beside the tangent.
     pub log_determinant: Option<f64>,
-    /// What that may be off beside what the state is.
+    /// The error of the quadrature by which it was computed, where it was; 0 elsewhere.
     pub(super) volume_error: f64,
     /// In the plane of symmetric states: the logarithm by which a small difference between the interfaces grows, where the
     /// method makes it.
@@ -234,8 +234,8 @@ impl Tracer {
         })
     }
 
-    /// The integral of the trace of the Jacobian along an arc, with what its quadrature may be off, by methods that do not make it beside
-    /// the tangent: by three points of Gauss in every step, against two.
+    /// Returns the integral of the trace of the Jacobian along an arc and an estimate of its error, for methods that do not integrate it with
+    /// the tangent: Gauss-Legendre quadrature with three points in each step, compared with two points.
     ///
     /// # Errors
     /// Those of [`AnyIntegrator::flow`].

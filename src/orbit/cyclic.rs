@@ -189,8 +189,8 @@ pub fn solve<T: Scalar>(maps: &[DMatrix<T>], right: &[DVector<T>]) -> Option<Vec
     reduced.extended(&start, &DVector::from_element(1, T::one()))
 }
 
-/// The solution of least size at the first node where the equations leave some directions free, as on one of a family of orbits; `None`
-/// where they leave none free, or it is not finite.
+/// Returns the solution of singular equations, as of an orbit in a family, whose first node has the minimum norm. `None` for regular
+/// equations, or if the solution is not finite.
 pub(super) fn solve_singular(maps: &[Matrix], right: &[Vector]) -> Option<Vec<Vector>> {
     /// Singular values below this are 0, in rows of order one: the derivatives of an orbit that is not closed yet are those beside it.
     const FREE: f64 = 1e-6;

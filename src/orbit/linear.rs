@@ -186,7 +186,7 @@ impl Linear {
         self.correction_by(gaps, cyclic::solve)
     }
 
-    /// The least ones where the orbit is one of a family; `None` where it is alone.
+    /// The minimum-norm corrections that close these gaps, for an orbit of a family; `None` for an isolated orbit.
     pub fn correction_in_family(&self, gaps: &[Vector]) -> Option<(Vec<Vector>, Vec<f64>)> {
         self.correction_by(gaps, cyclic::solve_singular)
     }

@@ -211,8 +211,8 @@ fn sizes(shooting: &ShootingNodes, nodes: &[Vector], durations: &[f64]) -> (f64,
     (of_nodes, of_period)
 }
 
-/// Closes a shooting that is nearly closed as it is, where the orbit is one of a family and Newton's equations are singular: by the least
-/// corrections. `None` where it is alone, or does not close.
+/// Closes a nearly closed shooting on an orbit of a family, where Newton's equations are singular, by minimum-norm corrections. `None` for an
+/// isolated orbit, or if it does not converge.
 pub(super) fn close_in_family(
     tracer: &mut Tracer,
     field: &AnyField<'_>,

@@ -16,15 +16,20 @@ use std::sync::Arc as Shared;
 pub(super) trait Space {
     /// The vector field.
     fn field(&self) -> &AnyField<'_>;
-    /// A node and its arc in the space of all multipliers: the arc's end and the digits that it loses.
+    /// The end of an arc from a node, and the digits that its tangent loses in the space of all multipliers, with the variables in units of
+    /// their sizes.
     fn loss(
         &self,
         tracers: &mut Tracers,
         arc: (&Vector, f64),
         sizes: &Vector,
-    ) -> Result<(Vector, f64)>;
+    ) -> Result<(Vector, f64)> {
+        loss_along(self.field(), tracers, arc, sizes)
+    }
     /// The multipliers.
-    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet>;
+    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
+        traced_floquet(self.field(), tracers, closed)
+    }
     /// Whether both interfaces move alike.
     fn symmetry(&self, shooting: &ShootingNodes) -> Symmetry;
 }
@@ -78,19 +83,6 @@ impl Space for Whole<'_> {
         &self.0
     }
 
-    fn loss(
-        &self,
-        tracers: &mut Tracers,
-        (x, duration): (&Vector, f64),
-        _: &Vector,
-    ) -> Result<(Vector, f64)> {
-        loss_along(&self.0, tracers, x, duration)
-    }
-
-    fn floquet(&self, _: &mut Tracers, closed: &Closed) -> Result<Floquet> {
-        Ok(floquet(closed, &self.0))
-    }
-
     fn symmetry(&self, shooting: &ShootingNodes) -> Symmetry {
         /// Interfaces that differ by less move alike: they would by rounding.
         const ALIKE: f64 = 1e-9;
@@ -115,43 +107,6 @@ impl Space for Alone<'_, '_> {
         self.field
     }
 
-    fn loss(
-        &self,
-        tracers: &mut Tracers,
-        (x, duration): (&Vector, f64),
-        sizes: &Vector,
-    ) -> Result<(Vector, f64)> {
-        let arc = tracers.here.arc(self.field, x, duration, &[])?;
-        // In the plane the trace alone says what the multiplier is.
-        let loss = if sizes.len() == 2 {
-            0.0
-        } else {
-            arc.loss_in(sizes)
-        };
-        Ok((arc.end, loss))
-    }
-
-    fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
-        if closed
-            .arcs()
-            .iter()
-            .all(|arc| arc.log_determinant.is_some())
-        {
-            return Ok(floquet(closed, self.field));
-        }
-        let mut traced = closed.clone();
-        let shooting = &closed.shooting;
-        let arcs = shooting.nodes.iter().zip(&shooting.durations);
-        for (arc, (x, &duration)) in Shared::make_mut(&mut traced.linear.arcs)
-            .iter_mut()
-            .zip(arcs)
-        {
-            let (volume, off) = tracers.here.trace_along(self.field, x, duration)?;
-            (arc.log_determinant, arc.volume_error) = (Some(volume), off);
-        }
-        Ok(floquet(&traced, self.field))
-    }
-
     fn symmetry(&self, _: &ShootingNodes) -> Symmetry {
         self.symmetry
     }
@@ -160,12 +115,38 @@ impl Space for Alone<'_, '_> {
 fn loss_along(
     field: &AnyField<'_>,
     tracers: &mut Tracers,
-    x: &Vector,
-    duration: f64,
+    (x, duration): (&Vector, f64),
+    sizes: &Vector,
 ) -> Result<(Vector, f64)> {
     let arc = tracers.here.arc(field, x, duration, &[])?;
-    let loss = arc.loss();
+    // In the plane the trace alone says what the multiplier is.
+    let loss = if sizes.len() == 2 {
+        0.0
+    } else {
+        arc.loss_in(sizes)
+    };
     Ok((arc.end, loss))
+}
+
+/// The multipliers, with the integrals of the trace by quadrature where the method does not have them with the tangents.
+fn traced_floquet(field: &AnyField<'_>, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
+    let has_trace = |arc: &Arc| arc.log_determinant.is_some();
+    if closed.arcs().iter().all(has_trace) {
+        return Ok(floquet(closed, field));
+    }
+    let mut traced = closed.clone();
+    let arcs = Shared::make_mut(&mut traced.linear.arcs).iter_mut();
+    let along = closed.shooting.nodes.iter().zip(&closed.shooting.durations);
+    for (arc, (x, &duration)) in arcs.zip(along) {
+        let (volume, off) = tracers.here.trace_along(field, x, duration)?;
+        (arc.log_determinant, arc.volume_error) = (Some(volume), off);
+    }
+    Ok(floquet(&traced, field))
+}
+
+/// tau and ln psi of both interfaces, which move alike.
+fn embedded(x: &Vector) -> Vector {
+    Vector::from_column_slice(&[x[0], x[1], x[1]])
 }
 
 /// The plane of a single interface, or of two that move alike, with the whole space around it.
@@ -176,7 +157,7 @@ pub(super) struct Plane<'a> {
 
 impl Plane<'_> {
     fn across(&self, tracers: &mut Tracers, x: &Vector, duration: f64) -> Result<Option<Arc>> {
-        let embedded = Vector::from_column_slice(&[x[0], x[1], x[1]]);
+        let embedded = embedded(x);
         self.whole
             .as_ref()
             .map(|whole| tracers.whole.arc(whole, &embedded, duration, &[]))
@@ -192,18 +173,22 @@ impl Space for Plane<'_> {
     fn loss(
         &self,
         tracers: &mut Tracers,
-        (x, duration): (&Vector, f64),
-        _: &Vector,
+        along: (&Vector, f64),
+        sizes: &Vector,
     ) -> Result<(Vector, f64)> {
-        Ok(match self.across(tracers, x, duration)? {
-            Some(arc) => (arc.end.rows(0, 2).into_owned(), arc.loss()),
-            None => loss_along(&self.plane, tracers, x, duration)?,
-        })
+        let (x, duration) = along;
+        let Some(arc) = self.across(tracers, x, duration)? else {
+            return loss_along(&self.plane, tracers, along, sizes);
+        };
+        Ok((
+            arc.end.rows(0, 2).into_owned(),
+            arc.loss_in(&embedded(sizes)),
+        ))
     }
 
     fn floquet(&self, tracers: &mut Tracers, closed: &Closed) -> Result<Floquet> {
         if self.whole.is_none() {
-            return Ok(floquet(closed, &self.plane));
+            return traced_floquet(&self.plane, tracers, closed);
         }
         let shooting = &closed.shooting;
         let mut arcs = Vec::with_capacity(shooting.nodes.len());

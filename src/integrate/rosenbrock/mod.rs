@@ -156,8 +156,7 @@ impl<const N: usize> Rosenbrock<N> {
         }
         Ok(Rosenbrock {
             method,
-            tolerances: Tolerances::new(tolerances.rtol, tolerances.atol)?
-                .stepping(tolerances.max_step),
+            tolerances: tolerances.checked()?,
             max_steps,
             work: Work::default(),
         })

@@ -66,7 +66,11 @@ impl Taylor {
     /// # Errors
     /// [`Error::Parameter`] for tolerances outside their domain or no steps.
     pub fn new(tolerances: Tolerances, max_steps: usize) -> Result<Self> {
-        let Tolerances { rtol, atol, .. } = Tolerances::new(tolerances.rtol, tolerances.atol)?;
+        let Tolerances {
+            rtol,
+            atol,
+            max_step,
+        } = tolerances.checked()?;
         if max_steps == 0 {
             return Err(Error::parameter("max-steps", 0, "at least 1"));
         }
@@ -77,7 +81,7 @@ impl Taylor {
         Ok(Taylor {
             arithmetic: Arithmetic::Double,
             accuracy,
-            max_step: tolerances.max_step,
+            max_step,
             max_steps,
             work: Work::default(),
         })

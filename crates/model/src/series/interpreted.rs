@@ -333,9 +333,9 @@ fn finite<T: Element>(x: &[T]) -> bool {
 }
 
 impl<T: Element> Trajectory for Interpreted<'_, T> {
-    /// It rises within every two decades: so a run and one that checks it, of a hundredth of its tolerance, are of different orders. Where
-    /// their steps end at the same kinks, they would otherwise err alike. Higher orders gain nothing, and come nearer to where a formula has
-    /// no value before they are past it; below the last of these tolerances only rounding is left, of which longer series have more.
+    /// The order rises within every two decades, so that a run and the tighter run that estimates its error have different orders. Where all
+    /// steps of both end at the same kinks, runs of one order would have the same error. Higher orders gain nothing, and fail sooner next to
+    /// a singularity of the formula. Below the last of these tolerances only rounding errors are left, which grow with the order.
     fn order(&self, rtol: f64) -> usize {
         const FROM: [(f64, usize); 5] = [
             (3e-7, 12),

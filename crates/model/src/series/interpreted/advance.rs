@@ -156,10 +156,16 @@ impl<T: Element> Interpreted<'_, T> {
         /// In what the states may err relatively.
         const SMALL: f64 = 10.0;
         let order = accuracy.order;
-        let series = &self.rows.row(row)[..order];
-        let term = |j: usize| (series[j].lane(lane) * h.powi(j as i32)).abs();
-        let size = (0..order / 2).map(term).fold(0.0, f64::max);
-        let last = (order - 2..order).map(term).fold(0.0, f64::max);
+        let (mut size, mut last, mut power) = (0.0_f64, 0.0_f64, 1.0);
+        for (j, c) in self.rows.row(row)[..order].iter().enumerate() {
+            let term = (c.lane(lane) * power).abs();
+            if j < order / 2 {
+                size = size.max(term);
+            } else if j + 2 >= order {
+                last = last.max(term);
+            }
+            power *= h;
+        }
         last <= SMALL * accuracy.tolerances.0.max(f64::EPSILON) * size
     }
 
