@@ -27,8 +27,8 @@ pub trait OrbitSearch {
     fn explain(&self) -> String;
     /// What the orbit is of.
     fn system(&self) -> &dyn Described;
-    /// By which method, and by which second one.
-    fn accuracy(&self) -> (&OrbitAccuracy, Option<&OrbitAccuracy>);
+    /// By which method an orbit was computed, and by which second one.
+    fn accuracy(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>);
     /// Whether there are to be rows.
     fn has_rows(&self) -> bool;
     fn find(&self) -> Result<FoundOrbit>;
@@ -59,8 +59,8 @@ impl OrbitSearch for OrbitPlan {
         &self.system
     }
 
-    fn accuracy(&self) -> (&OrbitAccuracy, Option<&OrbitAccuracy>) {
-        (&self.accuracy, self.second.as_ref())
+    fn accuracy(&self, _: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>) {
+        (self.accuracy, self.second)
     }
 
     fn has_rows(&self) -> bool {
@@ -105,7 +105,8 @@ fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Resul
         ending = write_orbits(plan, &report, &orbit, &others)?;
     }
     let rows = along(plan, &report, &orbit, picture)?;
-    let second = plan.accuracy().1.map_or("", |second| second.method.name());
+    let second = plan.accuracy(&orbit).1;
+    let second = second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(&report, &words, || plan.crosscheck(&orbit));
     let checked = checked.unwrap_or_else(|error| {
@@ -196,7 +197,7 @@ fn along(
 }
 
 fn numerics(plan: &impl OrbitSearch, orbit: &Orbit) -> Value {
-    let (accuracy, second) = plan.accuracy();
+    let (accuracy, second) = plan.accuracy(orbit);
     json!({
         "method": orbit.method,
         "rtol": accuracy.tolerances.rtol,

@@ -6,7 +6,7 @@ use super::shooting_nodes::ShootingNodes;
 use super::solve::OrbitAccuracy;
 use crate::error::Result;
 use crate::field::Vector;
-use crate::integrate::{AnyField, AnyStep, Choice, Control, MAX_STEPS, Tolerances};
+use crate::integrate::{AnyField, AnyStep, Choice, Control, Tolerances};
 use crate::number::bracketed_root;
 use crate::number::polynomial::{Crossing, evaluate, roots};
 use crate::series::{REFERENCE_ORDER, Section, Zeros};
@@ -43,14 +43,12 @@ pub(super) fn extremes(
     /// Tolerance of the run.
     const FINE: f64 = 1e-14;
     let tracer = match (accuracy.method, level) {
-        // Orbits of a stiff system.
-        (method @ Choice::Rosenbrock(_), None) => {
-            Tracer::new(method, accuracy.tolerances, accuracy.max_steps)?
-        }
-        _ => {
+        (Choice::Auto | Choice::Taylor, _) | (_, Some(_)) => {
             let fine = Tolerances::equal(FINE)?.stepping(accuracy.tolerances.max_step);
-            Tracer::new(Choice::Taylor, fine, MAX_STEPS)?
+            Tracer::new(Choice::Taylor, fine, accuracy.max_steps)?
         }
+        // The orbit may be that of a stiff system.
+        (method, None) => Tracer::new(method, accuracy.tolerances, accuracy.max_steps)?,
     };
     extremes_by(tracer, field, shooting, level)
 }

@@ -10,7 +10,7 @@ use super::space::Alone;
 use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
-use crate::integrate::{AnyField, Choice, Control, RosenbrockMethod};
+use crate::integrate::{AnyField, Choice, Control};
 
 /// The periodic orbit at or near a start; with its period, roughly, no shorter cycle is taken for it. Without it, where the returns
 /// of the start lead to none, what a run from there settles on.
@@ -33,13 +33,7 @@ pub fn find_from(
     match found {
         // Where the explicit method gets nowhere the orbit may be that of a stiff system.
         Err(error) if accuracy.method == Choice::Auto => {
-            let stiff = OrbitAccuracy {
-                checked: accuracy.checked,
-                max_steps: accuracy.max_steps,
-                ..OrbitAccuracy::of(Choice::Rosenbrock(RosenbrockMethod::Rodas5P))
-                    .stepping(accuracy.tolerances.max_step)
-            };
-            find_by(field, start, period, &stiff).map_err(|_| error)
+            find_by(field, start, period, &accuracy.stiff()).map_err(|_| error)
         }
         found => found,
     }

@@ -9,7 +9,7 @@ use super::shooting_nodes::{MOST_ARCS, MOST_IMPLICIT_ARCS, ShootingNodes};
 use super::space::{Space, Tracers};
 use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
-use crate::integrate::{AnyField, Choice, MAX_STEPS, Tolerances, Work};
+use crate::integrate::{AnyField, Choice, MAX_STEPS, RosenbrockMethod, Tolerances, Work};
 use crate::number::Uncertain;
 
 /// A periodic orbit.
@@ -114,6 +114,16 @@ impl OrbitAccuracy {
             },
             max_steps: MAX_STEPS,
             checked: true,
+        }
+    }
+
+    /// The same by the implicit method, for the orbit of a stiff system.
+    pub(crate) fn stiff(self) -> Self {
+        let implicit = Self::of(Choice::Rosenbrock(RosenbrockMethod::Rodas5P));
+        OrbitAccuracy {
+            method: implicit.method,
+            tolerances: implicit.tolerances.stepping(self.tolerances.max_step),
+            ..self
         }
     }
 

@@ -19,8 +19,8 @@ impl OrbitSearch for TextOrbitPlan {
         &self.model
     }
 
-    fn accuracy(&self) -> (&OrbitAccuracy, Option<&OrbitAccuracy>) {
-        (&self.accuracy, self.second.as_ref())
+    fn accuracy(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>) {
+        self.accuracies(orbit)
     }
 
     fn has_rows(&self) -> bool {

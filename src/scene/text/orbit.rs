@@ -6,6 +6,8 @@ use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
+#[cfg(not(feature = "sundials"))]
+use crate::integrate::RosenbrockMethod;
 use crate::integrate::{Choice, Tolerances};
 use crate::orbit::{
     AlongArcs, Crosscheck, FoundOrbit, Orbit, OrbitAccuracy, ShootingNodes, crosscheck_of,
@@ -31,6 +33,8 @@ pub struct TextOrbitPlan {
     pub accuracy: OrbitAccuracy,
     /// By which second method once more.
     pub second: Option<OrbitAccuracy>,
+    /// Whether the user names it.
+    pub second_is_asked: bool,
     /// The rows over one period, where there are to be any.
     pub rows: Option<Sampling>,
     /// Whether the orbit is drawn.
@@ -59,6 +63,7 @@ impl TextOrbitPlan {
             start: start(options, &model)?,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), &accuracy)?,
+            second_is_asked: options.crosscheck.is_some(),
             rows: options.points.map(equally_spaced).transpose()?,
             picture: options.plot.is_some(),
             accuracy,
@@ -127,6 +132,25 @@ impl TextOrbitPlan {
         Ok(())
     }
 
+    /// How accurately an orbit was computed, and is to be once more: of a stiff system by other methods than those of the plan.
+    pub fn accuracies(&self, orbit: &Orbit) -> (OrbitAccuracy, Option<OrbitAccuracy>) {
+        if orbit.method == run_method(self.accuracy.method).name() {
+            return (self.accuracy, self.second);
+        }
+        #[cfg(feature = "sundials")]
+        let implicit = Choice::Cvode(MultistepMethod::Bdf);
+        #[cfg(not(feature = "sundials"))]
+        let implicit = Choice::Rosenbrock(RosenbrockMethod::Rodas4);
+        let second = self.second.map(|second| match self.second_is_asked {
+            true => second,
+            false => OrbitAccuracy {
+                checked: false,
+                ..OrbitAccuracy::of(implicit).stepping(second.tolerances.max_step)
+            },
+        });
+        (self.accuracy.stiff(), second)
+    }
+
     /// The run over one period of an orbit, from its point back to it, along the arcs between its shooting nodes. `None` where neither
     /// rows nor a picture are asked for.
     pub fn along(&self, orbit: &Orbit) -> Option<TextPlan> {
@@ -135,6 +159,7 @@ impl TextOrbitPlan {
         }
         let vector = |y: &[f64]| Vector::from_column_slice(y);
         let nodes = orbit.nodes_since_point().into_iter();
+        let (OrbitAccuracy { tolerances, .. }, _) = self.accuracies(orbit);
         let method = Choice::named(orbit.method).unwrap_or(self.accuracy.method);
         Some(TextPlan {
             program: None,
@@ -147,7 +172,7 @@ impl TextOrbitPlan {
             estimate: None,
             asked_method: method.name().into(),
             method,
-            tolerances: self.accuracy.tolerances,
+            tolerances,
             max_steps: self.accuracy.max_steps,
             model: self.model.clone(),
         })
@@ -159,20 +184,11 @@ impl TextOrbitPlan {
     /// Those of [`crosscheck_of`].
     pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
         let field = self.model.field()?;
-        let Some(second) = &self.second else {
+        let (_, Some(second)) = self.accuracies(orbit) else {
             return Ok(None);
         };
-        // Of a stiff orbit that the method did not find.
-        #[cfg(feature = "sundials")]
-        let second = match orbit.method == run_method(self.accuracy.method).name() {
-            true => second,
-            false => &OrbitAccuracy {
-                checked: false,
-                ..OrbitAccuracy::of(Choice::Cvode(MultistepMethod::Bdf))
-            },
-        };
-        let mut again = crosscheck_of(&field, orbit, second)?;
-        self.complete(&mut again.orbit, second)?;
+        let mut again = crosscheck_of(&field, orbit, &second)?;
+        self.complete(&mut again.orbit, &second)?;
         Ok(Some(again))
     }
 }
