@@ -1,10 +1,11 @@
 //! Eigenvalues of matrices on which an iteration without a limit does not end, and of others.
 
 use crate::command;
+use crate::common::assert_close;
 use command::{number, object, twinslip};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::{Complex, DMatrix, DVector};
 use std::f64::consts::TAU;
-use twinslip::number::eigenvalues;
+use twinslip::number::{eigenvalues, null_vector, singular_values, symmetric_eigenvalues};
 
 /// Each of these is found, as often as it is there, and no other.
 #[track_caller]
@@ -95,4 +96,29 @@ fn the_equilibrium_of_a_ring_has_its_stability() {
         "branch equilibria --system tests/data/cases/ring.toml --along c --from 0.1 --to 0.99";
     let branch = twinslip(run);
     assert_eq!(branch.code, 0, "{}", branch.err);
+}
+
+/// What iterations without a limit never end on: entries that are no numbers, and the smallest numbers there are, beside which nothing is
+/// negligible.
+#[test]
+fn symmetric_matrices_and_singular_values_end_too() {
+    let matrix = |unit: f64| DMatrix::from_row_slice(2, 2, &[2.0 * unit, unit, unit, 2.0 * unit]);
+    for unit in [1.0, 1e-310, 1e-323, 1e300] {
+        let (values, vectors) = symmetric_eigenvalues(&matrix(unit)).expect("finite");
+        let mut sizes: Vec<f64> = values.iter().map(|x| x / unit).collect();
+        sizes.sort_by(f64::total_cmp);
+        assert_close(sizes[0], 1.0, 1e-14, "eigenvalue");
+        assert_close(sizes[1], 3.0, 1e-14, "eigenvalue");
+        assert!((vectors.transpose() * &vectors - DMatrix::identity(2, 2)).amax() < 1e-14);
+        let values = singular_values(matrix(unit), [false, false]).expect("finite");
+        assert_close(values.singular_values.max() / unit, 3.0, 1e-14, "singular");
+    }
+    let mut none = matrix(1.0);
+    none[(0, 1)] = f64::NAN;
+    assert!(symmetric_eigenvalues(&none).is_none());
+    assert!(singular_values(none.clone(), [true, true]).is_none());
+    assert!(null_vector(none).is_none());
+    let singular = DMatrix::from_row_slice(2, 2, &[1.0, 2.0, 2.0, 4.0]);
+    let null: DVector<f64> = null_vector(singular.clone()).expect("finite");
+    assert!((singular * &null).amax() < 1e-15 && (null.norm() - 1.0).abs() < 1e-15);
 }

@@ -101,15 +101,16 @@ fn two_that_differ_are_those_of_the_other_engine() {
         "integrate --driving 10 --stiffness 0.14 --set residual_strength_2=0.002,slip_length_2=1.5,healing_time_2=80,evolution_effect_2=0.047 \
          --start 9.9,0.003,0.002 --until 3 --final-only --rtol 1e-15 --method taylor",
     );
-    let law = |healing_time: f64, residual_strength: f64, b: f64| {
+    let law = |healing_time: f64, residual_strength: f64, b: f64, length: f64| {
         let parameters = Parameters::new(0.0349, b, 0.369, healing_time, residual_strength);
-        AnyLaw::Spinodal(parameters.expect("parameters").spinodal())
+        let parameters = parameters.expect("parameters");
+        AnyLaw::of_slip_length("spinodal", parameters, length).expect("a law")
     };
     let laws = [
-        OneOfMany::from(law(100.0, 1e-3, 0.0489)),
+        OneOfMany::from(law(100.0, 1e-3, 0.0489, 1.0)),
         OneOfMany {
             slip_length: 1.5,
-            ..law(80.0, 2e-3, 0.047).into()
+            ..law(80.0, 2e-3, 0.047, 1.5).into()
         },
     ];
     let loading = Loading::new(10.0, 0.14).expect("positive");

@@ -2,6 +2,7 @@
 //! arithmetic; the number of eigenvalues that grow against all eigenvalues of the dense matrix.
 
 use crate::command::{csv, number, object, refused_in_one_line, twinslip};
+use crate::common::assert_close;
 use crate::many_methods::{jacobian, law};
 use nalgebra::{Complex, Schur};
 use serde_json::Value;
@@ -443,7 +444,8 @@ fn rows_are_one_for_each_interface() {
          --draw healing_time=50:200log,slip_length=0.9:1.1 --columns stress",
     );
     let start = number(&run, "/result/final/stress");
-    assert!((number(&told, "/stress/value") - start).abs() < 0.1);
+    // All slide at V*, and so under the reference friction that they share.
+    assert_close(number(&told, "/stress/value"), start, 1e-11, "stress");
 }
 
 #[test]

@@ -104,8 +104,12 @@ fn few_are_those_of_the_other_engines() {
 }
 
 pub fn law(name: &str, a: f64, b: f64) -> AnyLaw {
+    of_slip_length(name, a, b, 1.0)
+}
+
+fn of_slip_length(name: &str, a: f64, b: f64, length: f64) -> AnyLaw {
     let parameters = Parameters::new(a, b, 0.369, 100.0, 1e-3);
-    AnyLaw::named(name, parameters.expect("parameters")).expect("a law")
+    AnyLaw::of_slip_length(name, parameters.expect("parameters"), length).expect("a law")
 }
 
 /// Two interfaces of which the second has another direct effect, normal stress and slip length.
@@ -121,7 +125,7 @@ fn two_that_differ_in_stress_are_those_of_the_other_engine() {
             ..law(name, 0.0349, 0.0489).into()
         };
         let two = OneOfMany {
-            law: law(name, 0.03, 0.0489),
+            law: of_slip_length(name, 0.03, 0.0489, 1.5),
             slip_length: 1.5,
             stress_factor: 0.0349 / (1.2 * 0.03),
             ..one

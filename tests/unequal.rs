@@ -8,7 +8,9 @@ use serde_json::Value;
 use twinslip::Error;
 use twinslip::equilibrium::{Symmetry, Verdict};
 use twinslip::field::{Parametrised, State, VectorField};
-use twinslip::friction::{AnyLaw, Formulas, InterfaceConstants, Law, Parameters, UnequalLaws};
+use twinslip::friction::{
+    AnyLaw, Formulas, InterfaceConstants, Law, Parameters, UnequalLaws, steady_stress,
+};
 use twinslip::integrate::{AnyField, Choice, Integrator, MAX_STEPS, Taylor, Tolerances};
 use twinslip::model::{Driven, Loading, UnequalInterfaces, two_interfaces};
 use twinslip::number::Uncertain;
@@ -17,7 +19,8 @@ use twinslip::orbit::{
     find_unequal,
 };
 
-/// Interfaces of which the second one differs in what is given.
+/// The second interface of the references, whose friction is written with (1 + R) psi whatever its slip length is: with c + (1 + R/l) psi,
+/// which is s times that at c/s, and its reference friction at V* moved by b ln s, it is the same interface.
 pub fn second(value: &Value) -> InterfaceConstants {
     let mut second = InterfaceConstants::heslot_1994();
     for (name, value) in value.as_object().expect("constants") {
@@ -29,7 +32,26 @@ pub fn second(value: &Value) -> InterfaceConstants {
             other => panic!("{other}"),
         }
     }
+    let healing_time = second.healing_time;
+    let s = (1.0 + healing_time / second.slip_length) / (1.0 + healing_time);
+    second.residual_strength *= s;
+    second.reference_friction -= second.evolution_effect * s.ln();
     second
+}
+
+/// The option that sets the constants of the second interface, where they are not those of the paper.
+pub fn set(second: &InterfaceConstants) -> String {
+    let values = |of: InterfaceConstants| -> [f64; InterfaceConstants::NAMES.len()] { of.into() };
+    let both = values(*second)
+        .into_iter()
+        .zip(values(InterfaceConstants::heslot_1994()));
+    let words: Vec<String> = InterfaceConstants::NAMES
+        .iter()
+        .zip(both)
+        .filter(|(_, (value, usual))| value != usual)
+        .map(|(name, (value, _))| format!("{name}_2={value:?}"))
+        .collect();
+    format!("--set {}", words.join(","))
 }
 
 /// Interfaces that differ in everything.
@@ -74,18 +96,19 @@ fn by_hand(
     let ageing = |v: f64| 1.0 - v.abs() / l * psi;
     let bounded = |v: f64| (1.0 - psi) / r - v.abs() / l * psi;
     let sinh = 2.0 * factor * stress.sinh();
-    let exponential = factor * stress.exp() * psi.powf(-b / a);
+    // The state of an ageing law in units of its own, l times those of the first.
+    let exponential = factor * stress.exp() * (psi / l).powf(-b / a);
     match law {
         "spinodal" => {
-            let v = sinh / (c + (1.0 + r) * psi).powf(b / a);
+            let v = sinh / (c + (1.0 + r / l) * psi).powf(b / a);
             [v, bounded(v)]
         }
         "bounded" => {
-            let v = sinh / ((1.0 + r) * psi).powf(b / a);
+            let v = sinh / ((1.0 + r / l) * psi).powf(b / a);
             [v, bounded(v)]
         }
         "regularised-ageing" => {
-            let v = sinh * psi.powf(-b / a);
+            let v = sinh * (psi / l).powf(-b / a);
             [v, ageing(v)]
         }
         "dieterich-ruina" => [exponential, ageing(exponential)],
@@ -120,6 +143,25 @@ fn rates_are_those_of_the_formulas() {
                 );
             }
             assert_close(f[0], 0.14 * (10.0 - v[0] - v[1]), 1e-13, law);
+        }
+    }
+}
+
+/// An interface slides at V* under its own reference friction, whatever its slip length is.
+#[test]
+fn friction_at_the_reference_rate_does_not_depend_on_the_slip_length() {
+    let first = InterfaceConstants::heslot_1994();
+    for law in AnyLaw::NAMES {
+        for slip_length in [1e-3, 0.5, 3.0, 1e3] {
+            let second = InterfaceConstants {
+                slip_length,
+                ..first
+            };
+            let laws = UnequalLaws::new(law, [first, second], 0.0).expect("valid");
+            let [one, other] = laws.laws();
+            let [one, other] = [one, other].map(|law| steady_stress(law, 1.0));
+            // a_v/a and b/a are some 10 and 1.4, and known to their rounding.
+            assert_close(other, one, 1e-14, &format!("{law}, {slip_length}"));
         }
     }
 }

@@ -2,14 +2,22 @@
 
 use crate::command;
 use crate::common::{assert_close, data, number as known};
+use crate::unequal::{second, set};
 use command::{csv, folder, number, object, refused_in_one_line, twinslip};
 use serde_json::Value;
+use twinslip::friction::InterfaceConstants;
 
 const SECOND: &str =
     "--set residual_strength_2=0.0011,slip_length_2=1.05 --set evolution_effect_2=0.0485";
 
+/// The second interface of the references.
+fn of_references() -> InterfaceConstants {
+    second(&data("unequal.json")["cases"]["U4_all_three"]["second"])
+}
+
 fn loading(driving: f64) -> String {
-    format!("--driving {driving} --stiffness 0.14 {SECOND}")
+    let second = set(&of_references());
+    format!("--driving {driving} --stiffness 0.14 {second}")
 }
 
 fn uncertain(value: &Value) -> (f64, f64) {
@@ -55,7 +63,7 @@ fn equilibria_are_in_the_order_of_the_interfaces() {
     for (name, value) in [
         ("residual_strength", 1e-3),
         ("residual_strength_1", 1e-3),
-        ("residual_strength_2", 0.0011),
+        ("residual_strength_2", of_references().residual_strength),
         ("slip_length_1", 1.0),
         ("slip_length_2", 1.05),
         ("evolution_effect_2", 0.0485),
@@ -312,7 +320,7 @@ fn in_si_the_first_interface_has_the_units() {
     ));
     assert_eq!(other["result"], made["result"]);
     let run = |words: &str| object(&format!("integrate --final-only {words}"));
-    let plain = run(&format!("{} --until 3", loading(10.0)));
+    let plain = run(&format!("--driving 10 --stiffness 0.14 {SECOND} --until 3"));
     let made = run(
         "--si --driving 1e-5 --stiffness 5.428888888888889e9 --until 2.7 --normal-stress 1e6 \
         --set residual_strength_2=0.0011,slip_length_2=0.945e-6,evolution_effect_2=0.0485",
@@ -335,7 +343,9 @@ fn scenes_have_a_table_for_it() {
     let ended = twinslip(&format!("run {} -q", scene.display()));
     assert_eq!(ended.code, 0, "{}", ended.err);
     let made: Value = serde_json::from_str(&ended.out).expect("JSON");
-    let flags = object(&format!("equilibria {}", loading(10.0)));
+    let flags = object(&format!(
+        "equilibria --driving 10 --stiffness 0.14 {SECOND}"
+    ));
     assert_eq!(made["result"], flags["result"]);
     let wrong = text.replace("slip_length_2 = 1.05", "slip_length_2 = -1");
     std::fs::write(&scene, wrong).expect("a file");
@@ -424,7 +434,7 @@ fn what_is_wrong_is_refused_in_one_sentence() {
     );
 }
 
-/// tau_ss of interface 2 by (35) at v_2/l_2, in the unit of the first one, and k_c by its slope.
+/// tau_ss of interface 2 by (35) at v_2/l_2 and R/l_2, in the unit of the first one, and k_c by its slope.
 #[test]
 fn the_laws_of_both_interfaces_stand_one_after_the_other() {
     let (n, l, a, b, r, c) = (1.5, 2.0, 0.03, 0.045, 60.0, 0.002);
@@ -444,7 +454,7 @@ fn the_laws_of_both_interfaces_stand_one_after_the_other() {
     let gamma = 2.0 * (-0.369f64 / a).exp();
     let stress = |v: f64| {
         let psi = 1.0 / (1.0 + r * v / l);
-        let strength = (c + (1.0 + r) * psi).powf(b / a);
+        let strength = (c + (1.0 + r / l) * psi).powf(b / a);
         n * a / 0.0349 * (v / gamma * strength).asinh()
     };
     let stiffness = |v: f64| {

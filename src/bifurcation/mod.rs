@@ -41,6 +41,8 @@ pub enum Label {
     Ep,
     /// No further: the method failed here.
     Mx,
+    /// The end of a branch of orbits whose period grows without bound, at a homoclinic orbit.
+    Hom,
     /// Strong resonance 1:1.
     R1,
     /// Strong resonance 1:2.
@@ -67,7 +69,7 @@ pub enum Label {
 
 impl Label {
     /// All, in the order of their declaration.
-    pub const ALL: [Label; 21] = [
+    pub const ALL: [Label; 22] = [
         Label::Bp,
         Label::Lp,
         Label::Hb,
@@ -78,6 +80,7 @@ impl Label {
         Label::Uz,
         Label::Ep,
         Label::Mx,
+        Label::Hom,
         Label::R1,
         Label::R2,
         Label::R3,
@@ -120,6 +123,7 @@ impl Label {
             Label::Uz => "UZ",
             Label::Ep => "EP",
             Label::Mx => "MX",
+            Label::Hom => "HOM",
             Label::R1 => "R1",
             Label::R2 => "R2",
             Label::R3 => "R3",
@@ -147,6 +151,7 @@ impl Label {
             Label::Uz => "value asked for",
             Label::Ep => "end",
             Label::Mx => "no further",
+            Label::Hom => "homoclinic",
             Label::R1 => "resonance 1:1",
             Label::R2 => "resonance 1:2",
             Label::R3 => "resonance 1:3",

@@ -27,6 +27,7 @@ pub use start::{Guess, guess, spread};
 pub use verdict::{Verdict, undecided};
 
 use crate::error::{Error, Result};
+use crate::number::singular_values;
 use nalgebra::DMatrix;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
@@ -254,9 +255,9 @@ impl Errors {
         for (mut column, size) in scaled.column_iter_mut().zip(&sizes) {
             column /= *size;
         }
-        let decomposition = scaled.qr().unpack_r().svd(false, true);
-        let (values, turned) = (decomposition.singular_values, decomposition.v_t);
-        let turned = turned.ok_or(Error::NotConverged {
+        let decomposition = singular_values(scaled.qr().unpack_r(), [false, true]);
+        let parts = decomposition.and_then(|made| Some((made.singular_values, made.v_t?)));
+        let (values, turned) = parts.ok_or(Error::NotConverged {
             what: "the singular values of the fit",
             iterations: 0,
             residual: f64::INFINITY,

@@ -22,7 +22,7 @@ pub(super) struct Kind {
 /// One interface: its law, and what it has in units of the nominal one.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct OneOfMany {
-    /// The law, without damping.
+    /// The law of its slip length ([`AnyLaw::of_slip_length`]), without damping.
     pub law: AnyLaw,
     /// eta, the radiation damping, in units of the nominal a sigma.
     pub damping: f64,

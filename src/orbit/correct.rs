@@ -10,6 +10,7 @@ use super::continuation_point::{ContinuationPoint, TangentVector};
 use super::family::ParametrisedField;
 use super::linear::Linear;
 use super::multipliers::eigenvalues_of;
+use super::periodic_schur::LogEigenvalue;
 use super::shooting_nodes::ShootingNodes;
 use super::test_function::{Spectrum, TestFunction};
 use crate::error::{Error, Result};
@@ -59,9 +60,14 @@ impl Regular {
         if spectrum.dimension == 2 {
             return vec![spectrum.volume];
         }
-        let all = eigenvalues_of(&self.linear.maps);
+        let all = self.multipliers();
         let known = all.map(|all| all.iter().map(|one| one.ln_abs).collect());
         known.unwrap_or_else(|| vec![f64::NAN; spectrum.dimension - 1])
+    }
+
+    /// All nontrivial multipliers, the largest modulus first.
+    pub(crate) fn multipliers(&self) -> Option<Vec<LogEigenvalue>> {
+        eigenvalues_of(&self.linear.maps)
     }
 }
 

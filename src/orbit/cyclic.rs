@@ -6,6 +6,7 @@
 //! problems. SIAM J. Sci. Stat. Comput. 13, 742-764.
 
 use crate::field::{Matrix, Vector};
+use crate::number::{null_vector, singular_values};
 use nalgebra::{ComplexField, DMatrix, DVector, Dim, Dyn, VecStorage};
 
 /// What the equations are in: real or complex numbers.
@@ -197,7 +198,8 @@ pub(super) fn solve_singular(maps: &[Matrix], right: &[Vector]) -> Option<Vec<Ve
     let reduced = reduce(maps, right);
     let n = reduced.size;
     let end = reduced.scaled_end();
-    let svd = Matrix::from_fn(n, n, |i, j| end.row(i)[j]).svd(true, true);
+    let end_matrix = Matrix::from_fn(n, n, |i, j| end.row(i)[j]);
+    let svd = singular_values(end_matrix, [true, true])?;
     if svd.singular_values.min() > FREE {
         return None;
     }
@@ -212,9 +214,8 @@ pub(super) fn kernel(maps: &[Matrix]) -> Option<Vec<Vector>> {
     let n = maps.first()?.nrows();
     let reduced = reduce(maps, &vec![Vector::zeros(n); maps.len()]);
     let end = reduced.scaled_end();
-    let svd = Matrix::from_fn(n, n, |i, j| end.row(i)[j]).svd(false, true);
-    let least = svd.singular_values.imin();
-    let start = svd.v_t?.row(least).transpose();
+    let end_matrix = Matrix::from_fn(n, n, |i, j| end.row(i)[j]);
+    let start = null_vector(end_matrix)?;
     reduced.extended(&start, &Vector::zeros(1))
 }
 

@@ -8,7 +8,7 @@ use super::surface::Surface;
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
-use crate::number::Uncertain;
+use crate::number::{Uncertain, symmetric_eigenvalues};
 
 /// Returns without which neither torus nor chaos is told.
 pub const FEWEST_RETURNS: usize = 200;
@@ -231,10 +231,12 @@ fn principal(inside: &Matrix, origin: &Vector, returns: &[Return]) -> Matrix {
             let off = x - &mean;
             sum + &off * off.transpose()
         });
-    let eigen = covariance.symmetric_eigen();
     let mut order: Vec<usize> = (0..directions).collect();
-    order.sort_by(|&a, &b| eigen.eigenvalues[b].total_cmp(&eigen.eigenvalues[a]));
-    inside * eigen.eigenvectors.select_columns(&order[..2])
+    let Some((values, vectors)) = symmetric_eigenvalues(&covariance) else {
+        return inside.columns(0, 2).into_owned();
+    };
+    order.sort_by(|&a, &b| values[b].total_cmp(&values[a]));
+    inside * vectors.select_columns(&order[..2])
 }
 
 /// Whether many points repeat after some number of returns.

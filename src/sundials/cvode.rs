@@ -137,6 +137,8 @@ pub struct Cvode<const N: usize> {
     pub(super) messages: Stable<Messages>,
     pub(super) operations: Operations,
     pub(super) tolerances: Tolerances,
+    // Whether CVODES has an absolute tolerance for each variable.
+    pub(super) has_vector_tolerances: bool,
     max_steps: usize,
     pub(super) start: f64,
     pub(super) stop_time: Option<f64>,
@@ -231,6 +233,7 @@ impl<const N: usize> Cvode<N> {
             messages,
             operations,
             tolerances,
+            has_vector_tolerances: false,
             max_steps: MAX_STEPS,
             start: 0.0,
             stop_time: None,
@@ -265,6 +268,7 @@ impl<const N: usize> Cvode<N> {
             check!(CV, &self.messages, CVodeSetMaxStep(m, max_step))?;
         }
         self.tolerances = tolerances;
+        self.has_vector_tolerances = false;
         Ok(())
     }
 
@@ -319,6 +323,7 @@ impl<const N: usize> Cvode<N> {
         }
         self.arm_stop_time(to)?;
         if self.steps()? == 0 {
+            self.set_absolute_tolerances(problem)?;
             self.set_first_step(problem, to)?;
         }
         let frame = UserData::new(*problem, self.event_count);

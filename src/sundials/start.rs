@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::callback::{Problem, all_finite};
+use super::cvode::vector;
 use super::{Cvode, check};
 use crate::contract::Tolerances;
 use crate::error::{Error, Result};
@@ -47,6 +48,26 @@ impl<const N: usize> Cvode<N> {
         Ok(())
     }
 
+    /// What a step may err in each variable, where that is not the same for all ([`crate::field::VectorField::absolute_tolerances`]).
+    pub(super) fn set_absolute_tolerances(&mut self, problem: &Problem<'_, N>) -> Result<()> {
+        let Tolerances { rtol, atol, .. } = self.tolerances;
+        let each = problem.field.absolute_tolerances(atol);
+        let is_same = each.iter().all(|&one| one == atol);
+        let m = self.memory.as_ptr();
+        if is_same && self.has_vector_tolerances {
+            // SAFETY: a live memory.
+            unsafe { check!(CV, &self.messages, CVodeSStolerances(m, rtol, atol))? };
+        } else if !is_same {
+            let mut tolerances = vector::<N>(self.operations, &self.context)?;
+            tolerances.set(&each);
+            let made = tolerances.as_ptr();
+            // SAFETY: a live memory, and a vector like the one it was given at first, which CVODES copies.
+            unsafe { check!(CV, &self.messages, CVodeSVtolerances(m, rtol, made))? };
+        }
+        self.has_vector_tolerances = !is_same;
+        Ok(())
+    }
+
     /// A first step for fields so fast that CVODES's own choice, never below a hundred spacings of t, would move the state by
     /// more than its size. Undoing the prediction of such a step leaves rounding in place of the state, and CVODES goes on
     /// from there with success. Everywhere else the choice stays CVODES's.
@@ -56,10 +77,11 @@ impl<const N: usize> Cvode<N> {
         let y = self.state();
         let f = problem.field.f(&y);
         let Tolerances { rtol, atol, .. } = self.tolerances;
+        let atol = problem.field.absolute_tolerances(atol);
         let shortest = SHORTEST * self.start.abs().max(to.abs());
-        let too_long = (0..N).any(|i| shortest * f[i].abs() > y[i].abs() + atol / rtol);
+        let too_long = (0..N).any(|i| shortest * f[i].abs() > y[i].abs() + atol[i] / rtol);
         let h = if too_long && all_finite(f.as_slice()) {
-            let within = (0..N).map(|i| (atol + rtol * y[i].abs()) / f[i].abs());
+            let within = (0..N).map(|i| (atol[i] + rtol * y[i].abs()) / f[i].abs());
             within
                 .fold(f64::INFINITY, f64::min)
                 .copysign(to - self.start)

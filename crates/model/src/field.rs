@@ -65,6 +65,18 @@ pub trait VectorField<const N: usize>: Send + Sync {
         None
     }
 
+    /// For every variable whether it is a factor of its own rate: solutions keep its sign, and what a step may err in it is counted relative
+    /// to it alone.
+    fn own_factors(&self) -> [bool; N] {
+        [false; N]
+    }
+
+    /// What a step may err in every variable beside its relative error: `atol`, or next to nothing where it is a factor of its own rate.
+    fn absolute_tolerances(&self, atol: f64) -> State<N> {
+        let own = |factor| if factor { f64::MIN_POSITIVE } else { atol };
+        State::from(self.own_factors().map(own))
+    }
+
     /// The field as one of those that differ by parameters, where it is.
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
         None

@@ -3,6 +3,7 @@
 
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
+use crate::number::null_vector;
 use nalgebra::{Complex, DMatrix, DVector};
 
 /// The bialternate product 2 A (.) 1, of size N (N - 1) / 2: its eigenvalues are the sums of two of A's.
@@ -86,8 +87,8 @@ pub(super) fn lyapunov_by(
     let a = field.jacobian(at).map(Complex::from);
     let i_omega = Complex::new(0.0, omega);
     let one = DMatrix::<Complex<f64>>::identity(n, n);
-    let q = null_vector(&(&a - &one * i_omega))?;
-    let p = null_vector(&(a.adjoint() + &one * i_omega))?;
+    let q = null_vector(&a - &one * i_omega)?;
+    let p = null_vector(a.adjoint() + &one * i_omega)?;
     // <p, q> = 1, conjugate-linear in p
     let p = &p / p.dotc(&q).conj();
     let conjugate = q.map(|x| x.conj());
@@ -99,11 +100,4 @@ pub(super) fn lyapunov_by(
         + p.dotc(&b(&conjugate, &double));
     let l_1 = sum.re / (2.0 * omega);
     l_1.is_finite().then_some(l_1)
-}
-
-/// The unit vector that the matrix maps to nearly zero.
-fn null_vector(matrix: &DMatrix<Complex<f64>>) -> Option<CVector> {
-    let decomposed = matrix.clone().svd(false, true);
-    let smallest = decomposed.singular_values.imin();
-    Some(decomposed.v_t?.row(smallest).adjoint())
 }

@@ -19,7 +19,7 @@ use crate::continuation::{
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector, place};
 use crate::integrate::{AnyExact, AnyField, of_dimension};
-use crate::number;
+use crate::number::{self, null_vector, singular_values};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::ops::ControlFlow;
@@ -218,9 +218,7 @@ impl<'a> FieldEquilibria<'a> {
         let n = y.len();
         of_dimension(n, self.field(p).dimension())?;
         let matrix = self.bordered(y, p, &point.tangent);
-        let decomposed = matrix.svd(false, true);
-        let smallest = decomposed.singular_values.imin();
-        let Some(null) = decomposed.v_t.map(|v_t| v_t.row(smallest).transpose()) else {
+        let Some(null) = null_vector(matrix) else {
             return Err(Error::NotConverged {
                 what: "the direction of the second branch",
                 iterations: 0,
@@ -314,7 +312,7 @@ impl EquilibriumObserver<'_, '_> {
                 row /= length;
             }
         }
-        rows.singular_values().min() < ZERO
+        singular_values(rows, [false, false]).is_some_and(|of| of.singular_values.min() < ZERO)
     }
 
     /// Its sign changes at branch points, and where a step has come onto another branch.

@@ -7,6 +7,7 @@
 use super::generic::FieldEquilibria;
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyExact;
+use crate::number::null_vector;
 
 /// Where two branches cross.
 #[derive(Debug, Clone, PartialEq)]
@@ -66,9 +67,7 @@ pub(super) fn branch_point(
     let n = state.len();
     let rows = family.extended(state, parameter).transpose();
     // The left null vector of (f_y, f_p).
-    let decomposed = rows.svd(false, true);
-    let smallest = decomposed.singular_values.imin();
-    let psi: Vector = decomposed.v_t?.row(smallest).transpose();
+    let psi = null_vector(rows)?;
     let mut u = Vector::zeros(2 * n + 2);
     u.rows_mut(0, n).copy_from(state);
     u[n] = parameter;
@@ -130,9 +129,7 @@ fn crossing(family: &FieldEquilibria<'_>, u: &Vector) -> Option<BranchCrossing> 
         u[n],
         u.rows(n + 2, n).into_owned(),
     );
-    let decomposed = family.exact(&y, p).jacobian[0].clone().svd(false, true);
-    let least = decomposed.singular_values.imin();
-    let phi: Vector = decomposed.v_t?.row(least).transpose();
+    let phi = null_vector(family.exact(&y, p).jacobian[0].clone())?;
     let part = |i: usize| Vector::from_fn(n, |k, _| if k == i { phi[i] } else { 0.0 });
     let (mut sum, mut size) = (0.0, 0.0);
     for i in 0..n {

@@ -7,7 +7,7 @@ use crate::bifurcation::Label;
 use crate::continuation::{CurveObserver, CurvePoint, PointKind};
 use crate::error::Result;
 use crate::field::{Matrix, Vector};
-use crate::number::eigenvalues;
+use crate::number::{eigenvalues, null_vector};
 use nalgebra::Complex;
 use std::ops::ControlFlow;
 
@@ -19,9 +19,7 @@ pub(super) struct Observer<'a, 'b> {
 
 /// The vector that the matrix maps to nearly zero, with a positive product with another one.
 fn kernel(matrix: &Matrix, along: &Vector) -> Option<Vector> {
-    let decomposed = matrix.clone().svd(false, true);
-    let smallest = decomposed.singular_values.imin();
-    let kernel = decomposed.v_t?.row(smallest).transpose();
+    let kernel = null_vector(matrix.clone())?;
     Some(if kernel.dot(along) < 0.0 {
         -kernel
     } else {

@@ -6,7 +6,7 @@ use crate::continuation::ZeroProblem;
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::{AnyExact, AnyField};
-use crate::number::{Uncertain, eigenvalues};
+use crate::number::{Uncertain, eigenvalues, null_vector, singular_values};
 
 /// f and the determinant as functions of the state and the first coordinate, and of the second.
 pub(super) struct Extended<'a>(pub &'a EquilibriumCurve<'a>);
@@ -43,10 +43,8 @@ impl Extended<'_> {
         let rows = self.jacobian(u, lambda)?;
         let n = rows.ncols();
         // One more row of zeros for the vector that all others are across.
-        let decomposed = rows.insert_row(n - 1, 0.0).svd(false, true);
-        let least = decomposed.singular_values.imin();
+        let tangent = null_vector(rows.insert_row(n - 1, 0.0));
         let unit = |i: usize| Vector::from_fn(n, |k, _| f64::from(u8::from(i == k)));
-        let tangent = decomposed.v_t.map(|v_t| v_t.row(least).transpose());
         let tangent = tangent.unwrap_or_else(|| unit(n - 1));
         let leading = match tangent[n - 1].abs() > STAYS {
             true => tangent[n - 1],
@@ -203,8 +201,9 @@ impl Extended<'_> {
 
 /// The derivative of det A along a change of A: the trace of the adjugate times it, which exists where A is singular.
 pub(super) fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + use<>> {
-    let decomposed = a.clone().svd(true, true);
-    let (Some(u), Some(v_t)) = (decomposed.u, decomposed.v_t) else {
+    let decomposed = singular_values(a.clone(), [true, true]);
+    let parts = decomposed.and_then(|made| Some((made.u?, made.v_t?, made.singular_values)));
+    let Some((u, v_t, sigma)) = parts else {
         return Err(Error::NotConverged {
             what: "the adjugate of a Jacobian",
             iterations: 0,
@@ -213,7 +212,6 @@ pub(super) fn determinant_slope(a: &Matrix) -> Result<impl Fn(&Matrix) -> f64 + 
         });
     };
     let sign = u.determinant() * v_t.determinant();
-    let sigma = decomposed.singular_values;
     Ok(move |change: &Matrix| {
         let turned = u.transpose() * change * v_t.transpose();
         let others = |i: usize| (0..sigma.len()).filter(move |&j| j != i);

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Vector};
 use crate::integrate::AnyField;
+use crate::number::null_vector;
 use crate::orbit::{
     ContinuationPoint, Corrector, Palc, PalcSettings, ShootingNodes, TangentVector,
 };
@@ -30,9 +31,7 @@ impl GeneralHopf {
         let count = jacobian.nrows();
         let square = &jacobian * &jacobian
             + Matrix::identity(count, count) * (self.frequency * self.frequency);
-        let decomposed = square.svd(false, true);
-        let smallest = decomposed.singular_values.imin();
-        let along: Vector = decomposed.v_t?.row(smallest).transpose();
+        let along = null_vector(square)?;
         let across = jacobian * &along / self.frequency;
         let scale = size / along.amax().max(across.amax());
         let turn = TAU / NODES as f64;

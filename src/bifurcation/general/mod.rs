@@ -5,7 +5,9 @@
 
 mod curves;
 mod equilibria;
+mod growing_period;
 mod hopf;
+mod multipliers_together;
 mod orbit_curves;
 mod orbits;
 mod splits;
@@ -150,6 +152,8 @@ pub struct GeneralPoint {
     pub angle_over_pi: Option<f64>,
     /// How branches of equilibria cross at a branch point.
     pub crossing: Option<BranchCrossing>,
+    /// Where the period grows without bound, whether that is at a saddle-node on the cycle.
+    pub saddle_node: bool,
     /// To which side the bifurcation goes.
     pub criticality: Option<Criticality>,
     /// The normal form's coefficient.
@@ -201,6 +205,7 @@ impl GeneralPoint {
             period: None,
             angle_over_pi: None,
             crossing: None,
+            saddle_node: false,
             criticality: None,
             coefficient: None,
             coefficient_uncertainty: None,

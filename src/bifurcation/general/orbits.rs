@@ -1,7 +1,9 @@
 //! Branches of periodic orbits along one parameter: from the Hopf points, through folds, onto the branches of doubled periods.
 
 use super::equilibria::EquilibriumBranches;
+use super::growing_period::{Limit, Periods};
 use super::hopf::GeneralHopf;
+use super::multipliers_together::{Outside, Together, is_real};
 use super::splits::with_splits;
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
@@ -298,6 +300,8 @@ struct OrbitBranch<'s, 'b, 'a> {
     inside: bool,
     /// The orbit that it begins with, which it does not come to again.
     begin: Option<ContinuationPoint>,
+    periods: Periods,
+    outside: Outside,
 }
 
 impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
@@ -308,6 +312,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             times,
             inside,
             begin: None,
+            periods: Periods::default(),
+            outside: Outside::default(),
         }
     }
 
@@ -346,11 +352,51 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             Met::Point(now) => self.orbit(palc, now, before, teller),
         })?;
         if end != crate::continuation::Stop::Observer && self.inside {
-            let mut point = self.set.row(self.number, &palc.now.here, Some(Label::Mx));
-            point.note = Some(end.to_string());
+            let point = self.end(&palc.now.here, &end.to_string());
             let _ = teller.tell(GeneralEvent::Special(point));
         }
         Ok(())
+    }
+
+    /// An orbit of which several multipliers are of modulus 1.
+    fn together(&self, together: Together) -> GeneralPoint {
+        let point = orbit_point(self.number, &together.orbit, Some(together.label));
+        let count = together.count;
+        let note = match together.label {
+            Label::Bp => format!("multipliers that are 1: {count}"),
+            Label::Pd => format!("multipliers that are -1: {count}"),
+            _ => format!("multipliers of modulus 1: {count}"),
+        };
+        let point = GeneralPoint {
+            at: [together.at.value, point.at[1]],
+            note: Some(format!("{note}; what branches off is not followed")),
+            ..point
+        };
+        point.placed(
+            self.set.branch.system.family,
+            [together.at.uncertainty, 0.0],
+        )
+    }
+
+    /// Where the branch goes no further, or tends to.
+    fn end(&self, last: &Regular, why: &str) -> GeneralPoint {
+        let point = self.set.row(self.number, last, Some(Label::Mx));
+        let branch = self.set.branch;
+        let Some(Limit { at, is_saddle_node }) = self.periods.limit(branch, last) else {
+            return GeneralPoint {
+                note: Some(why.to_owned()),
+                ..point
+            };
+        };
+        let limit = GeneralPoint {
+            label: Some(Label::Hom),
+            at: [at.value, point.at[1]],
+            saddle_node: is_saddle_node,
+            period: None,
+            note: Some("the period grows without bound".to_owned()),
+            ..point
+        };
+        limit.placed(branch.system.family, [at.uncertainty, 0.0])
     }
 
     /// The next orbit: whether the branch goes on.
@@ -378,6 +424,12 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         if self.times > 0 && turned && self.is_doubling(&here.site) {
             return Break(());
         }
+        let family = self.set.branch.system.family;
+        if let Some(together) = self.outside.come_to(family, here)
+            && self.set.inside(together.orbit.site.at[FREE])
+        {
+            teller.special(self.together(together))?;
+        }
         if !self.set.inside(here.site.at[FREE]) {
             let (a, b) = self.set.branch.beyond;
             let far = !(a.min(b)..=a.max(b)).contains(&here.site.at[FREE]);
@@ -388,6 +440,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             };
         }
         self.inside = true;
+        let site = &here.site;
+        self.periods.push(site.at[FREE], site.shooting.period());
         teller.tell(GeneralEvent::Row(self.set.row(self.number, here, None)))
     }
 
@@ -452,6 +506,12 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let branch = self.set.branch;
         let (from, to) = branch.range;
         let near = &at.here;
+        if let WatchedFunction::TestFunction(test_function) = watch {
+            if test_function == TestFunction::Torus && is_real(near) {
+                return Continue(());
+            }
+            self.outside.passes(test_function);
+        }
         let label = match watch {
             // It begins at this value but for rounding.
             WatchedFunction::Value(..) if self.is_begin(&near.site) => return Continue(()),

@@ -1,25 +1,47 @@
 //! Step size control: the error's norm, the first step, and each one after.
 
-use crate::field::{Jacobian, State};
+use crate::field::{Jacobian, State, VectorField};
 use crate::integrate::Tolerances;
+
+/// What a step may err.
+#[derive(Debug, Clone, Copy)]
+pub struct MayErr<const N: usize> {
+    rtol: f64,
+    atol: State<N>,
+}
+
+impl<const N: usize> MayErr<N> {
+    /// atol in every component but those that are factors of their own rates.
+    pub fn new(tolerances: Tolerances, field: &dyn VectorField<N>) -> Self {
+        MayErr {
+            rtol: tolerances.rtol,
+            atol: field.absolute_tolerances(tolerances.atol),
+        }
+    }
+
+    /// atol in every component.
+    pub fn equally(Tolerances { rtol, atol, .. }: Tolerances) -> Self {
+        let atol = State::repeat(atol);
+        MayErr { rtol, atol }
+    }
+}
 
 /// The largest component of |error| / (atol + rtol max(|y0|, |y1|)); `None` if one is not finite.
 ///
 /// The root mean square needs the same work at equal error, to one per cent, but would let one component hide among many.
 #[inline]
 pub fn error_norm<const N: usize>(
-    tolerances: Tolerances,
+    MayErr { rtol, atol }: MayErr<N>,
     error: &State<N>,
     y0: &State<N>,
     y1: &State<N>,
 ) -> Option<f64> {
-    let Tolerances { rtol, atol, .. } = tolerances;
     let mut norm = 0.0_f64;
     let mut finite = true;
     for i in 0..N {
         // f64::max swallows NaN: finiteness is asked for, component by component.
         finite &= y1[i].is_finite() & error[i].is_finite();
-        norm = norm.max(error[i].abs() / (atol + rtol * y0[i].abs().max(y1[i].abs())));
+        norm = norm.max(error[i].abs() / (atol[i] + rtol * y0[i].abs().max(y1[i].abs())));
     }
     finite.then_some(norm)
 }
@@ -30,7 +52,7 @@ pub fn error_norm<const N: usize>(
 /// Theirs mixes units of time; here y'' = J y' is exact, and its ratio to y' is the time scale. In logarithms nothing
 /// overflows where the rates themselves are near 1e300.
 pub fn first_step<const N: usize>(
-    tolerances: Tolerances,
+    may_err: MayErr<N>,
     order: u32,
     span: f64,
     y: &State<N>,
@@ -39,7 +61,7 @@ pub fn first_step<const N: usize>(
 ) -> f64 {
     /// Part of the tolerance that the first step may use up.
     const CAUTION: f64 = 0.01;
-    let scale = |i: usize| tolerances.atol + tolerances.rtol * y[i].abs();
+    let scale = |i: usize| may_err.atol[i] + may_err.rtol * y[i].abs();
     let log_norm = |v: &State<N>| {
         (0..N)
             .map(|i| v[i].abs().ln() - scale(i).ln())

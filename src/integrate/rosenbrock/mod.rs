@@ -25,7 +25,7 @@ use super::tableau::{RODAS4, RODAS5P, ROS23, Tableau};
 use super::{Control, Integrator, Observer, Tolerances, Work};
 use crate::error::{Error, Result};
 use crate::field::{Jacobian, State, VectorField};
-use control::first_step;
+use control::{MayErr, first_step};
 use drive::drive;
 use stages::{Linearisation, Scheme};
 use tangent::Bundle;
@@ -194,7 +194,7 @@ impl<const N: usize> Rosenbrock<N> {
         let span = t.1 - t.0;
         let order = self.method.tableau().order;
         let length = first_step(
-            self.tolerances,
+            MayErr::new(self.tolerances, field),
             order,
             span.abs(),
             y0,

@@ -8,7 +8,7 @@
 //! That is the method applied to the extended system, exactly: the tangent has the method's order. Every entry of Y is in
 //! the error test; scaled by columns or by the whole matrix the work at equal error was the same.
 
-use super::control::error_norm;
+use super::control::{MayErr, error_norm};
 use super::drive::Steppable;
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
@@ -99,6 +99,7 @@ impl<const N: usize> Staged for TangentStepping<'_, N> {
 pub(super) struct Bundle<'a, S, const N: usize> {
     field: &'a dyn VectorField<N>,
     tolerances: Tolerances,
+    may_err: MayErr<N>,
     work: &'a mut Work,
     y: State<N>,
     tangent: Jacobian<N>,
@@ -127,6 +128,7 @@ impl<'a, S: Scheme, const N: usize> Bundle<'a, S, N> {
         Some(Bundle {
             field,
             tolerances,
+            may_err: MayErr::new(tolerances, field),
             work,
             y,
             tangent,
@@ -188,12 +190,13 @@ impl<S: Scheme, const N: usize> Steppable for Bundle<'_, S, N> {
             combination(self.tangent, &tableau.m, count, &self.v),
         );
         let error = combination(State::zeros(), &tableau.e, count, &self.u);
-        let mut norm = error_norm(self.tolerances, &error, &self.y, &self.next.0)?;
+        let mut norm = error_norm(self.may_err, &error, &self.y, &self.next.0)?;
         let errors = combination(Jacobian::zeros(), &tableau.e, count, &self.v);
+        let of_columns = MayErr::equally(self.tolerances);
         for column in 0..N {
             let of = |matrix: &Jacobian<N>| matrix.column(column).into_owned();
             let (error, y0, y1) = (of(&errors), of(&self.tangent), of(&self.next.1));
-            norm = norm.max(error_norm(self.tolerances, &error, &y0, &y1)?);
+            norm = norm.max(error_norm(of_columns, &error, &y0, &y1)?);
         }
         Some(norm)
     }

@@ -1,6 +1,6 @@
 //! One step of the state alone.
 
-use super::control::error_norm;
+use super::control::{MayErr, error_norm};
 use super::drive::Steppable;
 use super::factors::Factors;
 use super::stages::{Linearisation, Scheme, Staged, Stages, combination, error_order};
@@ -39,6 +39,7 @@ impl<const N: usize> Staged for Stepping<'_, N> {
 pub(super) struct StepState<'a, S, const N: usize> {
     field: &'a dyn VectorField<N>,
     tolerances: Tolerances,
+    may_err: MayErr<N>,
     work: &'a mut Work,
     y: State<N>,
     here: Linearisation<N>,
@@ -62,6 +63,7 @@ impl<'a, S: Scheme, const N: usize> StepState<'a, S, N> {
         StepState {
             field,
             tolerances,
+            may_err: MayErr::new(tolerances, field),
             work,
             y,
             here,
@@ -138,7 +140,7 @@ impl<S: Scheme, const N: usize> Steppable for StepState<'_, S, N> {
         self.last_f = stepping.newest;
         self.next = combination(self.y, &tableau.m, tableau.stages, &self.stages);
         let error = combination(State::zeros(), &tableau.e, tableau.stages, &self.stages);
-        error_norm(self.tolerances, &error, &self.y, &self.next)
+        error_norm(self.may_err, &error, &self.y, &self.next)
     }
 
     fn fastest(&self) -> (f64, f64) {

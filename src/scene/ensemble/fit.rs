@@ -3,7 +3,8 @@
 use super::super::file::read_bounded;
 use crate::error::{Error, Result};
 use crate::friction::AnyLaw;
-use nalgebra::{DMatrix, DVector, SymmetricEigen};
+use crate::number::symmetric_eigenvalues;
+use nalgebra::{DMatrix, DVector};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -235,10 +236,9 @@ fn correlation(rows: &[Vec<Option<f64>>], size: usize) -> Result<DMatrix<f64>, S
 
 /// A factor of a matrix that may be singular, as of two parameters that are known only by their ratio.
 fn factor(correlation: &DMatrix<f64>) -> Result<DMatrix<f64>, String> {
-    let SymmetricEigen {
-        eigenvectors,
-        eigenvalues,
-    } = correlation.clone().symmetric_eigen();
+    let Some((eigenvalues, eigenvectors)) = symmetric_eigenvalues(correlation) else {
+        return Err("its correlations have no eigenvalues".to_owned());
+    };
     let least = eigenvalues.min();
     if least < -ROUNDED {
         return Err(format!(

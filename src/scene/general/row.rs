@@ -21,6 +21,9 @@ pub struct RowKind {
     pub curve: bool,
 }
 
+/// What a branch of orbits ends at, that is no homoclinic orbit to a saddle.
+const SADDLE_NODE: &str = "saddle-node on a cycle";
+
 /// A point of a branch or of a curve, as rows and special points show it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct GeneralRow {
@@ -40,6 +43,8 @@ pub struct GeneralRow {
     pub angle_over_pi: Option<f64>,
     /// How branches of equilibria cross at a branch point.
     pub crossing: Option<BranchCrossing>,
+    /// Where the period grows without bound, whether that is at a saddle-node on the cycle.
+    pub saddle_node: bool,
     /// To which side a bifurcation goes.
     pub criticality: Option<Criticality>,
     /// The normal form's coefficient.
@@ -90,6 +95,7 @@ impl GeneralRow {
             within: point.within.iter().map(|one| one.ln_abs.value).collect(),
             angle_over_pi: point.angle_over_pi,
             crossing: point.crossing,
+            saddle_node: point.saddle_node,
             criticality: point.criticality,
             coefficient: point.coefficient,
             coefficient_uncertainty: point.coefficient_uncertainty,
@@ -105,6 +111,7 @@ impl GeneralRow {
         match self.label? {
             Label::Bp if !self.within.is_empty() => Some("branch point"),
             Label::Bp => Some(self.crossing.map_or("branch point", BranchCrossing::name)),
+            Label::Hom if self.saddle_node => Some(SADDLE_NODE),
             label => Some(label.meaning()),
         }
     }
@@ -236,6 +243,7 @@ impl GeneralRow {
             crossing: BranchCrossing::ALL
                 .into_iter()
                 .find(|crossing| crossing.name() == cell("name")),
+            saddle_node: cell("name") == SADDLE_NODE,
             criticality: sides
                 .into_iter()
                 .find(|side| side.name() == cell("criticality")),

@@ -2,7 +2,7 @@
 
 use super::draw::{Draw, Drawn, InUnits};
 use crate::error::{Error, Result};
-use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive, steady_stress};
+use crate::friction::{AnyLaw, Formulas, Parameters, beside, positive};
 use crate::many::{ManyInterfaces, OneOfMany, Processes, Share};
 use crate::model::Loading;
 use crate::scene::options::{ModelOptions, SlabOptions};
@@ -129,7 +129,7 @@ fn interfaces(
         let healing_time = own.healing_time.unwrap_or(HEALING_TIME);
         let parameters = Parameters::new(own.a(), own.b(), own.a_v(), healing_time, own.c())?;
         Ok(OneOfMany {
-            law: AnyLaw::named(&own.law, parameters)?,
+            law: AnyLaw::of_slip_length(&own.law, parameters, units.slip_length)?,
             damping,
             slip_length: units.slip_length,
             // both in units of the nominal a sigma
@@ -179,7 +179,8 @@ fn start(
             beside(&one.law, steady, moved(i)).exp()
         };
         let states = held.clone().map(state).collect();
-        let friction = steady_stress(&first.law, rate) / first.stress_factor;
+        let steady = first.law.steady_state(rate / first.slip_length);
+        let friction = first.law.stress(rate, steady) / first.stress_factor;
         (friction + first.damping * rate, states)
     };
     if let Some(rest) = text.strip_prefix(USUAL_START) {

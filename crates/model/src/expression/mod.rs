@@ -5,6 +5,7 @@
 mod damped;
 mod factor;
 mod function;
+mod own_factor;
 mod ratios;
 mod signed_powers;
 

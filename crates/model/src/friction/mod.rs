@@ -143,6 +143,25 @@ impl<T> From<[T; Parameters::NAMES.len()]> for Parameters<Free<T>> {
     }
 }
 
+impl<T: Real> Parameters<T> {
+    /// The constants of an interface with l times the slip length by which R, the state of an ageing law and time are dimensionless.
+    ///
+    /// Its friction is that of its own units, where the state is psi/l and, of laws whose state heals in a finite time, R is R/l. Its strength
+    /// is then psi/l or c + (1 + R/l) psi, which is s times that of the formulas with c/s for c. So the friction of steady sliding at V* does
+    /// not depend on l.
+    pub fn of_slip_length(self, l: T, heals_in_finite_time: bool) -> Self {
+        let s = match heals_in_finite_time {
+            true => (self.healing_time / l + 1.0) / (self.healing_time + 1.0),
+            false => T::constant(1.0) / l,
+        };
+        Parameters {
+            gamma0: self.gamma0 * (-(s.ln() * self.beta)).exp(),
+            residual_strength: self.residual_strength / s,
+            ..self
+        }
+    }
+}
+
 impl Parameters {
     /// Their names. Every law has the first two, those whose state is bounded the third, the spinodal one the fourth, and those that are
     /// damped the last.
@@ -278,6 +297,15 @@ macro_rules! laws {
                     $($law::NAME => Ok(AnyLaw::$law(parameters.$file())),)+
                     _ => Err(Error::unknown("law", name, &AnyLaw::NAMES)),
                 }
+            }
+
+            /// The law of this name with these constants, of an interface with l times the slip length by which they are dimensionless.
+            ///
+            /// # Errors
+            /// Those of [`AnyLaw::named`].
+            pub fn of_slip_length(name: &str, parameters: Parameters, l: f64) -> Result<Self> {
+                let heals = Self::named(name, parameters)?.bounds_state();
+                Self::named(name, parameters.of_slip_length(l, heals))
             }
 
             /// [`Law::freed`].

@@ -1,7 +1,8 @@
 //! Two interfaces that differ: the constants of each, and their laws in the units of the first.
 //!
 //! Stress is measured in a_1 sigma_1, slip rate in V* and time in L_1/V*. Of interface i, with n_i = sigma_i/sigma_1, l_i = L_i/L_1
-//! and q_i = a_1/(n_i a_i), v_i = law_i(q_i (tau - eta v_i), psi_i), and its state evolves as that of its law at the slip rate v_i/l_i. In
+//! and q_i = a_1/(n_i a_i), v_i = law_i(q_i (tau - eta v_i), psi_i), and its state evolves as that of its law at the slip rate v_i/l_i. The
+//! strength is that of its own slip length ([`Parameters::of_slip_length`]), and so the friction of steady sliding at V* its own a_v. In
 //! u_i = v_i/l_i that is the law itself with gamma0_i/l_i in place of gamma0_i and q_i eta l_i in place of eta: see [`ScaledLaw`].
 
 use super::{AnyLaw, Law, Parameters, Rounded, ScaledLaw, positive};
@@ -122,8 +123,13 @@ impl UnequalLaws {
                     return Err(of_interface(Error::parameter(name, value, must), 1));
                 }
             }
-            let (parameters, factors) =
-                in_units_of_first(&constants[0].into(), &(*own).into(), (damping, i == 0));
+            let heals = AnyLaw::named(law, Parameters::heslot_1994())?.bounds_state();
+            let (parameters, factors) = in_units_of_first(
+                &constants[0].into(),
+                &(*own).into(),
+                (damping, i == 0),
+                heals,
+            );
             let [stress_factor, slip_rate_factor] = factors;
             let numbers = [parameters.gamma0, parameters.beta, stress_factor];
             if !numbers.iter().all(|x| x.is_normal()) {
@@ -174,8 +180,9 @@ impl UnequalLaws {
         damping: T,
     ) -> [ScaledLaw<Free<T>>; 2] {
         std::array::from_fn(|i| {
+            let heals = self.laws[i].law.bounds_state();
             let (made, factors) =
-                in_units_of_first(&constants[0], &constants[i], (damping, i == 0));
+                in_units_of_first(&constants[0], &constants[i], (damping, i == 0), heals);
             let [stress_factor, slip_rate_factor] = factors.map(Free);
             let parameters = Parameters::from([
                 made.beta,
@@ -220,6 +227,7 @@ fn in_units_of_first<T: Real>(
     first: &[T; COUNT],
     own: &[T; COUNT],
     (damping, is_first): (T, bool),
+    heals_in_finite_time: bool,
 ) -> (Parameters<T>, [T; 2]) {
     let [_, _, a_1, ..] = *first;
     let [healing_time, residual_strength, a, b, a_v, l, n] = *own;
@@ -230,12 +238,17 @@ fn in_units_of_first<T: Real>(
     };
     let parameters = Parameters {
         beta: b / a,
-        gamma0: (-a_v / a).exp() * 2.0 / l,
+        gamma0: (-a_v / a).exp() * 2.0,
         healing_time,
         residual_strength,
         damping: damping * stress_factor * l,
     };
-    (parameters, [stress_factor, l])
+    let own = parameters.of_slip_length(l, heals_in_finite_time);
+    let in_own_rate = Parameters {
+        gamma0: own.gamma0 / l,
+        ..own
+    };
+    (in_own_rate, [stress_factor, l])
 }
 
 /// The same error, with the name of the parameter of this interface.

@@ -278,6 +278,14 @@ impl<const N: usize> VectorField<N> for TextField<'_, N> {
         })
     }
 
+    fn own_factors(&self) -> [bool; N] {
+        let TextSystem {
+            rates, parameters, ..
+        } = &*self.0;
+        let all = rates.own_factors(N, parameters);
+        std::array::from_fn(|i| all[i])
+    }
+
     fn parametrised(&self) -> Option<&dyn Parametrised<N>> {
         Some(self)
     }

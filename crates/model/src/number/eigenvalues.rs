@@ -1,7 +1,7 @@
-//! Eigenvalues of real matrices.
+//! Eigenvalues and singular values of matrices, by iterations that end.
 
-use nalgebra::linalg::Schur;
-use nalgebra::{Complex, DMatrix, DVector};
+use nalgebra::linalg::{SVD, Schur, SymmetricEigen};
+use nalgebra::{Complex, ComplexField, DMatrix, DVector, Dyn};
 
 /// Iterations that are allowed for each eigenvalue; two or three are usual.
 const ITERATIONS: usize = 100;
@@ -32,6 +32,44 @@ pub fn eigenvalues(matrix: &DMatrix<f64>) -> Option<Vec<Complex<f64>>> {
         let schur = Schur::try_new(same, f64::EPSILON, most)?;
         Some(schur.complex_eigenvalues().iter().copied().collect())
     })
+}
+
+/// The eigenvalues of a symmetric square matrix, and its eigenvectors as columns, in no order. `None` where the matrix has entries that are
+/// not finite, or the iteration does not end.
+///
+/// It is done in units of the largest entry: beside the smallest of all numbers nothing is negligible, and the iteration would not end.
+///
+/// # Panics
+/// If the matrix is not square.
+pub fn symmetric_eigenvalues(matrix: &DMatrix<f64>) -> Option<(DVector<f64>, DMatrix<f64>)> {
+    let largest = matrix.amax();
+    if !matrix.iter().all(|x| x.is_finite()) {
+        return None;
+    }
+    let unit = if largest > 0.0 { largest } else { 1.0 };
+    let most = ITERATIONS * matrix.nrows().max(1);
+    let made = SymmetricEigen::try_new(matrix / unit, f64::EPSILON, most)?;
+    Some((made.eigenvalues * unit, made.eigenvectors))
+}
+
+/// The singular values of a matrix, with the vectors that are asked for: those of its range, and those of its domain as rows. `None` where the
+/// matrix has entries that are not finite, or the iteration does not end.
+pub fn singular_values<T: ComplexField<RealField = f64>>(
+    matrix: DMatrix<T>,
+    [of_range, of_domain]: [bool; 2],
+) -> Option<SVD<T, Dyn, Dyn>> {
+    let most = ITERATIONS * matrix.nrows().max(matrix.ncols()).max(1);
+    if !matrix.iter().all(|x| x.clone().is_finite()) {
+        return None;
+    }
+    SVD::try_new(matrix, of_range, of_domain, 5.0 * f64::EPSILON, most)
+}
+
+/// The unit vector that the matrix maps to the least one: to zero where it is singular. `None` as of [`singular_values`].
+pub fn null_vector<T: ComplexField<RealField = f64>>(matrix: DMatrix<T>) -> Option<DVector<T>> {
+    let decomposed = singular_values(matrix, [false, true])?;
+    let least = decomposed.singular_values.imin();
+    Some(decomposed.v_t?.row(least).adjoint())
 }
 
 /// The matrix in coordinates that are reflected at a plane, a different one for each basis.

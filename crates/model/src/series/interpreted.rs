@@ -86,6 +86,8 @@ pub struct Interpreted<'a, T: Element> {
     noise: Vec<T>,
     /// The derivatives of the series where a step may lead.
     slopes: Vec<T>,
+    /// Whether a variable is counted relative to itself alone, as it is a factor of its own rate.
+    relative: Vec<bool>,
 }
 
 /// A state, and what rounding took from it.
@@ -116,6 +118,10 @@ impl<'a, T: Element> Interpreted<'a, T> {
         any: T,
     ) -> Self {
         let zeros = vec![any.like(0.0); program.variables()];
+        let mut relative = vec![false; program.variables()];
+        for (&(row, _), &factor) in program.places.iter().zip(&program.own_factors) {
+            relative[row] |= factor;
+        }
         let reached = Reached {
             x: zeros.clone(),
             lost: zeros.clone(),
@@ -137,7 +143,19 @@ impl<'a, T: Element> Interpreted<'a, T> {
             zeros: Vec::new(),
             noise: zeros.clone(),
             slopes: zeros,
+            relative,
         }
+    }
+
+    /// What a step may err in the i-th row of variables where that is of this size.
+    #[inline(always)]
+    fn may_err(&self, i: usize, size: T, (rtol, atol): (f64, f64)) -> T {
+        let atol = if self.relative[i] {
+            f64::MIN_POSITIVE
+        } else {
+            atol
+        };
+        size.mul_add(size.like(rtol), size.like(atol))
     }
 
     /// Begins at x.
@@ -249,9 +267,9 @@ impl<'a, T: Element> Interpreted<'a, T> {
 
     /// The largest j-th coefficient, in what may err.
     #[inline(always)]
-    fn largest(&self, j: usize, (rtol, atol): (f64, f64)) -> f64 {
+    fn largest(&self, j: usize, tolerances: (f64, f64)) -> f64 {
         let relative = |(i, x): (usize, &T)| {
-            let may_err = x.abs().mul_add(x.like(rtol), x.like(atol));
+            let may_err = self.may_err(i, x.abs(), tolerances);
             (self.rows.row(i)[j] / may_err).abs().largest_lane()
         };
         let x = self.reached.x.iter().enumerate();

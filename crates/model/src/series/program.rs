@@ -218,6 +218,8 @@ pub(super) struct Program {
     pub lanes: Vec<usize>,
     /// The row of each variable, and its lane there.
     pub places: Vec<(usize, usize)>,
+    /// For each variable whether it is a factor of its own rate.
+    pub own_factors: Vec<bool>,
     /// What is carried out at all orders but the first.
     pub later: LaterOrders,
     /// The rows at whose zeros a sign that it takes changes.
@@ -240,6 +242,7 @@ impl Program {
             outputs: Vec::new(),
             lanes: Vec::new(),
             places: (0..variables).map(|i| (i, 0)).collect(),
+            own_factors: vec![false; variables],
             later: LaterOrders::default(),
             kinks: Vec::new(),
             bases: Vec::new(),

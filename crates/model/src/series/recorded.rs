@@ -251,6 +251,7 @@ impl<'a> Recording<'a> {
         free: Option<&[usize]>,
     ) -> Self {
         let free = free.map(<[usize]>::to_vec);
+        let own_factors = rates.own_factors(variables, parameters);
         Recording {
             slip_rates: slip_rates.map_or(0, Expressions::count),
             symmetric: false,
@@ -266,7 +267,10 @@ impl<'a> Recording<'a> {
                 // The same nodes as of the rates, as far as these have them.
                 let slip_rates = slip_rates.map_or_else(Vec::new, |v| v.evaluate(&x, &p));
                 let slip_rates: Vec<_> = slip_rates.into_iter().map(Some).collect();
-                assemble(&graph, parameters, (&rates, &slip_rates), free.as_deref())
+                let all = (&rates[..], &slip_rates[..]);
+                let mut program = assemble(&graph, parameters, all, free.as_deref());
+                program.own_factors.clone_from(&own_factors);
+                program
             }),
         }
     }

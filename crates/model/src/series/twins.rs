@@ -268,6 +268,7 @@ impl Folding {
             At::Lane(row, lane) => (row, lane),
         });
         self.made.places = places.collect();
+        self.made.own_factors.clone_from(&program.own_factors);
         self.made.kinks = kinks;
         self.made.branch_points = branch_points;
         self.made.bases = bases;

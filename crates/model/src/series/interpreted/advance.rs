@@ -172,7 +172,6 @@ impl<T: Element> Interpreted<'_, T> {
     /// Whether the rates at the end of the step, which has been looked at, are those of the series.
     #[inline(always)]
     fn is_solution(&self, accuracy: &Accuracy, h: DoubleDouble) -> bool {
-        let (rtol, atol) = accuracy.tolerances;
         let step = self.any.like(h.hi().abs());
         let by_order = if self.holds_powers(accuracy.order) {
             1.0
@@ -183,7 +182,7 @@ impl<T: Element> Interpreted<'_, T> {
         for (i, x) in self.next.x.iter().enumerate() {
             let [slope, rate] = self.slope_and_rate(i);
             let largest = Element::max(x.abs(), self.reached.x[i].abs());
-            let may_err = largest.mul_add(x.like(rtol), x.like(atol));
+            let may_err = self.may_err(i, largest, accuracy.tolerances);
             let rounding =
                 Element::max(slope.abs(), rate.abs()).mul_add(x.like(ROUNDING), self.noise[i]);
             let allowed = may_err.mul_add(x.like(by_order), rounding * step);

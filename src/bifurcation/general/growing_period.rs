@@ -1,0 +1,179 @@
+//! Where a branch of orbits ends as their period grows without bound: at an orbit that is homoclinic to a saddle, or at a saddle-node on the
+//! cycle.
+//!
+//! Beside a saddle the parameter tends to its limit as e^(-k T), k being the least of the real parts of the saddle's eigenvalues (Shilnikov, Shilnikov, Turaev &
+//! Chua 2001, Methods of qualitative theory in nonlinear dynamics, chapter 13); beside a saddle-node as T^(-2) (Strogatz 1994, section 8.4). Two pairs of orbits have to agree
+//! on the limit, by one law or the other; else nothing is said.
+
+use super::equilibria::EquilibriumBranches;
+use super::{GeneralBranch, GeneralPoint};
+use crate::bifurcation::Label;
+use crate::bifurcation::orbits::{ARC, ROUGH, WORK};
+use crate::field::Vector;
+use crate::integrate::AnyField;
+use crate::number::{Uncertain, eigenvalues};
+use crate::orbit::{Regular, ShootingNodes, Tracer};
+use std::ops::ControlFlow::Continue;
+
+/// The free parameter.
+const FREE: usize = 0;
+/// Orbits that are looked at, the last ones.
+const LAST: usize = 3;
+/// The way to the limit is at most this part of the branch's.
+const NEAR: f64 = 1e-2;
+/// Two pairs of orbits agree on the limit to this part of the way that the first pair sees before it.
+const AGREE: f64 = 0.2;
+/// An equilibrium that an orbit passes is nearer than this to where it is slowest, in parts of the extent of the orbit.
+const PASSED: f64 = 0.1;
+/// In the time by which the last periods differ what is left of the way falls by more than a factor e to this.
+const SEEN: f64 = 0.5;
+
+/// The coordinates and the periods of the orbits of a branch, as it goes.
+#[derive(Debug, Default)]
+pub(super) struct Periods(Vec<[f64; 2]>);
+
+/// The limit of the parameter, and whether there is a saddle-node.
+pub(super) struct Limit {
+    pub at: Uncertain,
+    pub is_saddle_node: bool,
+}
+
+impl Periods {
+    pub fn push(&mut self, at: f64, period: f64) {
+        self.0.push([at, period]);
+    }
+
+    /// The limit of the coordinate at the end of the branch, whose last orbit this is; `None` where the period does not grow without bound
+    /// as far as can be told.
+    pub fn limit(&self, branch: &GeneralBranch<'_>, last: &Regular) -> Option<Limit> {
+        let [.., a, b, c] = self.0[..] else {
+            return None;
+        };
+        let last_orbits: [[f64; 2]; LAST] = [a, b, c];
+        let grows = last_orbits.windows(2).all(|pair| pair[1][1] > pair[0][1]);
+        let one_way = (b[0] - a[0]) * (c[0] - b[0]) > 0.0;
+        if !(grows && one_way) {
+            return None;
+        }
+        let near = |limit: Uncertain| {
+            let way = self.0.iter().map(|[at, _]| (at - limit.value).abs());
+            limit.uncertainty <= NEAR * way.fold(0.0, f64::max)
+        };
+        let to_saddle = || {
+            let rate = saddle_rate(branch, last)?;
+            if rate * (c[1] - a[1]) < SEEN {
+                return None;
+            }
+            extrapolated(last_orbits, |first, second| (rate * (second - first)).exp())
+                .filter(|limit| near(*limit))
+        };
+        if let Some(at) = to_saddle() {
+            return Some(Limit {
+                at,
+                is_saddle_node: false,
+            });
+        }
+        let limit = extrapolated(last_orbits, |first, second| (second / first).powi(2))?;
+        let fold = near(limit).then(|| fold_within(branch, limit)).flatten()?;
+        Some(Limit {
+            at: fold,
+            is_saddle_node: true,
+        })
+    }
+}
+
+/// The limit of the coordinate where what is left of the way falls by this factor between two periods, by the last two of three orbits; as
+/// uncertain as it is far. `None` where the first two say otherwise.
+fn extrapolated(orbits: [[f64; 2]; LAST], falls: impl Fn(f64, f64) -> f64) -> Option<Uncertain> {
+    let limit = |[first, second]: [[f64; 2]; 2]| {
+        second[0] + (second[0] - first[0]) / (falls(first[1], second[1]) - 1.0)
+    };
+    let [a, b, c] = orbits;
+    let (before, now) = (limit([a, b]), limit([b, c]));
+    let off = (now - before).abs();
+    let agree = off <= AGREE * (before - b[0]).abs();
+    agree.then(|| Uncertain::new(now, (now - c[0]).abs().max(off)))
+}
+
+/// The least absolute value of the real parts of the eigenvalues of the saddle by which an orbit passes.
+fn saddle_rate(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<f64> {
+    let field = branch.system.family.field(orbit.site.at);
+    let passage = Passage::of(&field, &orbit.site.shooting)?;
+    let saddle = passage.equilibrium(&field)?;
+    let found = eigenvalues(&field.jacobian(&saddle))?;
+    let real = || found.iter().map(|z| z.re);
+    let both_signs = real().any(|x| x > 0.0) && real().any(|x| x < 0.0);
+    both_signs.then(|| real().fold(f64::INFINITY, |least, x| least.min(x.abs())))
+}
+
+/// Where an orbit is slowest.
+struct Passage {
+    place: Vector,
+    /// How far the orbit goes in each variable.
+    extents: Vector,
+}
+
+impl Passage {
+    fn of(field: &AnyField<'_>, orbit: &ShootingNodes) -> Option<Self> {
+        /// Places on each arc.
+        const PLACES: usize = 16;
+        let mut tracer = Tracer::limited(ROUGH, ARC, WORK).ok()?;
+        let mut places = orbit.nodes.clone();
+        for i in 1..PLACES {
+            let part = i as f64 / PLACES as f64;
+            places.extend(orbit.shifted(&mut tracer, field, part).ok()?.nodes);
+        }
+        let mut least = places[0].clone();
+        let mut most = least.clone();
+        for place in &places {
+            least = least.inf(place);
+            most = most.sup(place);
+        }
+        // What stays the same is no less than it is.
+        let extents = (most - least).map(|extent| extent.max(f64::MIN_POSITIVE));
+        let speed = |place: &Vector| field.f(place).component_div(&extents).amax();
+        let slowest = places
+            .into_iter()
+            .min_by(|a, b| speed(a).total_cmp(&speed(b)))?;
+        Some(Passage {
+            place: slowest,
+            extents,
+        })
+    }
+
+    /// The equilibrium that the orbit passes there, by Newton's method.
+    fn equilibrium(&self, field: &AnyField<'_>) -> Option<Vector> {
+        /// Iterations, and a correction that is the last, in parts of the extents.
+        const ITERATIONS: usize = 20;
+        const DONE: f64 = 1e-12;
+        let mut state = self.place.clone();
+        let parts = |x: &Vector| x.component_div(&self.extents).amax();
+        for _ in 0..ITERATIONS {
+            let step = field.newton_step(state.as_slice())?;
+            let size = parts(&step);
+            state -= step;
+            if size < DONE {
+                return (parts(&(&state - &self.place)) < PASSED).then_some(state);
+            }
+        }
+        None
+    }
+}
+
+/// The one fold of equilibria whose coordinate is within a limit.
+fn fold_within(branch: &GeneralBranch<'_>, limit: Uncertain) -> Option<Uncertain> {
+    let mut folds: Vec<GeneralPoint> = Vec::new();
+    let found = EquilibriumBranches::new(branch).all(&mut |point, special| {
+        let within = (point.at[FREE] - limit.value).abs() <= limit.uncertainty;
+        if special && within && point.label == Some(Label::Lp) {
+            folds.push(point);
+        }
+        Continue(())
+    });
+    found.ok()?;
+    let fold = folds.first()?;
+    // In the coordinate, as the rest is.
+    let scale = branch.system.family.scale(fold.at)[FREE];
+    let off = fold.parameters[FREE].uncertainty / scale.abs();
+    Some(Uncertain::new(fold.at[FREE], off))
+}

@@ -1,0 +1,98 @@
+//! Branches of orbits whose period grows without bound, against values of the homoclinic orbits and saddle-nodes known to 22 digits and more.
+
+use crate::command;
+use crate::common::{data, number as exact};
+use command::number;
+use serde_json::Value;
+
+/// The end of the only branch: its label, its name, and the parameter with its bound.
+fn end(arguments: &str, parameter: &str) -> (String, String, f64, f64) {
+    let ended = command::twinslip(&format!("branch orbits {arguments} --format json -q"));
+    assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
+    let made: Value = serde_json::from_str(&ended.out).expect("JSON");
+    let all = made["result"]["special"]
+        .as_array()
+        .expect("special points");
+    let last = all.last().expect("an end");
+    let word = |name: &str| last[name].as_str().expect("a word").to_owned();
+    let value = |part: &str| number(last, &format!("/{parameter}/{part}"));
+    (
+        word("label"),
+        word("name"),
+        value("value"),
+        value("uncertainty"),
+    )
+}
+
+fn reference(id: &str, value: &str) -> f64 {
+    let all = data("homoclinic.json");
+    let cases = all["cases"].as_array().expect("cases").iter();
+    let one = cases.clone().find(|one| one["id"] == id);
+    exact(&one.expect("the case")["values"][value])
+}
+
+fn case(name: &str) -> String {
+    format!("--system tests/data/cases/{name}.toml")
+}
+
+#[track_caller]
+fn ends_at(arguments: &str, parameter: &str, name: &str, truth: f64, sharp: f64) {
+    let (label, told, value, off) = end(arguments, parameter);
+    assert_eq!(
+        (label.as_str(), told.as_str()),
+        ("HOM", name),
+        "{arguments}"
+    );
+    assert!(
+        (value - truth).abs() <= off && off < sharp,
+        "{value} ± {off:e} for {truth}: {arguments}"
+    );
+}
+
+#[test]
+fn branches_end_at_homoclinic_orbits() {
+    let truth = reference("lorenz_homoclinic_10_8/3", "r");
+    let lorenz = "--system lorenz --along r --from 10 --to 30";
+    ends_at(lorenz, "r", "homoclinic", truth, 1e-5);
+
+    let truth = reference("shimizu_morioka_alpha0.4", "lam");
+    let asked = format!(
+        "{} --along lam --from 0.5 --to 1.4",
+        case("shimizu-morioka")
+    );
+    ends_at(&asked, "lam", "homoclinic", truth, 1e-7);
+
+    let truth = reference("kuznetsov_6.1_homoclinic", "alpha");
+    let asked = format!("{} --along alpha --from 0.5 --to -0.5", case("planar-loop"));
+    ends_at(&asked, "alpha", "homoclinic", truth, 1e-6);
+
+    let truth = reference("planar_exact_loop_mu-0.001", "homoclinic_mu");
+    let asked = format!("{} --along mu --from -0.3 --to 0.2", case("damped-loop"));
+    ends_at(&asked, "mu", "homoclinic", truth, 1e-11);
+
+    let truth = reference("morris_lecar_homoclinic_I_phi0.23", "I");
+    let system = case("morris-lecar");
+    let asked = format!("{system} --set phi=0.23 --along I --from 30 --to 60");
+    ends_at(&asked, "I", "homoclinic", truth, 1e-3);
+}
+
+#[test]
+fn branches_end_at_saddle_nodes_on_the_cycle() {
+    const NAME: &str = "saddle-node on a cycle";
+    let truth = reference("planar_SNIC_exact_mu0.01", "SNIC_mu");
+    let system = case("saddle-node-on-circle");
+    let asked = format!("{system} --along mu --from 1 --to -0.5 --start -1,0");
+    ends_at(&asked, "mu", NAME, truth, 1e-12);
+
+    let truth = reference("morris_lecar_SNIC_phi1/15", "I_SN");
+    let asked = format!("{} --along I --from 30 --to 60", case("morris-lecar"));
+    ends_at(&asked, "I", NAME, truth, 1e-10);
+}
+
+/// Where the period is finite the range ends, or another bifurcation.
+#[test]
+fn other_ends_are_called_what_they_are() {
+    let asked = format!("{} --along I --from 45 --to 60", case("morris-lecar"));
+    let (label, ..) = end(&asked, "I");
+    assert_eq!(label, "EP");
+}
