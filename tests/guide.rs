@@ -50,6 +50,7 @@ fn run_all(lines: &[&str], place: &Path) {
         for file in named
             .filter(file)
             .filter(|word| !word.starts_with(|c: char| c.is_ascii_digit()))
+            .filter(|word| !word.starts_with("tests/data/"))
         {
             assert!(
                 place.join(file).metadata().is_ok_and(|data| data.len() > 0),
@@ -100,6 +101,14 @@ fn every_command_of_the_page_on_systems_runs() {
         &["twinslip integrate --system shown.toml --until 10 -o run.csv"],
         &place,
     );
+}
+
+#[test]
+fn every_command_of_the_page_on_uncertainty_runs() {
+    let text = text_of("docs/uncertainty.md");
+    let lines = commands(&text);
+    assert!(lines.len() >= 4, "{lines:?}");
+    run_all(&lines, &folder("uncertainty"));
 }
 
 #[test]

@@ -362,3 +362,24 @@ fn budgets_hold_between_two_methods_at_random_places() {
         panic!("{failure}");
     }
 }
+
+/// A second method that may take few steps in all gives up, however few it takes on each arc.
+#[test]
+fn a_crosscheck_is_bounded_in_all_its_steps() {
+    let slab = slab(1.0, 0.14);
+    let first = find(&slab, &query(Symmetry::Symmetric), &taylor()).expect("found");
+    let second = OrbitAccuracy {
+        checked: false,
+        ..OrbitAccuracy::of(Choice::named("rodas5p").expect("known"))
+    };
+    let steps = crosscheck(&slab, &first.orbit, &second).expect("the same orbit");
+    let fewer = OrbitAccuracy {
+        all_steps: steps.orbit.work.steps / 2,
+        ..second
+    };
+    let bounded = crosscheck(&slab, &first.orbit, &fewer);
+    assert!(
+        matches!(bounded, Err(Error::TooManySteps { .. })),
+        "{bounded:?}"
+    );
+}

@@ -230,7 +230,7 @@ fn pieces_of_the_paper_may_be_such_scenes() {
     assert_eq!(orbit.found.orbit.symmetry.name(), "asymmetric");
     assert!(orbit.checked.is_some());
     let equilibria = pieces.equilibria("equilibria").expect("steady states");
-    assert!(equilibria.found.complete && !equilibria.found.undecided());
+    assert!(equilibria.found.complete && equilibria.found.undecided() == 0);
     assert_eq!(equilibria.found.equilibria.len(), 3);
     let law = pieces.law_of("law").expect("a law");
     let [law] = &law.curves[..] else {

@@ -138,7 +138,7 @@ fn what_makes_no_sense_with_a_system_is_refused() {
     );
     refused_in_one_line(
         "integrate --system lorenz --until 1 --set rr=3",
-        "set is rr, but must be s, r or b; did you mean \"r\"?",
+        "--set: no parameter `rr`; known are s, r, b; did you mean \"r\"?",
     );
     refused_in_one_line(
         "integrate --system lorenz --until 1 --set r=x",

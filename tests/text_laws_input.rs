@@ -184,7 +184,7 @@ fn what_has_no_meaning_for_a_law_from_a_file_is_refused() {
         (format!("{run} --interfaces 9"), "at most 7 interfaces"),
         (
             format!("{run} --set beta=3"),
-            "set is beta, but must be driving or stiffness",
+            "--set: no parameter `beta`; known are driving, stiffness",
         ),
         (
             format!("{run} --events"),

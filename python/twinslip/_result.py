@@ -391,12 +391,10 @@ def raised(failure: tuple[str, Optional[str], str], result: Optional[Result]) ->
         By its kind.
     """
     kind, field, message = failure
-    if field == "set":
-        # Parameters are arguments here.
-        named = re.fullmatch(r"set is ([^ ,]+), but must be (.*)", message, re.DOTALL)
-        if named is not None:
-            known = named[2].replace("one of ", "", 1)
-            field, message = named[1], f"{named[1]} is no parameter; there are {known}"
+    # Parameters are arguments here.
+    named = re.fullmatch(r"`set`: no parameter `([^`]+)`; known are (.*)", message, re.DOTALL)
+    if named is not None:
+        field, message = named[1], f"{named[1]} is no parameter; there are {named[2]}"
     if kind == "input":
         if field is not None:
             # Arguments have _ where options have -.

@@ -14,6 +14,9 @@ use crate::scene::{
 use crate::views;
 use std::ops::ControlFlow;
 
+/// What the rows of one number make up.
+pub const BRANCHES: [&str; 2] = ["branch", "branches"];
+
 pub fn run(options: &BranchOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
@@ -64,6 +67,8 @@ fn follow<R: SlabRow>(
     };
     let task = Task {
         system: &plan.system,
+        whole: BRANCHES,
+        nothing: "no branch of orbits comes into the range: none begins at a Hopf point along the parameter; `orbit` at a value within the range looks for others",
         names: vec![],
         columns,
         special_columns: views::special_columns(),

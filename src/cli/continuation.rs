@@ -35,6 +35,10 @@ pub type SpecialLines<'a, S> = &'a dyn Fn(&[S], &special::Checks<'_>) -> Vec<Str
 pub struct Task<'a, R: CurveRow> {
     /// What the rows are of.
     pub system: &'a dyn Described,
+    /// What rows of one number make up, and what several do: `["branch", "branches"]`.
+    pub whole: [&'static str; 2],
+    /// What is said where there is none.
+    pub nothing: &'a str,
     /// The names of the parameters that vary.
     pub names: Vec<&'a str>,
     /// The columns of rows.
@@ -111,6 +115,10 @@ impl<'a, R: CurveRow> Task<'a, R> {
             None => {}
         }
         report.say(out.summary(seconds));
+        let empty = out.rows.is_empty() && out.special.is_empty();
+        if empty && failure.is_none() && !call.stops() {
+            report.say(self.nothing);
+        }
         match failure {
             Some(error) => Err(error),
             None if call.stops() => Ok(Ending::Interrupted),
@@ -413,10 +421,14 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
         let mut text = format!(
             "{} on {}, {}, {}",
             several(self.rows.len(), "point", "points"),
-            several(numbers.len(), R::WHOLE, R::WHOLES),
+            several(numbers.len(), self.task.whole[0], self.task.whole[1]),
             several(self.special.len(), "special point", "special points"),
             time(seconds)
         );
+        if self.rows.iter().any(R::is_mirrored) {
+            let whole = self.task.whole[0];
+            text += &format!("; an asymmetric {whole} stands for its mirror image too");
+        }
         if self.task.resume.is_some() {
             let kept = self.rows.len() - self.new;
             text += &format!("; {} kept", several(kept, "point", "points"));
@@ -428,14 +440,17 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
     fn ending(&self) -> Ending {
         let is_stuck = |one: &&R::Special| one.label() == Some(Label::Mx);
         let mut ending = Ending::Done;
+        let mut said = Vec::new();
         for one in self.special.iter().filter(is_stuck) {
             let note = one.note();
             let note = note.unwrap_or("the method goes no further");
-            self.task.call.say(format_args!(
-                "error: a {} ends at {}: {note}",
-                R::WHOLE,
-                one.place(&self.task.names, self.task.system.units())
-            ));
+            let place = one.place(&self.task.names, self.task.system.units());
+            let text = format!("error: a {} ends at {place}: {note}", self.task.whole[0]);
+            // Those of mirror images are one.
+            if !said.contains(&text) {
+                self.task.call.say(&text);
+                said.push(text);
+            }
             ending = Ending::Stuck;
         }
         // Where a coefficient is zero by definition, as at GH, nothing is left to decide.
@@ -443,11 +458,26 @@ impl<'a, R: CurveRow> ContinuationOut<'a, R> {
             let bifurcates = |label| Label::BIFURCATIONS.contains(&label);
             one.criticality() == Some(Criticality::Undecided) && one.label().is_some_and(bifurcates)
         };
-        let undecided = self.rows.iter().any(R::undecided) || self.special.iter().any(side);
-        if ending == Ending::Done && undecided {
-            return Ending::Undecided;
+        if ending != Ending::Done {
+            return ending;
         }
-        ending
+        let units = self.task.system.units();
+        if let Some(first) = self.rows.iter().find(|row| row.undecided()) {
+            let count = self.rows.iter().filter(|row| row.undecided()).count();
+            return self.report.undecided(format_args!(
+                "the stability at {}, the first one at {}, as a multiplier or an eigenvalue is neutral within its error; another `step_limit` leads by",
+                several(count, "point", "points"),
+                first.place(&self.task.names, units)
+            ));
+        }
+        match self.special.iter().find(|&one| side(one)) {
+            Some(one) => self.report.undecided(format_args!(
+                "to which side {} at {} bifurcates, as its coefficient is 0 within its error; other values of what is held decide",
+                one.label().map_or("", Label::name),
+                one.place(&self.task.names, units)
+            )),
+            None => ending,
+        }
     }
 }
 

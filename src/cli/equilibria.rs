@@ -2,6 +2,7 @@
 
 use super::call::Call;
 use super::report::{self, Report};
+use super::words::several;
 use super::{Ending, many_equilibria, text};
 use crate::equilibrium::{ClusterEigenvalue, EigenvalueKind};
 use crate::error::Result;
@@ -19,8 +20,8 @@ pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
         return many_equilibria::run(options, call);
     }
     let slab = &options.model.slab;
-    let several = slab.has_clusters() && slab.text.system.is_none();
-    if !several && let Some(model) = TextModel::of(&options.model, &[])? {
+    let clusters = slab.has_clusters() && slab.text.system.is_none();
+    if !clusters && let Some(model) = TextModel::of(&options.model, &[])? {
         return text::equilibria::run(options, model, call);
     }
     plan(options, call)
@@ -35,15 +36,16 @@ fn plan(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
-    if !found.complete {
-        report.say(
-            "the number of steady states is undecided: V_H is within rounding of a bifurcation, or a slip rate is no number that doubles have",
-        );
-    }
-    if ending == Ending::Done && found.undecided() {
-        return Ok(Ending::Undecided);
-    }
-    Ok(ending)
+    Ok(match (ending, found.undecided()) {
+        (Ending::Done, _) if !found.complete => report.undecided(
+            "the number of steady states, as V_H is within rounding of a bifurcation, or a slip rate is no number that doubles have; another `driving` decides",
+        ),
+        (Ending::Done, 1..) => report.undecided(format_args!(
+            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; another `driving` or `stiffness` decides",
+            several(found.undecided(), "steady state", "steady states")
+        )),
+        (ending, _) => ending,
+    })
 }
 
 fn write(

@@ -1,7 +1,9 @@
 //! `branch` and `locus` in any parameters.
 
+use super::branch::BRANCHES;
 use super::call::Call;
 use super::continuation::{Recheck, Task};
+use super::locus::CURVES;
 use super::rows::Found;
 use super::{Ending, special};
 use crate::error::Result;
@@ -90,7 +92,7 @@ impl<'s> Frame<'s> {
             read: Box::new(move |cell| GeneralRow::read(cell, units, &of_rows, &numbers)),
             read_special: Box::new(move |cell| GeneralRow::read(cell, units, &of_special, &[])),
             lines: Box::new(move |special, checks| {
-                let columns = GeneralRow::special_columns(&of_lines);
+                let columns = GeneralRow::special_columns(subject, &of_lines);
                 special::general_lines(special, &columns, checks, units)
             }),
         }
@@ -106,9 +108,12 @@ impl<'s> Frame<'s> {
     ) -> Task<'t, GeneralRow> {
         Task {
             system: self.subject,
+            whole: if self.kind.curve { CURVES } else { BRANCHES },
+            // That nothing is found is an error there.
+            nothing: "",
             names: self.names.iter().map(|(name, _)| *name).collect(),
             columns: GeneralRow::columns(self.subject, self.kind, &self.names),
-            special_columns: GeneralRow::special_columns(&self.names),
+            special_columns: GeneralRow::special_columns(self.subject, &self.names),
             read: (&*self.read, &*self.read_special),
             lines: &*self.lines,
             numerics: numerics.clone(),

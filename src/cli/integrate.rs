@@ -316,13 +316,15 @@ fn write_table(
         writeln!(to)
     };
     let units = plan.system().units();
-    let (names, quantities): (Vec<_>, Vec<_>) = table.names().into_iter().unzip();
-    let unit_names = unit_names(units, quantities.into_iter());
     let format = own.as_ref().map_or(report.format, |(_, format)| *format);
+    let in_table = format == Format::Table;
+    let names = table.names(in_table).into_iter();
+    let (names, quantities): (Vec<_>, Vec<_>) = names.unzip();
+    let unit_names = unit_names(units, quantities.into_iter());
     let all = begun
         .and_then(|()| report.rows_as(format, to, &remarks, &names, &unit_names))
         .and_then(|mut writer| {
-            (0..table.count()).try_for_each(|row| writer.row(&table.cells(row)))
+            (0..table.count()).try_for_each(|row| writer.row(&table.cells(row, in_table)))
         });
     written(all, &place)
 }

@@ -12,6 +12,9 @@ use crate::scene::{
 use crate::views;
 use std::ops::ControlFlow;
 
+/// What the rows of one number make up.
+pub const CURVES: [&str; 2] = ["curve", "curves"];
+
 pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
     if !options.by_shares()? {
         if let Some(model) = TextModel::of(
@@ -40,8 +43,14 @@ pub fn run(options: &LocusOptions, call: &Call) -> Result<Ending> {
         let checked = second.map(|method| orbits::crosscheck(&plan.request.slab, one, method));
         Ok(checked.transpose()?.flatten().map(Vec::from))
     };
+    let nothing = format!(
+        "no {} bifurcation is found in these ranges; give others by `driving_range` and `stiffness_range`, or other constants of the law",
+        plan.curve.name
+    );
     let task = Task {
         system: &plan.system,
+        whole: CURVES,
+        nothing: &nothing,
         names: vec![],
         columns: views::locus_columns(plan.system.interfaces),
         special_columns: views::special_columns(),

@@ -19,15 +19,12 @@ pub fn run(options: &EquilibriaOptions, call: &Call) -> Result<Ending> {
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
-    if found.undecided() {
-        report.say(
-            "the verdict is undecided: an eigenvalue is within rounding of the imaginary axis",
-        );
-        if ending == Ending::Done {
-            return Ok(Ending::Undecided);
-        }
-    }
-    Ok(ending)
+    Ok(match ending {
+        Ending::Done if found.undecided() => report.undecided(
+            "the stability, as an eigenvalue is within rounding of the imaginary axis; another `driving` or `stiffness` decides",
+        ),
+        ending => ending,
+    })
 }
 
 fn write(

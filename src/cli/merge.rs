@@ -1,6 +1,6 @@
 //! `twinslip merge`: the files of all parts of a sweep become the file that one run would have written.
 
-use super::sweep::file;
+use super::sweep::{file, undecided_rows};
 use super::{Ending, say, written};
 use crate::error::{Error, Result};
 use crate::output::{Format, Place, Status, write_whole_by};
@@ -90,19 +90,20 @@ pub fn run(options: &MergeOptions) -> Result<Ending> {
     };
     let ending = written(merged, &place)?;
     if !options.quiet {
-        let open = match undecided {
-            0 => String::new(),
-            n => format!(", {n} of them undecided"),
-        };
         say(format_args!(
-            "{} rows of {} parts{open}",
+            "{} rows of {} parts",
             plan.settings.points(),
             parts.len()
         ));
     }
     // As the sweep in one run would have ended.
     Ok(match ending {
-        Ending::Done if undecided > 0 => Ending::Undecided,
+        Ending::Done if undecided > 0 => {
+            if !options.quiet {
+                say(format_args!("undecided: {}", undecided_rows(undecided)));
+            }
+            Ending::Undecided
+        }
         ending => ending,
     })
 }

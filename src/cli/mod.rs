@@ -294,9 +294,14 @@ fn compute(command: &scene::Command, call: &Call) -> Result<Ending, Error> {
         scene::Command::Fit(options) => fit::run(options, call),
     };
     ended.map_err(|error| {
-        command
+        let undamped = error.runs_away() && command.is_undamped();
+        let error = command
             .units()
-            .map_or(error.clone(), |units| units.told(error))
+            .map_or(error.clone(), |units| units.told(error));
+        match undamped {
+            true => error.advising("radiation damping (`damping`) bounds the slip rates"),
+            false => error,
+        }
     })
 }
 

@@ -4,10 +4,10 @@ use super::call::Call;
 use super::integrate::PlannedRun;
 use super::report::{self, Report};
 use super::stream::StreamOut;
-use super::words::several;
+use super::words::{count, several};
 use super::{Ending, progress, written};
 use crate::equilibrium::Verdict;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::number::Uncertain;
 use crate::orbit::{Crosscheck, FoundOrbit, Kind, Multiplier, Orbit, OrbitAccuracy};
 use crate::output::{self, Format, RowList, plot};
@@ -109,19 +109,33 @@ fn search(plan: &impl OrbitSearch, options: &OrbitOptions, call: &Call) -> Resul
     let second = second.map_or("", |second| second.method.name());
     let words = format!("once more, by {second}");
     let checked = progress::during(&report, &words, || plan.crosscheck(&orbit));
-    let checked = checked.unwrap_or_else(|error| {
-        report.say(format!("the crosscheck by {second} failed: {error}"));
-        None
-    });
+    let (checked, unchecked) = match checked {
+        Ok(Some(checked)) => (Some(checked), None),
+        Ok(None) => (None, Some("none is asked for".to_owned())),
+        Err(error) => {
+            let why = match error {
+                Error::TooManySteps { limit, .. } if options.crosscheck.is_none() => format!(
+                    "the crosscheck by {second} was left out, as it takes longer than the orbit itself: more than {} steps; `crosscheck` {second} does it all the same",
+                    count(limit)
+                ),
+                error => format!("the crosscheck by {second} failed: {error}"),
+            };
+            report.say(&why);
+            (None, Some(call.told(&why)))
+        }
+    };
     if !in_rows {
-        let result = result(plan, &orbit, &others, checked.as_ref(), rows.as_ref());
+        let checked = (checked.as_ref(), unchecked.as_deref());
+        let result = result(plan, &orbit, &others, checked, rows.as_ref());
         ending = write_object(plan, &report, &orbit, result)?;
     }
     report.say(summary(&orbit, checked.as_ref(), plan.system().units()));
-    if ending == Ending::Done && orbit.verdict() == Verdict::Undecided {
-        return Ok(Ending::Undecided);
-    }
-    Ok(ending)
+    Ok(match ending {
+        Ending::Done if orbit.verdict() == Verdict::Undecided => report.undecided(
+            "the stability of the orbit, as ln |mu| of a multiplier is 0 within its error; other parameters decide, or a smaller `rtol`",
+        ),
+        ending => ending,
+    })
 }
 
 /// What was found, and at which cost.
@@ -213,10 +227,11 @@ fn result(
     plan: &impl OrbitSearch,
     orbit: &Orbit,
     others: &[Orbit],
-    checked: Option<&Crosscheck>,
+    (checked, unchecked): (Option<&Crosscheck>, Option<&str>),
     rows: Option<&RowList>,
 ) -> Value {
     let mut main = plan.object(orbit);
+    main["crosscheck_note"] = json!(unchecked);
     main["crosscheck"] = checked.map_or(Value::Null, |checked| comparison(checked, plan));
     let rest: Vec<Value> = others.iter().map(|other| plan.object(other)).collect();
     let mut result = json!({"orbit": main, "others": rest});

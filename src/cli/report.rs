@@ -142,6 +142,12 @@ impl<'a> Report<'a> {
         }
     }
 
+    /// How a command ends that has left something undecided: it says what is, and what would help.
+    pub fn undecided(&self, what: impl std::fmt::Display) -> Ending {
+        self.say(format_args!("undecided: {what}"));
+        Ending::Undecided
+    }
+
     /// Shows how far the command has come.
     pub fn progress(&self) -> Progress {
         self.call.progress(self.quiet)

@@ -11,16 +11,16 @@ use crate::scene::{GeneralRow, Quantity, Units};
 pub trait CurveRow: Sized {
     /// What special points are.
     type Special: SpecialPoint;
-    /// What rows of one number make up.
-    const WHOLE: &'static str;
-    /// The same, more of them.
-    const WHOLES: &'static str;
     /// The number of the branch or curve.
     fn number(&self) -> usize;
     /// Where it is, in the user's units.
     fn place(&self, names: &[&str], units: &Units) -> String;
     /// Whether its stability is undecided where it could be told.
     fn undecided(&self) -> bool;
+    /// Whether it is of two equal interfaces that do not move alike, and stands for its mirror image too.
+    fn is_mirrored(&self) -> bool {
+        false
+    }
 }
 
 /// A special point.
@@ -160,11 +160,13 @@ pub fn special_row(cell: &dyn Fn(&str) -> String, units: &Units) -> Option<Speci
 
 impl CurveRow for BranchRow {
     type Special = Special;
-    const WHOLE: &'static str = "branch";
-    const WHOLES: &'static str = "branches";
 
     fn number(&self) -> usize {
         self.branch
+    }
+
+    fn is_mirrored(&self) -> bool {
+        self.symmetry == Symmetry::Asymmetric
     }
 
     fn place(&self, _: &[&str], units: &Units) -> String {
@@ -221,8 +223,6 @@ impl SlabRow for BranchRow {
 
 impl CurveRow for ClusterRow {
     type Special = Special;
-    const WHOLE: &'static str = "branch";
-    const WHOLES: &'static str = "branches";
 
     fn number(&self) -> usize {
         self.branch
@@ -274,11 +274,13 @@ impl SlabRow for ClusterRow {
 
 impl CurveRow for LocusRow {
     type Special = Special;
-    const WHOLE: &'static str = "curve";
-    const WHOLES: &'static str = "curves";
 
     fn number(&self) -> usize {
         self.curve
+    }
+
+    fn is_mirrored(&self) -> bool {
+        self.symmetry == Symmetry::Asymmetric && self.share.is_none()
     }
 
     fn place(&self, _: &[&str], units: &Units) -> String {
@@ -353,11 +355,13 @@ impl SpecialPoint for GeneralRow {
 
 impl CurveRow for GeneralRow {
     type Special = GeneralRow;
-    const WHOLE: &'static str = "branch";
-    const WHOLES: &'static str = "branches";
 
     fn number(&self) -> usize {
         self.number
+    }
+
+    fn is_mirrored(&self) -> bool {
+        self.symmetry == Some(Symmetry::Asymmetric)
     }
 
     fn place(&self, names: &[&str], _: &Units) -> String {

@@ -88,7 +88,9 @@ impl ReturnMap<'_> {
             Some(error) => Err(error),
             None if call.stops() => Ok(Ending::Interrupted),
             None if ending == Ending::Done && outcome.regime == Regime::Undecided => {
-                Ok(Ending::Undecided)
+                let why = outcome.note.as_deref();
+                let why = why.unwrap_or("the returns do not tell; record more, or skip more");
+                Ok(report.undecided(format_args!("the regime: {why}")))
             }
             None => Ok(ending),
         })

@@ -96,7 +96,10 @@ impl Sink for StreamOut<'_> {
         }
         if let Some(writer) = &mut self.writer {
             self.cells.clear();
-            self.cells.extend(row.iter().map(|&x| Cell::Number(x)));
+            self.cells.extend(
+                row.iter()
+                    .map(|&x| Cell::from(Some(x).filter(|x| !x.is_nan()))),
+            );
             if self.counts {
                 self.cells[0] = Cell::Text(format!("{}", row[0]));
             }

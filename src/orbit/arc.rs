@@ -194,9 +194,14 @@ impl Tracer {
         arc: usize,
         all: usize,
     ) -> Result<Self> {
-        let mut tracer = Self::new(method, Tolerances::equal(tolerance)?, arc.min(all))?;
-        tracer.bound.limit = Some(all);
-        Ok(tracer)
+        let tracer = Self::new(method, Tolerances::equal(tolerance)?, arc.min(all))?;
+        Ok(tracer.within(all))
+    }
+
+    /// The same for about so many steps in all.
+    pub(super) fn within(mut self, all: usize) -> Self {
+        self.bound.limit = Some(all);
+        self
     }
 
     /// The bound on all steps, where it is used up.

@@ -1,6 +1,7 @@
 //! Finding periodic orbits: from a given point, from settled runs, or along a branch from a Hopf point.
 
 use super::arc::Tracer;
+use super::continuation_point::ContinuationPoint;
 use super::interface_system::InterfaceSystem;
 use super::settle::{passages, settle};
 use super::shooting::close;
@@ -57,8 +58,14 @@ pub struct FoundOrbit {
 }
 
 impl FoundOrbit {
+    /// All of them, as branches of orbits begin.
+    pub fn beginnings(self) -> Vec<ContinuationPoint> {
+        let all = std::iter::once(self.orbit).chain(self.others);
+        all.map(Orbit::beginning).collect()
+    }
+
     /// With those of another search: a stable one first, else as they come.
-    pub(crate) fn with(self, more: FoundOrbit) -> Self {
+    fn with(self, more: FoundOrbit) -> Self {
         let first = [self.orbit, more.orbit];
         let all = first.into_iter().chain(self.others).chain(more.others);
         Self::stable_first(all.collect())
@@ -106,6 +113,27 @@ pub fn find(slab: &InterfaceSystem, query: &Query, accuracy: &OrbitAccuracy) -> 
     }
     let space = space_of(slab, query.symmetry);
     search(slab, &*space, query, accuracy)
+}
+
+/// A periodic orbit of either symmetry, as runs settle on it: a stable one, the symmetric one first.
+///
+/// # Errors
+/// As of [`find`].
+pub fn find_either(slab: &InterfaceSystem, accuracy: &OrbitAccuracy) -> Result<FoundOrbit> {
+    let of = |symmetry| {
+        let begin = InitialGuess::Anywhere;
+        find(slab, &Query { symmetry, begin }, accuracy)
+    };
+    let symmetric = of(Symmetry::Symmetric);
+    let is_stable = |found: &FoundOrbit| found.orbit.verdict() == Verdict::Stable;
+    if slab.interfaces == 1 || symmetric.as_ref().is_ok_and(is_stable) {
+        return symmetric;
+    }
+    match (symmetric, of(Symmetry::Asymmetric)) {
+        (Ok(symmetric), Ok(asymmetric)) => Ok(symmetric.with(asymmetric)),
+        (Ok(found), Err(_)) | (Err(_), Ok(found)) => Ok(found),
+        (Err(error), Err(_)) => Err(error),
+    }
 }
 
 /// Of tau and ln psi of both interfaces, the variables in which orbits of a symmetry are.

@@ -41,7 +41,7 @@ pub use extremes::ranges;
 pub use family::{
     OverDifferenceChart, OverLoadings, OverLogarithms, OverParameters, ParametrisedField,
 };
-pub use find::{FoundOrbit, InitialGuess, Query, find};
+pub use find::{FoundOrbit, InitialGuess, Query, find, find_either};
 pub use find_from::find_from;
 pub use find_unequal::find_unequal;
 pub use floquet::{Floquet, Kind, Multiplier, WithinCluster, floquet};

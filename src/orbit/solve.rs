@@ -93,6 +93,8 @@ pub struct OrbitAccuracy {
     pub tolerances: Tolerances,
     /// The bound on steps of an arc.
     pub max_steps: usize,
+    /// The bound on steps of a solution, about.
+    pub all_steps: usize,
     /// Whether other solutions, with other nodes and another tolerance, check the uncertainties. Without them the errors of all
     /// steps are taken to have one sign.
     pub checked: bool,
@@ -113,7 +115,16 @@ impl OrbitAccuracy {
                 max_step: f64::INFINITY,
             },
             max_steps: MAX_STEPS,
+            all_steps: usize::MAX,
             checked: true,
+        }
+    }
+
+    /// That of orbits from which more is followed: their own uncertainties are of no use there.
+    pub(crate) fn unchecked() -> Self {
+        OrbitAccuracy {
+            checked: false,
+            ..Self::of(Choice::Auto)
         }
     }
 

@@ -60,11 +60,13 @@ impl Tracers {
             method,
             tolerances,
             max_steps,
+            all_steps,
             ..
         } = *accuracy;
+        let tracer = || Ok(Tracer::new(method, tolerances, max_steps)?.within(all_steps));
         Ok(Tracers {
-            here: Tracer::new(method, tolerances, max_steps)?,
-            whole: Tracer::new(method, tolerances, max_steps)?,
+            here: tracer()?,
+            whole: tracer()?,
         })
     }
 

@@ -80,7 +80,7 @@ impl Sheet {
         let (subject, names) = (&curves.subject, &curves.names);
         let columns = GeneralRow::columns(subject, curves.kind, names);
         self.add_rows(name.into(), &columns, &curves.rows, subject.units());
-        let columns = GeneralRow::special_columns(names);
+        let columns = GeneralRow::special_columns(subject, names);
         let name = format!("special points of {name}");
         self.add_rows(name, &columns, &curves.special, subject.units());
     }

@@ -106,10 +106,12 @@ impl<R> Column<R> {
 
     /// The same, but no table shows it.
     pub fn not_in_table(self) -> Self {
-        Column {
-            in_table: false,
-            ..self
-        }
+        self.in_table_if(false)
+    }
+
+    /// The same, which a table shows only where it tells anything.
+    pub fn in_table_if(self, in_table: bool) -> Self {
+        Column { in_table, ..self }
     }
 
     /// What a row has in it, dimensionless.

@@ -8,7 +8,7 @@ use super::options::{
     EquilibriaOptions, IntegrateOptions, LawOptions, OrbitOptions, SectionOptions, SlabOptions,
 };
 use super::sweep::SweepOptions;
-use super::system::System;
+use super::system::{System, damping};
 use super::units::Units;
 use crate::error::{Error, Result};
 use clap::{CommandFactory, Parser, Subcommand};
@@ -45,6 +45,16 @@ struct SceneLine {
     command: Command,
 }
 
+impl SlabOptions {
+    /// Whether interfaces slide without radiation damping, which would bound their slip rates.
+    pub fn is_undamped(&self) -> bool {
+        let mut set = self.text.set.iter();
+        self.text.system.is_none()
+            && damping(self).is_ok_and(|damping| damping == 0.0)
+            && !set.any(|set| set.trim_start().starts_with("damping"))
+    }
+}
+
 impl Command {
     /// The units of its numbers; `None` where its options make no system.
     pub fn units(&self) -> Option<Units> {
@@ -65,6 +75,11 @@ impl Command {
             Command::Sweep(options) => &options.slab,
             Command::Fit(_) => return None,
         })
+    }
+
+    /// As of [`SlabOptions::is_undamped`]; not so where the interfaces are looked for.
+    pub fn is_undamped(&self) -> bool {
+        self.slab().is_some_and(SlabOptions::is_undamped)
     }
 
     /// The command line that scene files are read against.

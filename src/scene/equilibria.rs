@@ -80,12 +80,12 @@ pub struct ClassifiedEquilibria {
 }
 
 impl ClassifiedEquilibria {
-    /// Whether their number or a verdict is undecided.
-    pub fn undecided(&self) -> bool {
+    /// Of how many the stability is undecided.
+    pub fn undecided(&self) -> usize {
         let verdict =
             |one: &ClassifiedEquilibrium| one.stability.as_ref().map(AnyStability::verdict);
-        let undecided = |one| verdict(one) == Some(Verdict::Undecided);
-        !self.complete || self.equilibria.iter().any(undecided)
+        let undecided = |one: &&ClassifiedEquilibrium| verdict(one) == Some(Verdict::Undecided);
+        self.equilibria.iter().filter(undecided).count()
     }
 }
 

@@ -5,14 +5,14 @@ use super::options::OrbitOptions;
 use super::plan::{Dimension, Plan, Point, Sampling, equally_spaced, start, stepping, tolerances};
 use super::system::System;
 use super::units::{Quantity, Units};
-use crate::equilibrium::{Symmetry, Verdict};
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::friction::positive;
 use crate::integrate::{AnyField, Choice};
 use crate::model::UnequalInterfaces;
 use crate::orbit::{
     Crosscheck, FoundOrbit, InitialGuess, InterfaceSystem, Orbit, OrbitAccuracy, Query, crosscheck,
-    crosscheck_of, find, find_unequal,
+    crosscheck_of, find, find_either, find_unequal,
 };
 
 /// A periodic orbit that is asked for, checked.
@@ -30,6 +30,8 @@ pub struct OrbitPlan {
     pub accuracy: OrbitAccuracy,
     /// By which second method once more.
     pub second: Option<OrbitAccuracy>,
+    /// Whether the user names it.
+    pub second_is_asked: bool,
     /// The rows over one period, where there are to be any.
     pub rows: Option<Sampling>,
     /// Whether the orbit is drawn.
@@ -58,6 +60,7 @@ impl OrbitPlan {
         Ok(OrbitPlan {
             either: options.symmetry.is_none() && anywhere && alike,
             second: second(options.crosscheck.as_deref(), &accuracy)?,
+            second_is_asked: options.crosscheck.is_some(),
             rows: options.points.map(equally_spaced).transpose()?,
             picture: options.plot.is_some(),
             slab,
@@ -116,33 +119,12 @@ impl OrbitPlan {
     /// Finds the orbit.
     ///
     /// # Errors
-    /// Those of [`find()`] and [`find_unequal()`].
+    /// Those of [`find()`], [`find_either()`] and [`find_unequal()`].
     pub fn find(&self) -> Result<FoundOrbit> {
         match self.unequal() {
             Some(interfaces) => find_unequal(&interfaces, self.query.begin, &self.accuracy),
-            None if self.either => self.of_either_symmetry(),
+            None if self.either => find_either(&self.slab, &self.accuracy),
             None => find(&self.slab, &self.query, &self.accuracy),
-        }
-    }
-
-    /// A stable orbit, the symmetric one first.
-    fn of_either_symmetry(&self) -> Result<FoundOrbit> {
-        let of = |symmetry| {
-            let query = Query {
-                symmetry,
-                ..self.query
-            };
-            find(&self.slab, &query, &self.accuracy)
-        };
-        let symmetric = of(Symmetry::Symmetric);
-        let is_stable = |found: &FoundOrbit| found.orbit.verdict() == Verdict::Stable;
-        if symmetric.as_ref().is_ok_and(is_stable) {
-            return symmetric;
-        }
-        match (symmetric, of(Symmetry::Asymmetric)) {
-            (Ok(symmetric), Ok(asymmetric)) => Ok(symmetric.with(asymmetric)),
-            (Ok(found), Err(_)) | (Err(_), Ok(found)) => Ok(found),
-            (Err(error), Err(_)) => Err(error),
         }
     }
 
@@ -190,10 +172,12 @@ impl OrbitPlan {
     /// Those of [`crosscheck`].
     pub fn crosscheck(&self, orbit: &Orbit) -> Result<Option<Crosscheck>> {
         let again = |second| match self.unequal() {
-            Some(interfaces) => crosscheck_of(&AnyField::of::<3>(&interfaces), orbit, second),
-            None => crosscheck(&self.slab, orbit, second),
+            Some(interfaces) => crosscheck_of(&AnyField::of::<3>(&interfaces), orbit, &second),
+            None => crosscheck(&self.slab, orbit, &second),
         };
-        self.second.as_ref().map(again).transpose()
+        let second = self.second.filter(|_| self.second_is_asked);
+        let usual = || Some(worth(self.second?, orbit));
+        second.or_else(usual).map(again).transpose()
     }
 }
 
@@ -283,6 +267,16 @@ pub(super) fn dense_output(rows: Option<Sampling>, picture: bool) -> &'static st
 pub(crate) const SECOND_METHOD: &str = "cvode-adams";
 #[cfg(not(feature = "sundials"))]
 pub(crate) const SECOND_METHOD: &str = "rodas5p";
+
+/// A crosscheck that nobody asks for, in no more steps than the orbit itself took, or than some seconds have.
+pub(super) fn worth(second: OrbitAccuracy, orbit: &Orbit) -> OrbitAccuracy {
+    /// As a rule the second method takes a tenth of these.
+    const LEAST: usize = 1_000_000;
+    OrbitAccuracy {
+        all_steps: orbit.work.steps.max(LEAST),
+        ..second
+    }
+}
 
 /// The method of the crosscheck: another one than the first.
 pub(super) fn second(name: Option<&str>, by: &OrbitAccuracy) -> Result<Option<OrbitAccuracy>> {

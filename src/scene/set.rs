@@ -95,7 +95,7 @@ impl SlabOptions {
             "reference_friction" => put_in(&mut self.reference_friction, name, value),
             "slip_length" => put_in(&mut self.slip_length, name, value),
             "normal_stress" => put_in(&mut self.normal_stress, name, value),
-            _ => Err(Error::unknown("set", name, &NAMES)),
+            _ => Err(Error::no_parameter("set", name, &NAMES)),
         }
     }
 }

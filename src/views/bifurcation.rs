@@ -79,7 +79,8 @@ pub fn locus_columns(interfaces: usize) -> Vec<Column<LocusRow>> {
             row.label.map(Label::name).into()
         }),
         Column::new("curve", Number, |row: &Row| row.curve.into()),
-        Column::new("symmetry", Number, |row: &Row| row.symmetry.name().into()),
+        Column::new("symmetry", Number, |row: &Row| row.symmetry.name().into())
+            .in_table_if(interfaces > 1),
     ];
     if interfaces > 2 {
         for (i, name) in ["slow", "middle", "fast"].into_iter().enumerate() {

@@ -29,7 +29,8 @@ pub fn equilibria_columns(interfaces: usize) -> Vec<Column<ClassifiedEquilibrium
     let mut columns = vec![
         Column::new("symmetry", Number, |row: &Row| {
             row.equilibrium.symmetry.name().into()
-        }),
+        })
+        .in_table_if(interfaces > 1),
         Column::uncertain("stress", Stress, |row: &Row| row.equilibrium.stress.into()),
     ];
     if by_clusters {

@@ -8,12 +8,12 @@ use std::borrow::Cow;
 
 /// Rows of some kind, as they are shown.
 pub trait Listing {
-    /// How the columns are called.
-    fn names(&self) -> Vec<(String, Quantity)>;
+    /// How the columns are called, in a table or in a file.
+    fn names(&self, table: bool) -> Vec<(String, Quantity)>;
     /// How many rows there are.
     fn count(&self) -> usize;
-    /// A row as cells.
-    fn cells(&self, row: usize) -> Vec<Cell>;
+    /// A row as cells of a table or of a file.
+    fn cells(&self, row: usize, table: bool) -> Vec<Cell>;
     /// All rows as objects.
     fn objects(&self) -> Vec<Map<String, Value>>;
 }
@@ -29,16 +29,16 @@ pub struct Listed<'a, R: Clone> {
 }
 
 impl<R: Clone> Listing for Listed<'_, R> {
-    fn names(&self) -> Vec<(String, Quantity)> {
-        names(&self.columns, false)
+    fn names(&self, table: bool) -> Vec<(String, Quantity)> {
+        names(&self.columns, table)
     }
 
     fn count(&self) -> usize {
         self.rows.len()
     }
 
-    fn cells(&self, row: usize) -> Vec<Cell> {
-        cells(&self.columns, &self.rows[row], self.units, false)
+    fn cells(&self, row: usize, table: bool) -> Vec<Cell> {
+        cells(&self.columns, &self.rows[row], self.units, table)
     }
 
     fn objects(&self) -> Vec<Map<String, Value>> {

@@ -9,7 +9,8 @@ pub fn orbit_columns(interfaces: usize) -> Vec<Column<Orbit>> {
     let mut columns = vec![
         Column::new("symmetry", Number, |orbit: &Orbit| {
             orbit.symmetry.name().into()
-        }),
+        })
+        .in_table_if(interfaces > 1),
         Column::uncertain("period", Time, |orbit: &Orbit| orbit.period.into()),
         Column::uncertain("stress_min", Stress, |orbit: &Orbit| {
             orbit.stress_min.into()

@@ -62,10 +62,11 @@ pub fn sweep_columns(layout: &SweepLayout) -> Vec<Column<SweepRow>> {
         })
     });
     match layout.moves {
-        Moving::Interfaces(_) => {
+        Moving::Interfaces(count) => {
             let symmetry = Column::new("symmetry", Number, |row: &SweepRow| {
                 row.symmetry.map(Symmetry::name).into()
-            });
+            })
+            .in_table_if(count > 1);
             columns.extend([regime, symmetry, period]);
             columns.extend(range);
             columns.extend([exponent, returns, per_period("period_of_orbit")]);

@@ -25,11 +25,13 @@ pub fn event_columns(interfaces: usize) -> Vec<Column<SlipEvent>> {
         Column::new("slip_1", Length, |event: &SlipEvent| event.slip[0].into()),
         Column::new("slip_2", Length, move |event: &SlipEvent| {
             two.then_some(event.slip[1]).into()
-        }),
+        })
+        .in_table_if(two),
         Column::new("leader", Number, move |event: &SlipEvent| {
             let leader = event.leader().filter(|_| two);
             leader.map_or(CellValue::Word(None), CellValue::Count)
-        }),
+        })
+        .in_table_if(two),
     ]
 }
 

@@ -187,10 +187,10 @@ pub enum Error {
         /// What to try.
         hint: &'static str,
     },
-    /// Another error, told in the user's units.
+    /// Another error in other words: in the user's units, or with advice.
     #[error("{words}")]
     InUnits {
-        /// The error, dimensionless.
+        /// The error itself, dimensionless.
         error: Box<Error>,
         /// What it says.
         words: String,
@@ -244,6 +244,34 @@ impl Error {
         };
         let hint = did_you_mean(given, known.iter().copied());
         Error::parameter(what, given, list + &hint)
+    }
+
+    /// A parameter that an option names and that there is not: `Error::no_parameter("set", "foo", &["driving", "stiffness"])`.
+    pub fn no_parameter(option: &str, given: &str, known: &[&str]) -> Self {
+        let hint = did_you_mean(given, known.iter().copied());
+        let (option, given) = (option_name(option), echoed(given.to_owned()));
+        Error::Input(format!(
+            "{option}: no parameter `{given}`; known are {}{hint}",
+            known.join(", ")
+        ))
+    }
+
+    /// Whether a solution left every bound, or what doubles can follow.
+    pub fn runs_away(&self) -> bool {
+        match self {
+            Error::BlowUp { .. } | Error::TooFast { .. } | Error::UndecidedEnd { .. } => true,
+            Error::InUnits { error, .. } => error.runs_away(),
+            _ => false,
+        }
+    }
+
+    /// The same error, which ends with what else would help.
+    pub fn advising(self, advice: &str) -> Self {
+        let words = format!("{self}; {advice}");
+        Error::InUnits {
+            error: Box::new(self),
+            words,
+        }
     }
 
     /// That a formula holds for so many variables.

@@ -3,7 +3,7 @@
 use super::equilibria::{EquilibriumBranches, criticality};
 use super::{
     GeneralBifurcation, GeneralBranch, GeneralCurve, GeneralObserver, GeneralPoint,
-    GeneralSolution, GeneralSystem, Teller,
+    GeneralSolution, GeneralSystem, SAME, Teller,
 };
 use crate::bifurcation::Label;
 use crate::bifurcation::equilibria::generic_curve::{
@@ -23,8 +23,6 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const SCAN: [f64; 5] = [0.4967, 0.2203, 0.7811, 0.0607, 0.9409];
 /// The longest step, as a part of both ranges and of 1 + |state|.
 const LONGEST: f64 = 0.03;
-/// Points nearer to each other than this, in units of 1 + |x|, are one.
-const SAME: f64 = 1e-6;
 
 /// Follows all curves of folds or of Hopf points through the ranges and hands on what is found.
 ///
@@ -82,6 +80,7 @@ pub(super) fn looked_along<R>(
             alike: alike.as_ref().map(|alike| alike as _),
             names: [system.names[1], system.names[0]],
             equilibria: &equilibria,
+            ..system
         },
     };
     look(&GeneralBranch {
@@ -91,6 +90,7 @@ pub(super) fn looked_along<R>(
         held,
         at: Vec::new(),
         orbit: None,
+        found: None,
         doublings: 0,
         within: None,
         following: super::GeneralFollowing {
@@ -141,6 +141,11 @@ impl ParametrisedField for Exchanged<'_> {
     }
 }
 
+/// A point of a curve: (state, both coordinates), the same for its mirror images.
+fn pass(system: &GeneralSystem<'_>, state: &Vector, at: [f64; 2]) -> Vector {
+    system.representative(state).push(at[0]).push(at[1])
+}
+
 struct EquilibriumCurves<'c, 'a> {
     curve: &'c GeneralCurve<'a>,
     kind: EquilibriumBifurcation,
@@ -171,8 +176,12 @@ impl EquilibriumCurves<'_, '_> {
         Ok(found)
     }
 
+    fn pass(&self, state: &Vector, at: [f64; 2]) -> Vector {
+        pass(&self.curve.system, state, at)
+    }
+
     fn is_known(&self, state: &Vector, at: [f64; 2]) -> bool {
-        let here = state.push(at[0]).push(at[1]);
+        let here = self.pass(state, at);
         let near = |pass: &Vector| {
             let mut pairs = pass.iter().zip(&here);
             pairs.all(|(a, b)| (a - b).abs() < SAME * (1.0 + a.abs()))
@@ -187,7 +196,7 @@ impl EquilibriumCurves<'_, '_> {
         at: [f64; 2],
         teller: &mut Teller<'_>,
     ) -> Result<ControlFlow<()>> {
-        self.passes.push(state.push(at[0]).push(at[1]));
+        self.passes.push(self.pass(state, at));
         let number = self.count;
         self.count += 1;
         let mut back = Vec::new();
@@ -264,8 +273,7 @@ impl EquilibriumCurves<'_, '_> {
                 }
                 let on = |values: &[Vec<f64>; 2]| (0..2).any(|i| among(&values[i], found.at[i]));
                 if found.label == Some(Label::Uz) && on(&scan) {
-                    let state = &found.state;
-                    passes.push(state.push(found.at[0]).push(found.at[1]));
+                    passes.push(pass(system, &found.state, found.at));
                     if !on(wanted) {
                         return Continue(());
                     }

@@ -1,7 +1,7 @@
 //! Branches of equilibria along one parameter, with all that branches off.
 
 use super::splits::with_splits;
-use super::{GeneralBranch, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use super::{GeneralBranch, GeneralObserver, GeneralPoint, GeneralSolution, SAME, Teller};
 use crate::bifurcation::equilibria::generic::{FieldEquilibria, FoundEquilibrium, Onward};
 use crate::bifurcation::equilibria::generic_curve::{EquilibriumBifurcation, EquilibriumCurve};
 use crate::bifurcation::{Criticality, Label};
@@ -11,7 +11,7 @@ use crate::field::Vector;
 use crate::number::Uncertain;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
-use std::ops::ControlFlow::{self, Continue};
+use std::ops::ControlFlow::{self, Break, Continue};
 
 /// Longest steps, as parts of the range and of 1 + |state|.
 const LONGEST: f64 = 0.02;
@@ -21,8 +21,6 @@ const SHOWN: f64 = 1e-2;
 const INSIDE: [f64; 7] = [0.4973, 0.2517, 0.7519, 0.1253, 0.3739, 0.6247, 0.8761];
 /// The first step onto a branch that crosses, in units of 1 + |state|.
 const ASIDE: f64 = 1e-3;
-/// Points nearer to each other than this, in units of 1 + |x|, are one.
-const SAME: f64 = 1e-6;
 
 /// Follows all branches of equilibria over the range and hands on what is found.
 ///
@@ -93,10 +91,16 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             }
             let distance = ASIDE * (1.0 + point.state.amax());
             let ways = self.with_family(|family| family.switch(&point, distance));
+            let mut begun: Vec<Vector> = Vec::new();
             for onward in ways.into_iter().flatten() {
                 if self.crossings[i - 1].1 > 1 {
                     break;
                 }
+                let begin = self.place(&onward.state, onward.parameter);
+                if begun.iter().any(|other| near(other, &begin)) {
+                    continue;
+                }
+                begun.push(begin);
                 if self.inside(onward.parameter) && self.follow(&onward, seen)?.is_break() {
                     return Ok(());
                 }
@@ -116,6 +120,11 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         })
     }
 
+    /// (state, coordinate), the same for its mirror images.
+    fn place(&self, state: &Vector, at: f64) -> Vector {
+        self.branch.system.representative(state).push(at)
+    }
+
     fn inside(&self, x: f64) -> bool {
         let (a, b) = self.branch.range;
         (a.min(b)..=a.max(b)).contains(&x)
@@ -123,7 +132,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
 
     /// Whether a branch has ended there.
     fn is_known(&self, state: &Vector, at: f64) -> bool {
-        let here = state.push(at);
+        let here = self.place(state, at);
         self.ends.iter().any(|end| near(end, &here))
     }
 
@@ -151,7 +160,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         let beginning = back.first().cloned();
         for (point, special) in back.into_iter().rev() {
             if seen(point, special).is_break() {
-                return Ok(ControlFlow::Break(()));
+                return Ok(Break(()));
             }
         }
         if closed.stopped == Some(Stop::Closed) {
@@ -212,7 +221,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
                 false => found.label.filter(asked),
             };
             if matches!(found.label, Some(Label::Ep | Label::Uz)) {
-                ends.push(here.clone());
+                ends.push(self.place(&found.state, found.parameter));
             }
             if label == Some(Label::Bp) && found.together == 0 {
                 crossings.push(found.clone());
@@ -224,11 +233,16 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
             if label.is_none() && short {
                 return Continue(());
             }
-            place = Some(here.clone());
+            let before = place.replace(here);
+            let mirrors = |before: &Vector| self.branch.system.mirrors(before, &found.state);
             let point = self.point(number, found, label);
             last = Some(point.clone());
             told = seen(point, label.is_some());
-            told
+            match before.as_ref().is_some_and(mirrors) {
+                // What follows is the mirror image of what is told.
+                true if label == Some(Label::Bp) => Break(()),
+                _ => told,
+            }
         };
         let followed = self.with_family(|family| family.follow(onward, &settings, &mut look));
         let followed = match followed {
@@ -264,11 +278,11 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
 
     /// One more branch passes a branch point.
     fn cross(&mut self, found: FoundEquilibrium) {
-        let here = found.state.push(found.parameter);
-        let known = self.crossings.iter_mut();
-        let mut same = known.filter(|(other, _)| near(&other.state.push(other.parameter), &here));
-        match same.next() {
-            Some((_, passed)) => *passed += 1,
+        let here = self.place(&found.state, found.parameter);
+        let places = self.crossings.iter();
+        let mut places = places.map(|(other, _)| self.place(&other.state, other.parameter));
+        match places.position(|other| near(&other, &here)) {
+            Some(i) => self.crossings[i].1 += 1,
             None => self.crossings.push((found, 1)),
         }
     }

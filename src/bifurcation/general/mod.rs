@@ -4,6 +4,7 @@
 //! Hopf points met on them, or at an orbit that is given. What is met is told as it comes.
 
 mod curves;
+mod ends;
 mod equilibria;
 mod growing_period;
 mod hopf;
@@ -22,7 +23,7 @@ use super::orbits::{SpecialOrbit, second};
 use super::{Criticality, Label};
 use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
-use crate::equilibrium::Verdict;
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::integrate::Choice;
@@ -33,8 +34,20 @@ use crate::orbit::{
 use nalgebra::Complex;
 use std::ops::ControlFlow;
 
+/// Points nearer to each other than this, in units of 1 + |x|, are one; so are orbits whose coordinates, and ln T, differ by less.
+const SAME: f64 = 1e-6;
+
 /// The equilibria that are known at some coordinates of the parameters.
 pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sync);
+
+/// Periodic orbits that can be found at values of the parameter that varies.
+#[derive(Clone, Copy)]
+pub struct FoundOrbits<'a> {
+    /// Those at a coordinate of it.
+    pub at: &'a dyn Fn(f64) -> Vec<ContinuationPoint>,
+    /// A coordinate other than the ends of the range at which they may be looked for.
+    pub within: Option<f64>,
+}
 
 /// A system over one or two of its parameters.
 #[derive(Clone, Copy)]
@@ -43,6 +56,8 @@ pub struct GeneralSystem<'a> {
     pub family: &'a dyn ParametrisedField,
     /// Of two equal parts the family of states in which they move alike, in the same coordinates.
     pub alike: Option<&'a dyn ParametrisedField>,
+    /// Groups of variables whose exchange changes nothing: solutions that are mirror images of each other are one.
+    pub interchangeable: &'a [Vec<usize>],
     /// The names of the parameters, by which fields know their derivatives.
     pub names: [&'a str; 2],
     /// Where branches of equilibria begin.
@@ -64,6 +79,8 @@ pub struct GeneralBranch<'a> {
     pub at: Vec<f64>,
     /// An orbit at the beginning of the range, where one is known.
     pub orbit: Option<ContinuationPoint>,
+    /// Where orbits begin if no Hopf point leads to any.
+    pub found: Option<FoundOrbits<'a>>,
     /// How many times orbits may double their period.
     pub doublings: usize,
     /// Of interfaces in clusters what a split of each grows by.
@@ -168,7 +185,51 @@ pub struct GeneralPoint {
     pub orbit: Option<SpecialOrbit>,
 }
 
+impl GeneralSolution {
+    /// Whether the last two of three variables, or the one that stands for both, are equal all along.
+    pub fn symmetry(&self) -> Symmetry {
+        let equal = |x: &Vector| {
+            let (first, last) = (x[1], x[x.len() - 1]);
+            (first - last).abs() < SAME * (1.0 + first.abs())
+        };
+        let symmetric = match self {
+            GeneralSolution::Equilibrium { state, .. } => equal(state),
+            GeneralSolution::Orbit { shooting, .. } => shooting.nodes.iter().all(equal),
+        };
+        match symmetric {
+            true => Symmetry::Symmetric,
+            false => Symmetry::Asymmetric,
+        }
+    }
+}
+
 impl GeneralSystem<'_> {
+    /// One of a solution and its mirror images, the same whichever is given: numbers of interchangeable variables in ascending order.
+    fn representative(&self, numbers: &Vector) -> Vector {
+        let mut representative = numbers.clone();
+        for group in self.interchangeable {
+            let mut sorted: Vec<f64> = group.iter().map(|&i| numbers[i]).collect();
+            sorted.sort_by(f64::total_cmp);
+            for (&i, x) in group.iter().zip(sorted) {
+                representative[i] = x;
+            }
+        }
+        representative
+    }
+
+    /// Whether a branch that has come from one point to another has its own mirror image before it: just two interchangeable variables, which
+    /// differed, have become equal.
+    fn mirrors(&self, from: &Vector, here: &Vector) -> bool {
+        let equal =
+            |x: &Vector, i: usize, j: usize| (x[i] - x[j]).abs() < SAME * (1.0 + x[i].abs());
+        let pairs = self.interchangeable.iter().flat_map(|group| {
+            let firsts = group.iter().enumerate();
+            firsts.flat_map(|(k, &i)| group[k + 1..].iter().map(move |&j| (i, j)))
+        });
+        let met = pairs.filter(|&(i, j)| equal(here, i, j) && !equal(from, i, j));
+        met.count() == 1
+    }
+
     /// The parameters and the period of a special orbit once more, by an unlike method. That begins from the first one's nodes, cut
     /// to a few digits, and shares nothing else with it.
     ///

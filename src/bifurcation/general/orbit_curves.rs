@@ -4,7 +4,7 @@ use super::curves::{in_order, looked_along, scanned};
 use super::orbits::{new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
 use super::{
     GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
-    Teller,
+    SAME, Teller,
 };
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{CoefficientCurve, Decided, LONGEST, embedded, middle};
@@ -21,8 +21,6 @@ use std::ops::ControlFlow::{self, Break, Continue};
 
 /// The most steps on a curve, each way.
 const STEPS: usize = 3000;
-/// Coordinates, and ln T, that differ by less are of the same orbit.
-const SAME: f64 = 1e-6;
 /// R1 to R4 and the sum of the pair of multipliers there.
 const RESONANCES: [(Label, f64); 4] = [
     (Label::R1, 2.0),

@@ -1,11 +1,15 @@
 //! Branches of periodic orbits along one parameter: from the Hopf points, through folds, onto the branches of doubled periods.
 
+use super::ends::{End, backwards};
 use super::equilibria::EquilibriumBranches;
 use super::growing_period::{Limit, Periods};
 use super::hopf::GeneralHopf;
 use super::multipliers_together::{Outside, Together, is_real};
 use super::splits::with_splits;
-use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, Teller};
+use super::{
+    FoundOrbits, GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution, SAME,
+    Teller,
+};
 use crate::bifurcation::orbits::normal_form::{Form, normal_form};
 use crate::bifurcation::orbits::{ARC, LONGEST, ROUGH, WORK, embedded, middle, refined};
 use crate::bifurcation::{Criticality, Label};
@@ -23,10 +27,10 @@ use std::ops::ControlFlow::{self, Break, Continue};
 const STEPS: usize = 5000;
 /// The first step onto a branch that bifurcates.
 const ASIDE: f64 = 0.02;
+/// What is said of an orbit that was found where no Hopf point is met.
+const BEGUN: &str = "begins here, at an orbit that was found: no Hopf point is met";
 /// The free parameter.
 const FREE: usize = 0;
-/// Coordinates, and ln T, that differ by less are of the same orbit.
-const SAME: f64 = 1e-6;
 
 /// Follows the branches of orbits over the range and hands on what is found.
 ///
@@ -58,14 +62,12 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
                 at: point.at,
                 frequency: std::f64::consts::TAU / period.value,
             };
-            let near =
-                |state: &Vector| (state - &hopf.state).amax() < SAME * (1.0 + hopf.state.amax());
-            // Of equal parts what differs by their exchange is one.
-            let equal = branch.system.alike.is_some();
+            let place = |hopf: &GeneralHopf| branch.system.representative(&hopf.state);
+            let here = place(&hopf);
             let same = |other: &GeneralHopf| {
                 (other.frequency / hopf.frequency - 1.0).abs() < SAME
                     && (other.at[FREE] - hopf.at[FREE]).abs() < SAME
-                    && (near(&other.state) || equal && near(&exchanged(&other.state)))
+                    && (place(other) - &here).amax() < SAME * (1.0 + here.amax())
             };
             if !found.iter().any(|(other, _)| same(other)) {
                 found.push((hopf, point));
@@ -75,14 +77,6 @@ pub(super) fn hopf_points(branch: &GeneralBranch<'_>) -> Result<Vec<(GeneralHopf
     })?;
     found.sort_by(|a, b| a.0.at[FREE].total_cmp(&b.0.at[FREE]));
     Ok(found)
-}
-
-/// With the last two variables exchanged.
-fn exchanged(state: &Vector) -> Vector {
-    let mut exchanged = state.clone();
-    let n = state.len();
-    exchanged.swap_rows(n - 2, n - 1);
-    exchanged
 }
 
 /// All branches, and what is known of them so far.
@@ -95,6 +89,10 @@ struct OrbitBranches<'b, 'a> {
     reached: Vec<bool>,
     /// Period doublings with how often the period has doubled before, and whether a branch of doubled orbits was there.
     doublings: Vec<(Regular, usize, bool)>,
+    /// Where branches begin or end at the ends of the range, or pass the value at which orbits were found.
+    ends: Vec<End>,
+    /// That value.
+    begin: Option<f64>,
 }
 
 impl<'b, 'a> OrbitBranches<'b, 'a> {
@@ -115,17 +113,24 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
             reached: vec![false; hopfs.len()],
             hopfs,
             doublings: Vec::new(),
+            ends: Vec::new(),
+            begin: None,
         })
     }
 
     fn all(&mut self, teller: &mut Teller<'_>) -> Result<()> {
         if let Some(site) = &self.branch.orbit {
-            self.along_orbit(site.clone(), teller)?;
+            self.along_orbit(site.clone(), None, teller)?;
         }
         for i in 0..self.hopfs.len() {
             if !std::mem::replace(&mut self.reached[i], true) && teller.told.is_continue() {
                 self.along_hopf(i, teller)?;
             }
+        }
+        if let Some(found) = self.branch.found.filter(|_| self.count == 0)
+            && teller.told.is_continue()
+        {
+            self.along_found(found, teller)?;
         }
         // The list grows as it is gone through.
         let mut i = 0;
@@ -146,45 +151,122 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         PalcSettings::branch(FREE, LONGEST * self.branch.following.step)
     }
 
-    fn next(&mut self) -> usize {
-        self.count += 1;
-        self.count - 1
+    /// The branch of this number has a point in the range: the next branch has another number.
+    fn begins(&mut self, number: usize) {
+        self.count = self.count.max(number + 1);
     }
 
-    /// From an orbit at the beginning of the range to its end; both ways from one that lies within.
-    fn along_orbit(&mut self, site: ContinuationPoint, teller: &mut Teller<'_>) -> Result<()> {
-        let mut corrector = new_corrector(self.branch.system.family)?;
-        let held = [Condition::Parameter(FREE, site.at[FREE])];
-        let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;
+    /// Whether a branch has begun or ended with this orbit; if not, one does so now.
+    fn is_known(&mut self, site: &ContinuationPoint) -> bool {
+        // An orbit whose extremes are not found is told of again rather than left out.
+        let Ok(end) = End::of(self.branch, site) else {
+            return false;
+        };
+        let known = self.ends.iter().any(|other| other.is(&end));
+        if !known {
+            self.ends.push(end);
+        }
+        known
+    }
+
+    /// The branches through the orbits that are found at the ends of the range or, where there are none, at a value within.
+    fn along_found(&mut self, found: FoundOrbits<'_>, teller: &mut Teller<'_>) -> Result<()> {
         let (from, to) = self.branch.range;
-        let begin = orbit.site.at[FREE];
-        let along = orbit.along[0].clone();
-        let ways: &[f64] = if begin == from { &[1.0] } else { &[1.0, -1.0] };
-        for way in ways {
-            let number = self.next();
-            let label = (begin == from).then_some(Label::Ep);
-            let first = self.row(number, &orbit, label);
-            let first = first.placed(self.branch.system.family, [0.0; 2]);
-            if teller.point(first, label.is_some()).is_break() {
-                return Ok(());
+        let within = found.within.filter(|&x| self.inside(x));
+        for x in [from, to].into_iter().chain(within) {
+            let is_end = [from, to].contains(&x);
+            if !is_end && self.count > 0 {
+                break;
             }
-            let ahead = along.parameters[FREE] * (to - from) * way;
-            let direction = along.clone().scaled(if ahead < 0.0 { -1.0 } else { 1.0 });
-            let site = orbit.site.clone();
-            let mut corrector = new_corrector(self.branch.system.family)?;
-            let mut palc = Palc::from(&mut corrector, self.settings(), site, direction)?;
-            let mut branch = OrbitBranch::new(self, number, 0, true);
-            branch.begin = Some(orbit.site.clone());
-            branch.go(&mut palc, teller)?;
+            self.begin = Some(x);
+            for orbit in (found.at)(x) {
+                let at = [x, self.branch.held];
+                let begin = ContinuationPoint { at, ..orbit };
+                if teller.told.is_break() {
+                    return Ok(());
+                }
+                // An orbit at which no branch can begin leaves the others.
+                let _ = self.along_orbit(begin, Some(BEGUN), teller);
+            }
         }
         Ok(())
     }
 
+    /// The branch through an orbit, from an end of the range inwards; through one that lies within from end to end.
+    fn along_orbit(
+        &mut self,
+        site: ContinuationPoint,
+        note: Option<&str>,
+        teller: &mut Teller<'_>,
+    ) -> Result<()> {
+        let mut corrector = new_corrector(self.branch.system.family)?;
+        let held = [Condition::Parameter(FREE, site.at[FREE])];
+        let orbit = corrector.correct(site, &[FREE], &held, Goal::STEP)?;
+        if self.is_known(&orbit.site) {
+            return Ok(());
+        }
+        let (from, to) = self.branch.range;
+        let begin = orbit.site.at[FREE];
+        let is_end = [from, to].contains(&begin);
+        let number = self.count;
+        self.begins(number);
+        if !is_end {
+            let mut back = Vec::new();
+            let mut keep = |event| {
+                back.push(event);
+                Continue(())
+            };
+            let mut kept = Teller::new(&mut keep, &self.branch.following);
+            self.one_way(number, &orbit, from - begin, &mut kept)?;
+            for event in backwards(back) {
+                if teller.tell(event).is_break() {
+                    return Ok(());
+                }
+            }
+        }
+        let label = match note {
+            _ if is_end => Some(Label::Ep),
+            // There a value was asked for: that of the model.
+            Some(_) => Some(Label::Uz),
+            None => None,
+        };
+        let mut first = self.row(number, &orbit, label);
+        first.note = note.map(str::to_owned);
+        let first = first.placed(self.branch.system.family, [0.0; 2]);
+        if teller.point(first, label.is_some()).is_break() {
+            return Ok(());
+        }
+        let onward = if begin == to { from - to } else { to - begin };
+        self.one_way(number, &orbit, onward, teller)
+    }
+
+    /// From an orbit on, to where the parameter grows or falls as this sign says.
+    fn one_way(
+        &mut self,
+        number: usize,
+        orbit: &Regular,
+        onward: f64,
+        teller: &mut Teller<'_>,
+    ) -> Result<()> {
+        let along = orbit.along[0].clone();
+        let ahead = along.parameters[FREE] * onward;
+        let direction = along.scaled(if ahead < 0.0 { -1.0 } else { 1.0 });
+        let site = orbit.site.clone();
+        let mut corrector = new_corrector(self.branch.system.family)?;
+        let mut palc = Palc::from(&mut corrector, self.settings(), site, direction)?;
+        let mut branch = OrbitBranch::new(self, number, 0, true);
+        branch.begin = Some(orbit.site.clone());
+        branch.go(&mut palc, teller)
+    }
+
     fn along_hopf(&mut self, i: usize, teller: &mut Teller<'_>) -> Result<()> {
-        let number = self.next();
+        let number = self.count;
         let (hopf, point) = self.hopfs[i].clone();
         let point = GeneralPoint { number, ..point };
         let inside = self.inside(hopf.at[FREE]);
+        if inside {
+            self.begins(number);
+        }
         if inside && teller.tell(GeneralEvent::Special(point.clone())).is_break() {
             return Ok(());
         }
@@ -219,7 +301,7 @@ impl<'b, 'a> OrbitBranches<'b, 'a> {
         let Ok(mut palc) = Palc::from(&mut corrector, self.settings(), first, direction) else {
             return Ok(());
         };
-        let number = self.next();
+        let number = self.count;
         OrbitBranch::new(self, number, times, inside).go(&mut palc, teller)
     }
 
@@ -340,7 +422,14 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         let known = all.into_iter().filter(|one| one.checked(dimension).is_ok());
         let mut watches: Vec<_> = known.map(WatchedFunction::TestFunction).collect();
         let (a, b) = branch.range;
-        let values = [a, b].into_iter().chain(branch.at.iter().copied());
+        let begin = self
+            .set
+            .begin
+            .filter(|x| ![a, b].contains(x) && !branch.at.contains(x));
+        let values = [a, b]
+            .into_iter()
+            .chain(branch.at.iter().copied())
+            .chain(begin);
         watches.extend(values.map(|x| WatchedFunction::Value(FREE, x)));
         watches
     }
@@ -353,7 +442,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         })?;
         if end != crate::continuation::Stop::Observer && self.inside {
             let point = self.end(&palc.now.here, &end.to_string());
-            let _ = teller.tell(GeneralEvent::Special(point));
+            let _ = self.tell(GeneralEvent::Special(point), teller);
         }
         Ok(())
     }
@@ -399,6 +488,11 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         limit.placed(branch.system.family, [at.uncertainty, 0.0])
     }
 
+    fn tell(&mut self, event: GeneralEvent, teller: &mut Teller<'_>) -> ControlFlow<()> {
+        self.set.begins(self.number);
+        teller.tell(event)
+    }
+
     /// The next orbit: whether the branch goes on.
     fn orbit(
         &mut self,
@@ -416,7 +510,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
                 ..self.set.hopfs[i].1.clone()
             };
             if self.set.inside(point.at[FREE]) {
-                let _ = teller.tell(GeneralEvent::Special(point));
+                let _ = self.tell(GeneralEvent::Special(point), teller);
             }
             return Break(());
         }
@@ -428,6 +522,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         if let Some(together) = self.outside.come_to(family, here)
             && self.set.inside(together.orbit.site.at[FREE])
         {
+            self.set.begins(self.number);
             teller.special(self.together(together))?;
         }
         if !self.set.inside(here.site.at[FREE]) {
@@ -442,7 +537,8 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         self.inside = true;
         let site = &here.site;
         self.periods.push(site.at[FREE], site.shooting.period());
-        teller.tell(GeneralEvent::Row(self.set.row(self.number, here, None)))
+        let row = self.set.row(self.number, here, None);
+        self.tell(GeneralEvent::Row(row), teller)
     }
 
     /// Whether a branch of doubled orbits, whose parameter turns, is back at a period doubling.
@@ -517,6 +613,13 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             WatchedFunction::Value(..) if self.is_begin(&near.site) => return Continue(()),
             WatchedFunction::Value(_, x) if x == from || x == to => Label::Ep,
             _ if !self.set.inside(near.site.at[FREE]) => return Continue(()),
+            WatchedFunction::Value(_, x) if self.set.begin == Some(x) => {
+                self.set.is_known(&near.site);
+                if !branch.at.contains(&x) {
+                    return Continue(());
+                }
+                Label::Uz
+            }
             WatchedFunction::Value(..) => Label::Uz,
             WatchedFunction::TestFunction(TestFunction::Doubling) => Label::Pd,
             WatchedFunction::TestFunction(TestFunction::Torus) if sum_of_pair(near).abs() < 2.0 => {
@@ -534,6 +637,10 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
             _ => return Continue(()),
         };
         let ends = label == Label::Ep && self.inside;
+        // Another branch has come this way from its other end.
+        if label == Label::Ep && self.set.is_known(&near.site) && !ends {
+            return Break(());
+        }
         self.inside |= label == Label::Ep;
         let family = branch.system.family;
         let meets = (&palc.curve.settings.free[..], &[watch][..]);
@@ -554,6 +661,7 @@ impl<'s, 'b, 'a> OrbitBranch<'s, 'b, 'a> {
         if let (Label::Pd, Some(orbit)) = (label, orbit) {
             self.set.doublings.push((orbit, self.times, false));
         }
+        self.set.begins(self.number);
         teller.special(point)?;
         if ends { Break(()) } else { Continue(()) }
     }

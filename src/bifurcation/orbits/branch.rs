@@ -3,7 +3,9 @@
 
 use super::chart::Chart;
 use super::orbit_branch::OrbitBranch;
-use crate::bifurcation::{BranchRequest, Event, EventObserver, Label, Special, equilibria, within};
+use crate::bifurcation::{
+    BranchRequest, BranchRow, Event, EventObserver, Label, Special, equilibria, within,
+};
 use crate::equilibrium::Symmetry;
 use crate::error::Result;
 use crate::number::Uncertain;
@@ -76,6 +78,8 @@ pub(super) struct BranchSet<'r> {
     /// Period doublings, and which of them a branch of doubled orbits has begun or ended at.
     pub doublings: Vec<Doubling>,
     pub visited: Vec<bool>,
+    /// The orbits with which branches begin or end at the ends of the range.
+    ends: Vec<BranchRow>,
 }
 
 impl<'r> BranchSet<'r> {
@@ -92,6 +96,7 @@ impl<'r> BranchSet<'r> {
             merged: Vec::new(),
             doublings: Vec::new(),
             visited: Vec::new(),
+            ends: Vec::new(),
         }
     }
 
@@ -110,10 +115,32 @@ impl<'r> BranchSet<'r> {
         (self.range.0..=self.range.1).contains(&coordinate)
     }
 
-    /// The number of the next branch.
-    fn next(&mut self) -> usize {
-        self.count += 1;
-        self.count - 1
+    /// The branch of this number has a point in the range: the next branch has another number.
+    pub fn begins(&mut self, number: usize) {
+        self.count = self.count.max(number + 1);
+    }
+
+    /// Whether a branch has begun or ended with this orbit at an end of the range; if not, one does so now.
+    pub fn is_known_end(&mut self, orbit: BranchRow) -> bool {
+        /// Relative difference of the extremes, the mean and the period of one orbit: the run that finds the extremes has this tolerance.
+        const ONE: f64 = 1e-6;
+        let near = |a: f64, b: f64| (a - b).abs() <= ONE * a.abs().max(b.abs());
+        let same = |known: &BranchRow| {
+            (known.symmetry, known.driving, known.stiffness)
+                == (orbit.symmetry, orbit.driving, orbit.stiffness)
+                && near(known.stress, orbit.stress)
+                && near(known.stress_range.0, orbit.stress_range.0)
+                && near(known.stress_range.1, orbit.stress_range.1)
+                && known
+                    .period
+                    .zip(orbit.period)
+                    .is_some_and(|(a, b)| near(a, b))
+        };
+        let known = self.ends.iter().any(same);
+        if !known {
+            self.ends.push(orbit);
+        }
+        known
     }
 
     fn symmetric(&mut self, seen: EventObserver<'_>) -> Result<ControlFlow<()>> {
@@ -183,7 +210,7 @@ impl<'r> BranchSet<'r> {
         symmetry: Symmetry,
         seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
-        let number = self.next();
+        let number = self.count;
         let hopf = self.hopfs[i].clone();
         let chart = self.chart(symmetry);
         let mut corrector = new_corrector(chart.family())?;
@@ -191,6 +218,9 @@ impl<'r> BranchSet<'r> {
         let inside = self.in_range(begin);
         let special = Event::Special(self.hopf(i)).on(number, symmetry);
         let special = special.against(self.request.tolerance);
+        if inside {
+            self.begins(number);
+        }
         if inside && self.tells(number) && seen(special).is_break() {
             return Ok(Break(()));
         }
@@ -218,7 +248,7 @@ impl<'r> BranchSet<'r> {
         times: usize,
         seen: EventObserver<'_>,
     ) -> Result<ControlFlow<()>> {
-        let number = self.next();
+        let number = self.count;
         let chart = self.chart(Symmetry::Asymmetric);
         let mut corrector = new_corrector(chart.family())?;
         let begin = site.at[self.free];

@@ -121,7 +121,7 @@ pub(in crate::bifurcation) fn middle(site: &ContinuationPoint) -> ContinuationPo
 }
 
 /// A symmetric orbit among all.
-pub(in crate::bifurcation) fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
+pub fn embedded(site: &ContinuationPoint) -> ContinuationPoint {
     let nodes = site.shooting.nodes.iter();
     let node = |x: &Vector| Vector::from_column_slice(&[x[0], x[1], x[1]]);
     site.with_nodes(nodes.map(node).collect())

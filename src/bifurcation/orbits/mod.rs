@@ -17,7 +17,8 @@ mod vertical;
 
 pub use branch::branch;
 pub(super) use branch::{ARC, LONGEST, ROUGH, WORK};
-pub(super) use chart::{embedded, middle};
+pub use chart::embedded;
+pub(super) use chart::middle;
 pub use crosscheck::crosscheck;
 pub(super) use crosscheck::second;
 pub(super) use cubic_coefficient::{CoefficientCurve, Decided};

@@ -164,6 +164,7 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
     }
 
     fn tell(&mut self, event: Event) -> ControlFlow<()> {
+        self.branches.begins(self.number);
         if !self.branches.tells(self.number) {
             return Continue(());
         }
@@ -313,7 +314,6 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
         };
         // Where the branch leaves the range it ends, where it enters it begins.
         let ends = label == Label::Ep && self.inside;
-        self.inside |= label == Label::Ep;
         let meets = (&palc.curve.settings.free[..], &[watch][..]);
         let (mut special, orbit) = special(self.chart, label, &at.site, meets);
         let mut row = row(
@@ -323,6 +323,11 @@ impl<'b, 'r, 's> OrbitBranch<'b, 'r, 's> {
             Some(label),
         )?;
         row.given(self.given(Some(watch)));
+        // Another branch has come this way from its other end.
+        if label == Label::Ep && self.branches.is_known_end(row.clone()) && !self.inside {
+            return Ok(Break(()));
+        }
+        self.inside |= label == Label::Ep;
         special.given(self.given(Some(watch)));
         if let Some(orbit) = &orbit {
             self.remember(label, orbit, &mut special);

@@ -31,6 +31,8 @@ fn columns(found: &Yield) -> Vec<String> {
 /// Each steady state, by its symmetry and its place among those by stress.
 pub fn items(found: &Yield) -> Vec<Item> {
     let columns = columns(found);
+    // Of a single interface no state is symmetric.
+    let single = found.object["model"]["interfaces"] == 1;
     let item = |row: &Vec<crate::output::Cell>| {
         let numbers = columns.iter().map(|name| {
             let value = found.number(row, name);
@@ -40,7 +42,10 @@ pub fn items(found: &Yield) -> Vec<Item> {
             }
         });
         Item {
-            class: format!("{} steady state", found.word(row, "symmetry")),
+            class: match single {
+                true => "steady state".to_owned(),
+                false => format!("{} steady state", found.word(row, "symmetry")),
+            },
             place: vec![-found.number(row, "stress")],
             numbers: numbers.collect(),
             holds: found.word(row, "verdict") == "stable",

@@ -25,6 +25,7 @@ use super::{Ending, interrupt};
 use crate::error::{Error, Result};
 use crate::output::{Format, RowFile, plot, seven_digits};
 use crate::scene::{Command, EnsemblePlan};
+use added::Added;
 use bands::{Banded, Check, bands};
 use curves::Course;
 use gather::{Gathered, Items, Members};
@@ -294,6 +295,15 @@ impl Ensemble<'_> {
         ending: Ending,
         special_file: Option<RowFile>,
     ) -> Result<Ending> {
+        if estimate.rows.is_empty() && estimate.special.is_empty() {
+            // Without a point of the estimate nothing is there to have a band.
+            let ensemble = self.told(&self.members(0), 0, None);
+            let parts = Parts {
+                special_file,
+                ..Parts::of_rows(Added::default(), Vec::new(), true)
+            };
+            return self.finish(estimate, ensemble, parts, ending);
+        }
         let course = Course::new(self.plan, &estimate);
         let course = course.expect("curves have something that varies");
         let members = self.members(1);

@@ -4,8 +4,9 @@ use super::added::Added;
 use super::gather::Members;
 use super::member::Yield;
 use super::percent;
-use crate::cli::words::several;
+use crate::cli::words::{count, several};
 use crate::scene::EnsemblePlan;
+use crate::section::Regime;
 use crate::views::REGIMES;
 use serde_json::{Map, Value, json};
 
@@ -81,13 +82,22 @@ impl Tally {
             means.insert(name.into(), json!(sum.map(|sum| sum / rows.max(1) as f64)));
         }
         added.put_into(&mut estimate.object["result"]["rows"]);
-        let sure = |row: &usize| self.likeliest(*row).is_some_and(|(_, part)| part >= SURE);
-        let sure = (0..estimate.rows.len()).filter(sure).count();
+        let sure = |row: usize| self.likeliest(row).filter(|&(_, part)| part >= SURE);
+        let sure: Vec<usize> = (0..estimate.rows.len())
+            .filter_map(|row| Some(sure(row)?.0))
+            .collect();
+        // What is undecided in all draws may be one regime or another.
+        let open = |&&regime: &&usize| REGIMES[regime] == Regime::Undecided;
+        let undecided = sure.iter().filter(open).count();
         let line = format!(
-            "at {} of {} the same regime in at least {} of draws",
-            several(sure, "point", "points"),
+            "at {} of {} the same regime in at least {} of draws{}",
+            several(sure.len() - undecided, "point", "points"),
             several(estimate.rows.len(), "point", "points"),
-            percent(SURE)
+            percent(SURE),
+            match undecided {
+                0 => String::new(),
+                n => format!(", at {} undecided in as many", count(n)),
+            }
         );
         let lines = (self.draws > 0).then_some(line);
         (added, means, lines.into_iter().collect())

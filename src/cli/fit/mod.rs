@@ -92,7 +92,10 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         report.say(line);
     }
     Ok(match written {
-        Ending::Done if !is_decided => Ending::Undecided,
+        Ending::Done if !is_decided => report.undecided(format_args!(
+            "the fit, as {}; give that parameter a value, or take a record that tells more",
+            best.fit.verdict.undecided.join("; ")
+        )),
         ending => ending,
     })
 }

@@ -3,6 +3,7 @@
 use super::Fitted;
 use super::steps::FittedStep;
 use crate::fit::{DRIFT, Fit, FittedParameter, Verdict};
+use crate::output::seven_digits;
 use crate::scene::{FitPlan, LawToFit};
 use crate::views::scale_name;
 use serde_json::{Map, Value, json};
@@ -184,14 +185,14 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
                 let each: Vec<String> = all_in_words(plan, fit).collect();
                 lines.push(format!(
                     "step at {} s, {:e} to {:e} m/s, {}: {}",
-                    step.time,
+                    seven_digits(step.time),
                     step.driving.0,
                     step.driving.1,
                     fit.verdict.name(),
                     each.join("; ")
                 ));
             }
-            Err(error) => lines.push(format!("step at {} s: {error}", step.time)),
+            Err(error) => lines.push(format!("step at {} s: {error}", seven_digits(step.time))),
         }
     }
     lines

@@ -12,6 +12,7 @@ pub(crate) mod wire;
 
 use super::call::Call;
 use super::report::Report;
+use super::words::several;
 use super::{Ending, written};
 use crate::error::Result;
 use crate::output::Format;
@@ -82,9 +83,17 @@ fn rows(options: &SweepOptions, call: &Call, ranks: Option<&mut Ranks>) -> Resul
     report.say(out.summary(seconds));
     Ok(match ending {
         _ if call.stops() => Ending::Interrupted,
-        Ending::Done if out.undecided() > 0 => Ending::Undecided,
+        Ending::Done if out.undecided() > 0 => report.undecided(undecided_rows(out.undecided())),
         ending => ending,
     })
+}
+
+/// What is said of rows whose regime is undecided.
+pub(super) fn undecided_rows(count: usize) -> String {
+    format!(
+        "the regime of {}, whose notes say why; more `max_returns` and a smaller `rtol` decide more",
+        several(count, "row", "rows")
+    )
 }
 
 /// The object; tables and CSV are written already.

@@ -23,20 +23,20 @@ pub fn run(options: &EquilibriaOptions, model: TextModel, call: &Call) -> Result
     }
     let found = plan.solve()?;
     let ending = write(&report, &plan, &found)?;
-    if !found.undecided.is_empty() {
-        report.say(format!(
-            "the number of equilibria is undecided: {} may hold any, near {}",
+    let undecided = |one: &&TextEquilibrium| one.stability.verdict == Verdict::Undecided;
+    let verdicts = found.equilibria.iter().filter(undecided).count();
+    Ok(match (ending, &found.undecided[..]) {
+        (Ending::Done, [first, ..]) => report.undecided(format_args!(
+            "the number of equilibria, as {} may hold any, near {}; a `box` without that place decides",
             several(found.undecided.len(), "small box", "small boxes"),
-            near(&plan.model, &found.undecided[0])
-        ));
-    }
-    let undecided = |one: &TextEquilibrium| one.stability.verdict == Verdict::Undecided;
-    if ending == Ending::Done
-        && (!found.undecided.is_empty() || found.equilibria.iter().any(undecided))
-    {
-        return Ok(Ending::Undecided);
-    }
-    Ok(ending)
+            near(&plan.model, first)
+        )),
+        (Ending::Done, []) if verdicts > 0 => report.undecided(format_args!(
+            "the stability of {}, as an eigenvalue is within its error of the imaginary axis; other parameters decide",
+            several(verdicts, "equilibrium", "equilibria")
+        )),
+        (ending, _) => ending,
+    })
 }
 
 fn near(model: &TextModel, part: &[Interval]) -> String {

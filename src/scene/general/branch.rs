@@ -3,7 +3,7 @@
 use super::following::{self, Free, general, numbers, shown};
 use super::{GeneralRow, RowKind, Subject};
 use crate::bifurcation::general::{
-    GeneralBranch, GeneralEvent, GeneralPoint, GeneralSystem, equilibria, orbits,
+    FoundOrbits, GeneralBranch, GeneralEvent, GeneralPoint, GeneralSystem, equilibria, orbits,
 };
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
@@ -146,6 +146,7 @@ impl<'s> GeneralBranchPlan<'s> {
             family: &*family,
             alike: alike.as_deref(),
             names: [name; 2],
+            interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
         };
         following::crosscheck(&system, 1, one, method)
@@ -172,11 +173,13 @@ impl<'s> GeneralBranchPlan<'s> {
         let within =
             |point: &GeneralPoint, sharp: bool| self.subject.within(&*family, point, sharp);
         let clusters = !self.subject.clusters().is_empty();
+        let interchangeable = self.subject.interchangeable();
         let mut branch = GeneralBranch {
             system: GeneralSystem {
                 family: &*family,
                 alike: alike.as_deref(),
                 names: [name; 2],
+                interchangeable: &interchangeable,
                 equilibria: &equilibria_at,
             },
             range: self.free.ends(),
@@ -184,6 +187,7 @@ impl<'s> GeneralBranchPlan<'s> {
             held: 0.0,
             at: self.free.landings(),
             orbit: None,
+            found: None,
             doublings: self.doublings,
             within: clusters.then_some(&within),
             following: general(&self.following, known),
@@ -194,6 +198,17 @@ impl<'s> GeneralBranchPlan<'s> {
                 orbit.at = [branch.range.0, 0.0];
             }
         }
+        let found_at = |coordinate: f64| {
+            let value = family.parameters([coordinate, 0.0])[0];
+            let value = self.free.asked(coordinate).unwrap_or(value);
+            self.subject.orbits(&[(name, value)])
+        };
+        let own = self.subject.value(name).ok();
+        let own = own.map(|value| self.free.coordinate.inward(value));
+        branch.found = self.kind.orbits.then_some(FoundOrbits {
+            at: &found_at,
+            within: own,
+        });
         let mut failed = None;
         let mut met = 0;
         let mut look = |event: GeneralEvent| {
@@ -220,10 +235,10 @@ impl<'s> GeneralBranchPlan<'s> {
 }
 
 /// What is said where nothing is found to begin with.
-pub(super) fn nothing(orbits: bool) -> Error {
+fn nothing(orbits: bool) -> Error {
     Error::NoOrbit {
         what: match orbits {
-            true => "no Hopf point is met on the equilibria in the range".into(),
+            true => "no Hopf point is met on the equilibria in the range, and no orbit is found at its ends".into(),
             false => "no equilibrium is found at either end of the range".into(),
         },
         period: None,

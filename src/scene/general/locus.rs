@@ -1,6 +1,6 @@
 //! Curves of bifurcations in the plane of any two parameters, from options.
 
-use super::branch::{GeneralFound, found, nothing};
+use super::branch::{GeneralFound, found};
 use super::following::{self, Free, general, numbers};
 use super::{GeneralRow, RowKind, Subject};
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
@@ -227,9 +227,22 @@ impl<'s> GeneralLocusPlan<'s> {
             family: &*family,
             alike: alike.as_deref(),
             names,
+            interchangeable: &[],
             equilibria: &|_| Ok(Vec::new()),
         };
         following::crosscheck(&system, 2, one, method)
+    }
+
+    /// What is said where no curve is found.
+    fn nothing(&self) -> Error {
+        Error::NoOrbit {
+            what: format!(
+                "no {} bifurcation is found in these ranges",
+                self.choice.name
+            ),
+            period: None,
+            hint: "give other ranges, or a `start` near an equilibrium or an orbit, or a `box` with all equilibria",
+        }
     }
 
     /// Follows all of them, but those whose numbers are known.
@@ -264,11 +277,13 @@ impl<'s> GeneralLocusPlan<'s> {
                 }
             }
         }
+        let interchangeable = self.subject.interchangeable();
         let curve = GeneralCurve {
             system: GeneralSystem {
                 family: &*family,
                 alike: alike.as_deref(),
                 names,
+                interchangeable: &interchangeable,
                 equilibria: &equilibria,
             },
             kind: self.bifurcation,
@@ -293,7 +308,7 @@ impl<'s> GeneralLocusPlan<'s> {
         })?;
         match failed {
             Some(error) => Err(error),
-            None if met == 0 && known.is_empty() => Err(nothing(self.kind.orbits)),
+            None if met == 0 && known.is_empty() => Err(self.nothing()),
             None => Ok(()),
         }
     }

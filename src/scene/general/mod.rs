@@ -60,6 +60,10 @@ pub trait Subject: Described + Sync {
     /// As of [`crate::orbit::find_from`].
     fn orbit(&self, values: &[(&str, f64)]) -> Result<Option<ContinuationPoint>>;
 
+    /// The orbits that are found at these values of parameters without a start near one; their coordinates are yet to be set. Where the
+    /// search fails there are none.
+    fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint>;
+
     /// The coordinate in which a parameter is followed between these values.
     ///
     /// # Errors
@@ -69,6 +73,15 @@ pub trait Subject: Described + Sync {
     /// Whether it is of three variables, the last two of equal parts: then it has pitchforks.
     fn has_equal_parts(&self) -> bool {
         false
+    }
+
+    /// The variables of equal parts, part by part: what differs by an exchange within one of these groups is one solution.
+    fn interchangeable(&self) -> Vec<Vec<usize>> {
+        if self.has_equal_parts() {
+            vec![vec![1, 2]]
+        } else {
+            Vec::new()
+        }
     }
 
     /// The clusters that can split, from 1, of interfaces in clusters.

@@ -5,7 +5,7 @@ use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
 use crate::bifurcation::orbits::SpecialOrbit;
 use crate::bifurcation::{Criticality, Label};
-use crate::equilibrium::Verdict;
+use crate::equilibrium::{Symmetry, Verdict};
 use crate::error::Result;
 use crate::number::Uncertain;
 use crate::orbit::ParametrisedField;
@@ -55,6 +55,8 @@ pub struct GeneralRow {
     pub verdict: Option<Verdict>,
     /// What is special here.
     pub label: Option<Label>,
+    /// Of equal interfaces, whether both move alike there: a point where they do not stands for its mirror image too.
+    pub symmetry: Option<Symmetry>,
     /// What else is to be said.
     pub note: Option<String>,
     /// Of a special orbit that was just found, what is needed to compute it once more.
@@ -86,7 +88,9 @@ impl GeneralRow {
         for (name, _) in &names[free..] {
             parameters.push(Uncertain::new(subject.value(name)?, 0.0));
         }
+        let symmetry = subject.has_equal_parts();
         Ok(GeneralRow {
+            symmetry: symmetry.then(|| point.solution.symmetry()),
             number: point.number,
             parameters,
             numbers,
@@ -170,11 +174,21 @@ impl GeneralRow {
         }));
         let whole = if kind.curve { "curve" } else { "branch" };
         columns.push(Column::new(whole, Number, |row: &Row| row.number.into()));
+        columns.extend(subject.has_equal_parts().then(Self::symmetry_column));
         columns
     }
 
+    fn symmetry_column() -> Column<Self> {
+        Column::new("symmetry", Quantity::Number, |row: &Self| {
+            row.symmetry.map(Symmetry::name).into()
+        })
+    }
+
     /// The columns of special points.
-    pub fn special_columns(names: &[(&'static str, Quantity)]) -> Vec<Column<Self>> {
+    pub fn special_columns(
+        subject: &dyn Subject,
+        names: &[(&'static str, Quantity)],
+    ) -> Vec<Column<Self>> {
         type Row = GeneralRow;
         use Quantity::{Number, Time};
         let mut columns = vec![
@@ -184,6 +198,7 @@ impl GeneralRow {
             Column::new("name", Number, |row: &Row| row.meaning().into()),
             Column::new("branch", Number, |row: &Row| row.number.into()),
         ];
+        columns.extend(subject.has_equal_parts().then(Self::symmetry_column));
         for (i, &(name, quantity)) in names.iter().enumerate() {
             let entry = move |row: &Row| row.parameters[i].into();
             columns.push(Column::uncertain(name, quantity, entry));
@@ -253,6 +268,7 @@ impl GeneralRow {
                 .into_iter()
                 .find(|verdict| verdict.name() == cell("verdict")),
             label: Label::named(&cell("label")),
+            symmetry: Symmetry::named(&cell("symmetry")),
             note: Some(cell("note")).filter(|note| !note.is_empty()),
             orbit: None,
         })

@@ -2,16 +2,17 @@
 
 use super::{RowKind, Subject};
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::bifurcation::orbits::embedded;
 use crate::equilibrium::{Symmetry, unequal_steady_states};
 use crate::error::{Error, Result};
 use crate::field::{Matrix, Parametrised, State, Vector};
 use crate::friction::{AnyLaw, Law, Parameters, UnequalLaws, positive};
-use crate::integrate::{AnyField, Choice};
+use crate::integrate::AnyField;
 use crate::model::{AlikeInterfaces, Driven, Loading, UnequalInterfaces};
 use crate::orbit::{
-    ContinuationPoint, Coordinate, InitialGuess, InterfaceSystem, OrbitAccuracy, OverInterfaces,
-    OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find, find_unequal,
-    profile_of,
+    ContinuationPoint, Coordinate, FoundOrbit, InitialGuess, InterfaceSystem, OrbitAccuracy,
+    OverInterfaces, OverLogarithms, ParametrisedField, Profile, Query, ShootingNodes, find,
+    find_either, find_unequal, profile_of,
 };
 use crate::scene::following;
 use crate::scene::plan::{self, Point};
@@ -281,10 +282,7 @@ impl Subject for SlabSubject {
             return Ok(None);
         };
         let begin = InitialGuess::At { start, period };
-        let accuracy = OrbitAccuracy {
-            checked: false,
-            ..OrbitAccuracy::of(Choice::Auto)
-        };
+        let accuracy = OrbitAccuracy::unchecked();
         let interfaces = self.at(values)?;
         let found = if self.is_single() {
             let query = Query {
@@ -296,6 +294,24 @@ impl Subject for SlabSubject {
             find_unequal(&interfaces, begin, &accuracy)?
         };
         Ok(Some(found.orbit.beginning()))
+    }
+
+    fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint> {
+        let search = || -> Result<_> {
+            let interfaces = self.at(values)?;
+            let accuracy = OrbitAccuracy::unchecked();
+            match self.equal || self.is_single() {
+                true => find_either(&self.slab(&interfaces)?, &accuracy),
+                false => find_unequal(&interfaces, InitialGuess::Anywhere, &accuracy),
+            }
+        };
+        let found = search().map_or(Vec::new(), FoundOrbit::beginnings);
+        let plane = |orbit: &ContinuationPoint| orbit.shooting.dimension() == 2;
+        let whole = |orbit| match self.equal && plane(&orbit) {
+            true => embedded(&orbit),
+            false => orbit,
+        };
+        found.into_iter().map(whole).collect()
     }
 
     fn coordinate(&self, name: &str, ends: [f64; 2]) -> Result<Coordinate> {

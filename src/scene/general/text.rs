@@ -2,18 +2,19 @@
 
 use super::{RowKind, Subject};
 use crate::bifurcation::general::{GeneralPoint, GeneralSolution};
+use crate::equilibrium::Symmetry;
 use crate::error::{Error, Result};
 use crate::field::Vector;
 use crate::friction::positive;
 use crate::integrate::{AnyField, Choice, Tolerances};
 use crate::model::TextSystem;
 use crate::orbit::{
-    AlongArcs, ContinuationPoint, Coordinate, OrbitAccuracy, OverText, ParametrisedField,
-    WithinCluster, find_from, ranges,
+    AlongArcs, ContinuationPoint, Coordinate, FoundOrbit, OrbitAccuracy, OverText,
+    ParametrisedField, WithinCluster, find_from, ranges,
 };
 use crate::scene::following;
 use crate::scene::system::Described;
-use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel};
+use crate::scene::text::{SearchPlace, TextEquilibriaPlan, TextModel, TextSlab, orbit_start};
 use crate::scene::units::{Quantity, Units};
 use serde_json::{Map, Value};
 use std::borrow::Cow;
@@ -139,12 +140,17 @@ impl Subject for TextSubject {
         };
         let system = self.at(values)?;
         let field = AnyField::of_text(Cow::Owned(system))?;
-        let accuracy = OrbitAccuracy {
-            checked: false,
-            ..OrbitAccuracy::of(Choice::Auto)
-        };
-        let found = find_from(&field, start, *period, &accuracy)?;
+        let found = find_from(&field, start, *period, &OrbitAccuracy::unchecked())?;
         Ok(Some(found.orbit.beginning()))
+    }
+
+    fn orbits(&self, values: &[(&str, f64)]) -> Vec<ContinuationPoint> {
+        let search = || -> Result<_> {
+            let model = self.model.with(self.at(values)?);
+            let start = orbit_start(None, Symmetry::Symmetric, &model)?;
+            find_from(&model.field()?, &start, None, &OrbitAccuracy::unchecked())
+        };
+        search().map_or(Vec::new(), FoundOrbit::beginnings)
     }
 
     fn coordinate(&self, _: &str, ends: [f64; 2]) -> Result<Coordinate> {
@@ -159,6 +165,11 @@ impl Subject for TextSubject {
 
     fn always_told(&self) -> Vec<(&'static str, Quantity)> {
         Vec::new()
+    }
+
+    fn interchangeable(&self) -> Vec<Vec<usize>> {
+        let slab = self.model.slab.as_ref();
+        slab.map_or(Vec::new(), TextSlab::interchangeable)
     }
 
     fn clusters(&self) -> Vec<usize> {

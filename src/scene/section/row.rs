@@ -51,7 +51,9 @@ pub fn section_columns(interfaces: usize) -> Vec<Column<SectionRow>> {
             row.slip_rate_sum.into()
         }),
         Column::new("next_slip_rate_sum", SlipRate, |row: &SectionRow| {
-            row.next_slip_rate_sum.into()
+            Some(row.next_slip_rate_sum)
+                .filter(|x| x.is_finite())
+                .into()
         }),
     ]);
     columns
@@ -78,6 +80,20 @@ impl<'a> RowMaker<'a> {
         }
     }
 
+    /// The run does not return again: if the last row that was asked for is open, it is complete without a next return.
+    pub fn end(&mut self, sink: &mut dyn Sink) {
+        if let Some(row) = self.open.take().filter(|_| self.made < self.plan.returns) {
+            let _ = self.tell(&row, sink);
+        }
+    }
+
+    fn tell(&mut self, row: &SectionRow, sink: &mut dyn Sink) -> Control {
+        self.made += 1;
+        let units = &self.plan.system.units;
+        let numbers = self.columns.iter().map(|column| column.number(row, units));
+        sink.row(&numbers.collect::<Vec<f64>>())
+    }
+
     /// The row of the return before is complete with this one.
     pub fn next(&mut self, at: &Return, sink: &mut dyn Sink) -> Control {
         let (laws, y) = (&self.laws, &at.state);
@@ -89,10 +105,7 @@ impl<'a> RowMaker<'a> {
         let sum = slip_rate[..self.plan.system.interfaces].iter().sum();
         let told = self.open.take().map(|mut row| {
             row.next_slip_rate_sum = sum;
-            self.made += 1;
-            let units = &self.plan.system.units;
-            let numbers = self.columns.iter().map(|column| column.number(&row, units));
-            sink.row(&numbers.collect::<Vec<f64>>())
+            self.tell(&row, sink)
         });
         self.open = Some(SectionRow {
             number: self.made,

@@ -27,6 +27,7 @@ pub use model::TextModel;
 pub(super) use model::given_text;
 pub use options::TextOptions;
 pub use orbit::TextOrbitPlan;
+pub(super) use orbit::orbit_start;
 pub(super) use plan::numerics;
 pub use plan::{TextInstant, TextPlan, text_columns};
 pub use run::run_text;

@@ -74,7 +74,11 @@ impl TextModel {
                 return Err(Error::Input(what));
             }
             if !read.system.parameter_names().contains(&name) {
-                return Err(Error::unknown("set", name, read.system.parameter_names()));
+                return Err(Error::no_parameter(
+                    "set",
+                    name,
+                    read.system.parameter_names(),
+                ));
             }
             read.system.set(name, value)?;
         }

@@ -14,7 +14,7 @@ use crate::orbit::{
     find_from,
 };
 use crate::scene::options::OrbitOptions;
-use crate::scene::orbit::{dense_output, run_method, second};
+use crate::scene::orbit::{dense_output, run_method, second, worth};
 use crate::scene::plan::{Sampling, equally_spaced, longest_in_words, stepping};
 use crate::scene::system::Described;
 #[cfg(feature = "sundials")]
@@ -60,7 +60,11 @@ impl TextOrbitPlan {
         };
         let guess = |period| positive("period-guess", period);
         Ok(TextOrbitPlan {
-            start: start(options, &model)?,
+            start: orbit_start(
+                options.start.as_deref(),
+                symmetry(options.symmetry.as_deref())?,
+                &model,
+            )?,
             period: options.period_guess.map(guess).transpose()?,
             second: second(options.crosscheck.as_deref(), &accuracy)?,
             second_is_asked: options.crosscheck.is_some(),
@@ -187,6 +191,10 @@ impl TextOrbitPlan {
         let (_, Some(second)) = self.accuracies(orbit) else {
             return Ok(None);
         };
+        let second = match self.second_is_asked {
+            true => second,
+            false => worth(second, orbit),
+        };
         let mut again = crosscheck_of(&field, orbit, &second)?;
         self.complete(&mut again.orbit, &second)?;
         Ok(Some(again))
@@ -195,14 +203,21 @@ impl TextOrbitPlan {
 
 /// Where the search begins. Interfaces that start alike stay so: their symmetric orbits are found from such a start, and others from one
 /// beside it.
-fn start(options: &OrbitOptions, model: &TextModel) -> Result<Vector> {
-    let name = options.symmetry.as_deref().unwrap_or("symmetric");
-    let symmetry = Symmetry::named(name)
-        .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))?;
-    match (&model.slab, &options.start) {
+pub(in crate::scene) fn orbit_start(
+    given: Option<&str>,
+    symmetry: Symmetry,
+    model: &TextModel,
+) -> Result<Vector> {
+    match (&model.slab, given) {
         (Some(slab), None) if symmetry == Symmetry::Symmetric => {
             Ok(Vector::from_vec(slab.alike(&model.system)?))
         }
-        _ => model.start(options.start.as_deref()),
+        _ => model.start(given),
     }
+}
+
+fn symmetry(name: Option<&str>) -> Result<Symmetry> {
+    let name = name.unwrap_or("symmetric");
+    Symmetry::named(name)
+        .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))
 }

@@ -129,6 +129,20 @@ impl TextSlab {
         &self.counts
     }
 
+    /// The states of clusters as large, with the same parameters whatever varies: an exchange of these is no change.
+    pub(in crate::scene) fn interchangeable(&self) -> Vec<Vec<usize>> {
+        let same = |i: usize, j: usize| {
+            self.counts[i] == self.counts[j] && self.places[i] == self.places[j]
+        };
+        let of = |first: usize| {
+            let all = (first..self.counts.len()).filter(|&i| same(first, i));
+            // The stress comes first.
+            all.map(|i| i + 1).collect::<Vec<usize>>()
+        };
+        let firsts = (0..self.counts.len()).filter(|&i| (0..i).all(|j| !same(i, j)));
+        firsts.map(of).filter(|group| group.len() > 1).collect()
+    }
+
     /// Whether there are two parts, as large, whose parameters are the same.
     pub(in crate::scene) fn are_equal(&self, system: &TextSystem) -> bool {
         matches!(self.counts[..], [one, other] if one == other) && !self.differ(system)
@@ -504,5 +518,5 @@ fn put(own: &mut [Own], name: &str, value: f64, interfaces: usize) -> Result<()>
     }
     let names = own.iter().map(|own| own.name.as_str());
     let known: Vec<&str> = ["driving", "stiffness"].into_iter().chain(names).collect();
-    Err(Error::unknown("set", name, &known))
+    Err(Error::no_parameter("set", name, &known))
 }

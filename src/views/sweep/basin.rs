@@ -181,9 +181,12 @@ fn words(one: &PointOutcome, (range_of, units): (Option<&(String, Quantity)>, &U
         let period = one
             .period
             .map(|period| units.outward(Quantity::Time, period));
-        let unit = units.short_name(Quantity::Time);
-        let period = period.map(|period| format!("T = {} {unit}", four_digits(period)));
-        words.extend(period.map(|period| period.trim_end().to_owned()));
+        let unit = match units.short_name(Quantity::Time) {
+            // That of a system without units.
+            unit if unit == "1" => String::new(),
+            unit => format!(" {unit}"),
+        };
+        words.extend(period.map(|period| format!("T = {}{unit}", four_digits(period))));
     }
     if let (Some((name, quantity)), Some((least, most)), None) =
         (range_of, one.stress_range, one.symmetry)

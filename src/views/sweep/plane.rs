@@ -5,7 +5,7 @@ use super::{GridSide, PointOutcome};
 use crate::bifurcation::LocusRow;
 use crate::output::plot::{Axis, Cells, Drawing, Panel, PlotSeries, Shade, Stroke, Swatch};
 use crate::scene::{Quantity, Units};
-use crate::views::axis_label;
+use crate::views::{axis_label, quantity_label};
 
 /// Steps of lightness between the least and the largest exponent: few enough that cells still merge.
 const STEPS: usize = 6;
@@ -160,10 +160,10 @@ pub(super) fn legend(
     let swatch = |kind: RegimeKind| match (kind, exponents.0) {
         (RegimeKind::Chaotic, Some((lo, hi))) if lo < hi => {
             let rate = |x| format!("{:.0e}", units.outward(Quantity::Growth, x));
-            let unit = units.short_name(Quantity::Growth);
+            let range = format!("chaotic, exponent {} to {}", rate(lo), rate(hi));
             Swatch {
                 shades: (0..STEPS).rev().map(|i| lighter(i as f64)).collect(),
-                label: format!("chaotic, exponent {} to {} [{unit}]", rate(lo), rate(hi)),
+                label: quantity_label(&range, Quantity::Growth, units),
             }
         }
         _ => Swatch {
