@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group, criterion_main};
 use std::hint::black_box;
 use twinslip::fit::{
-    FreeParameter, Intervals, Loss, Motion, Problem, Record, Scale, Stretch, fit, guess,
+    FreeParameter, Intervals, Loss, Motion, Problem, Record, Scale, Stretch, fit, guesses,
 };
 use twinslip::model::Slider;
 
@@ -79,7 +79,7 @@ fn fits(criterion: &mut Criterion) {
         ..quiet.clone()
     };
     let problem = problem(&record);
-    let shown = guess(&record, &motion, 3e-6).expect("a step");
+    let shown = guesses(&record, &motion, 3e-6)[0];
     let start = vec![
         shown.stiffness,
         shown.direct_effect,

@@ -4,7 +4,7 @@ use super::common::synthetic::{Chance, FAST, Making, SLOW, Synthetic};
 use rayon::prelude::*;
 use twinslip::fit::{
     Autoregression, DRIFT, Fit, Intervals, Loss, Motion, Problem, Record, Response, Sliders,
-    Stretch, fit, guess,
+    Stretch, fit, guesses,
 };
 use twinslip::model::Slider;
 
@@ -29,7 +29,7 @@ fn making(law: &'static str) -> Making {
 
 /// Where a search begins that reads the record alone.
 fn start(synthetic: &Synthetic, free: &[&str]) -> Vec<f64> {
-    let guess = guess(&synthetic.record, &synthetic.motion, SLOW).expect("a step");
+    let guess = guesses(&synthetic.record, &synthetic.motion, SLOW)[0];
     let of = |name: &&str| match *name {
         "stiffness" => guess.stiffness,
         "direct_effect" => guess.direct_effect,

@@ -6,7 +6,7 @@ use serde_json::Value;
 use std::fs;
 
 fn result(name: &str, text: &str, options: &[&str]) -> Value {
-    let path = folder("fit_steps").join(name);
+    let path = folder(&format!("fit_steps_{name}")).join(name);
     fs::write(&path, text).expect("a file");
     let mut words = vec!["fit", path.to_str().expect("a name")];
     words.extend(["--format=json", "-q"]);
@@ -49,6 +49,7 @@ fn one_step() -> Slid {
         evolution_effect: 0.010,
         slip_length: 2e-5,
         noise: 2e-4,
+        scatter: 0.0,
         program: vec![(0.0, 1e-6), (600.0, 1e-5)],
         until: 1000.0,
     }
@@ -60,18 +61,44 @@ fn a_long_record_of_one_step_is_fitted() {
     let found = result("long.csv", &slid.record(16_467, 1), &[]);
     assert_eq!(found["fit"]["verdict"], "converged", "{}", found["fit"]);
     is_near(&found["fit"], &slid, 4.0);
-    // Of a step that is not there nothing is known: no length of 1e30 m.
+}
+
+#[test]
+fn what_a_step_without_evolution_does_not_determine_has_no_value() {
     let flat = Slid {
-        direct_effect: 0.05,
         evolution_effect: 1e-9,
-        noise: 1e-3,
-        ..slid
+        ..one_step()
     };
-    let found = result("flat.csv", &flat.record(4000, 2), &["--intervals=linear"]);
-    let fit = &found["fit"];
-    assert_eq!(fit["verdict"], "undecided", "{fit}");
-    let length = parameter(fit, "slip_length")["value"].as_f64();
-    assert!(length.is_none_or(|x| x < 1.0), "{fit}");
+    let text = flat.record(16_467, 2);
+    for intervals in ["--intervals=profile", "--intervals=linear"] {
+        let found = result("flat.csv", &text, &[intervals]);
+        let fit = &found["fit"];
+        assert_eq!(fit["verdict"], "undecided", "{fit}");
+        let told = fit["undetermined"].as_array().expect("a list");
+        for name in ["evolution_effect", "slip_length"] {
+            assert!(told.iter().any(|one| one == name), "{fit}");
+        }
+        let truth = [
+            ("direct_effect", flat.direct_effect),
+            ("evolution_effect", flat.evolution_effect),
+            ("slip_length", flat.slip_length),
+            ("stiffness", flat.stiffness),
+        ];
+        for (name, truth) in truth {
+            let own = parameter(fit, name);
+            if told.iter().any(|one| one == name) {
+                assert!(own["value"].is_null(), "{own}");
+            } else {
+                let number = |key: &str| own[key].as_f64().expect("a number");
+                let off = (number("value") - truth).abs() / number("uncertainty");
+                assert!(off < 5.0, "{name}: {off} standard errors: {own}");
+            }
+        }
+        // A search along what is not known ends, too: after some four looks at each of the points that the profiles may have.
+        let evaluations = fit["evaluations"].as_f64().expect("a count");
+        let points = 2.0 * 12.0 * parameters(fit).len() as f64;
+        assert!(evaluations < 4.0 * points, "{evaluations}");
+    }
 }
 
 #[test]
@@ -150,25 +177,105 @@ fn evidence_by_information_and_by_prediction_agree() {
     assert!(missed(right) < 1.1 * slid.noise, "{laws:?}");
 }
 
+/// The parameters of the record in `slide-hold-slide.txt`.
+fn hold() -> Slid {
+    Slid {
+        direct_effect: 0.010,
+        evolution_effect: 0.013,
+        slip_length: 1.2e-5,
+        ..one_step()
+    }
+}
+
+const GIVEN: [&str; 5] = [
+    "--direct-effect=0.008",
+    "--evolution-effect=0.008",
+    "--slip-length=1e-5",
+    "--stiffness=0.003/um",
+    "--reference-friction=0.6",
+];
+
 #[test]
-fn given_values_are_starts_where_the_record_shows_no_step() {
+fn a_hold_is_fitted_from_its_displacement_or_by_a_program() {
+    let text = fs::read_to_string("tests/data/cases/slide-hold-slide.txt").expect("a record");
+    let program = ["--program=40:0,140:1e-5", "--driving=1e-5"];
+    let fit = |more: &[&str]| result("hold.csv", &text, more)["fit"].clone();
+    let by_displacement = fit(&["--intervals=linear"]);
+    let by_program = fit(&[&program[..], &["--intervals=linear"]].concat());
+    // Values of all are where the search begins, as they are where `--free` names all.
+    let from_values = fit(&[&program[..], &GIVEN, &["--intervals=linear"]].concat());
+    for fit in [&by_displacement, &by_program, &from_values] {
+        assert_eq!(fit["verdict"], "converged", "{fit}");
+        is_near(fit, &hold(), 5.0);
+        assert!(fit["fixed"]["slip_length"].is_null(), "{fit}");
+    }
+    // A value without `--free` is fixed, of a hold as of a step.
+    let fixed = fit(&[
+        &program[..],
+        &["--stiffness=0.005/um", "--intervals=linear"],
+    ]
+    .concat());
+    let stiffness = fixed["fixed"]["stiffness"].as_f64().expect("a number");
+    assert!((stiffness / 5e3 - 1.0).abs() < 1e-12, "{fixed}");
+    assert_eq!(parameters(&fixed).len(), 4, "{fixed}");
+    assert_eq!(fixed["verdict"], "converged", "{fixed}");
+}
+
+#[test]
+fn one_sample_before_a_step_is_enough() {
+    let text = fs::read_to_string("tests/data/cases/step-without-displacement.txt");
+    let words = [
+        "--time=1",
+        "--friction=2",
+        "--driving=1e-6",
+        "--program=0:1e-5",
+    ];
+    let found = result("tim.txt", &text.expect("a record"), &words);
+    let fit = &found["fit"];
+    assert_eq!(fit["verdict"], "converged", "{fit}");
+    // As the head of the file says: a, b, Dc in µm, and k per µm.
+    for (name, truth) in [
+        ("direct_effect", 0.005),
+        ("evolution_effect", 0.010),
+        ("slip_length", 1e-5),
+        ("stiffness", 1e3),
+    ] {
+        let value = parameter(fit, name)["value"].as_f64().expect("a number");
+        assert!((value / truth - 1.0).abs() < 1e-3, "{name}: {value}");
+    }
+}
+
+#[test]
+fn given_values_are_starts_where_the_record_shows_nothing_to_begin_with() {
+    // A load point that is accelerated all the time.
     let slid = Slid {
-        program: vec![(0.0, 1e-5), (40.0, 0.0), (100.0, 1e-5)],
-        until: 160.0,
+        program: (0..200)
+            .map(|i| (0.5 * f64::from(i), 1e-6 * 1.03_f64.powi(i)))
+            .collect(),
+        until: 100.0,
         noise: 5e-5,
         ..one_step()
     };
     let text = slid.record(2000, 6);
-    let words = [
-        "--program=40:0,100:1e-5",
-        "--driving=1e-5",
-        "--direct-effect=0.01",
-        "--evolution-effect=0.01",
-        "--slip-length=1e-5",
-        "--stiffness=0.003/um",
-        "--reference-friction=0.6",
-    ];
-    let found = result("hold.csv", &text, &words);
-    assert_eq!(found["fit"]["verdict"], "converged", "{}", found["fit"]);
-    is_near(&found["fit"], &slid, 4.0);
+    let path = folder("fit_ramp").join("ramp.csv");
+    fs::write(&path, &text).expect("a file");
+    let changes = slid.program[1..].iter().map(|(t, v)| format!("{t}:{v}"));
+    let program = format!("--program={}", changes.collect::<Vec<_>>().join(","));
+    let file = path.to_str().expect("a name");
+    let ended = run(&[
+        "fit",
+        file,
+        &program,
+        "--driving=1e-6",
+        "--slip-length=2e-5",
+    ]);
+    assert_eq!(ended.code, 2, "{}", ended.err);
+    let says = "give values of direct_effect, evolution_effect, stiffness, reference_friction";
+    assert!(ended.err.contains(says), "{}", ended.err);
+    let names = "--free=direct_effect,evolution_effect,slip_length,stiffness,reference_friction";
+    for free in [&[names][..], &[]] {
+        let words = [&[program.as_str(), "--driving=1e-6"], &GIVEN[..], free].concat();
+        let found = result("ramp.csv", &text, &words);
+        assert_eq!(parameters(&found["fit"]).len(), 5, "{}", found["fit"]);
+    }
 }

@@ -66,8 +66,9 @@ Over other parameters, of interfaces and of another system:
 Which starts go to which attractor, where a symmetric and an asymmetric orbit coexist:
   twinslip sweep --basin --driving 0.08 --stiffness 0.1 --state-1 1e-6:1:40log --state-2 1e-6:1:40log -o basin.csv";
 
-const FIT: &str = "Example, a velocity step on basalt powder, by the slip law and by the ageing law, the load point moved as it was recorded:
-  twinslip fit basalt.txt --law slip,dieterich-ruina --load-point recorded --plot fit.svg --report fit.html
+const FIT: &str =
+    "Example, a velocity step on basalt powder, by the slip law and by the ageing law:
+  twinslip fit basalt.txt --law slip,dieterich-ruina --plot fit.svg --report fit.html
 What comes of it is carried on: the bands of the law, and of the critical stiffness
   twinslip fit basalt.txt --law slip -o fit.json
   twinslip law --ensemble fit.json --plot law.svg";

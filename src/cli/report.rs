@@ -379,8 +379,8 @@ pub fn remarks_of(
         pairs.join(", ")
     };
     let words: Vec<String> = words.iter().map(|word| quoted(word)).collect();
-    let units: Vec<String> = units
-        .iter()
+    let with_units = units.iter().filter(|(_, unit)| *unit != "1");
+    let units: Vec<String> = with_units
         .map(|(name, unit)| format!("{name} [{unit}]"))
         .collect();
     let mut remarks = vec![

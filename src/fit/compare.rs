@@ -1,7 +1,7 @@
 //! How well one law does beside others: by information and by prediction.
 
 use super::problem::{Problem, Record};
-use super::{Autoregression, Fit, MAX_ITERATIONS};
+use super::{Autoregression, Fit, MAX_ITERATIONS, NEGLIGIBLE};
 use crate::error::Result;
 
 /// Parts of a record that are predicted from the others.
@@ -52,7 +52,8 @@ pub fn cross_validation<const N: usize>(
             free: problem.free.clone(),
             ..*problem
         };
-        let minimum = without.minimum(&fit.variables, &without.bounds(), MAX_ITERATIONS)?;
+        let effort = (MAX_ITERATIONS, NEGLIGIBLE);
+        let minimum = without.minimum(&fit.variables, &without.bounds(), effort)?;
         let Ok(friction) = without.friction(&minimum.variables) else {
             return Ok(None);
         };

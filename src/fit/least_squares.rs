@@ -8,10 +8,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A minimum is reached where the next step would lower the sum of squares by less than this part of the variance of one residual:
-/// it is then so near that its standard errors are a hundred thousand times larger than its distance.
-const NEGLIGIBLE: f64 = 1e-10;
-/// Or where a step is as small as this.
+/// A minimum is reached where a step is as small as this.
 const LEAST_STEP: f64 = 1e-10;
 /// The damping at first, relative to the curvature.
 const FIRST_DAMPING: f64 = 1e-3;
@@ -50,14 +47,15 @@ pub struct Minimum {
 /// Residuals at given variables; `None` where there are none.
 pub type Evaluate<'a> = &'a mut dyn FnMut(&[f64]) -> Option<Residuals>;
 
-/// Looks for the least sum of squares within bounds, from `start`, in `most` steps at most; `None` where there are no residuals at the start.
+/// Looks for the least sum of squares within bounds, from `start`, in `most` steps at most, until the next step would lower it by less than
+/// `negligible` variances of one residual; `None` where there are no residuals at the start.
 ///
 /// # Panics
 /// Where the lists differ in length.
 pub fn minimise(
     start: &[f64],
     bounds: &[(f64, f64)],
-    most: usize,
+    (most, negligible): (usize, f64),
     evaluate: Evaluate<'_>,
 ) -> Option<Minimum> {
     let clamped = |x: &f64, (low, high): &(f64, f64)| x.clamp(*low, *high);
@@ -84,7 +82,7 @@ pub fn minimise(
         let taken = DVector::from_iterator(x.len(), next.iter().zip(&x).map(|(n, x)| n - x));
         let expected = linear.reduction(&taken);
         let variance = here.cost() / here.values.len() as f64;
-        if taken.amax() <= LEAST_STEP || (0.0..=NEGLIGIBLE * variance).contains(&expected) {
+        if taken.amax() <= LEAST_STEP || (0.0..=negligible * variance).contains(&expected) {
             converged = true;
             break;
         }

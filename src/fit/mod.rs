@@ -19,11 +19,12 @@ pub use compare::{Comparison, akaike, cross_validation};
 pub use least_squares::{Evaluate, Minimum, Residuals, minimise};
 pub use noise::Autoregression;
 pub use problem::{DRIFT, FreeParameter, Loss, Problem, Record, Scale};
+use profile::FARTHEST;
 pub use profile::{Profile, ProfilePoint};
 pub use response::{Response, steady_friction};
 pub use sensitivities::by_sensitivities;
 pub use slider::{Motion, Sliders, Stretch};
-pub use start::{Guess, guess, spread};
+pub use start::{Guess, guesses, spread};
 pub use verdict::{Verdict, undecided};
 
 use crate::error::{Error, Result};
@@ -36,6 +37,11 @@ const THIN: usize = 400;
 /// Steps of a search, and of one that looks where to begin.
 const MAX_ITERATIONS: usize = 100;
 const FIRST_ITERATIONS: usize = 30;
+/// Where the next step would lower the sum of squares by less than this part of the variance of one residual a search has ended: its standard
+/// errors are then ten thousand times larger than what is left. Along what the data do not determine each step lowers it by ever less.
+const NEGLIGIBLE: f64 = 1e-8;
+/// So nearly are starts followed to their minima: which is the best is to be known, not where.
+const COMPARED: f64 = 0.1;
 /// Starts that are followed to their minima, of those that were compared.
 const FOLLOWED: usize = 2;
 
@@ -118,7 +124,7 @@ pub fn fit<const N: usize>(
     }
     let bounds = problem.bounds();
     let (start, mut evaluations) = best_start(problem, starts, &bounds)?;
-    let minimum = problem.minimum(&start, &bounds, MAX_ITERATIONS)?;
+    let minimum = problem.minimum(&start, &bounds, (MAX_ITERATIONS, NEGLIGIBLE))?;
     evaluations += minimum.evaluations;
     let errors = Errors::of(problem, &minimum)?;
     let quantile = errors.quantile();
@@ -135,7 +141,7 @@ pub fn fit<const N: usize>(
         let error = errors.standard[at];
         let interval = match profiles.get(at) {
             Some(profile) => profile.interval,
-            None => (x - quantile * error, x + quantile * error),
+            None => linear_interval(free.scale, x, quantile * error),
         };
         let value = free.scale.outward(x);
         let is_lost = !error.is_finite();
@@ -172,6 +178,13 @@ pub fn fit<const N: usize>(
     })
 }
 
+/// The ends of an interval on both sides of a variable; none where a profile would not look for one.
+fn linear_interval(scale: Scale, x: f64, side: f64) -> (f64, f64) {
+    let is_beyond = scale == Scale::Logarithmic && side > FARTHEST.ln();
+    let side = if is_beyond { f64::INFINITY } else { side };
+    (x - side, x + side)
+}
+
 /// The start from which the least sum of squares is reached on a thinned record: the starts with the least sums of squares are followed.
 fn best_start<const N: usize>(
     problem: &Problem<'_, N>,
@@ -185,13 +198,9 @@ fn best_start<const N: usize>(
         free: problem.free.clone(),
         ..*problem
     };
-    let cost = |x: &[f64]| -> Option<f64> {
-        let friction = thin.friction(x).ok()?;
-        let pairs = friction.iter().zip(&record.friction).zip(&record.weights);
-        Some(pairs.map(|((c, m), w)| w * (c - m).powi(2)).sum())
-    };
     let variables = starts.iter().map(|values| thin.variables(values));
-    let mut ranked: Vec<(f64, Vec<f64>)> = variables.filter_map(|x| Some((cost(&x)?, x))).collect();
+    let mut ranked: Vec<(f64, Vec<f64>)> = variables.map(|x| (thin.cost(&x), x)).collect();
+    ranked.retain(|(cost, _)| cost.is_finite());
     if ranked.is_empty() {
         // What is in the way of the first says most.
         for start in starts {
@@ -202,7 +211,10 @@ fn best_start<const N: usize>(
     ranked.sort_by(|one, other| one.0.total_cmp(&other.0));
     let mut best: Option<(f64, Vec<f64>)> = None;
     for (_, start) in ranked.iter().take(FOLLOWED) {
-        let minimum = thin.minimum(start, bounds, FIRST_ITERATIONS)?;
+        // Where a friction has no derivatives another start may have.
+        let Ok(minimum) = thin.minimum(start, bounds, (FIRST_ITERATIONS, COMPARED)) else {
+            continue;
+        };
         evaluations += minimum.evaluations;
         let cost = minimum.residuals.cost();
         if best.as_ref().is_none_or(|(least, _)| cost < *least) {

@@ -226,6 +226,18 @@ impl<const N: usize> Problem<'_, N> {
         Ok(with_drift.map(|(mu, x)| mu + drift * x).collect())
     }
 
+    /// The sum of squares of the residuals at these variables, as they count; infinite where there is no friction.
+    pub(super) fn cost(&self, variables: &[f64]) -> f64 {
+        let Ok(friction) = self.friction(variables) else {
+            return f64::INFINITY;
+        };
+        let pairs = self.record.friction.iter().zip(&friction);
+        let squares = pairs
+            .zip(&self.record.weights)
+            .map(|((measured, made), weight)| weight * self.loss.apply(measured - made).0.powi(2));
+        squares.sum()
+    }
+
     /// The friction at these variables, and its derivatives in them.
     ///
     /// # Errors
@@ -293,7 +305,7 @@ impl<const N: usize> Problem<'_, N> {
         self.free.iter().map(of).collect()
     }
 
-    /// The least sum of squares from these variables on, within bounds, in `most` steps at most.
+    /// The least sum of squares from these variables on, within bounds, in `most` steps at most, to so many variances of a residual.
     ///
     /// # Errors
     /// Those of [`Problem::response`] at the start. Elsewhere such variables are too far.
@@ -301,7 +313,7 @@ impl<const N: usize> Problem<'_, N> {
         &self,
         variables: &[f64],
         bounds: &[(f64, f64)],
-        most: usize,
+        effort: (usize, f64),
     ) -> Result<Minimum> {
         let failure = RefCell::new(None);
         let first = Cell::new(true);
@@ -318,7 +330,7 @@ impl<const N: usize> Problem<'_, N> {
                 }
             }
         };
-        let found = minimise(variables, bounds, most, &mut evaluate);
+        let found = minimise(variables, bounds, effort, &mut evaluate);
         found.ok_or_else(|| {
             let known = failure.into_inner();
             known.unwrap_or(Error::NonFinite {

@@ -13,8 +13,11 @@ use crate::error::Result;
 const MOST_POINTS: usize = 12;
 /// How near to the end of an interval a point must be, in the distance that it has from there.
 const NEAR: f64 = 0.01;
+/// The sums of squares along a profile, in variances of a residual: those at the end of an interval are then known ten times better than
+/// [`NEAR`] asks for.
+const ENOUGH: f64 = 1e-3;
 /// A factor by which a parameter may differ from its best value: further it is not looked for.
-const FARTHEST: f64 = 1e3;
+pub(super) const FARTHEST: f64 = 1e3;
 /// The same of a parameter that is varied itself, in standard errors.
 const FARTHEST_LINEAR: f64 = 100.0;
 
@@ -138,21 +141,31 @@ impl<const N: usize> Side<'_, N> {
         let at = self.at;
         let variable = self.minimum.variables[at] + moved;
         let mut bounds = self.problem.bounds();
-        // As a linear problem would have the others move.
+        // The others where they were, or moved as those of a linear problem are: what the data do not determine may then go far astray.
         let inverse = &self.errors.inverse;
         let shift = variable - others[at];
-        let mut start: Vec<f64> = others
-            .iter()
-            .zip(&bounds)
-            .enumerate()
-            .map(|(j, (x, (low, high)))| {
-                (x + shift * inverse[(j, at)] / inverse[(at, at)]).clamp(*low, *high)
-            })
-            .collect();
-        start[at] = variable;
+        let moved_by = |part: f64| {
+            let each = others.iter().zip(&bounds).enumerate();
+            let along = |j: usize| part * shift * inverse[(j, at)] / inverse[(at, at)];
+            let mut start: Vec<f64> = each
+                .map(|(j, (x, (low, high)))| (x + along(j)).clamp(*low, *high))
+                .collect();
+            start[at] = variable;
+            (self.problem.cost(&start), start)
+        };
+        let (still, linear) = (moved_by(0.0), moved_by(1.0));
+        let start = if linear.0 < still.0 {
+            linear.1
+        } else {
+            still.1
+        };
+        profile.evaluations += 2;
         bounds[at] = (variable, variable);
         // Where the start has no friction the profile has grown beyond all measure.
-        let Ok(found) = self.problem.minimum(&start, &bounds, MAX_ITERATIONS) else {
+        let Ok(found) = self
+            .problem
+            .minimum(&start, &bounds, (MAX_ITERATIONS, ENOUGH))
+        else {
             profile.evaluations += 1;
             return Ok(f64::INFINITY);
         };

@@ -7,8 +7,6 @@ use nalgebra::DMatrix;
 
 /// A parameter whose standard error is a factor of more than this, e, is not determined.
 const UNDETERMINED: f64 = 1.0;
-/// One whose standard error is so many times itself has run away.
-const AWAY: f64 = 100.0;
 /// Beyond this correlation two parameters are known by one combination.
 const INSEPARABLE: f64 = 0.9995;
 
@@ -24,12 +22,11 @@ pub struct Verdict {
 }
 
 impl Verdict {
-    /// Whether a parameter is not determined to the point that its value says nothing: it has no error, or ran away.
+    /// Whether a parameter is not determined to the point that its value says nothing: it has no error, or one that is larger than itself where
+    /// it can only be positive. Its interval then says what is known.
     pub fn has_run_away(&self, parameter: &FittedParameter) -> bool {
         let is_told = self.undetermined.contains(&parameter.name);
-        is_told
-            && !(parameter.uncertainty.is_finite()
-                && parameter.uncertainty <= AWAY * parameter.value.abs())
+        is_told && (!parameter.uncertainty.is_finite() || is_wide(parameter))
     }
 
     /// "converged" where it is a minimum that determines all parameters, else "undecided".
@@ -40,6 +37,11 @@ impl Verdict {
             "undecided"
         }
     }
+}
+
+/// Whether a parameter that is varied by its logarithm is not even known to a factor of e.
+fn is_wide(parameter: &FittedParameter) -> bool {
+    parameter.scale == Scale::Logarithmic && parameter.uncertainty > UNDETERMINED * parameter.value
 }
 
 /// The verdict on a minimum.
@@ -63,7 +65,6 @@ pub fn undecided<const N: usize>(
         } else {
             f64::NEG_INFINITY
         };
-        let wide = one.scale == Scale::Logarithmic && one.uncertainty > UNDETERMINED * one.value;
         let gone = problem.record.displacement.iter();
         let gone = gone.fold(0.0, |most: f64, x| most.max(x.abs()));
         let is_length = one.name.starts_with("slip_length");
@@ -79,7 +80,7 @@ pub fn undecided<const N: usize>(
             "its 95 % interval has no upper end"
         } else if one.interval.0 <= zero {
             "its 95 % interval has no lower end"
-        } else if wide {
+        } else if is_wide(one) {
             "its standard error is larger than itself"
         } else {
             continue;

@@ -169,10 +169,7 @@ fn trajectory(plan: &Plan, keeping: Keeping) -> String {
         }
         Sampling::EveryStep => "a row at every step".to_owned(),
         Sampling::Points(n) => format!("{n} rows equally spaced in time"),
-        Sampling::Every(dt) => format!(
-            "a row every {} {unit}",
-            plan.system.units.outward(Quantity::Time, dt)
-        ),
+        Sampling::Every(dt) => format!("a row every {dt} {unit}"),
     };
     let rows = match keeping {
         Keeping::Streamed => format!("not stored: {rows}, written as it comes"),

@@ -63,7 +63,7 @@ pub enum Sampling {
     EveryStep,
     /// At so many times, equally spaced, both ends included.
     Points(usize),
-    /// At all multiples of a time.
+    /// At all multiples of a time, in the user's units.
     Every(f64),
     /// At the end alone.
     FinalOnly,
@@ -71,18 +71,19 @@ pub enum Sampling {
 
 impl Sampling {
     /// When the i-th row is, of those at fixed times of a run until then. The end of a stretch of it, or its own, is met where rounding
-    /// alone is in between.
-    pub(super) fn time(self, i: usize, until: f64, end: f64) -> Option<f64> {
+    /// alone is in between. Times are counted in the user's units, in which they are round numbers.
+    pub(super) fn time(self, i: usize, (until, end): (f64, f64), units: &Units) -> Option<f64> {
         let (t, interval) = match self {
             Sampling::EveryStep | Sampling::FinalOnly => return None,
             Sampling::Points(n) if i >= n => return None,
             Sampling::Points(n) if i + 1 == n => return Some(until),
             Sampling::Points(n) => {
-                let intervals = (n - 1) as f64;
-                (until * (i as f64 / intervals), until / intervals)
+                let (whole, intervals) = (units.outward(Quantity::Time, until), (n - 1) as f64);
+                (whole * i as f64 / intervals, whole / intervals)
             }
-            Sampling::Every(dt) => (i as f64 * dt, dt),
+            Sampling::Every(dt) => (multiple(i, dt), dt),
         };
+        let [t, interval] = [t, interval].map(|t| units.inward(Quantity::Time, t));
         let meets = (t - end).abs() <= 1e-9 * interval;
         Some(if meets { end } else { t })
     }
@@ -96,6 +97,21 @@ impl Sampling {
             Sampling::Every(dt) => format!("a row every {dt}"),
         }
     }
+}
+
+/// i dt, rounded once: of a decimal fraction dt the decimal fraction, 0.3 and not 0.30000000000000004.
+fn multiple(i: usize, dt: f64) -> f64 {
+    /// Powers of ten up to here are exact.
+    const MOST_DIGITS: i32 = 22;
+    /// Integers up to here are exact.
+    const LARGEST: f64 = (1_u64 << 53) as f64;
+    let i = i as f64;
+    let as_decimal = |digits| {
+        let unit = 10_f64.powi(digits);
+        let count = (dt * unit).round();
+        (count / unit == dt && i * count <= LARGEST).then(|| i * count / unit)
+    };
+    (0..=MOST_DIGITS).find_map(as_decimal).unwrap_or(i * dt)
 }
 
 /// A run, checked, and only what its outputs need.
@@ -335,7 +351,7 @@ pub(super) fn sampling(options: &IntegrateOptions, units: &Units, until: f64) ->
             "at least a billionth of `until`",
         ));
     }
-    Ok(Sampling::Every(interval))
+    Ok(Sampling::Every(every))
 }
 
 /// tau and ln psi of both interfaces, as `--start` gives them; equal entries stand for one interface too.

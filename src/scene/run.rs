@@ -276,7 +276,8 @@ impl<'a> RunObserver<'a> {
             Some(_) => self.stretch.span.1,
             None => plan.until,
         };
-        plan.sampling.time(self.sampled, plan.until, end)
+        let units = &plan.system.units;
+        plan.sampling.time(self.sampled, (plan.until, end), units)
     }
 
     fn draw(&mut self, at: &Instant) {

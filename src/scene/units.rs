@@ -156,10 +156,20 @@ impl Units {
         self.name(quantity).replace("sigma", "σ").replace(' ', "")
     }
 
-    /// From dimensionless to the user's units.
+    /// From dimensionless to the user's units. A time that a user has given comes back as it was given, and not off by the rounding of the
+    /// conversion: of the times that are the same inward, the one of 15 digits.
     pub fn outward(&self, quantity: Quantity, x: f64) -> f64 {
         match quantity {
             Quantity::LogState => x + self.factor(Quantity::State).ln(),
+            Quantity::Time if self.si() => {
+                let t = x * self.factor(quantity);
+                let round = format!("{t:.14e}").parse().unwrap_or(t);
+                if self.inward(quantity, round) == x {
+                    round
+                } else {
+                    t
+                }
+            }
             _ => x * self.factor(quantity),
         }
     }

@@ -149,11 +149,14 @@ fn profile(fit: &Fit, i: usize, stress: Option<f64>) -> Panel {
         marks: there.map(mark).collect(),
         zero_line: true,
         ..Panel::new(
-            format!(
-                "{} ± {}",
-                rounded(parameter.value * by),
-                rounded(parameter.uncertainty * by)
-            ),
+            match fit.verdict.has_run_away(parameter) {
+                true => "not determined".into(),
+                false => format!(
+                    "{} ± {}",
+                    in_digits(parameter.value * by, 3),
+                    in_digits(parameter.uncertainty * by, 3)
+                ),
+            },
             Axis::linear(label),
             Axis::linear("standard errors").within(-3.0, 3.0),
         )
@@ -191,17 +194,36 @@ fn ellipses(fit: &Fit, (i, j): (usize, usize), stress: Option<f64>) -> Panel {
     }
 }
 
-/// Three digits.
-fn rounded(x: f64) -> String {
+/// The digits of a parameter's value that its error does not hide: two of the error.
+pub fn digits_of(parameter: &FittedParameter) -> usize {
+    /// Of one without an error.
+    const USUAL: usize = 5;
+    /// Of a double.
+    const MOST: f64 = 15.0;
+    let [size, error] = [parameter.value, parameter.uncertainty].map(|x| x.abs().log10().floor());
+    let digits = size - error + 2.0;
+    match digits.is_finite() {
+        true => digits.clamp(2.0, MOST) as usize,
+        false => USUAL,
+    }
+}
+
+/// A number in so many digits, at least one, with an exponent only where it is small or large.
+pub fn in_digits(x: f64, digits: usize) -> String {
     if x == 0.0 || !x.is_finite() {
         return x.to_string();
     }
-    let size = x.abs().log10().floor() as i32;
+    let behind = digits - 1;
+    // As it is rounded: 9.999 is 10.0.
+    let rounded = format!("{x:.behind$e}");
+    let size = rounded
+        .split_once('e')
+        .map_or(0, |(_, size)| size.parse().unwrap_or(0));
     if (-3..5).contains(&size) {
-        let digits = usize::try_from(2 - size).unwrap_or(0);
-        format!("{x:.digits$}")
+        let behind = usize::try_from(behind as i32 - size).unwrap_or(0);
+        format!("{x:.behind$}")
     } else {
-        format!("{x:.2e}")
+        rounded
     }
 }
 

@@ -28,7 +28,8 @@ pub use clusters::{cluster_columns, staircase};
 pub use diagram::{axis_label, branch_lines, branches, curves, named_strokes, parameters};
 pub use equilibria::equilibria_columns;
 pub use fit::{
-    FitRow, fit_columns, parameter_label, picture_of_fit, picture_of_parameters, scale_name,
+    FitRow, digits_of, fit_columns, in_digits, parameter_label, picture_of_fit,
+    picture_of_parameters, scale_name,
 };
 pub use general::{general_branches, general_curves, general_lines, quantity_label};
 pub use law::law_columns;

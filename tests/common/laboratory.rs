@@ -11,6 +11,8 @@ pub struct Slid {
     pub slip_length: f64,
     /// The standard deviation of the noise.
     pub noise: f64,
+    /// That of the displacement, in m.
+    pub scatter: f64,
     /// When the load point changes to which velocity; the first is V*.
     pub program: Vec<(f64, f64)>,
     pub until: f64,
@@ -55,7 +57,11 @@ impl Slid {
                 at += usize::from(self.program.get(at + 1).is_some_and(|next| now >= next.0));
             }
             let mu = y[0] + self.noise * chance.normal();
-            text += &format!("{t:.6},{:.6},{mu:.7}\n", moved * 1e6);
+            let scatter = match self.scatter {
+                0.0 => 0.0,
+                scatter => scatter * chance.normal(),
+            };
+            text += &format!("{t:.6},{:.6},{mu:.7}\n", (moved + scatter) * 1e6);
         }
         text
     }

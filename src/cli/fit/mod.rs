@@ -74,7 +74,13 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     }
     let result = object::result(&plan, &found, &steps);
     let is_decided = best.fit.verdict.name() == "converged";
-    let written = if report.format == Format::Json {
+    let mut lines = object::lines(&plan, &found, &steps);
+    let written = if report.format == Format::Table && options.output.format.is_none() {
+        // A terminal shows what was found; thousands of rows beside it are for files, or for who asks for them.
+        let result = std::mem::take(&mut lines).join("\n") + "\n";
+        report.say("for the rows give --output FILE, or a --format");
+        report.write(result.as_bytes())?
+    } else if report.format == Format::Json {
         let mut result = result;
         let objects = rows
             .iter()
@@ -85,10 +91,10 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
         report.write(&report.envelope(&about, json!({}), result, work, None))?
     } else {
         let mut remarks = report.remarks(&about, &Value::Null);
-        remarks.extend(object::lines(&plan, &found, &steps));
+        remarks.extend(lines.iter().cloned());
         report.write_all(&about.units, remarks, &views::fit_columns(), &rows)?
     };
-    for line in object::lines(&plan, &found, &steps) {
+    for line in lines {
         report.say(line);
     }
     Ok(match written {

@@ -2,10 +2,10 @@
 
 use super::Fitted;
 use super::steps::FittedStep;
-use crate::fit::{DRIFT, Fit, FittedParameter, Verdict};
+use crate::fit::{DRIFT, Fit, FittedParameter, Scale, Verdict};
 use crate::output::seven_digits;
 use crate::scene::{FitPlan, LawToFit};
-use crate::views::scale_name;
+use crate::views::{digits_of, in_digits, scale_name};
 use serde_json::{Map, Value, json};
 
 /// `result`, without rows.
@@ -141,10 +141,10 @@ pub fn lines(plan: &FitPlan, found: &[Fitted<'_>], steps: &[FittedStep]) -> Vec<
         states => format!("{} with {states} state variables", law.name),
     };
     lines.push(format!(
-        "{}: {}, residuals {:.3e} (root mean square), {} samples that count as {:.0} white ones",
+        "{}: {}, residuals {} (root mean square), {} samples (effective sample size {:.0})",
         told(best.law),
         best.fit.verdict.name(),
-        best.fit.rms,
+        in_digits(best.fit.rms, 4),
         plan.record.times.len(),
         best.fit.effective_samples
     ));
@@ -202,28 +202,39 @@ fn all_in_words(plan: &FitPlan, fit: &Fit) -> impl Iterator<Item = String> {
     let has_run_away = |one: &FittedParameter| fit.verdict.has_run_away(one);
     fit.parameters
         .iter()
-        .map(move |one| match has_run_away(one) {
-            true => format!("{}: not determined", one.name),
-            false => in_words(plan, one),
-        })
+        .map(move |one| in_words(plan, one, has_run_away(one)))
 }
 
-fn in_words(plan: &FitPlan, parameter: &FittedParameter) -> String {
+fn in_words(plan: &FitPlan, parameter: &FittedParameter, has_run_away: bool) -> String {
     let (factor, unit) = unit(plan, &parameter.name);
     let unit = match unit {
         "1" => String::new(),
         unit => format!(" {unit}"),
     };
-    let end = |x: f64, none: &str| match (x * factor).is_finite() {
-        true => format!("{:.4e}", x * factor),
-        false => none.to_owned(),
+    let digits = digits_of(parameter);
+    // A positive parameter has no lower end at zero.
+    let no_end = match parameter.scale {
+        Scale::Logarithmic => 0.0,
+        Scale::Linear => f64::NEG_INFINITY,
     };
+    let (low, high) = parameter.interval;
+    let interval = match (low > no_end, high.is_finite()) {
+        (true, true) => format!(
+            "from {} to {}{unit}",
+            in_digits(low * factor, digits),
+            in_digits(high * factor, digits)
+        ),
+        (true, false) => format!("above {}{unit}", in_digits(low * factor, digits)),
+        (false, true) => format!("below {}{unit}", in_digits(high * factor, digits)),
+        (false, false) => "without ends".into(),
+    };
+    let name = &parameter.name;
+    if has_run_away {
+        return format!("{name}: not determined, 95 % interval {interval}");
+    }
     format!(
-        "{} = {:.4e} ± {:.1e}{unit}, 95 % from {} to {}",
-        parameter.name,
-        parameter.value * factor,
-        parameter.uncertainty * factor,
-        end(parameter.interval.0, "no lower end"),
-        end(parameter.interval.1, "no upper end"),
+        "{name} = {} ± {}{unit}, 95 % {interval}",
+        in_digits(parameter.value * factor, digits),
+        in_digits(parameter.uncertainty * factor, 2),
     )
 }

@@ -11,7 +11,9 @@ use crate::output::Place;
 use crate::output::page::{Figure, Page, Table};
 use crate::output::plot::{Area, Axis, Drawing, Panel, PlotSeries};
 use crate::scene::FitPlan;
-use crate::views::{FitRow, parameter_label, picture_of_fit, picture_of_parameters};
+use crate::views::{
+    FitRow, digits_of, in_digits, parameter_label, picture_of_fit, picture_of_parameters,
+};
 use std::path::Path;
 
 /// Points of the law.
@@ -24,22 +26,14 @@ const BEYOND: f64 = 10.0;
 /// # Errors
 /// Those of the law's steady state.
 pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
-    let rates = plan.motion.stretches.iter().flat_map(|stretch| {
+    let rates = plan.steps.stretches.iter().flat_map(|stretch| {
         let (from, to) = stretch.velocity;
         [from, to]
     });
-    let rates: Vec<f64> = rates
-        .chain([plan.motion.before])
-        .filter(|v| *v > 0.0)
-        .collect();
-    // As recorded, velocities scatter.
-    let (low, high) = if rates.len() > 100 {
-        (plan.motion.before, plan.motion.before)
-    } else {
-        let low = rates.iter().copied().fold(f64::INFINITY, f64::min);
-        let high = rates.iter().copied().fold(0.0, f64::max);
-        (low, high)
-    };
+    let rates = rates.chain([plan.steps.before]).filter(|v| *v > 0.0);
+    let (low, high) = rates.fold((f64::INFINITY, 0.0_f64), |(low, high), v| {
+        (low.min(v), high.max(v))
+    });
     let part = |i: usize| i as f64 / (POINTS - 1) as f64;
     let grid = (0..POINTS).map(|i| between_in_log(low / BEYOND, high * BEYOND, part(i)));
     let grid: Vec<f64> = grid.collect();
@@ -127,12 +121,12 @@ pub fn write(
             ("verdict".into(), best.fit.verdict.name().into()),
             ("samples".into(), plan.record.times.len().to_string()),
             (
-                "as many white ones".into(),
+                "effective sample size".into(),
                 format!("{:.0}", best.fit.effective_samples),
             ),
             (
                 "residuals, root mean square".into(),
-                format!("{:.2e}", best.fit.rms),
+                in_digits(best.fit.rms, 3),
             ),
         ],
         figures,
@@ -161,15 +155,22 @@ fn parameters(plan: &FitPlan, fitted: &Fitted<'_>) -> Table {
     let rows = fitted.fit.parameters.iter().map(|one| {
         let (label, by) = parameter_label(&one.name, stress.is_some());
         let by = by * stress.filter(|_| one.name == "stiffness").unwrap_or(1.0);
+        let digits = digits_of(one);
         let number = |x: f64| match (x * by).is_finite() {
-            true => format!("{:.4e}", x * by),
+            true => in_digits(x * by, digits),
             false => "none".into(),
         };
         vec![
             one.name.clone(),
             label,
-            number(one.value),
-            number(one.uncertainty),
+            match fitted.fit.verdict.has_run_away(one) {
+                true => "not determined".into(),
+                false => number(one.value),
+            },
+            match one.uncertainty.is_finite() {
+                true => in_digits(one.uncertainty * by, 2),
+                false => "none".into(),
+            },
             number(one.interval.0),
             number(one.interval.1),
             format!("{:.2}", one.widening),

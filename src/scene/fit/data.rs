@@ -143,14 +143,37 @@ impl Measured {
         ascend(&table, &times)?;
         let rows = window(options, &table, &times)?;
         let cut = |all: Vec<f64>| -> Vec<f64> { rows.iter().map(|&row| all[row]).collect() };
-        let normal_stress = match normal {
-            Some(place) => Some(cut(column(place, "normal stress", Measure::Stress)?)),
-            None => None,
+        let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
+        let name = |place: usize| {
+            let heading = table.headings.get(place);
+            heading.map_or((place + 1).to_string(), |one| one.name.clone())
         };
+        let mut notes = Vec::new();
         let given = options.normal_stress;
         let given = given.map(|x| positive("normal-stress", x)).transpose()?;
-        let is_stress = |place: usize| matches!(unit(place, Measure::Stress), Ok(Some(_)));
-        let friction_values = if is_stress(friction) {
+        let of_shear = unit(friction, Measure::Stress).ok().flatten();
+        let normal_stress = match normal {
+            Some(place) => {
+                let mut values = cut(column(place, "normal stress", Measure::Stress)?);
+                let own = format!("{}: the normal stress, column {}", table.file, name(place));
+                let is_stated = unit(place, Measure::Stress)?.is_some();
+                match of_shear.filter(|_| !is_stated) {
+                    Some(factor) => {
+                        values.iter_mut().for_each(|sigma| *sigma *= factor);
+                        notes.push(format!(
+                            "{own}, states no unit and is taken in that of the shear stress"
+                        ));
+                    }
+                    None if given.is_none() => {
+                        sizes::normal_stress(mean(&values), &own, is_stated)?;
+                    }
+                    None => {}
+                }
+                Some(values)
+            }
+            None => None,
+        };
+        let friction_values = if of_shear.is_some() {
             let shear = cut(column(friction, "shear stress", Measure::Stress)?);
             let by = |i: usize| {
                 match (given, &normal_stress) {
@@ -169,19 +192,13 @@ impl Measured {
         } else {
             cut(column(friction, "friction", Measure::Ratio)?)
         };
-        let mean = |all: &Vec<f64>| all.iter().sum::<f64>() / all.len() as f64;
         let weights = match &options.weights {
             None => vec![1.0; rows.len()],
             Some(name) => normalised(cut(table.numbers(table.asked("weights", name)?, "weight")?))?,
         };
-        let name = |place: usize| {
-            let heading = table.headings.get(place);
-            heading.map_or((place + 1).to_string(), |one| one.name.clone())
-        };
         let line = |i: usize| format!("{}:{}", table.file, table.line(rows[i]));
         sizes::friction(&friction_values, &name(friction), line)?;
         let times = cut(times);
-        let mut notes = Vec::new();
         let displacement_values = match displacement {
             None => None,
             Some(place) => {

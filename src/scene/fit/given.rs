@@ -15,13 +15,17 @@ const LONGEST: f64 = 100.0;
 /// The values that were given, by the names of parameters; the stiffness as friction per metre.
 pub(super) struct Given {
     values: Vec<(String, f64)>,
-    /// No slip length is looked for that is longer, in m.
-    longest: f64,
+    /// Slip lengths are looked for between these, in m.
+    lengths: (f64, f64),
 }
 
 impl Given {
-    /// `moved` is how far the load point moves in all, in m.
-    pub fn new(options: &FitOptions, normal_stress: Option<f64>, moved: f64) -> Result<Self> {
+    /// `moved` is how far the load point moves in all, and on average between two samples, in m.
+    pub fn new(
+        options: &FitOptions,
+        normal_stress: Option<f64>,
+        (moved, spacing): (f64, f64),
+    ) -> Result<Self> {
         let stiffness = match &options.stiffness {
             None => None,
             Some(text) => Some(match (GivenStiffness::read(text)?, normal_stress) {
@@ -58,7 +62,8 @@ impl Given {
         }
         Ok(Given {
             values: given,
-            longest: LONGEST * moved,
+            // Over a shorter length friction decays between two samples.
+            lengths: (spacing, LONGEST * moved),
         })
     }
 
@@ -106,8 +111,10 @@ pub(super) fn bounds(
         let (own, range) = text.split_once('=')?;
         (own.trim().replace('-', "_") == name).then_some((text, range))
     }) else {
-        let longest = if is_length { given.longest } else { most };
-        return Ok((least, most.min(longest)));
+        return Ok(match is_length {
+            true => (least.max(given.lengths.0), most.min(given.lengths.1)),
+            false => (least, most),
+        });
     };
     let wrong = || Error::Input(format!("`bounds` {text:?} must be NAME=A:B with A below B"));
     let (low, high) = own.split_once(':').ok_or_else(wrong)?;

@@ -68,7 +68,7 @@ impl LawToFit {
         name: &str,
         options: &FitOptions,
         given: &Given,
-        shown: Option<Guess>,
+        shown: &[Guess],
         reference_rate: f64,
     ) -> Result<Self> {
         let states = options.states;
@@ -118,13 +118,14 @@ impl LawToFit {
                     known.join(", ")
                 )));
             }
-            // By default what has a value is fixed, unless the search has nothing else to begin with.
-            let is_fixed = asked.is_none()
-                && shown.is_some()
-                && given.iter().any(|(own, x)| *own == name && x.is_some());
-            if known && !is_fixed && !names.contains(&name) {
+            if known && !names.contains(&name) {
                 names.push(name);
             }
+        }
+        // What has a value and is not named is fixed. Values of all are no fit, but its start.
+        let is_fixed = |name: &String| given.iter().any(|(own, x)| own == name && x.is_some());
+        if asked.is_none() && !names.iter().all(is_fixed) {
+            names.retain(|name| !is_fixed(name));
         }
         let constants = match &model {
             Model::Text(law) => law.constants(),
@@ -171,9 +172,9 @@ impl LawToFit {
             free,
             drift: options.drift.unwrap_or(0.0),
         };
-        if shown.is_none() && law.starts(None, reference_rate).is_empty() {
+        if law.starts(shown, reference_rate).is_empty() {
             return Err(Error::Input(format!(
-                "the record shows no step by itself: give values of {} for the search to begin with",
+                "the record shows neither a step nor a hold for the search to begin with: give values of {}, and name by `free` all that is fitted",
                 law.free
                     .iter()
                     .filter(|free| law.value(&free.name).is_none() && free.name != DRIFT)
@@ -221,43 +222,44 @@ impl LawToFit {
     }
 
     /// Where the search may begin: at the given values, and at what the record shows, lengths and stiffness varied.
-    pub(super) fn starts(&self, shown: Option<Guess>, reference_rate: f64) -> Vec<Vec<f64>> {
-        let of = |length: f64, stiffness: f64, second: (f64, f64), use_given: bool| {
-            let each = self.free.iter().map(|free| {
-                let given = self.value(&free.name).filter(|_| use_given);
-                let value = given.or_else(|| {
-                    let Guess {
-                        direct_effect,
-                        evolution_effect,
-                        slip_length,
-                        stiffness: steep,
-                        reference_friction,
-                    } = shown?;
-                    Some(match free.name.as_str() {
-                        "direct_effect" => direct_effect,
-                        "evolution_effect" => evolution_effect,
-                        "slip_length" => slip_length * length,
-                        "stiffness" => steep * stiffness,
-                        "reference_friction" => reference_friction,
-                        "evolution_effect_2" => second.0 * evolution_effect,
-                        "slip_length_2" => second.1 * slip_length * length,
-                        _ => return None,
-                    })
+    pub(super) fn starts(&self, shown: &[Guess], reference_rate: f64) -> Vec<Vec<f64>> {
+        let of =
+            |shown: Option<Guess>, (length, stiffness), second: (f64, f64), use_given: bool| {
+                let each = self.free.iter().map(|free| {
+                    let given = self.value(&free.name).filter(|_| use_given);
+                    let value = given.or_else(|| {
+                        let Guess {
+                            direct_effect,
+                            evolution_effect,
+                            slip_length,
+                            stiffness: steep,
+                            reference_friction,
+                        } = shown?;
+                        Some(match free.name.as_str() {
+                            "direct_effect" => direct_effect,
+                            "evolution_effect" => evolution_effect,
+                            "slip_length" => slip_length * length,
+                            "stiffness" => steep * stiffness,
+                            "reference_friction" => reference_friction,
+                            "evolution_effect_2" => second.0 * evolution_effect,
+                            "slip_length_2" => second.1 * slip_length * length,
+                            _ => return None,
+                        })
+                    });
+                    let value = value.or_else(|| match free.name.as_str() {
+                        DRIFT => Some(self.drift),
+                        "healing_time" => {
+                            let length = shown.map_or(1e-5, |shown| shown.slip_length);
+                            Some(HEALING_TIME * length / reference_rate)
+                        }
+                        "residual_strength" => Some(RESIDUAL_STRENGTH),
+                        // A law from a file has values of its own.
+                        name => self.value(name),
+                    })?;
+                    Some(value.clamp(free.bounds.0, free.bounds.1))
                 });
-                let value = value.or_else(|| match free.name.as_str() {
-                    DRIFT => Some(self.drift),
-                    "healing_time" => {
-                        let length = shown.map_or(1e-5, |shown| shown.slip_length);
-                        Some(HEALING_TIME * length / reference_rate)
-                    }
-                    "residual_strength" => Some(RESIDUAL_STRENGTH),
-                    // A law from a file has values of its own.
-                    name => self.value(name),
-                })?;
-                Some(value.clamp(free.bounds.0, free.bounds.1))
-            });
-            each.collect::<Option<Vec<f64>>>()
-        };
+                each.collect::<Option<Vec<f64>>>()
+            };
         let mut starts = Vec::new();
         let seconds = if self.states == 2 {
             &SECOND[..]
@@ -265,10 +267,12 @@ impl LawToFit {
             &SECOND[..1]
         };
         for &second in seconds {
-            starts.extend(of(1.0, 1.0, second, true));
-            for length in [1.0, 0.3, 3.0] {
-                for stiffness in [1.0, 0.4, 2.5] {
-                    starts.extend(of(length, stiffness, second, false));
+            starts.extend(of(shown.first().copied(), (1.0, 1.0), second, true));
+            for &one in shown {
+                for length in [1.0, 0.3, 3.0] {
+                    for stiffness in [1.0, 0.4, 2.5] {
+                        starts.extend(of(Some(one), (length, stiffness), second, false));
+                    }
                 }
             }
         }

@@ -8,6 +8,7 @@ mod law;
 mod motion;
 mod options;
 mod plan;
+mod recorded;
 mod sizes;
 mod steps;
 mod table;

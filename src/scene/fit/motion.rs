@@ -2,7 +2,8 @@
 
 use super::data::Measured;
 use super::options::FitOptions;
-use super::steps::{motion_as_recorded, motion_in_steps};
+use super::recorded::{Recorded, motions_as_recorded};
+use super::steps::motion_in_steps;
 use crate::error::{Error, Result};
 use crate::fit::{Motion, Record, Stretch};
 use crate::friction::positive;
@@ -11,11 +12,17 @@ use crate::scene::program::{Change, Program};
 /// Velocities nearer to each other than this factor are one.
 const STEP: f64 = 1.05;
 
-/// The motion, the steps in it, and the record with the displacement that belongs to it.
-pub(super) fn loaded(
-    options: &FitOptions,
-    measured: &Measured,
-) -> Result<(Motion, Motion, Record)> {
+/// How the load point moves, with the record to which it belongs.
+pub(super) struct Loaded {
+    /// In steps: of a program, or of the displacement.
+    pub motion: Motion,
+    /// As it was recorded, where that is asked for, at several smoothings.
+    pub recorded: Vec<Recorded>,
+    pub record: Record,
+}
+
+/// The motion that is asked for.
+pub(super) fn loaded(options: &FitOptions, measured: &Measured) -> Result<Loaded> {
     let Measured {
         times,
         displacement,
@@ -24,7 +31,7 @@ pub(super) fn loaded(
         ..
     } = measured;
     let shown = displacement.as_ref().map(|x| motion_in_steps(times, x));
-    let steps = shown.clone();
+    let is_recorded = options.load_point == "recorded";
     let motion = match (&options.program, options.load_point.as_str()) {
         (Some(_), "recorded") => {
             return Err(Error::Input(
@@ -33,21 +40,17 @@ pub(super) fn loaded(
             ));
         }
         (Some(program), "steps") => by_program(program, options.driving, times, shown.as_ref())?,
-        (None, "steps") => shown.ok_or_else(|| {
+        (None, "steps" | "recorded") => shown.ok_or_else(|| {
+            let option = if is_recorded {
+                "`load_point` recorded"
+            } else {
+                "`program` is missing"
+            };
             Error::Input(format!(
-                "`program` is missing: the record has no column that is known as displacement; {}; say which by `displacement`",
+                "{option}: the record has no column that is known as displacement; {}; say which by `displacement`",
                 measured.seen
             ))
         })?,
-        (None, "recorded") => {
-            let (Some(x), Some(steps)) = (displacement, &shown) else {
-                return Err(Error::Input(format!(
-                    "`load_point` recorded: the record has no column that is known as displacement; {}; say which by `displacement`",
-                    measured.seen
-                )));
-            };
-            motion_as_recorded(times, x, steps.before)
-        }
         (_, other) => return Err(Error::unknown("load_point", other, &["steps", "recorded"])),
     };
     let before = match options.driving {
@@ -83,11 +86,12 @@ pub(super) fn loaded(
         friction: friction.clone(),
         weights: weights.clone(),
     };
-    let steps = match options.load_point.as_str() {
-        "recorded" => steps.unwrap_or_else(|| motion.clone()),
-        _ => motion.clone(),
-    };
-    Ok((motion, steps, record))
+    let recorded = displacement.as_ref().filter(|_| is_recorded);
+    Ok(Loaded {
+        recorded: recorded.map_or_else(Vec::new, |x| motions_as_recorded(times, x, &motion)),
+        motion,
+        record,
+    })
 }
 
 /// By a program: what it changes before the window is the velocity that it begins with.

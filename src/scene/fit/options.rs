@@ -85,7 +85,7 @@ pub struct FitOptions {
     /// Velocity before the first change of the program, in m/s [default: that of the displacement]
     #[arg(long, value_name = "V", value_parser = number, allow_negative_numbers = true, help_heading = "Loading")]
     pub driving: Option<f64>,
-    /// What moves the load point: steps, or its displacement as it was recorded
+    /// What moves the load point: the steps of its displacement, or recorded, all of it, smoothed as friction follows it best
     #[arg(long, value_name = "steps|recorded", default_value = "steps", value_parser = Names::of(["steps", "recorded"]), hide_possible_values = true, help_heading = "Loading")]
     pub load_point: String,
 

@@ -4,6 +4,8 @@ use crate::error::{Error, Result};
 
 /// No friction coefficient is larger.
 const MOST_FRICTION: f64 = 3.0;
+/// No normal stress, in Pa, is smaller.
+const LEAST_STRESS: f64 = 1e3;
 /// So far, in m, and so fast, in m/s, a load point goes only where its column states its unit.
 const FARTHEST: f64 = 0.1;
 const FASTEST: f64 = 1.0;
@@ -23,6 +25,17 @@ pub(super) fn friction(
             friction[at]
         ))),
     }
+}
+
+/// # Errors
+/// [`Error::Input`] for a normal stress, in a column that states no unit, that no experiment has.
+pub(super) fn normal_stress(mean: f64, own: &str, is_stated: bool) -> Result<()> {
+    if is_stated || mean >= LEAST_STRESS {
+        return Ok(());
+    }
+    Err(Error::Input(format!(
+        "{own}, states no unit, and would be {mean} Pa on average; state its unit, such as `normal_stress_column` \"NAME [MPa]\""
+    )))
 }
 
 /// Counts a displacement, `own` in words, upwards, and says what is not certain of it.

@@ -5,11 +5,13 @@
 use crate::fit::{Motion, Stretch};
 
 /// Samples that a line goes through, at least.
-const LEAST: usize = 8;
+pub(super) const LEAST: usize = 8;
 /// Samples on each side of a step that say when it was.
 const NEXT: usize = 40;
 /// Velocities nearer to each other than this factor are one: motors hunt.
 const STEP: f64 = 1.25;
+/// A slope that is smaller, in its standard errors, may be none.
+const CERTAIN: f64 = 4.0;
 /// By so much two lines must lessen the sum of squares, in variances of a sample about them.
 const DECIDED: f64 = 100.0;
 
@@ -44,7 +46,7 @@ pub(super) fn motion_in_steps(times: &[f64], displacement: &[f64]) -> Motion {
                 }
             }
         };
-        let velocity = line.slope.max(0.0);
+        let velocity = line.velocity();
         stretches.push(Stretch {
             span: (begin, end),
             velocity: (velocity, velocity),
@@ -57,31 +59,26 @@ pub(super) fn motion_in_steps(times: &[f64], displacement: &[f64]) -> Motion {
     }
 }
 
-/// The same as it was recorded: from sample to sample.
-pub(super) fn motion_as_recorded(times: &[f64], displacement: &[f64], before: f64) -> Motion {
-    let samples = times.windows(2).zip(displacement.windows(2));
-    let stretches = samples.map(|(t, x)| {
-        let velocity = (x[1] - x[0]) / (t[1] - t[0]);
-        Stretch {
-            span: (t[0], t[1]),
-            velocity: (velocity, velocity),
-        }
-    });
-    Motion {
-        before,
-        stretches: stretches.collect(),
-    }
-}
-
 /// x = level + slope (t - t_0), with the sum of squares about it.
 #[derive(Debug, Clone, Copy)]
-struct Line {
-    level: f64,
-    slope: f64,
+pub(super) struct Line {
+    pub level: f64,
+    pub slope: f64,
+    /// The standard error of the slope.
+    error: f64,
     squares: f64,
 }
 
 impl Line {
+    /// The velocity of the load point: none where the scatter of the transducer alone may be seen, as in a hold.
+    fn velocity(&self) -> f64 {
+        if self.slope > CERTAIN * self.error {
+            self.slope
+        } else {
+            0.0
+        }
+    }
+
     /// Whether these are two velocities.
     fn differs(&self, other: &Line) -> bool {
         let (slow, fast) = (self.slope.min(other.slope), self.slope.max(other.slope));
@@ -90,10 +87,10 @@ impl Line {
 }
 
 /// Sums over the first samples, of t, x, t^2, t x and x^2, from the first sample on.
-struct Sums(Vec<[f64; 5]>);
+pub(super) struct Sums(Vec<[f64; 5]>);
 
 impl Sums {
-    fn of(times: &[f64], displacement: &[f64]) -> Self {
+    pub fn of(times: &[f64], displacement: &[f64]) -> Self {
         let (t_0, x_0) = (times[0], displacement[0]);
         let mut sums = vec![[0.0; 5]];
         for (t, x) in times.iter().zip(displacement) {
@@ -105,15 +102,22 @@ impl Sums {
         Sums(sums)
     }
 
-    fn line(&self, from: usize, to: usize) -> Line {
+    pub fn line(&self, from: usize, to: usize) -> Line {
         let n = (to - from) as f64;
         let [t, x, tt, tx, xx] = std::array::from_fn(|i| self.0[to][i] - self.0[from][i]);
         let (spread, together) = (tt - t * t / n, tx - t * x / n);
         let slope = if spread > 0.0 { together / spread } else { 0.0 };
+        let squares = (xx - x * x / n - slope * together).max(0.0);
+        let error = if n > 2.0 && spread > 0.0 {
+            (squares / (n - 2.0) / spread).sqrt()
+        } else {
+            f64::INFINITY
+        };
         Line {
             level: (x - slope * t) / n,
             slope,
-            squares: (xx - x * x / n - slope * together).max(0.0),
+            error,
+            squares,
         }
     }
 

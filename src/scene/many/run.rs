@@ -163,7 +163,8 @@ impl Watch<'_> {
         if first && plan.sampling == Sampling::EveryStep {
             self.emit(step, step.begin());
         }
-        while let Some(t) = plan.sampling.time(self.sampled, plan.until, plan.until)
+        let ends = (plan.until, plan.until);
+        while let Some(t) = plan.sampling.time(self.sampled, ends, plan.units())
             && t <= end
         {
             self.emit(step, t);

@@ -154,7 +154,8 @@ impl<'a> TextObserver<'a> {
             Some(_) => self.stretch.span.1,
             None => plan.until,
         };
-        plan.sampling.time(self.sampled, plan.until, end)
+        let units = plan.model.units();
+        plan.sampling.time(self.sampled, (plan.until, end), units)
     }
 
     fn draw(&mut self, at: &TextInstant) {
