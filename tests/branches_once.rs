@@ -129,6 +129,14 @@ fn orbits_begin_at_those_that_are_found_where_no_hopf_point_is_met() {
         let ended = twinslip(&arguments);
         assert_eq!(ended.code, 0, "{arguments}: {}", ended.err);
         let found = branches(&ended);
+        // A branch has one symmetry, also where another one parts from it.
+        for rows in found.values() {
+            assert!(
+                rows.iter()
+                    .all(|row| row["symmetry"] == rows[0]["symmetry"]),
+                "{rows:?}"
+            );
+        }
         // Each begins with its own orbit: of two at one value the periods differ.
         let begins = found.values().map(|rows| {
             (

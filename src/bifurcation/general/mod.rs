@@ -188,13 +188,23 @@ pub struct GeneralPoint {
 impl GeneralSolution {
     /// Whether the last two of three variables, or the one that stands for both, are equal all along.
     pub fn symmetry(&self) -> Symmetry {
-        let equal = |x: &Vector| {
-            let (first, last) = (x[1], x[x.len() - 1]);
-            (first - last).abs() < SAME * (1.0 + first.abs())
-        };
+        /// A difference along an orbit as a part of how far it goes: beside a pitchfork, where the difference is neutral, Newton's method leaves
+        /// about the third root of its tolerance.
+        const NEUTRAL: f64 = 1e-4;
+        let apart = |x: &Vector| (x[1] - x[x.len() - 1]).abs();
         let symmetric = match self {
-            GeneralSolution::Equilibrium { state, .. } => equal(state),
-            GeneralSolution::Orbit { shooting, .. } => shooting.nodes.iter().all(equal),
+            GeneralSolution::Equilibrium { state, .. } => {
+                apart(state) < SAME * (1.0 + state[1].abs())
+            }
+            GeneralSolution::Orbit { shooting, .. } => {
+                let of_first = shooting.nodes.iter().map(|x| x[1]);
+                let (least, most) = of_first
+                    .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), x| {
+                        (least.min(x), most.max(x))
+                    });
+                let apart = shooting.nodes.iter().map(apart).fold(0.0, f64::max);
+                apart < NEUTRAL * (most - least)
+            }
         };
         match symmetric {
             true => Symmetry::Symmetric,
