@@ -822,8 +822,8 @@ class Commands:
             Velocity of the load point: T:V,T:V,... in s and m/s, T1-T2:V for a ramp, or FILE.csv;
             times as in the record [default: the steps that its displacement shows]
         load_point : str, number or sequence, optional
-            What moves the load point: steps, or its displacement as it was recorded [default:
-            steps]
+            What moves the load point: the steps of its displacement, or recorded, all of it,
+            smoothed as friction follows it best [default: steps]
         time : str or int, optional
             Column of the time, by name or number from 1 on; so the others
         displacement : str or int, optional
