@@ -121,7 +121,7 @@ impl OrbitAccuracy {
     }
 
     /// That of orbits from which more is followed: their own uncertainties are of no use there.
-    pub(crate) fn unchecked() -> Self {
+    pub fn unchecked() -> Self {
         OrbitAccuracy {
             checked: false,
             ..Self::of(Choice::Auto)
@@ -139,7 +139,7 @@ impl OrbitAccuracy {
     }
 
     /// With this largest step.
-    pub(crate) fn stepping(self, max_step: f64) -> Self {
+    pub fn stepping(self, max_step: f64) -> Self {
         OrbitAccuracy {
             tolerances: self.tolerances.stepping(max_step),
             ..self
