@@ -135,7 +135,7 @@ impl<'a> FieldEquilibria<'a> {
     }
 
     /// The equilibrium near a state; `None` where Newton's method does not find it.
-    pub(super) fn corrected(&self, near: &Vector, p: f64) -> Option<Vector> {
+    pub(in crate::bifurcation) fn corrected(&self, near: &Vector, p: f64) -> Option<Vector> {
         /// Iterations, and a correction that is the last, in units of 1 + |y|.
         const ITERATIONS: usize = 20;
         const DONE: f64 = 1e-13;

@@ -109,7 +109,7 @@ impl<'b, 'a> EquilibriumBranches<'b, 'a> {
         Ok(())
     }
 
-    fn with_family<R>(&self, then: impl FnOnce(&FieldEquilibria<'_>) -> R) -> R {
+    pub fn with_family<R>(&self, then: impl FnOnce(&FieldEquilibria<'_>) -> R) -> R {
         let (system, held) = (self.branch.system, self.branch.held);
         let fields = |x: f64| system.family.field([x, held]);
         let scale = |x: f64| system.family.scale([x, held])[0];

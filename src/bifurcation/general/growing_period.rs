@@ -6,8 +6,9 @@
 //! on the limit, by one law or the other; else nothing is said.
 
 use super::equilibria::EquilibriumBranches;
-use super::{GeneralBranch, GeneralPoint};
+use super::{FREE, GeneralBranch, GeneralPoint};
 use crate::bifurcation::Label;
+use crate::bifurcation::equilibria::generic::FieldEquilibria;
 use crate::bifurcation::orbits::{ARC, ROUGH, WORK};
 use crate::field::Vector;
 use crate::integrate::AnyField;
@@ -15,8 +16,6 @@ use crate::number::{Uncertain, eigenvalues};
 use crate::orbit::{Regular, ShootingNodes, Tracer};
 use std::ops::ControlFlow::Continue;
 
-/// The free parameter.
-const FREE: usize = 0;
 /// Orbits that are looked at, the last ones.
 const LAST: usize = 3;
 /// The way to the limit is at most this part of the branch's.
@@ -99,7 +98,7 @@ fn extrapolated(orbits: [[f64; 2]; LAST], falls: impl Fn(f64, f64) -> f64) -> Op
 fn saddle_rate(branch: &GeneralBranch<'_>, orbit: &Regular) -> Option<f64> {
     let field = branch.system.family.field(orbit.site.at);
     let passage = Passage::of(&field, &orbit.site.shooting)?;
-    let saddle = passage.equilibrium(&field)?;
+    let saddle = passage.equilibrium(branch, orbit.site.at[FREE])?;
     let found = eigenvalues(&field.jacobian(&saddle))?;
     let real = || found.iter().map(|z| z.re);
     let both_signs = real().any(|x| x > 0.0) && real().any(|x| x < 0.0);
@@ -141,22 +140,12 @@ impl Passage {
         })
     }
 
-    /// The equilibrium that the orbit passes there, by Newton's method.
-    fn equilibrium(&self, field: &AnyField<'_>) -> Option<Vector> {
-        /// Iterations, and a correction that is the last, in parts of the extents.
-        const ITERATIONS: usize = 20;
-        const DONE: f64 = 1e-12;
-        let mut state = self.place.clone();
-        let parts = |x: &Vector| x.component_div(&self.extents).amax();
-        for _ in 0..ITERATIONS {
-            let step = field.newton_step(state.as_slice())?;
-            let size = parts(&step);
-            state -= step;
-            if size < DONE {
-                return (parts(&(&state - &self.place)) < PASSED).then_some(state);
-            }
-        }
-        None
+    /// The equilibrium that the orbit passes there.
+    fn equilibrium(&self, branch: &GeneralBranch<'_>, coordinate: f64) -> Option<Vector> {
+        let near = |family: &FieldEquilibria<'_>| family.corrected(&self.place, coordinate);
+        let state = EquilibriumBranches::new(branch).with_family(near)?;
+        let off = (&state - &self.place).component_div(&self.extents).amax();
+        (off < PASSED).then_some(state)
     }
 }
 

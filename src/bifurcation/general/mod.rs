@@ -9,7 +9,9 @@ mod equilibria;
 mod growing_period;
 mod hopf;
 mod multipliers_together;
+mod orbit_branch;
 mod orbit_curves;
+mod orbit_point;
 mod orbits;
 mod splits;
 
@@ -36,6 +38,8 @@ use std::ops::ControlFlow;
 
 /// Points nearer to each other than this, in units of 1 + |x|, are one; so are orbits whose coordinates, and ln T, differ by less.
 const SAME: f64 = 1e-6;
+/// The parameter that varies along a branch, among the coordinates.
+const FREE: usize = 0;
 
 /// The equilibria that are known at some coordinates of the parameters.
 pub type KnownEquilibria<'a> = &'a (dyn Fn([f64; 2]) -> Result<Vec<Vector>> + Sync);

@@ -4,7 +4,9 @@
 //! outside the unit circle are compared from orbit to orbit; where no test function tells why they differ, the multiplier that is the next to leave
 //! it is followed to modulus 1.
 
+use super::orbit_point::orbit_point;
 use super::orbits::new_corrector;
+use super::{FREE, GeneralPoint};
 use crate::bifurcation::Label;
 use crate::bifurcation::orbits::refined;
 use crate::number::Uncertain;
@@ -13,8 +15,6 @@ use crate::orbit::{
 };
 use std::f64::consts::PI;
 
-/// The free parameter.
-const FREE: usize = 0;
 /// ln |mu| nearer to 0 has no certain sign on the way, and in the last digits.
 const CERTAIN: f64 = 1e-6;
 const SHARP: f64 = 1e-10;
@@ -40,11 +40,36 @@ pub(super) struct Together {
     /// The orbit there, but for its last digits.
     pub orbit: Regular,
     /// The coordinate.
-    pub at: Uncertain,
-    /// What it is.
-    pub label: Label,
+    at: Uncertain,
+    label: Label,
     /// How many.
-    pub count: usize,
+    count: usize,
+}
+
+impl Together {
+    /// As a special point of a branch.
+    pub fn point(self, number: usize, family: &dyn ParametrisedField) -> GeneralPoint {
+        let Together {
+            orbit,
+            at,
+            label,
+            count,
+        } = self;
+        let which = match label {
+            Label::Bp => "that are 1",
+            Label::Pd => "that are -1",
+            _ => "of modulus 1",
+        };
+        let point = orbit_point(number, &orbit, Some(label));
+        let point = GeneralPoint {
+            at: [at.value, point.at[1]],
+            note: Some(format!(
+                "multipliers {which}: {count}; what branches off is not followed"
+            )),
+            ..point
+        };
+        point.placed(family, [at.uncertainty, 0.0])
+    }
 }
 
 /// How many are outside the unit circle; `None` where one has no certain side.
@@ -75,7 +100,7 @@ impl Outside {
     }
 }
 
-/// ln |mu| of the k-th multiplier of the orbit at a coordinate, near another orbit.
+/// The orbit at a coordinate, near another one.
 fn orbit_at(
     family: &dyn ParametrisedField,
     near: &ContinuationPoint,

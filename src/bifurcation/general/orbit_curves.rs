@@ -1,7 +1,8 @@
 //! Curves of bifurcations of periodic orbits in the plane of two parameters, with their resonances.
 
 use super::curves::{in_order, looked_along, scanned};
-use super::orbits::{new_corrector, orbit_point, orbits, special_orbit, sum_of_pair};
+use super::orbit_point::{orbit_point, special_orbit, sum_of_pair};
+use super::orbits::{new_corrector, orbits};
 use super::{
     GeneralBranch, GeneralCurve, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution,
     SAME, Teller,

@@ -2,7 +2,7 @@
 
 use super::{GeneralBranch, GeneralEvent, GeneralObserver, GeneralPoint, GeneralSolution};
 use crate::bifurcation::Label;
-use crate::bifurcation::general::orbits::orbit_point;
+use crate::bifurcation::general::orbit_point::orbit_point;
 use crate::error::Result;
 use crate::field::Vector;
 use crate::number::Uncertain;
