@@ -78,20 +78,23 @@ fn every_command_of_the_guide_runs() {
     assert!(place.join("fig06.svg").exists());
 }
 
+/// Runs the commands of a page, of which there are so many at least, and gives its text.
+fn page_runs(name: &str, least: usize) -> String {
+    let text = text_of(&format!("docs/{name}.md"));
+    let lines = commands(&text);
+    assert!(lines.len() >= least, "{lines:?}");
+    run_all(&lines, &folder(name));
+    text
+}
+
 #[test]
 fn every_command_of_the_page_on_many_interfaces_runs() {
-    let text = text_of("docs/many-interfaces.md");
-    let lines = commands(&text);
-    assert!(lines.len() >= 7, "{lines:?}");
-    run_all(&lines, &folder("many-interfaces"));
+    page_runs("many-interfaces", 7);
 }
 
 #[test]
 fn every_command_of_the_page_on_systems_runs() {
-    let text = text_of("docs/system-file.md");
-    let lines = commands(&text);
-    assert!(lines.len() >= 4, "{lines:?}");
-    run_all(&lines, &folder("system-file"));
+    let text = page_runs("system-file", 4);
     // The file that it shows is one.
     let (_, rest) = text.split_once("```toml\n").expect("a file");
     let (file, _) = rest.split_once("```").expect("an end");
@@ -105,18 +108,12 @@ fn every_command_of_the_page_on_systems_runs() {
 
 #[test]
 fn every_command_of_the_page_on_uncertainty_runs() {
-    let text = text_of("docs/uncertainty.md");
-    let lines = commands(&text);
-    assert!(lines.len() >= 4, "{lines:?}");
-    run_all(&lines, &folder("uncertainty"));
+    page_runs("uncertainty", 4);
 }
 
 #[test]
 fn every_command_of_the_page_on_fits_runs() {
-    let text = text_of("docs/fit.md");
-    let lines = commands(&text);
-    assert!(lines.len() >= 2, "{lines:?}");
-    run_all(&lines, &folder("fit"));
+    page_runs("fit", 2);
 }
 
 #[test]
