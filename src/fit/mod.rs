@@ -129,9 +129,10 @@ pub fn fit<const N: usize>(
     let errors = Errors::of(problem, &minimum)?;
     let quantile = errors.quantile();
     let mut profiles = Vec::new();
-    if intervals == Intervals::Profile {
+    // Where the search has not ended at a minimum there is none that sums of squares could be measured from.
+    if intervals == Intervals::Profile && minimum.converged {
         for at in 0..free {
-            let profile = Profile::of(problem, (&minimum, &errors), at, quantile)?;
+            let profile = Profile::of(problem, (&minimum, &errors), at, quantile);
             evaluations += profile.evaluations;
             profiles.push(profile);
         }

@@ -6,8 +6,7 @@
 
 use super::least_squares::Minimum;
 use super::problem::Problem;
-use super::{Errors, MAX_ITERATIONS, Scale};
-use crate::error::Result;
+use super::{Errors, FIRST_ITERATIONS, Scale};
 
 /// Points on a side, at most.
 const MOST_POINTS: usize = 12;
@@ -49,7 +48,7 @@ impl Profile {
         (minimum, errors): (&Minimum, &Errors),
         at: usize,
         quantile: f64,
-    ) -> Result<Self> {
+    ) -> Self {
         let best = minimum.variables[at];
         let mut profile = Profile {
             points: vec![ProfilePoint {
@@ -66,7 +65,7 @@ impl Profile {
             at,
         };
         for sign in [-1.0, 1.0] {
-            let end = side.end(sign, quantile, &mut profile)?;
+            let end = side.end(sign, quantile, &mut profile);
             if sign < 0.0 {
                 profile.interval.0 = end;
             } else {
@@ -76,7 +75,7 @@ impl Profile {
         profile
             .points
             .sort_by(|one, other| one.variable.total_cmp(&other.variable));
-        Ok(profile)
+        profile
     }
 }
 
@@ -89,7 +88,7 @@ struct Side<'a, const N: usize> {
 
 impl<const N: usize> Side<'_, N> {
     /// Where the profile reaches the quantile, below the best value or above it.
-    fn end(&self, sign: f64, quantile: f64, profile: &mut Profile) -> Result<f64> {
+    fn end(&self, sign: f64, quantile: f64, profile: &mut Profile) -> f64 {
         let (at, best) = (self.at, self.minimum.variables[self.at]);
         let error = self.errors.standard[at];
         let limit = match self.problem.free[at].scale {
@@ -100,21 +99,24 @@ impl<const N: usize> Side<'_, N> {
         let bound = if sign < 0.0 { best - low } else { high - best };
         let limit = limit.min(bound);
         if !(error.is_finite() && limit > 0.0) {
-            return Ok(sign * f64::INFINITY);
+            return sign * f64::INFINITY;
         }
         // The distance is sought at which the deviation is the quantile: of a linear problem the first guess.
         let (mut below, mut above) = ((0.0, 0.0), None::<(f64, f64)>);
         let mut distance = f64::min(quantile * error, limit);
         let mut others = self.minimum.variables.clone();
         for _ in 0..MOST_POINTS {
-            let deviation = self.deviation(sign * distance, &mut others, profile)?;
+            let Some(deviation) = self.deviation(sign * distance, &mut others, profile) else {
+                // The end is not nearer than where it may be.
+                return above.map_or(sign * f64::INFINITY, |(far, _)| best + sign * far);
+            };
             if (deviation - quantile).abs() <= NEAR * quantile {
                 // The rest along the secant.
-                return Ok(best + sign * distance * quantile / deviation);
+                return best + sign * distance * quantile / deviation;
             }
             if deviation < quantile {
                 if distance >= limit {
-                    return Ok(sign * f64::INFINITY);
+                    return sign * f64::INFINITY;
                 }
                 below = (distance, deviation);
             } else {
@@ -133,11 +135,12 @@ impl<const N: usize> Side<'_, N> {
                 }
             };
         }
-        Ok(best + sign * distance)
+        best + sign * distance
     }
 
-    /// The deviation where the variable is held at a distance, the others being fitted from where they were before.
-    fn deviation(&self, moved: f64, others: &mut Vec<f64>, profile: &mut Profile) -> Result<f64> {
+    /// The deviation where the variable is held at a distance, the others being fitted from where they were before; `None` where their search
+    /// does not end, along what the data do not determine, or cannot begin: the sum of squares that it has come to is not the least one.
+    fn deviation(&self, moved: f64, others: &mut Vec<f64>, profile: &mut Profile) -> Option<f64> {
         let at = self.at;
         let variable = self.minimum.variables[at] + moved;
         let mut bounds = self.problem.bounds();
@@ -161,15 +164,14 @@ impl<const N: usize> Side<'_, N> {
         };
         profile.evaluations += 2;
         bounds[at] = (variable, variable);
-        // Where the start has no friction the profile has grown beyond all measure.
-        let Ok(found) = self
+        let searched = self
             .problem
-            .minimum(&start, &bounds, (MAX_ITERATIONS, ENOUGH))
-        else {
-            profile.evaluations += 1;
-            return Ok(f64::INFINITY);
-        };
-        profile.evaluations += found.evaluations;
+            .minimum(&start, &bounds, (FIRST_ITERATIONS, ENOUGH));
+        profile.evaluations += searched.as_ref().map_or(1, |found| found.evaluations);
+        let found = searched.ok()?;
+        if !found.converged {
+            return None;
+        }
         let grown = found.residuals.cost() - self.minimum.residuals.cost();
         let widening = self.errors.widening[at];
         let deviation = (grown.max(0.0) / self.errors.variance).sqrt() / widening;
@@ -178,6 +180,6 @@ impl<const N: usize> Side<'_, N> {
             variable,
             deviation: deviation.copysign(moved),
         });
-        Ok(deviation)
+        Some(deviation)
     }
 }

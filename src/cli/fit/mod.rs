@@ -34,6 +34,9 @@ pub fn run(options: &FitOptions, call: &Call) -> Result<Ending> {
     for path in &pictures {
         plot::PictureFormat::of(path)?;
     }
+    if let Some(page) = &options.report {
+        page::check_name(page)?;
+    }
     let mut files = pictures;
     files.extend(options.report.as_deref());
     let report = Report::new(&options.output, call, &files)?;

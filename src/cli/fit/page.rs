@@ -63,10 +63,24 @@ pub fn law_picture(plan: &FitPlan, fitted: &Fitted<'_>) -> Result<Drawing> {
     Ok(Drawing::columns(vec![vec![panel]]))
 }
 
+/// Whether a page can have this name.
+///
+/// # Errors
+/// [`Error::Input`] unless it ends in .html.
+pub fn check_name(path: &Path) -> Result<()> {
+    match path.extension() {
+        Some(ending) if ending == "html" => Ok(()),
+        _ => Err(Error::Input(format!(
+            "`report` {}: the name must end in .html",
+            path.display()
+        ))),
+    }
+}
+
 /// Writes the page.
 ///
 /// # Errors
-/// [`Error::Input`] unless the name ends in .html, [`Error::File`], and those of [`law_picture`].
+/// [`Error::File`], and those of [`law_picture`].
 pub fn write(
     path: &Path,
     call: &Call,
@@ -74,12 +88,6 @@ pub fn write(
     (found, steps): (&[Fitted<'_>], &[FittedStep]),
     rows: &[FitRow],
 ) -> Result<()> {
-    if path.extension().is_none_or(|ending| ending != "html") {
-        return Err(Error::Input(format!(
-            "`report` {}: the name must end in .html",
-            path.display()
-        )));
-    }
     let best = &found[0];
     let figure = |id: &str, title: &str, caption: &str, drawing: &Drawing| -> Result<Figure> {
         Ok(Figure {
