@@ -8,8 +8,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A minimum is reached where a step is as small as this.
+/// A minimum is reached where a step that is not damped is as small as this; a damped one that is as small leads nowhere.
 const LEAST_STEP: f64 = 1e-10;
+/// A damping that holds back what the residuals do not determine at all.
+const LEAST_DAMPING: f64 = 1e-12;
+/// What such a step may still promise, in parts of the sum of squares, where no step leads down: what the residuals are off by themselves; and how
+/// long it may be.
+const NOTHING: f64 = 1e-6;
 /// The damping at first, relative to the curvature.
 const FIRST_DAMPING: f64 = 1e-3;
 /// Beyond this damping no step leads down.
@@ -82,8 +87,15 @@ pub fn minimise(
         let taken = DVector::from_iterator(x.len(), next.iter().zip(&x).map(|(n, x)| n - x));
         let expected = linear.reduction(&taken);
         let variance = here.cost() / here.values.len() as f64;
-        if taken.amax() <= LEAST_STEP || (0.0..=negligible * variance).contains(&expected) {
+        // A damped step is short and promises little anywhere.
+        let full = linear.step(LEAST_DAMPING, &scale, &held);
+        let promised = linear.reduction(&full);
+        if full.amax() <= LEAST_STEP || promised <= negligible * variance {
             converged = true;
+            break;
+        }
+        if taken.amax() <= LEAST_STEP || damping > MOST_DAMPING {
+            converged = promised <= NOTHING * here.cost() || full.amax() <= NOTHING;
             break;
         }
         evaluations += 1;
@@ -103,11 +115,6 @@ pub fn minimise(
             _ => {
                 damping *= growth;
                 growth *= 2.0;
-                if damping > MOST_DAMPING {
-                    // What the residuals are off by themselves.
-                    converged = expected <= 1e-6 * here.cost();
-                    break;
-                }
             }
         }
     }

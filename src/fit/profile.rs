@@ -144,25 +144,26 @@ impl<const N: usize> Side<'_, N> {
         let at = self.at;
         let variable = self.minimum.variables[at] + moved;
         let mut bounds = self.problem.bounds();
-        // The others where they were, or moved as those of a linear problem are: what the data do not determine may then go far astray.
+        // The others where they were or at the minimum, still or moved as those of a linear problem are: what the data do not determine may then
+        // go far astray.
         let inverse = &self.errors.inverse;
-        let shift = variable - others[at];
-        let moved_by = |part: f64| {
-            let each = others.iter().zip(&bounds).enumerate();
-            let along = |j: usize| part * shift * inverse[(j, at)] / inverse[(at, at)];
+        let moved_from = |from: &[f64], part: f64| {
+            let shift = part * (variable - from[at]) / inverse[(at, at)];
+            let each = from.iter().zip(&bounds).enumerate();
             let mut start: Vec<f64> = each
-                .map(|(j, (x, (low, high)))| (x + along(j)).clamp(*low, *high))
+                .map(|(j, (x, (low, high)))| (x + shift * inverse[(j, at)]).clamp(*low, *high))
                 .collect();
             start[at] = variable;
             (self.problem.cost(&start), start)
         };
-        let (still, linear) = (moved_by(0.0), moved_by(1.0));
-        let start = if linear.0 < still.0 {
-            linear.1
-        } else {
-            still.1
-        };
-        profile.evaluations += 2;
+        let from = [others.as_slice(), &self.minimum.variables];
+        let starts = from.map(|from| [0.0, 1.0].map(|part| moved_from(from, part)));
+        let lowest = starts
+            .into_iter()
+            .flatten()
+            .min_by(|a, b| a.0.total_cmp(&b.0));
+        let (_, start) = lowest?;
+        profile.evaluations += 4;
         bounds[at] = (variable, variable);
         let searched = self
             .problem
