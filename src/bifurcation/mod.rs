@@ -241,11 +241,15 @@ impl Special {
     fn against(mut self, tolerance: f64) -> Self {
         let off = |x: &Uncertain| x.uncertainty > tolerance * x.value.abs();
         if off(&self.driving) || off(&self.stiffness) {
-            let before = self.note.map_or(String::new(), |note| note + "; ");
-            self.note = Some(before + "less accurate than asked for");
+            self.note = Some(less_accurate(self.note));
         }
         self
     }
+}
+
+/// The note of a special point that is less accurate than was asked for.
+fn less_accurate(note: Option<String>) -> String {
+    note.map_or(String::new(), |note| note + "; ") + "less accurate than asked for"
 }
 
 /// A point of a branch.

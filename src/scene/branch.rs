@@ -35,6 +35,19 @@ impl BranchKind {
         }
     }
 
+    /// How many period doublings are followed.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for any of equilibria.
+    pub(super) fn doublings(self, doublings: usize) -> Result<usize> {
+        if self == BranchKind::Equilibria && doublings > 0 {
+            return Err(Error::Input(format!(
+                "`doublings` {doublings} goes with orbits: equilibria have no period"
+            )));
+        }
+        Ok(doublings)
+    }
+
     pub(super) fn name(self) -> &'static str {
         match self {
             BranchKind::Equilibria => "equilibria",
@@ -163,7 +176,7 @@ impl BranchPlan {
             step: following.step,
             tolerance: following.tolerance,
             skip: Vec::new(),
-            doublings: options.doublings,
+            doublings: of.doublings(options.doublings)?,
             max_points: following.max_points,
         };
         Ok(BranchPlan {

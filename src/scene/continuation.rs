@@ -37,12 +37,11 @@ pub struct ContinuationOptions {
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 #[command(next_help_heading = "Search")]
 pub struct SearchOptions {
-    /// With --system: branches of equilibria begin at all in a box, a range for every state: x=-10:10,y=0:5
+    /// With --system, or a --law from a file: branches of equilibria begin at all in a box, a range for every state: x=-10:10,y=0:5
     #[arg(
         id = "box",
         long = "box",
         value_name = "RANGES",
-        requires = "system",
         allow_hyphen_values = true
     )]
     pub within: Option<String>,
@@ -57,8 +56,20 @@ pub struct SearchOptions {
 
 impl SearchOptions {
     /// # Errors
-    /// [`Error::Input`] where a start is given: all branches are found without one.
+    /// [`Error::Input`] for a box, of what has all its equilibria found without one.
+    pub fn without_box(&self) -> Result<()> {
+        match self.within {
+            None => Ok(()),
+            Some(_) => Err(Error::Input(
+                "`box` is where equilibria of a `system` or a `law` from a file are looked for; of built-in laws all are found without it".into(),
+            )),
+        }
+    }
+
+    /// # Errors
+    /// [`Error::Input`] where a start or a box is given: all branches are found without one.
     pub fn unused(&self) -> Result<()> {
+        self.without_box()?;
         match self.start {
             None => Ok(()),
             Some(_) => Err(Error::Input(
@@ -161,7 +172,10 @@ impl BranchOptions {
         let subject = SlabSubject::new(system, &[along])?;
         let search = &self.search;
         Ok(Some(match self.of.as_deref() {
-            Some("orbits") => subject.beginning(search.start.as_deref(), search.period_guess)?,
+            Some("orbits") => {
+                search.without_box()?;
+                subject.beginning(search.start.as_deref(), search.period_guess)?
+            }
             _ => {
                 search.unused()?;
                 subject
@@ -207,6 +221,11 @@ impl LocusOptions {
         }
         let search = &self.search;
         let subject = SlabSubject::new(system, &names)?;
+        if !CurveChoice::named(self.of.as_deref())?.of_orbits() {
+            search.unused()?;
+            return Ok(Some(subject));
+        }
+        search.without_box()?;
         let subject = subject.beginning(search.start.as_deref(), search.period_guess)?;
         Ok(Some(subject))
     }

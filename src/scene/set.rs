@@ -59,7 +59,60 @@ impl ModelOptions {
     }
 }
 
+impl ModelOptions {
+    /// V_H and K as flags or `set` give them, in the user's units.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn loading(&self) -> Result<[Option<f64>; 2]> {
+        let set = assignments(&self.slab.text.set)?;
+        let of = |name: &str| set.iter().find(|(set, _)| *set == name).map(|(_, x)| *x);
+        Ok([
+            self.driving.or(of("driving")),
+            self.stiffness.or(of("stiffness")),
+        ])
+    }
+
+    /// Whether a flag or `set` gives the parameter of this name.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn gives(&self, name: &str) -> Result<bool> {
+        let flag = match name {
+            "driving" => self.driving.is_some(),
+            "stiffness" => self.stiffness.is_some(),
+            _ => self.slab.flag(name),
+        };
+        Ok(flag || self.slab.sets(name)?)
+    }
+}
+
 impl SlabOptions {
+    /// Whether a flag gives the parameter of this name.
+    pub(super) fn flag(&self, name: &str) -> bool {
+        match name {
+            "damping" => self.damping.or(self.shear_modulus),
+            "healing_time" => self.healing_time,
+            "residual_strength" => self.residual_strength,
+            "direct_effect" => self.direct_effect,
+            "evolution_effect" => self.evolution_effect,
+            "reference_friction" => self.reference_friction,
+            "slip_length" => self.slip_length,
+            "normal_stress" => self.normal_stress,
+            _ => None,
+        }
+        .is_some()
+    }
+
+    /// Whether `set` gives the parameter of this name.
+    ///
+    /// # Errors
+    /// As [`assignments`].
+    pub(super) fn sets(&self, name: &str) -> Result<bool> {
+        let all = assignments(&self.text.set)?;
+        Ok(all.iter().any(|(set, _)| *set == name))
+    }
+
     /// The same for a command to which V_H and K are a grid.
     ///
     /// # Errors

@@ -22,7 +22,7 @@ pub use orbits::orbits;
 pub use splits::WithinClusters;
 
 use super::orbits::{SpecialOrbit, second};
-use super::{Criticality, Label};
+use super::{Criticality, Label, less_accurate};
 use crate::bifurcation::equilibria::generic_crossing::BranchCrossing;
 use crate::bifurcation::equilibria::generic_curve::EquilibriumBifurcation;
 use crate::equilibrium::{Symmetry, Verdict};
@@ -270,6 +270,15 @@ pub enum GeneralEvent {
 pub type GeneralObserver<'a> = &'a mut dyn FnMut(GeneralEvent) -> ControlFlow<()>;
 
 impl GeneralPoint {
+    /// The point with a word in its note where one of its parameters is less accurate than was asked for, relative to these sizes.
+    pub fn against(mut self, tolerance: f64, sizes: &[f64]) -> Self {
+        let mut all = self.parameters.iter().zip(sizes);
+        if all.any(|(x, size)| x.uncertainty > tolerance * size) {
+            self.note = Some(less_accurate(self.note));
+        }
+        self
+    }
+
     fn new(number: usize, at: [f64; 2], solution: GeneralSolution) -> Self {
         GeneralPoint {
             number,

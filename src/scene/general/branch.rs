@@ -78,6 +78,8 @@ impl<'s> GeneralBranchPlan<'s> {
         };
         let free = Free::new(subject, ("along", along), range, &at)?;
         let orbits = of == BranchKind::Orbits;
+        following::varies(&options.model, &[along])?;
+        following::both_symmetries(&options.symmetry)?;
         let following = Following::new(&options.continuation, orbits)?;
         let numerics = json!({
             "of": of.name(),
@@ -97,7 +99,7 @@ impl<'s> GeneralBranchPlan<'s> {
             },
             subject,
             free,
-            doublings: options.doublings,
+            doublings: of.doublings(options.doublings)?,
             following,
             numerics,
         })
@@ -213,7 +215,8 @@ impl<'s> GeneralBranchPlan<'s> {
         let mut met = 0;
         let mut look = |event: GeneralEvent| {
             met += 1;
-            let found = found(self.subject, &*family, self.kind, &[&self.free], event);
+            let how = (self.kind, self.following.tolerance);
+            let found = found(self.subject, &*family, how, &[&self.free], event);
             match found {
                 Ok(found) => seen(found),
                 Err(error) => {
@@ -255,7 +258,7 @@ fn nothing(orbits: bool) -> Error {
 pub(super) fn found(
     subject: &dyn Subject,
     family: &dyn ParametrisedField,
-    kind: RowKind,
+    (kind, tolerance): (RowKind, f64),
     free: &[&Free],
     event: GeneralEvent,
 ) -> Result<GeneralFound> {
@@ -267,10 +270,16 @@ pub(super) fn found(
                 point.parameters[i] = Uncertain::new(given, 0.0);
             }
         }
-        GeneralRow::of(subject, family, (kind, &names), point)
+        point
     };
+    let row = |point| GeneralRow::of(subject, family, (kind, &names), point);
     Ok(match event {
-        GeneralEvent::Row(point) => GeneralFound::Row(exactly(point)?),
-        GeneralEvent::Special(point) => GeneralFound::Special(exactly(point)?),
+        GeneralEvent::Row(point) => GeneralFound::Row(row(exactly(point))?),
+        GeneralEvent::Special(point) => {
+            let point = exactly(point);
+            let values = free.iter().zip(&point.parameters);
+            let sizes: Vec<f64> = values.map(|(free, x)| free.size(x.value)).collect();
+            GeneralFound::Special(row(point.against(tolerance, &sizes))?)
+        }
     })
 }

@@ -5,7 +5,8 @@ use crate::bifurcation::general::{GeneralFollowing, GeneralSystem};
 use crate::error::{Error, Result};
 use crate::integrate::Choice;
 use crate::orbit::Coordinate;
-use crate::scene::following::Following;
+use crate::scene::following::{self, Following};
+use crate::scene::options::ModelOptions;
 use crate::scene::units::Quantity;
 
 /// A parameter that varies, with its range and the values to land on, dimensionless.
@@ -89,6 +90,14 @@ impl Free {
         self.at.iter().map(|&x| self.coordinate.inward(x)).collect()
     }
 
+    /// What an error of this value is relative to: the value, and near 0 no less than the unit in which it is followed.
+    pub fn size(&self, value: f64) -> f64 {
+        match self.coordinate {
+            Coordinate::Logarithm => value.abs(),
+            Coordinate::Linear(unit) => value.abs().max(unit),
+        }
+    }
+
     /// The number that was asked for and has this coordinate: not what comes back from it.
     pub fn asked(&self, coordinate: f64) -> Option<f64> {
         let ends = [self.range.0, self.range.1];
@@ -106,6 +115,49 @@ pub fn shown(subject: &dyn Subject, free: &[&Free]) -> Vec<(&'static str, Quanti
         }
     }
     shown
+}
+
+/// Checks that no parameter which varies is given a value, too.
+///
+/// # Errors
+/// [`Error::Input`] for one that is.
+pub fn varies(model: &ModelOptions, free: &[&str]) -> Result<()> {
+    for name in free {
+        if model.gives(name)? {
+            return Err(Error::Input(format!(
+                "`{name}` varies and can't be given; its range is asked for"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Checks that V_H and K, which have no default, are given where an orbit is and they vary: it is one at these values.
+///
+/// # Errors
+/// [`Error::Input`] for one that is missing.
+pub fn starts_at(model: &ModelOptions, free: &[&str]) -> Result<()> {
+    for name in free {
+        if following::loading_range(name).is_some() && !model.gives(name)? {
+            return Err(Error::Input(format!(
+                "`start` is of an orbit at values of both parameters that vary; give its `{name}` too"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// Checks the symmetry where branches are followed together, whatever theirs is.
+///
+/// # Errors
+/// [`Error::Input`] for one alone; [`Error::Parameter`] for a name that is none.
+pub fn both_symmetries(name: &str) -> Result<()> {
+    match following::symmetry(name, 2)? {
+        None => Ok(()),
+        Some(_) => Err(Error::Input(format!(
+            "`symmetry` {name} is told apart for equal interfaces alone, where nothing but driving and stiffness varies; leave it out"
+        ))),
+    }
 }
 
 /// Numbers, comma-separated.

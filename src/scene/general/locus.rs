@@ -159,6 +159,11 @@ impl<'s> GeneralLocusPlan<'s> {
         };
         let free = [free(0)?, free(1)?];
         let orbits = matches!(bifurcation, GeneralBifurcation::Orbit(_));
+        match options.search.start.is_some() && orbits {
+            true => following::starts_at(&options.model, &names)?,
+            false => following::varies(&options.model, &names)?,
+        }
+        following::both_symmetries(&options.symmetry)?;
         let following = Following::new(&options.continuation, orbits)?;
         let outward = |free: &Free, x: f64| subject.units().outward(free.quantity, x);
         let list = |free: &Free, all: &[f64]| -> Vec<f64> {
@@ -298,7 +303,8 @@ impl<'s> GeneralLocusPlan<'s> {
         curve.follow(&mut |event: GeneralEvent| {
             met += 1;
             let free = self.free.each_ref();
-            match found(self.subject, &*family, self.kind, &free, event) {
+            let how = (self.kind, self.following.tolerance);
+            match found(self.subject, &*family, how, &free, event) {
                 Ok(found) => seen(found),
                 Err(error) => {
                     failed = Some(error);

@@ -37,15 +37,8 @@ impl SlabSubject {
     /// Interfaces of which these parameters vary.
     ///
     /// # Errors
-    /// [`Error::Input`] in SI for a parameter that sets the units, and where V_H or K is given though it varies.
+    /// [`Error::Input`] in SI for a parameter that sets the units.
     pub fn new(system: System, free: &[&str]) -> Result<Self> {
-        for (name, given) in [("driving", system.driving), ("stiffness", system.stiffness)] {
-            if given.is_some() && free.contains(&name) {
-                return Err(Error::Input(format!(
-                    "`{name}` varies and can't be given; its range is asked for"
-                )));
-            }
-        }
         let laws = match system.unequal {
             Some(laws) => laws,
             None => UnequalLaws::new(system.law.name(), system.constants, system.law.damping())?,

@@ -65,6 +65,12 @@ impl TextSubject {
             None => None,
         };
         let near = start.filter(|_| !orbits);
+        if within.is_some() && near.is_some() {
+            return Err(Error::Input(
+                "`start` and `box` both say where equilibria are looked for; give one of them"
+                    .into(),
+            ));
+        }
         let place = match (within, near) {
             (Some(text), _) => Some(SearchPlace::within(text, &model)?),
             (None, None) if model.slab.is_some() => None,

@@ -1,7 +1,7 @@
 //! Which parameters vary over a grid, and between which values.
 
 use super::super::options::SlabOptions;
-use super::super::set::{NAMES, assignments};
+use super::super::set::NAMES;
 use super::super::unequal::of_one;
 use super::grain::Grain;
 use super::options::SweepOptions;
@@ -194,20 +194,8 @@ pub(super) fn missing(name: &str) -> Error {
 /// What else than the grid says what a parameter is.
 fn said(options: &SweepOptions, name: &str) -> Result<Option<String>> {
     let slab = &options.slab;
-    if assignments(&slab.text.set)?
-        .iter()
-        .any(|(set, _)| *set == name)
-    {
+    if slab.sets(name)? {
         return Ok(Some("`set`".into()));
     }
-    let given = match name {
-        "healing_time" => slab.healing_time,
-        "residual_strength" => slab.residual_strength,
-        "direct_effect" => slab.direct_effect,
-        "evolution_effect" => slab.evolution_effect,
-        "reference_friction" => slab.reference_friction,
-        "damping" => slab.damping.or(slab.shear_modulus),
-        _ => None,
-    };
-    Ok(given.map(|_| format!("`{name}`")))
+    Ok(slab.flag(name).then(|| format!("`{name}`")))
 }
