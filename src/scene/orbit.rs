@@ -187,10 +187,11 @@ fn symmetry(name: Option<&str>, system: &System) -> Result<Symmetry> {
     let asked = name.map(|name| Symmetry::named(name).ok_or_else(|| unknown(name)));
     match (system.unequal, asked.transpose()?) {
         (None, asked) => Ok(asked.unwrap_or(Symmetry::Symmetric)),
-        (Some(_), Some(Symmetry::Symmetric)) => Err(Error::Input(
-            "`symmetry` symmetric: interfaces that differ never move alike; leave it away".into(),
-        )),
-        (Some(_), _) => Ok(Symmetry::Asymmetric),
+        (Some(_), Some(asked)) => Err(Error::Input(format!(
+            "`symmetry` {}: interfaces that differ never move alike; leave it away",
+            asked.name()
+        ))),
+        (Some(_), None) => Ok(Symmetry::Asymmetric),
     }
 }
 

@@ -62,7 +62,7 @@ impl TextOrbitPlan {
         Ok(TextOrbitPlan {
             start: orbit_start(
                 options.start.as_deref(),
-                symmetry(options.symmetry.as_deref())?,
+                symmetry(options, &model)?,
                 &model,
             )?,
             period: options.period_guess.map(guess).transpose()?,
@@ -216,8 +216,23 @@ pub(in crate::scene) fn orbit_start(
     }
 }
 
-fn symmetry(name: Option<&str>) -> Result<Symmetry> {
-    let name = name.unwrap_or("symmetric");
-    Symmetry::named(name)
-        .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))
+fn symmetry(options: &OrbitOptions, model: &TextModel) -> Result<Symmetry> {
+    let name = options.symmetry.as_deref().unwrap_or("symmetric");
+    let symmetry = Symmetry::named(name)
+        .ok_or_else(|| Error::unknown("symmetry", name, &["symmetric", "asymmetric"]))?;
+    if let (Some(slab), Some(name)) = (&model.slab, &options.symmetry) {
+        let refused = |why: &str| Err(Error::Input(format!("`symmetry` {name}: {why}")));
+        if slab.differ(&model.system) {
+            return refused("interfaces that differ never move alike; leave it away");
+        }
+        if slab.clusters().len() == 1 && symmetry == Symmetry::Asymmetric {
+            return refused("what moves alike has nothing to differ from");
+        }
+        if options.start.is_some() {
+            return refused(
+                "the orbit is the one near `start`, whatever its symmetry; give one of them",
+            );
+        }
+    }
+    Ok(symmetry)
 }
