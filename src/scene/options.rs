@@ -12,7 +12,7 @@ use std::path::PathBuf;
 const START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface), or near-symmetric[:EPS]: tau and psi1 at the \
     symmetric steady state and psi2 = psi1 exp(EPS), EPS = 0.01 unless given, or -0.01 where psi2 would exceed 1; where the interfaces differ, \
     psi of each at its own steady state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N interfaces or clusters one psi for \
-    each, or spread[:EPS[:SEED]]: psi of each at its steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the values of all states in their order [default: its table start]";
+    each, or spread[:EPS[:SEED]]: psi of each at its steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on]. Of a system from a file: the values of all states in their order [default: its table start]";
 
 const ORBIT_START_HELP: &str = "TAU,PSI1,PSI2 (TAU,PSI for one interface) at or near the orbit; near-symmetric[:EPS]; or \
     hopf, for the branch from the nearest Hopf point along V_H. Without it the orbit is looked for. Of a system from a file: the \
@@ -159,7 +159,7 @@ pub struct OutputOptions {
 /// `law`: the steady-state friction law of one interface.
 #[derive(Debug, Clone, PartialEq, clap::Args)]
 pub struct LawOptions {
-    /// The law; --interfaces, --driving and --stiffness are accepted and change nothing here.
+    /// The law; with --driving also where N interfaces slide together, and with --stiffness what they slide on.
     #[command(flatten)]
     pub model: ModelOptions,
     /// The uncertainty of a fit.

@@ -1,7 +1,7 @@
 //! Constants of interfaces drawn at random between two values.
 
 use crate::error::{Error, Result, did_you_mean};
-use crate::scene::options::SlabOptions;
+use crate::scene::options::{ModelOptions, SlabOptions};
 use crate::sweep::RandomStart;
 
 /// What may be drawn.
@@ -51,6 +51,18 @@ pub struct Drawn {
 }
 
 impl Draw {
+    /// # Errors
+    /// [`Error::Input`] where the model gives the constant one value, too. A direct effect stays: it sets the unit of stress.
+    pub fn is_not_given(&self, model: &ModelOptions) -> Result<()> {
+        let name = self.name;
+        if name != "direct_effect" && model.gives(name)? {
+            return Err(Error::Input(format!(
+                "`{name}` can't be given where each interface has its own by `draw`; leave out one of them"
+            )));
+        }
+        Ok(())
+    }
+
     /// From `NAME=A:B` or `NAME=A:Blog`.
     ///
     /// # Errors

@@ -14,7 +14,7 @@ use crate::many::{
 use crate::model::Loading;
 use crate::scene::column::Column;
 use crate::scene::options::{IntegrateOptions, NumericsOptions};
-use crate::scene::plan::{Sampling, sampling, until};
+use crate::scene::plan::{Sampling, USUAL_START, sampling, until};
 use crate::scene::system::Described;
 use crate::scene::units::{Quantity, Units};
 #[cfg(feature = "sundials")]
@@ -109,7 +109,7 @@ impl ManyPlan {
             loading,
             draw: &options.draw,
             seed: options.seed,
-            start: options.start.as_deref(),
+            start: options.start.as_deref().or(usual_start(options)),
             processes,
         })?;
         let count = interfaces.count();
@@ -253,9 +253,31 @@ impl Described for ManyPlan {
     }
 }
 
+/// Where so few interfaces start that other engines could take them: as there. Whether events are asked for moves no start.
+fn usual_start(options: &IntegrateOptions) -> Option<&'static str> {
+    let few = options.draw.is_empty() && options.model.slab.count() < MANY;
+    few.then_some(USUAL_START)
+}
+
 /// What runs of many interfaces do not have.
 fn refused(options: &IntegrateOptions) -> Result<()> {
-    let asked: [(&str, bool, &str); 3] = [
+    let slab = &options.model.slab;
+    let asked: [(&str, bool, &str); 6] = [
+        (
+            "system",
+            slab.text.system.is_some(),
+            "constants of interfaces are drawn, and this has none; leave out `draw` or this",
+        ),
+        (
+            "clusters",
+            slab.clusters.is_some(),
+            "each interface that is drawn moves on its own; leave out `draw` or this",
+        ),
+        (
+            "atol",
+            options.numerics.atol.is_some(),
+            "many interfaces have one tolerance, `rtol`, of every psi and of 1 + |tau|",
+        ),
         (
             "max_step",
             options.numerics.max_step.is_some(),

@@ -60,6 +60,9 @@ impl Setup {
         }
         let draws = asked.draw.iter().map(|text| Draw::read(text));
         let draws = draws.collect::<Result<Vec<Draw>>>()?;
+        for draw in &draws {
+            draw.is_not_given(model)?;
+        }
         let share = Share::new(count, asked.processes);
         let mut drawn: Vec<Drawn> = draws.iter().map(Draw::none_drawn).collect();
         let by = (&draws[..], seed);
