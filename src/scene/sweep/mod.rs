@@ -141,7 +141,8 @@ impl SweepPlan {
             (Some(_), Swept::Interfaces(system)) => {
                 curves(options, system, (&settings.grid, &axes.names))?
             }
-            _ => Vec::new(),
+            (Some(_), Swept::Text(_)) => no_curves(options)?,
+            (None, _) => Vec::new(),
         };
         Ok(SweepPlan {
             curves,
@@ -192,6 +193,27 @@ impl SweepPlan {
     }
 }
 
+/// What nothing but a system from a file has.
+///
+/// # Errors
+/// [`Error::Input`] for what is given of it.
+fn of_a_system(options: &SweepOptions) -> Result<()> {
+    let asked = [
+        (
+            "surface",
+            &options.surface,
+            "theirs is the steady stress at the mean slip rate",
+        ),
+        ("start", &options.start, "theirs follow from `starts`"),
+    ];
+    match asked.into_iter().find(|(_, text, _)| text.is_some()) {
+        None => Ok(()),
+        Some((name, _, theirs)) => Err(Error::Input(format!(
+            "`{name}` is of a `system`, and not of interfaces: {theirs}"
+        ))),
+    }
+}
+
 /// The grid that is asked for.
 fn swept(options: &SweepOptions) -> Result<SweptGrid> {
     let axes = Axes::read(options)?;
@@ -210,6 +232,7 @@ fn swept(options: &SweepOptions) -> Result<SweptGrid> {
         layout.names_differ()?;
         return of_text(points, layout, axes, starts);
     }
+    of_a_system(options)?;
     if let Some(points) = TextPoints::of_law(options, &axes)? {
         let others = axes.names.iter().filter(|name| !is_loading(name)).cloned();
         let layout = SweepLayout::interfaces(points.parts(), others);
@@ -366,6 +389,21 @@ fn loading(system: &System, driving: &Grain, stiffness: &Grain) -> Result<Loadin
     system.loading()
 }
 
+/// No curves over what is no map of V_H and K with an area.
+///
+/// # Errors
+/// [`Error::Input`] where any are asked for.
+fn no_curves(options: &SweepOptions) -> Result<Vec<LocusPlan>> {
+    let usual = SweepLine::parse_from(["sweep"]).options.curves;
+    if ["none", usual.as_str()].contains(&options.curves.as_str()) {
+        return Ok(Vec::new());
+    }
+    Err(Error::Input(format!(
+        "`curves` {} are drawn over a map of driving and stiffness of equal interfaces alone; leave it out",
+        options.curves
+    )))
+}
+
 #[derive(Parser)]
 struct LocusLine {
     #[command(flatten)]
@@ -401,10 +439,10 @@ fn curves(
             let ends = [driving, stiffness].map(|range| [range.from, range.to]);
             (ends, asked_for)
         }
-        _ => return Ok(Vec::new()),
+        _ => return no_curves(options),
     };
     if options.curves == "none" || grid.ranges().iter().any(|range| range.count == 1) {
-        return Ok(Vec::new());
+        return no_curves(options);
     }
     let [driving, stiffness] = ends.map(|[from, to]| Some(format!("{from:?}:{to:?}")));
     let mut asked = LocusLine::parse_from(["locus"]).options;

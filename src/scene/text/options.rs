@@ -13,7 +13,7 @@ pub struct TextOptions {
         value_name = "FILE",
         conflicts_with_all = [
             "law", "interfaces", "clusters", "healing_time", "residual_strength", "direct_effect", "evolution_effect", "reference_friction",
-            "si", "slip_length", "reference_rate", "normal_stress", "damping", "shear_modulus", "shear_wave_speed",
+            "si", "slip_length", "reference_rate", "time_unit", "normal_stress", "damping", "shear_modulus", "shear_wave_speed",
         ]
     )]
     pub system: Option<PathBuf>,
