@@ -9,10 +9,11 @@ use crate::friction::ExtremumKind;
 use crate::number::Uncertain;
 use crate::output::{Format, plot};
 use crate::scene::{
-    Column, Described, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Units,
+    Column, Described, LawCurve, LawOptions, LawPlan, LawPoint, Quantity, TextModel, Together,
+    Units,
 };
 use crate::views;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
     match TextModel::of(&options.model, &["driving", "stiffness"])? {
@@ -26,7 +27,13 @@ pub fn run(options: &LawOptions, call: &Call) -> Result<Ending> {
         report.draw(path, &picture(&plan.system.units, &curves))?;
     }
     let columns = views::law_columns(curves.len() > 1);
-    write(&report, &plan.system, &columns, &curves, None)
+    write(
+        &report,
+        &plan.system,
+        &columns,
+        (&curves, plan.together),
+        None,
+    )
 }
 
 /// Checks where results and pictures go, and says what will be computed.
@@ -158,28 +165,56 @@ fn kind(kind: ExtremumKind) -> &'static str {
     }
 }
 
+/// What interfaces do that slide together at V_H, of each law. To each of N interfaces that move alike the spring is N K stiff; where that
+/// is more than the critical stiffness, their steady sliding is stable to what moves them alike.
+fn at_driving<R>(
+    curves: &[LawCurve<R>],
+    together: Together,
+    columns: &[Column<R>],
+    units: &Units,
+) -> Vec<Map<String, Value>> {
+    let object = |curve: &LawCurve<R>| {
+        let mut object = views::object(columns, curve.together.as_ref()?, units);
+        if let Some(stiffness) = together.stiffness {
+            let stiffness = units.outward(Quantity::Stiffness, stiffness);
+            let critical = object["critical_stiffness"].as_f64();
+            let ratio = critical.filter(|k| *k > 0.0).map(|k| stiffness / k);
+            object.insert("stiffness_over_critical".into(), json!(ratio));
+        }
+        Some(object)
+    };
+    curves.iter().filter_map(object).collect()
+}
+
 pub fn write<R>(
     report: &Report<'_>,
     system: &dyn Described,
     columns: &[Column<R>],
-    curves: &[LawCurve<R>],
+    (curves, together): (&[LawCurve<R>], Option<Together>),
     failure: Option<&Error>,
 ) -> Result<Ending> {
     let units = system.units();
     let landmarks = Landmarks::of(curves, units);
+    let at_driving = together.map(|all| at_driving(curves, all, columns, units));
     let points = || curves.iter().flat_map(|curve| &curve.points);
     if report.format == Format::Json {
         report.hand_on(units, columns, points());
         let object = |point| Value::Object(views::object(columns, point, units));
         let rows: Vec<Value> = points().map(object).collect();
         let work = json!({"evaluations": rows.len()});
-        let result = landmarks.result(curves.len(), rows);
+        let mut result = landmarks.result(curves.len(), rows);
+        if let Some(at_driving) = at_driving {
+            result["at_driving"] = json!(at_driving);
+        }
         let bytes = report.envelope(system, json!({}), result, work, failure);
         return report.write(&bytes);
     }
     let found = landmarks.lines();
     let mut remarks = report.remarks(system, &Value::Null);
     remarks.extend(found.iter().cloned());
+    if let Some(at_driving) = at_driving {
+        remarks.push(format!("at_driving: {}", json!(at_driving)));
+    }
     let ending = report.write_all(units, remarks, columns, points())?;
     found.iter().for_each(|line| report.say(line));
     Ok(ending)

@@ -1,6 +1,6 @@
 //! The steady-state friction law from options: at which slip rates.
 
-use super::options::LawOptions;
+use super::options::{LawOptions, ModelOptions};
 use super::system::System;
 use super::units::{Quantity, Units};
 use crate::error::{Error, Result};
@@ -22,6 +22,47 @@ pub struct LawPlan {
     pub system: System,
     /// Where it is evaluated, ascending, in V*.
     pub slip_rates: Vec<f64>,
+    /// What interfaces do that slide together at V_H, where it is given.
+    pub together: Option<Together>,
+}
+
+/// Interfaces that slide steadily together.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Together {
+    /// The slip rate of each, V_H/N, in V*.
+    pub slip_rate: f64,
+    /// The stiffness that each slides on, N K, where K is given.
+    pub stiffness: Option<f64>,
+}
+
+impl Together {
+    /// What the options say of N, V_H and K.
+    ///
+    /// # Errors
+    /// [`Error::Input`] for K alone, and for clusters; [`Error::Parameter`] for values that are not positive.
+    pub(super) fn of(model: &ModelOptions, units: &Units) -> Result<Option<Self>> {
+        if model.slab.clusters.is_some() {
+            return Err(Error::Input(
+                "`clusters`: the law is that of one interface; leave it out".into(),
+            ));
+        }
+        let [driving, stiffness] = model.loading()?;
+        let Some(driving) = driving else {
+            return match stiffness {
+                None => Ok(None),
+                Some(_) => Err(Error::Input(
+                    "`stiffness` is compared with the critical one at V_H/N; give `driving` too"
+                        .into(),
+                )),
+            };
+        };
+        let count = f64::from(model.slab.count());
+        let spring = |k| Ok(count * units.inward(Quantity::Stiffness, positive("stiffness", k)?));
+        Ok(Some(Together {
+            slip_rate: units.inward(Quantity::SlipRate, positive("driving", driving)?) / count,
+            stiffness: stiffness.map(spring).transpose()?,
+        }))
+    }
 }
 
 /// The steady sliding of an interface, at rates and what it is known by.
@@ -31,6 +72,8 @@ pub struct LawCurve<P = LawPoint> {
     pub interface: usize,
     /// tau_ss at these rates.
     pub points: Vec<P>,
+    /// The same at V_H/N, where V_H is given.
+    pub together: Option<P>,
     /// What it is known by, whatever the rates.
     pub landmarks: LawLandmarks,
     /// The coefficient of friction over the stress, where it is known.
@@ -72,8 +115,11 @@ impl LawPlan {
     /// [`Error::Parameter`] and [`Error::Input`], in the user's own names.
     pub fn new(options: &LawOptions) -> Result<Self> {
         let system = System::new(&options.model)?;
-        let slip_rates = slip_rates(options, &system.units)?;
-        Ok(LawPlan { slip_rates, system })
+        Ok(LawPlan {
+            slip_rates: slip_rates(options, &system.units)?,
+            together: Together::of(&options.model, &system.units)?,
+            system,
+        })
     }
 
     /// The plan, one subject a line.
@@ -113,6 +159,7 @@ impl LawPlan {
         Ok(LawCurve {
             interface,
             points: self.slip_rates.iter().map(point).collect(),
+            together: self.together.map(|all| point(&all.slip_rate)),
             landmarks: LawLandmarks {
                 extrema: Extremum::all(law),
                 critical_stiffness_maximum: law.critical_stiffness_maximum()?,

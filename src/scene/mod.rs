@@ -78,7 +78,7 @@ pub use general::{
 };
 pub use instant::{Instant, run_columns};
 pub use ivp::{Halt, IvpAsked, IvpError, IvpEvent, IvpOutcome, IvpParts, IvpPlan, IvpSolution};
-pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint};
+pub use law::{LawCurve, LawLandmarks, LawPlan, LawPoint, Together};
 pub use locus::{CurveChoice, LocusPlan};
 pub use many::{
     Catalogue, CataloguePlan, Drawn, FoundManyEquilibrium, ManyCheckpoint, ManyEquilibriumPlan,

@@ -16,7 +16,13 @@ pub fn run(options: &LawOptions, model: TextModel, call: &Call) -> Result<Ending
         report.draw(path, &picture(plan.model.units(), &curves))?;
     }
     let columns = views::text_law_columns(curves.len() > 1);
-    let ending = write(&report, &plan.model, &columns, &curves, failure.as_ref())?;
+    let ending = write(
+        &report,
+        &plan.model,
+        &columns,
+        (&curves, plan.together),
+        failure.as_ref(),
+    )?;
     failure.map_or(Ok(ending), Err)
 }
 
@@ -25,6 +31,7 @@ fn plain(curve: &LawCurve<TextLawPoint>) -> LawCurve {
     LawCurve {
         interface: curve.interface,
         points: curve.points.iter().map(|at| at.point).collect(),
+        together: curve.together.map(|at| at.point),
         landmarks: curve.landmarks.clone(),
         coefficient: curve.coefficient,
     }

@@ -6,7 +6,7 @@ use super::slab::TextSlab;
 use crate::error::{Error, Result};
 use crate::friction::{Extremum, ExtremumKind, StiffnessMaximum};
 use crate::number::{Interval, Jet, Real, Uncertain, bracketed_root, enclosing_radius};
-use crate::scene::law::{LawCurve, LawLandmarks, LawPoint, of_each, slip_rates};
+use crate::scene::law::{LawCurve, LawLandmarks, LawPoint, Together, of_each, slip_rates};
 use crate::scene::options::LawOptions;
 use crate::scene::system::Described;
 
@@ -17,6 +17,8 @@ pub struct TextLawPlan {
     pub model: TextModel,
     /// Where it is evaluated, ascending, in V*.
     pub slip_rates: Vec<f64>,
+    /// What interfaces do that slide together at V_H, where it is given.
+    pub together: Option<Together>,
 }
 
 /// The law at a slip rate.
@@ -40,6 +42,7 @@ impl TextLawPlan {
     pub fn new(options: &LawOptions, model: TextModel) -> Result<Self> {
         Ok(TextLawPlan {
             slip_rates: slip_rates(options, model.units())?,
+            together: Together::of(&options.model, model.units())?,
             model,
         })
     }
@@ -72,8 +75,12 @@ impl TextLawPlan {
         for i in 0..count {
             let friction = self.slab().friction(&self.model.system, i);
             let (points, failure) = self.points(&friction, i + 1);
+            let together = self
+                .together
+                .map(|all| point(&friction, i + 1, all.slip_rate));
             curves.push(LawCurve {
                 interface: i + 1,
+                together: together.transpose()?,
                 landmarks: landmarks(&friction, &points)?,
                 points,
                 coefficient: friction.parameter("direct_effect"),
