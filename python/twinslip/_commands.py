@@ -218,8 +218,9 @@ class Commands:
             where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
             state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
             interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
-            steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the
-            values of all states in their order [default: its table start]
+            steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on].
+            Of a system from a file: the values of all states in their order [default: its table
+            start]
         draw : dict of (A, B) or (A, B, "log"), optional
             A constant that each of many interfaces has of its own, drawn between A and B,
             NAME=A:B, or by its logarithm, NAME=A:Blog. NAME is healing_time, residual_strength,
@@ -441,8 +442,9 @@ class Commands:
             where psi2 would exceed 1; where the interfaces differ, psi of each at its own steady
             state at V_H/2, the second one times exp(EPS) [default: near-symmetric]. Of N
             interfaces or clusters one psi for each, or spread[:EPS[:SEED]]: psi of each at its
-            steady state times exp(EPS z), z drawn between -1 and 1. Of a system from a file: the
-            values of all states in their order [default: its table start]
+            steady state times exp(EPS z), z drawn between -1 and 1 [default from 8 interfaces on].
+            Of a system from a file: the values of all states in their order [default: its table
+            start]
         surface : str, number or sequence, optional
             The section of the return map: stress=VALUE, or stress=auto for the steady stress at
             the mean slip rate, tau_ss(V_H/2) of two interfaces [default: stress=auto]. With
@@ -533,8 +535,8 @@ class Commands:
             How many period doublings to follow: the branches of orbits with doubled period are
             computed too [default: 0]
         box : dict of (A, B), optional
-            With ``system``: branches of equilibria begin at all in a box, a range for every state:
-            x=-10:10,y=0:5
+            With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
+            box, a range for every state: x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
@@ -625,8 +627,8 @@ class Commands:
         at : dict of sequences of float, optional
             NAME=V1,V2,...: values of one of these to land on exactly, at every crossing
         box : dict of (A, B), optional
-            With ``system``: branches of equilibria begin at all in a box, a range for every state:
-            x=-10:10,y=0:5
+            With ``system``, or a ``law`` from a file: branches of equilibria begin at all in a
+            box, a range for every state: x=-10:10,y=0:5
         start : str or sequence of float, optional
             Branches of orbits begin at or near this point of an orbit, at ``from_``:
             TAU,PSI1,PSI2, with ``system`` the values of all states in their order. Branches of
