@@ -82,6 +82,7 @@ mod many_methods;
 #[cfg(not(feature = "parquet"))]
 mod normal_forms_of_systems;
 mod numbers;
+mod options_used;
 mod orbit_kinds;
 mod orbit_rows;
 mod orbits;
