@@ -1,13 +1,15 @@
 //! No option is accepted and ignored: each option of each command, changed for each kind of system, changes what comes out, or is refused.
 
+mod runs;
 mod values;
 
 use crate::command::{Ended, folder, run};
 use rayon::prelude::*;
+use runs::{Kind, commands};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
-use values::{Change, Kind, change, commands};
+use values::{Change, change};
 
 /// A quick run of a command for a kind of system.
 struct Base {
@@ -214,4 +216,40 @@ fn every_option_is_used_or_refused_for_every_kind_of_system() {
         values::NEVER,
         "options that are refused for every kind"
     );
+}
+
+#[test]
+fn what_is_shown_and_where_follows_the_options() {
+    let of_one = bases().into_iter().filter(|base| base.kind == Kind::One);
+    of_one.collect::<Vec<_>>().into_par_iter().for_each(|base| {
+        let shown = |more: &str| {
+            let words = [&base.words[..], &words(more)].concat();
+            run(&words.iter().map(String::as_str).collect::<Vec<_>>())
+        };
+        let command = base.command;
+        let csv = shown("--format csv");
+        assert!(csv.out.starts_with("# "), "{command}");
+        // All steady states that there are need no word.
+        assert_eq!(csv.err.is_empty(), command == "equilibria", "{command}");
+        assert!(shown("--format json").out.starts_with('{'), "{command}");
+        assert_eq!(shown("--format csv --quiet").err, "", "{command}");
+        let explained = shown("--format csv --explain");
+        assert!(explained.err.contains("plan of this"), "{command}");
+        let file =
+            folder(&format!("options-used-shown-{command}").replace(' ', "-")).join("rows.csv");
+        let name = file.display().to_string();
+        let read = || std::fs::read_to_string(&file).expect("a file");
+        std::fs::write(&file, "of somebody else").expect("a file");
+        assert_eq!(shown(&format!("-o {name}")).code, 2, "{command}");
+        assert_eq!(read(), "of somebody else", "{command}");
+        let written = shown(&format!("-o {name} --force"));
+        assert_eq!(
+            (written.code, written.out.as_str()),
+            (csv.code, ""),
+            "{command}: {}",
+            written.err
+        );
+        let rows = |text: &str| crate::command::csv(text);
+        assert_eq!(rows(&read()), rows(&csv.out), "{command}");
+    });
 }
