@@ -177,7 +177,7 @@ fn at_driving<R>(
         let mut object = views::object(columns, curve.together.as_ref()?, units);
         if let Some(stiffness) = together.stiffness {
             let stiffness = units.outward(Quantity::Stiffness, stiffness);
-            let critical = object["critical_stiffness"].as_f64();
+            let critical = object.get("critical_stiffness").and_then(Value::as_f64);
             let ratio = critical.filter(|k| *k > 0.0).map(|k| stiffness / k);
             object.insert("stiffness_over_critical".into(), json!(ratio));
         }

@@ -57,7 +57,9 @@ impl Together {
             };
         };
         let count = f64::from(model.slab.count());
-        let spring = |k| Ok(count * units.inward(Quantity::Stiffness, positive("stiffness", k)?));
+        let spring = |k: f64| -> Result<f64> {
+            Ok(count * units.inward(Quantity::Stiffness, positive("stiffness", k)?))
+        };
         Ok(Some(Together {
             slip_rate: units.inward(Quantity::SlipRate, positive("driving", driving)?) / count,
             stiffness: stiffness.map(spring).transpose()?,
